@@ -1,0 +1,5 @@
+"""The physics of the paper: one axis, its motion in each mode, and what happens between two modes."""
+
+from .parameters import Axis, CompliantContact, Friction, InitialState, RigidContact, check_start, pack
+
+__all__ = ['Axis', 'CompliantContact', 'Friction', 'InitialState', 'RigidContact', 'check_start', 'pack']

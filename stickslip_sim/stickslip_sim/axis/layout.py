@@ -1,0 +1,39 @@
+"""Where each number stands in the flat arrays that the compiled code works on.
+
+An axis is one array of parameters, followed by three numbers for each knot of the friction tables.  A state is one
+array: the state of motion at an anchor (the last event or jump of an input), the inputs from there on, the closed form
+of the motion since, and the next event.  Nothing in it changes until the next event, however time is split.
+"""
+
+# parameters of an axis
+MASS, STIFFNESS, DAMPING, NORMAL = range(4)
+COMPLIANT, CONTACT_STIFFNESS, CONTACT_DAMPING = range(4, 7)
+STATIC_LAW, STATIC_INITIAL, STATIC_LIMIT, STATIC_TAU, STATIC_EXPONENT = range(7, 12)
+BRANCHES, END_SLOPE, KNOTS = range(12, 15)
+TABLE = 15                              # then (velocity, mu_k, psi) for each knot
+KNOT_SIZE = 3
+
+# the anchor: time, mode, state of motion
+SECOND, FRACTION = range(2)
+MODE, DIRECTION, PIECE = range(2, 5)
+POSITION, DRIVE, SPRING, VELOCITY, DEFLECTION, REST = range(5, 11)   # SPRING: drive position − position
+ACCELERATION = 11                       # of a moving mode; its force residual over the mass
+RESIDUAL = 12                           # N, coasting: drive force + external force − lower friction, along the slip
+EXCESS = 13                             # E of this slip
+# the inputs from the anchor on: v = V + V_RATE t, F_e = F + F_RATE t
+V, V_RATE, F, F_RATE = range(14, 18)
+# the closed form from the anchor on (along +x)
+GAMMA, OMEGA2, NU, SLOW, FAST, JERK, SNAP = range(18, 25)
+# the next event: time after the anchor, its kind, and up to when it was searched
+NEXT, NEXT_KIND, SEARCHED = range(25, 28)
+EVENTS, ITERATIONS = range(28, 30)      # counters
+ORIGIN = 30                             # m, where the run began: POSITION and DRIVE count from there
+STATE_SIZE = 31
+
+# a row of the event table; words.Event has the same order
+(EVENT_SECOND, EVENT_FRACTION, EVENT_KIND, EVENT_MODE, EVENT_DIRECTION, EVENT_POSITION, EVENT_VELOCITY, EVENT_DRIVE,
+ EVENT_DRIVE_FORCE, EVENT_FRICTION, EVENT_STATIC, EVENT_REST) = range(12)
+EVENT_SIZE = 12
+
+# a row of samples; words.Sample has the same order
+SAMPLE_SIZE = 15

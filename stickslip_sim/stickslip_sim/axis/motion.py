@@ -1,0 +1,208 @@
+"""The motion of each mode from its anchor, and the forces along it.
+
+Every mode is m y″ + (h + …) y′ + (c + …) y = polynomial of the time, y the travel since the anchor:
+
+| mode             | y′ coefficient | y coefficient | constant part of the right side      |
+|------------------|----------------|---------------|---------------------------------------|
+| stick, rigid     | y = 0          |               |                                       |
+| stick, compliant | h + h_c        | c + c_c       | c w₀ + h v + F_e − c_c δ₀             |
+| slip             | h + N b        | c             | c w₀ + h v + F_e − N (mu − b ẋ₀)      |
+| coasting         | y′ constant    |               |                                       |
+
+with w = s − x, and b the slope of the friction branch on the present piece of the table.
+"""
+
+from ..compiled import compiled
+from ..friction.static import static_coefficient
+from ..linear.oscillator import integrals, oscillator
+from ..words import Mode
+from .layout import (
+    ACCELERATION,
+    BRANCHES,
+    COMPLIANT,
+    CONTACT_DAMPING,
+    CONTACT_STIFFNESS,
+    DAMPING,
+    DEFLECTION,
+    DIRECTION,
+    DRIVE,
+    END_SLOPE,
+    EXCESS,
+    FAST,
+    FRACTION,
+    GAMMA,
+    JERK,
+    KNOT_SIZE,
+    KNOTS,
+    MASS,
+    MODE,
+    NORMAL,
+    NU,
+    OMEGA2,
+    PIECE,
+    POSITION,
+    REST,
+    SECOND,
+    SLOW,
+    SNAP,
+    SPRING,
+    STATIC_EXPONENT,
+    STATIC_INITIAL,
+    STATIC_LAW,
+    STATIC_LIMIT,
+    STATIC_TAU,
+    STIFFNESS,
+    TABLE,
+    VELOCITY,
+    F,
+    F_RATE,
+    V,
+    V_RATE,
+)
+
+STICK = int(Mode.STICK)
+ACCELERATING = int(Mode.ACCELERATING)
+COASTING = int(Mode.COASTING)
+DECELERATING = int(Mode.DECELERATING)
+
+
+@compiled
+def static_limit(p, rest):
+    """Return mu_s after the rest time."""
+    return static_coefficient(p[STATIC_LAW], p[STATIC_INITIAL], p[STATIC_LIMIT], p[STATIC_TAU], p[STATIC_EXPONENT], rest)
+
+
+@compiled
+def piece_of(p, speed, rising):
+    """Return the index of the knot below `speed`; exactly on a knot, the piece above it when rising, else below."""
+    piece = 0
+    for i in range(1, int(p[KNOTS])):
+        knot = p[TABLE + KNOT_SIZE * i]
+        if knot < speed or (knot == speed and rising):
+            piece = i
+    return piece
+
+
+@compiled
+def knot_speed(p, piece):
+    """Return the speed of a knot."""
+    return p[TABLE + KNOT_SIZE * piece]
+
+
+@compiled
+def friction_line(p, piece, speed):
+    """Return mu_k, its slope, psi and its slope at `speed` on a piece of the table."""
+    at = TABLE + KNOT_SIZE * piece
+    beyond = speed - p[at]
+    if piece + 1 >= p[KNOTS]:
+        slope = p[END_SLOPE]
+        return p[at + 1] + slope * beyond, slope, p[at + 2], 0.0
+    width = p[at + 3] - p[at]
+    slope = (p[at + 4] - p[at + 1]) / width
+    psi_slope = (p[at + 5] - p[at + 2]) / width
+    return p[at + 1] + slope * beyond, slope, p[at + 2] + psi_slope * beyond, psi_slope
+
+
+@compiled
+def is_rigid_stick(p, s):
+    """Whether the slider stands still in a rigid contact."""
+    return s[MODE] == STICK and p[COMPLIANT] == 0.0
+
+
+@compiled
+def begin_motion(p, s):
+    """Set the closed form of the motion from the anchor on."""
+    mode = s[MODE]
+    damping, stiffness, contact = p[DAMPING], p[STIFFNESS], 0.0
+    if mode == COASTING or is_rigid_stick(p, s):
+        return
+    if mode == STICK:
+        damping += p[CONTACT_DAMPING]
+        contact = p[CONTACT_STIFFNESS]
+    else:
+        _, slope, _, psi_slope = friction_line(p, int(s[PIECE]), 0.0)
+        if mode == ACCELERATING:
+            slope += s[EXCESS] * psi_slope
+        damping += p[NORMAL] * slope
+    osc = oscillator(0.5 * damping / p[MASS], (stiffness + contact) / p[MASS])
+    s[GAMMA], s[OMEGA2], s[NU], s[SLOW], s[FAST] = osc
+    pull = stiffness * (s[V] - s[VELOCITY]) + p[DAMPING] * s[V_RATE] + s[F_RATE]
+    s[JERK] = (pull - contact * s[VELOCITY]) / p[MASS]
+    s[SNAP] = stiffness * s[V_RATE] / p[MASS]
+
+
+@compiled
+def oscillator_of(s):
+    """Return the oscillator of the mode."""
+    return s[GAMMA], s[OMEGA2], s[NU], s[SLOW], s[FAST]
+
+
+@compiled
+def travel(p, s, t):
+    """Return the slider's travel, velocity and acceleration at t after the anchor."""
+    if s[MODE] == COASTING:
+        return s[VELOCITY] * t, s[VELOCITY], 0.0
+    if is_rigid_stick(p, s):
+        return 0.0, 0.0, 0.0
+    u, a, jerk, snap = s[VELOCITY], s[ACCELERATION], s[JERK], s[SNAP]
+    g, rate, first, second, third = integrals(oscillator_of(s), t)
+    return (u * t + a * first + jerk * second + snap * third,
+            u + a * g + jerk * first + snap * second,
+            a * rate + jerk * g + snap * first)
+
+
+@compiled
+def drive_travel(s, t):
+    """Return how far the drive moves within t after the anchor."""
+    return (s[V] + 0.5 * s[V_RATE] * t) * t
+
+
+@compiled
+def move_anchor(p, s, second, fraction, t):
+    """Move the anchor by t, to the time (second, fraction), along the present mode."""
+    y, u, a = travel(p, s, t)
+    drive = drive_travel(s, t)
+    if s[MODE] == STICK:
+        s[REST] += t
+        s[DEFLECTION] += y
+    s[POSITION] += y
+    s[DRIVE] += drive
+    s[SPRING] += drive - y
+    s[VELOCITY] = u
+    s[ACCELERATION] = a
+    s[V] += s[V_RATE] * t
+    s[F] += s[F_RATE] * t
+    s[SECOND] = second
+    s[FRACTION] = fraction
+
+
+@compiled
+def drive_force(p, spring, v, u):
+    """Return F_d = c (s − x) + h (v − ẋ)."""
+    return p[STIFFNESS] * spring + p[DAMPING] * (v - u)
+
+
+@compiled
+def contact_force(p, deflection, u):
+    """Return F_c = c_c δ + h_c ẋ of the compliant contact."""
+    return p[CONTACT_STIFFNESS] * deflection + p[CONTACT_DAMPING] * u
+
+
+@compiled
+def friction_force(p, s, deflection, u, applied):
+    """Return the friction force at velocity u in the present mode, under `applied` = F_d + F_e."""
+    mode = s[MODE]
+    if mode == COASTING or is_rigid_stick(p, s):
+        return applied
+    if mode == STICK:
+        return contact_force(p, deflection, u)
+    coefficient, _, psi, _ = friction_line(p, int(s[PIECE]), abs(u))
+    if mode == ACCELERATING:
+        coefficient += s[EXCESS] * psi
+    return s[DIRECTION] * p[NORMAL] * coefficient
+
+
+@compiled
+def has_branches(p):
+    """Whether friction depends on the sign of the acceleration."""
+    return p[BRANCHES] != 0.0

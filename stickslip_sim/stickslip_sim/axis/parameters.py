@@ -1,0 +1,103 @@
+"""One feed axis: its parameters, checked, and as the flat array that the compiled code reads."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from ..errors import InputError
+from ..friction import ExcessTable, KineticTable, StaticLaw
+from ..friction.kinetic import merged_knots
+
+
+@dataclass(frozen=True, slots=True)
+class RigidContact:
+    """The slider stands still in stick (Fig. 7 of the paper)."""
+
+
+@dataclass(frozen=True, slots=True)
+class CompliantContact:
+    """Tangential contact spring c_c `stiffness` (N/m) and damper h_c `damping` (N s/m), in stick only (Fig. 8)."""
+
+    stiffness: float
+    damping: float
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.stiffness < math.inf:
+            raise InputError('contact.stiffness', self.stiffness, 'finite and > 0 N/m',
+                             'use contact.model: rigid for a contact that does not yield')
+        if not 0.0 <= self.damping < math.inf:
+            raise InputError('contact.damping', self.damping, 'finite and >= 0 N s/m', 'use 0 for no damping')
+
+
+@dataclass(frozen=True, slots=True)
+class Friction:
+    """Static law, kinetic table, and the acceleration dependence (`excess`, or None for the conventional Fig. 3)."""
+
+    static: StaticLaw
+    kinetic: KineticTable
+    excess: ExcessTable | None
+
+    def __post_init__(self) -> None:
+        at_rest = self.kinetic.coefficients[0]
+        if at_rest > self.static.initial:
+            raise InputError('friction.kinetic.coefficients[0]', at_rest,
+                             f'<= friction.static.initial ({self.static.initial!r})',
+                             'kinetic friction at rest cannot exceed static friction: lower it or raise static.initial')
+
+
+@dataclass(frozen=True, slots=True)
+class Axis:
+    """m ẍ = c (s − x) + h (v − ẋ) + F_e − F: equation (1) of the paper, signs as in docs/model.md.
+
+    mass kg, drive_stiffness N/m, drive_damping N s/m, normal_force N.  Raises InputError on values without a meaning.
+    """
+
+    mass: float
+    drive_stiffness: float
+    drive_damping: float
+    normal_force: float
+    contact: RigidContact | CompliantContact
+    friction: Friction
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.mass < math.inf:
+            raise InputError('axis.mass', self.mass, 'finite and > 0 kg', 'give the mass of the slider')
+        for name, unit in (('drive_stiffness', 'N/m'), ('drive_damping', 'N s/m'), ('normal_force', 'N')):
+            value = getattr(self, name)
+            if not 0.0 <= value < math.inf:
+                raise InputError(f'axis.{name}', value, f'finite and >= 0 {unit}', 'use 0 to leave it out')
+
+
+@dataclass(frozen=True, slots=True)
+class InitialState:
+    """Start: position m, velocity m/s, rest_time s (infinite: prolonged rest).  The spring is unstretched."""
+
+    position: float = 0.0
+    velocity: float = 0.0
+    rest_time: float = math.inf
+
+    def __post_init__(self) -> None:
+        for name, unit in (('position', 'm'), ('velocity', 'm/s')):
+            if not math.isfinite(getattr(self, name)):
+                raise InputError(f'initial.{name}', getattr(self, name), f'finite, in {unit}', 'use 0')
+        if not self.rest_time >= 0.0:
+            raise InputError('initial.rest_time', self.rest_time, '>= 0 s (.inf: prolonged rest)', 'use .inf or 0')
+
+
+def check_start(axis: Axis, initial: InitialState) -> None:
+    """Raise InputError when the start asks for an infinite static friction."""
+    if math.isinf(initial.rest_time) and not axis.friction.static.bounded:
+        raise InputError('initial.rest_time', initial.rest_time, 'finite with the logarithmic static law',
+                         'its coefficient grows without bound; give the seconds of rest before the start')
+
+
+def pack(axis: Axis) -> Sequence[float]:
+    """Return the parameters in the order of `layout`."""
+    contact = axis.contact if isinstance(axis.contact, CompliantContact) else None
+    static, kinetic, excess = axis.friction.static, axis.friction.kinetic, axis.friction.excess
+    knots = merged_knots(kinetic, excess)
+    return [axis.mass, axis.drive_stiffness, axis.drive_damping, axis.normal_force,
+            float(contact is not None), contact.stiffness if contact else 0.0, contact.damping if contact else 0.0,
+            float(static.kind), static.initial, static.limit, static.time_constant, static.exponent,
+            float(excess is not None), kinetic.end_slope, float(len(knots)),
+            *(number for knot in knots for number in knot)]

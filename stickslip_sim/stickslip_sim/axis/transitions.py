@@ -1,0 +1,314 @@
+"""What happens between two modes: break-away, arrest, the choice of the slip sub-mode, jumps of the inputs.
+
+Ties are decided by where the force moves next: a residual within rounding of zero counts as zero, and the sign of its
+rate, then of the rate's rate, decides.
+"""
+
+from ..compiled import compiled
+from ..words import EventKind
+from .layout import (
+    ACCELERATION,
+    COMPLIANT,
+    CONTACT_STIFFNESS,
+    DAMPING,
+    DEFLECTION,
+    DIRECTION,
+    EVENT_DIRECTION,
+    EVENT_DRIVE,
+    EVENT_DRIVE_FORCE,
+    EVENT_FRACTION,
+    EVENT_FRICTION,
+    EVENT_KIND,
+    EVENT_MODE,
+    EVENT_POSITION,
+    EVENT_REST,
+    EVENT_SECOND,
+    EVENT_STATIC,
+    EVENT_VELOCITY,
+    EVENTS,
+    DRIVE,
+    EXCESS,
+    FRACTION,
+    MASS,
+    MODE,
+    NORMAL,
+    ORIGIN,
+    PIECE,
+    POSITION,
+    RESIDUAL,
+    REST,
+    SECOND,
+    SPRING,
+    STIFFNESS,
+    VELOCITY,
+    F,
+    F_RATE,
+    V,
+    V_RATE,
+)
+from .motion import (
+    ACCELERATING,
+    COASTING,
+    DECELERATING,
+    STICK,
+    contact_force,
+    drive_force,
+    friction_force,
+    friction_line,
+    has_branches,
+    is_rigid_stick,
+    knot_speed,
+    piece_of,
+    static_limit,
+)
+
+BREAKAWAY = int(EventKind.BREAKAWAY)
+COAST = int(EventKind.COAST)
+ACCELERATE = int(EventKind.ACCELERATE)
+DECELERATE = int(EventKind.DECELERATE)
+ARREST = int(EventKind.STICK)
+REVERSE = int(EventKind.REVERSE)
+KNOT = int(EventKind.KNOT)
+
+_ROUNDING = 8.0 * 2.220446049250313e-16
+
+
+@compiled
+def applied_force(p, s):
+    """Return F_d + F_e at the anchor."""
+    return drive_force(p, s[SPRING], s[V], s[VELOCITY]) + s[F]
+
+
+@compiled
+def force_rounding(p, s, friction):
+    """Return the size of rounding errors in a sum of the forces at the anchor."""
+    return _ROUNDING * (p[STIFFNESS] * abs(s[SPRING]) + p[DAMPING] * (abs(s[V]) + abs(s[VELOCITY])) + abs(s[F])
+                        + p[NORMAL] * friction)
+
+
+@compiled
+def write_event(p, s, events, row, kind, direction, friction):
+    """Write a row with the state at the anchor; `finish_event` adds the mode that follows."""
+    e = events[row]
+    e[EVENT_SECOND] = s[SECOND]
+    e[EVENT_FRACTION] = s[FRACTION]
+    e[EVENT_KIND] = kind
+    e[EVENT_DIRECTION] = direction
+    e[EVENT_POSITION] = s[ORIGIN] + s[POSITION]
+    e[EVENT_VELOCITY] = s[VELOCITY]
+    e[EVENT_DRIVE] = s[ORIGIN] + s[DRIVE]
+    e[EVENT_DRIVE_FORCE] = drive_force(p, s[SPRING], s[V], s[VELOCITY])
+    e[EVENT_FRICTION] = friction
+    e[EVENT_STATIC] = static_limit(p, s[REST])
+    e[EVENT_REST] = s[REST]
+    s[EVENTS] += 1.0
+
+
+@compiled
+def force_rate(p, s):
+    """Return the rate of F_d + F_e at constant velocity, and the rate's rate."""
+    return (p[STIFFNESS] * (s[V] - s[VELOCITY]) + p[DAMPING] * s[V_RATE] + s[F_RATE], p[STIFFNESS] * s[V_RATE])
+
+
+@compiled
+def choose_slip(p, s, residual, tolerance):
+    """Set the slip sub-mode from R − B = `residual`; return False when the slider comes to rest instead.
+
+    R = ±(F_d + F_e) − N mu_k along the slip and B = N e(|ẋ|), see docs/model.md.
+    """
+    direction = s[DIRECTION]
+    speed = abs(s[VELOCITY])
+    rate, bend = force_rate(p, s)
+    rate *= direction
+    bend *= direction
+    if abs(residual) <= tolerance:
+        residual = 0.0
+    if residual > 0.0 or (residual == 0.0 and (rate > 0.0 or (rate == 0.0 and bend > 0.0))):
+        s[MODE] = ACCELERATING
+        s[PIECE] = piece_of(p, speed, True)
+        s[ACCELERATION] = direction * residual / p[MASS]
+        return True
+    if speed == 0.0:
+        return False
+    piece = piece_of(p, speed, True)
+    _, _, psi, _ = friction_line(p, piece, speed)
+    band = p[NORMAL] * s[EXCESS] * psi
+    lower = residual + band
+    if abs(lower) <= tolerance:
+        lower = 0.0
+    rests_on_edge = lower == 0.0 and ((band > 0.0 and rate > 0.0) or (rate == 0.0 and bend >= 0.0))
+    if rests_on_edge or (lower > 0.0 and band > 0.0):
+        s[MODE] = COASTING
+        s[PIECE] = piece
+        s[RESIDUAL] = lower
+        s[ACCELERATION] = 0.0
+        return True
+    s[MODE] = DECELERATING
+    s[PIECE] = piece_of(p, speed, False)
+    s[ACCELERATION] = direction * lower / p[MASS]
+    return True
+
+
+@compiled
+def band_of(p, s):
+    """Return B = N e(|ẋ|), the width of the coasting band at the anchor, N."""
+    _, _, psi, _ = friction_line(p, int(s[PIECE]), abs(s[VELOCITY]))
+    return p[NORMAL] * s[EXCESS] * psi
+
+
+@compiled
+def break_away(p, s, direction, limit, margin):
+    """Begin a slip at the friction coefficient `limit`; `margin` is how far the force is beyond it, N.
+
+    The excess E of this slip makes friction continuous; without acceleration dependence, or at a speed where psi has
+    ended, friction drops to mu_k at once.
+    """
+    speed = abs(s[VELOCITY])
+    coefficient, _, psi, _ = friction_line(p, piece_of(p, speed, True), speed)
+    s[EXCESS] = 0.0
+    if has_branches(p) and psi > 0.0 and limit >= coefficient:
+        s[EXCESS] = (limit - coefficient) / psi
+        coefficient = limit
+    s[DIRECTION] = direction
+    residual = margin + p[NORMAL] * (limit - coefficient)
+    if p[COMPLIANT] != 0.0:
+        residual += direction * p[MASS] * s[ACCELERATION]
+    s[REST] = 0.0
+    s[DEFLECTION] = 0.0
+    if not choose_slip(p, s, residual, force_rounding(p, s, limit)):
+        rest(p, s)
+
+
+@compiled
+def rest(p, s):
+    """Begin to stick at standstill."""
+    s[MODE] = STICK
+    s[REST] = 0.0
+    s[VELOCITY] = 0.0
+    s[ACCELERATION] = 0.0
+    s[DEFLECTION] = 0.0
+    if p[COMPLIANT] != 0.0:
+        friction = s[DIRECTION] * p[NORMAL] * friction_line(p, 0, 0.0)[0]
+        s[DEFLECTION] = friction / p[CONTACT_STIFFNESS]
+        s[ACCELERATION] = (applied_force(p, s) - friction) / p[MASS]
+    s[DIRECTION] = 0.0
+
+
+@compiled
+def arrest(p, s, events, row):
+    """End a slip at standstill: stick, or reverse at once where a rigid contact cannot hold the force."""
+    s[VELOCITY] = 0.0
+    friction = s[DIRECTION] * p[NORMAL] * friction_line(p, 0, 0.0)[0]
+    force = applied_force(p, s)
+    limit = static_limit(p, 0.0)
+    margin = abs(force) - p[NORMAL] * limit
+    if p[COMPLIANT] == 0.0 and margin > force_rounding(p, s, limit):
+        direction = 1.0 if force > 0.0 else -1.0
+        write_event(p, s, events, row, REVERSE, direction, friction)
+        break_away(p, s, direction, limit, margin)
+    else:
+        write_event(p, s, events, row, ARREST, s[DIRECTION], friction)
+        rest(p, s)
+    events[row][EVENT_MODE] = s[MODE]
+
+
+@compiled
+def release(p, s, events, row):
+    """Begin a slip from stick, where |F| has reached N mu_s(t⁻)."""
+    limit = static_limit(p, s[REST])
+    force = applied_force(p, s) if is_rigid_stick(p, s) else contact_force(p, s[DEFLECTION], s[VELOCITY])
+    direction = 1.0 if force > 0.0 else -1.0
+    margin = abs(force) - p[NORMAL] * limit
+    if margin <= force_rounding(p, s, limit):
+        margin = 0.0
+    if s[VELOCITY] * direction < 0.0:
+        direction = -direction
+    write_event(p, s, events, row, BREAKAWAY, direction, direction * p[NORMAL] * limit)
+    break_away(p, s, direction, limit, margin)
+    events[row][EVENT_MODE] = s[MODE]
+
+
+@compiled
+def turn(p, s, events, row):
+    """Leave a sub-mode where its acceleration vanishes: coast, or pass to the other branch where they coincide."""
+    mode = s[MODE]
+    direction = s[DIRECTION]
+    friction = friction_force(p, s, 0.0, s[VELOCITY], 0.0)
+    band = band_of(p, s)
+    s[ACCELERATION] = 0.0
+    if band > 0.0:
+        s[MODE] = COASTING
+        s[RESIDUAL] = band if mode == ACCELERATING else 0.0
+        kind = COAST
+    elif mode == ACCELERATING:
+        enter_branch(p, s, DECELERATING)
+        kind = DECELERATE
+    else:
+        enter_branch(p, s, ACCELERATING)
+        kind = ACCELERATE
+    write_event(p, s, events, row, kind, direction, friction)
+    events[row][EVENT_MODE] = s[MODE]
+
+
+@compiled
+def enter_branch(p, s, mode):
+    """Begin to accelerate or decelerate with no acceleration yet."""
+    s[MODE] = mode
+    s[PIECE] = piece_of(p, abs(s[VELOCITY]), mode == ACCELERATING)
+    s[ACCELERATION] = 0.0
+
+
+@compiled
+def leave_coast(p, s, events, row, kind):
+    """Leave the coasting band: upwards to accelerate, downwards to decelerate."""
+    write_event(p, s, events, row, kind, s[DIRECTION], applied_force(p, s))
+    enter_branch(p, s, ACCELERATING if kind == ACCELERATE else DECELERATING)
+    events[row][EVENT_MODE] = s[MODE]
+
+
+@compiled
+def cross_knot(p, s, events, row):
+    """Go on along the next piece of the friction table; the speed is that of the knot, exactly."""
+    step = 1.0 if s[MODE] == ACCELERATING else -1.0
+    knot = s[PIECE] + (1.0 if step > 0.0 else 0.0)
+    s[VELOCITY] = s[DIRECTION] * knot_speed(p, int(knot))
+    write_event(p, s, events, row, KNOT, s[DIRECTION], friction_force(p, s, 0.0, s[VELOCITY], 0.0))
+    s[PIECE] += step
+    events[row][EVENT_MODE] = s[MODE]
+
+
+@compiled
+def apply_inputs(p, s, events, row):
+    """Choose the mode anew after a jump of an input or a parameter at the anchor; return True if it wrote an event."""
+    mode = s[MODE]
+    if mode == STICK:
+        return _press_stick(p, s, events, row)
+    direction = s[DIRECTION]
+    speed = abs(s[VELOCITY])
+    coefficient, _, psi, _ = friction_line(p, piece_of(p, speed, True), speed)
+    upper = coefficient + s[EXCESS] * psi
+    friction = friction_force(p, s, 0.0, s[VELOCITY], applied_force(p, s))
+    residual = direction * applied_force(p, s) - p[NORMAL] * upper
+    if not choose_slip(p, s, residual, force_rounding(p, s, upper)):
+        arrest(p, s, events, row)
+        return True
+    if s[MODE] == mode:
+        return False
+    kind = COAST if s[MODE] == COASTING else (ACCELERATE if s[MODE] == ACCELERATING else DECELERATE)
+    write_event(p, s, events, row, kind, direction, friction)
+    events[row][EVENT_MODE] = s[MODE]
+    return True
+
+
+@compiled
+def _press_stick(p, s, events, row):
+    limit = static_limit(p, s[REST])
+    if p[COMPLIANT] != 0.0:
+        force = contact_force(p, s[DEFLECTION], s[VELOCITY])
+        s[ACCELERATION] = (applied_force(p, s) - force) / p[MASS]
+    else:
+        force = applied_force(p, s)
+    if abs(force) - p[NORMAL] * limit <= force_rounding(p, s, limit):
+        return False
+    release(p, s, events, row)
+    return True

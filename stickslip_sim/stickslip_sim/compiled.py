@@ -1,0 +1,47 @@
+"""One switch between machine code (numba) and plain Python for the hot path.
+
+`STICKSLIP_COMPILED=0`, or no numba, runs the same source as plain Python with the same results.
+Compiled code is kept in a cache folder whose name is a hash of all sources of the hot path, so that a change in any
+file, not only in the one numba looks at, compiles anew, and a second start compiles nothing.
+"""
+
+import hashlib
+import os
+import pathlib
+from collections.abc import Callable
+from typing import TypeVar
+
+_Function = TypeVar('_Function', bound=Callable[..., object])
+_ROOMS = ('compiled.py', 'friction', 'axis', 'linear', 'solvers')
+
+
+def _cache_folder() -> pathlib.Path:
+    root = pathlib.Path(__file__).parent
+    digest = hashlib.sha256()
+    for room in _ROOMS:
+        for path in sorted([root / room, *(root / room).glob('*.py')]):
+            if path.is_file():
+                digest.update(path.read_bytes())
+    base = os.environ.get('XDG_CACHE_HOME') or os.path.join(os.path.expanduser('~'), '.cache')
+    return pathlib.Path(base) / 'stickslip' / digest.hexdigest()[:16]
+
+
+def _load_numba() -> Callable[[_Function], _Function] | None:
+    if os.environ.get('STICKSLIP_COMPILED', '1') == '0':
+        return None
+    os.environ.setdefault('NUMBA_CACHE_DIR', str(_cache_folder()))
+    try:
+        import numba
+    except ImportError:
+        return None
+    decorate: Callable[[_Function], _Function] = numba.njit(cache=True, error_model='numpy')
+    return decorate
+
+
+_decorate = _load_numba()
+IS_COMPILED = _decorate is not None
+
+
+def compiled(function: _Function) -> _Function:
+    """Compile a scalar function of the hot path, or leave it as it is."""
+    return function if _decorate is None else _decorate(function)

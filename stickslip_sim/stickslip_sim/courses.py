@@ -1,0 +1,88 @@
+"""Input courses v(t) and F(t): piecewise linear, with jumps, held after the last piece or repeated with a period."""
+
+import math
+from bisect import bisect_right
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import NamedTuple
+
+from .errors import InputError
+
+
+class Piece(NamedTuple):
+    """value + rate (t − start) from `start` on, until `end` (s)."""
+
+    start: float
+    end: float
+    value: float
+    rate: float
+
+
+@dataclass(frozen=True, slots=True)
+class Course:
+    """A course as pieces: `starts` (s, the first is 0), `values` there, `rates` (per s) from there.
+
+    With a finite `period` it starts anew every `period` seconds.
+    """
+
+    starts: tuple[float, ...]
+    values: tuple[float, ...]
+    rates: tuple[float, ...]
+    period: float = math.inf
+
+    def piece_at(self, time: float) -> Piece:
+        """Return the piece that holds from `time` >= 0 s on (at a border: the one that begins)."""
+        turn = 0.0
+        if self.period < math.inf:
+            turn = math.floor(time / self.period) * self.period
+            turn += self.period if time >= turn + self.period else 0.0
+        i = max(bisect_right(self.starts, time - turn) - 1, 0)
+        after = self.starts[i + 1] if i + 1 < len(self.starts) else self.period
+        return Piece(turn + self.starts[i], turn + after, self.values[i], self.rates[i])
+
+    def value_at(self, time: float) -> float:
+        """Return the value at `time` >= 0 s."""
+        piece = self.piece_at(time)
+        return piece.value + piece.rate * (time - piece.start)
+
+
+def constant(value: float) -> Course:
+    """Return a course that never changes."""
+    return Course((0.0,), (value,), (0.0,))
+
+
+def ramp(start: float, rate: float, duration: float) -> Course:
+    """Return a course that changes by `rate` per second for `duration` seconds, then holds."""
+    if duration == math.inf:
+        return Course((0.0,), (start,), (rate,))
+    return Course((0.0, duration), (start, start + rate * duration), (rate, 0.0))
+
+
+def steps(name: str, times: Sequence[float], values: Sequence[float], period: float = math.inf) -> Course:
+    """Return a course that jumps to values[i] at times[i]; raises InputError on times that do not start at 0 and rise."""
+    _check_times(name, times, values, period)
+    return Course(tuple(times), tuple(values), (0.0,) * len(values), period)
+
+
+def table(name: str, times: Sequence[float], values: Sequence[float], period: float = math.inf) -> Course:
+    """Return a course that is linear between (times[i], values[i]) and holds the last value.
+
+    With a period it is linear from the last knot back to the first.  Raises InputError like `steps`.
+    """
+    _check_times(name, times, values, period)
+    rates = [(b - a) / (t1 - t0) for (t0, t1), (a, b) in zip(pairwise(times), pairwise(values), strict=True)]
+    rates.append((values[0] - values[-1]) / (period - times[-1]) if period < math.inf else 0.0)
+    return Course(tuple(times), tuple(values), tuple(rates), period)
+
+
+def _check_times(name: str, times: Sequence[float], values: Sequence[float], period: float) -> None:
+    if not times or len(times) != len(values):
+        raise InputError(f'{name}.times', list(times), f'as many numbers as there are values ({len(values)})',
+                         'give one value for every time')
+    if times[0] != 0.0:
+        raise InputError(f'{name}.times', times[0], '0 s at the first knot', 'a course starts with the run')
+    for before, after in pairwise([*times, period]):
+        if not before < after:
+            raise InputError(f'{name}.times', [*times], 'strictly increasing and below the period, in s',
+                             f'{after!r} follows {before!r}')

@@ -1,0 +1,45 @@
+"""Every error a user can meet.
+
+    StickslipError
+    ├── InputError       a scene, parameter, command, file or flag is wrong
+    ├── RecordingError   a run cannot be written or read
+    └── SolverError      the solver gave up
+
+Each carries one line of text for people and the exit code of the tool.
+"""
+
+
+class StickslipError(Exception):
+    """Base of all errors raised on purpose; `exit_code` is what the tool exits with."""
+
+    exit_code = 1
+
+
+class InputError(StickslipError):
+    """A thing given by the user is refused: its name, value, allowed range and the fix."""
+
+    exit_code = 2
+
+    def __init__(self, name: str, value: object, allowed: str, fix: str) -> None:
+        super().__init__(f'{name} = {_short(value)} is refused: must be {allowed}; {fix}')
+        self.name = name
+        self.value = value
+        self.allowed = allowed
+        self.fix = fix
+
+
+class RecordingError(StickslipError):
+    """A run folder cannot be written or read."""
+
+    exit_code = 2
+
+
+class SolverError(StickslipError):
+    """The solver cannot go on; the last state it reached is still valid."""
+
+    exit_code = 4
+
+
+def _short(value: object, limit: int = 80) -> str:
+    text = ' '.join(repr(value).split())
+    return text if len(text) <= limit else text[:limit] + '…'

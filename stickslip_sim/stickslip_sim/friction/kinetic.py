@@ -1,0 +1,95 @@
+"""Kinetic friction over speed, and the excess of its accelerating branch, as piecewise-linear tables.
+
+Both start at speed 0.  The kinetic coefficient continues beyond its last knot with `end_slope`; the excess shape psi
+(Fig. 6 of the paper) falls from 1 to 0 and stays there.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+from ..errors import InputError
+
+
+@dataclass(frozen=True, slots=True)
+class KineticTable:
+    """mu_k(|ẋ|): knots `velocities` in m/s and `coefficients`; `end_slope` in s/m beyond the last knot."""
+
+    velocities: tuple[float, ...]
+    coefficients: tuple[float, ...]
+    end_slope: float = 0.0
+
+    def __post_init__(self) -> None:
+        name = 'friction.kinetic'
+        _check_knots(name, self.velocities, 'coefficients', self.coefficients)
+        for value in self.coefficients:
+            if not 0.0 <= value < math.inf:
+                raise InputError(f'{name}.coefficients', value, 'finite and >= 0', 'friction opposes the motion')
+        if not 0.0 <= self.end_slope < math.inf:
+            raise InputError(f'{name}.end_slope', self.end_slope, 'finite and >= 0 s/m',
+                             'a coefficient that fell for ever would become negative; add a knot instead')
+
+    def coefficient(self, speed: float) -> float:
+        """Return mu_k at a speed >= 0 m/s."""
+        return _interpolate(self.velocities, self.coefficients, speed, self.end_slope)
+
+
+@dataclass(frozen=True, slots=True)
+class ExcessTable:
+    """psi(|ẋ|), the shape of the excess of the accelerating branch: 1 at rest, falling to 0 at the last knot."""
+
+    velocities: tuple[float, ...]
+    fractions: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        name = 'friction.excess'
+        _check_knots(name, self.velocities, 'fractions', self.fractions)
+        if self.fractions[0] != 1.0 or self.fractions[-1] != 0.0:
+            raise InputError(f'{name}.fractions', self.fractions, '1 at the first and 0 at the last knot',
+                             'psi is relative to the excess at the break-away')
+        if any(b > a for a, b in pairwise(self.fractions)):
+            raise InputError(f'{name}.fractions', self.fractions, 'falling from 1 to 0', 'sort them')
+
+    def fraction(self, speed: float) -> float:
+        """Return psi at a speed >= 0 m/s."""
+        return _interpolate(self.velocities, self.fractions, speed, 0.0)
+
+
+def merged_knots(kinetic: KineticTable, excess: ExcessTable | None) -> list[tuple[float, float, float]]:
+    """Return (velocity, mu_k, psi) at every knot of the two tables; psi is 0 without an excess."""
+    if excess is None:
+        return [(v, mu, 0.0) for v, mu in zip(kinetic.velocities, kinetic.coefficients, strict=True)]
+    speeds = sorted({*kinetic.velocities, *excess.velocities})
+    return [(v, kinetic.coefficient(v), excess.fraction(v)) for v in speeds]
+
+
+def default_excess(kinetic: KineticTable) -> ExcessTable:
+    """Return the linear psi from 1 at standstill to 0 at the limit velocity (the last knot of mu_k).
+
+    Raises InputError when the kinetic table has one knot only, and so no limit velocity.
+    """
+    if len(kinetic.velocities) < 2:
+        raise InputError('friction.excess', None, 'a table when friction.kinetic has one knot only',
+                         'give friction.excess.velocities and fractions, or acceleration_dependence: false')
+    return ExcessTable((0.0, kinetic.velocities[-1]), (1.0, 0.0))
+
+
+def _interpolate(xs: Sequence[float], ys: Sequence[float], x: float, end_slope: float) -> float:
+    for (x0, x1), (y0, y1) in zip(pairwise(xs), pairwise(ys), strict=True):
+        if x0 <= x < x1:
+            return y0 + (y1 - y0) / (x1 - x0) * (x - x0)
+    return ys[-1] + end_slope * (x - xs[-1])
+
+
+def _check_knots(name: str, velocities: Sequence[float], other: str, values: Sequence[float]) -> None:
+    if not velocities or len(velocities) != len(values):
+        raise InputError(f'{name}.velocities', list(velocities), f'as many numbers as {name}.{other} ({len(values)})',
+                         'give one value for every knot')
+    if velocities[0] != 0.0:
+        raise InputError(f'{name}.velocities', velocities[0], '0 m/s at the first knot',
+                         'the table starts at standstill')
+    for before, after in pairwise(velocities):
+        if not before < after < math.inf:
+            raise InputError(f'{name}.velocities', list(velocities), 'finite and strictly increasing, in m/s',
+                             f'{after!r} follows {before!r}; sort the knots and drop double ones')

@@ -1,0 +1,132 @@
+"""Static friction that rises with the rest time t⁻.
+
+| law         | mu_s(t)                                       | source                          |
+|-------------|-----------------------------------------------|---------------------------------|
+| constant    | mu_0                                          | Coulomb                         |
+| exponential | mu_inf − (mu_inf − mu_0) exp(−t/τ)            | the paper                       |
+| kato        | mu_inf − (mu_inf − mu_0) exp(−(t/τ)ⁿ)         | Kato, Sato and Matsubayashi 1972|
+| hyperbolic  | mu_0 + (mu_inf − mu_0) t/(t + τ)              |                                 |
+| logarithmic | mu_0 + (mu_inf − mu_0) ln(1 + t/τ), unbounded | Dieterich 1978                  |
+"""
+
+import math
+from dataclasses import dataclass
+from enum import IntEnum
+
+from ..compiled import compiled
+from ..errors import InputError
+
+
+class StaticLawKind(IntEnum):
+    """The shape of mu_s(t⁻)."""
+
+    CONSTANT = 0
+    EXPONENTIAL = 1
+    KATO = 2
+    HYPERBOLIC = 3
+    LOGARITHMIC = 4
+
+
+CONSTANT = int(StaticLawKind.CONSTANT)
+EXPONENTIAL = int(StaticLawKind.EXPONENTIAL)
+KATO = int(StaticLawKind.KATO)
+HYPERBOLIC = int(StaticLawKind.HYPERBOLIC)
+
+
+@dataclass(frozen=True, slots=True)
+class StaticLaw:
+    """mu_s(t⁻): `initial` mu_0, `limit` mu_inf, `time_constant` τ in s, `exponent` n of Kato's law.
+
+    Raises InputError when the coefficient would be negative or fall with the rest time.
+    """
+
+    kind: StaticLawKind
+    initial: float
+    limit: float
+    time_constant: float = 1.0
+    exponent: float = 1.0
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.initial < math.inf:
+            raise InputError('friction.static.initial', self.initial, 'finite and >= 0', 'give mu_s at zero rest time')
+        if self.kind == StaticLawKind.CONSTANT:
+            return
+        if not self.initial <= self.limit < math.inf:
+            raise InputError('friction.static.limit', self.limit, f'finite and >= initial ({self.initial!r})',
+                             'static friction grows with rest time; swap the two values or use law: constant')
+        if not 0.0 < self.time_constant < math.inf:
+            raise InputError('friction.static.time_constant', self.time_constant, 'finite and > 0 s',
+                             'use law: constant for a coefficient that does not grow')
+        if not 0.0 < self.exponent < math.inf:
+            raise InputError('friction.static.exponent', self.exponent, 'finite and > 0', 'n = 1 is the exponential law')
+
+    @property
+    def bounded(self) -> bool:
+        """Whether mu_s stays finite upon infinite rest."""
+        return self.kind != StaticLawKind.LOGARITHMIC
+
+    def coefficient(self, rest_time: float) -> float:
+        """Return mu_s after `rest_time` seconds (infinite is allowed for a bounded law)."""
+        return static_coefficient(int(self.kind), self.initial, self.limit, self.time_constant, self.exponent,
+                                  rest_time)
+
+
+@compiled
+def static_coefficient(kind, initial, limit, tau, exponent, rest):
+    """Return mu_s(rest)."""
+    if kind == CONSTANT:
+        return initial
+    rise = limit - initial
+    if rest == math.inf:
+        return limit
+    if kind == EXPONENTIAL:
+        return initial - rise * math.expm1(-rest / tau)
+    if kind == KATO:
+        return initial - rise * math.expm1(-_power(rest / tau, exponent))
+    if kind == HYPERBOLIC:
+        return initial + rise * (rest / (rest + tau))
+    return initial + rise * math.log1p(rest / tau)
+
+
+@compiled
+def static_growth(kind, initial, limit, tau, exponent, rest):
+    """Return mu_s′(rest), and a bound on −mu_s″ from `rest` on (infinite for Kato's law with n < 1 at rest 0)."""
+    if kind == CONSTANT or rest == math.inf:
+        return 0.0, 0.0
+    rise = (limit - initial) / tau
+    z = rest / tau
+    if kind == EXPONENTIAL:
+        slope = rise * math.exp(-z)
+        return slope, slope / tau
+    if kind == KATO:
+        return _kato_growth(rise, tau, exponent, z)
+    if kind == HYPERBOLIC:
+        slope = rise / ((1.0 + z) * (1.0 + z))
+        return slope, 2.0 * slope / (tau * (1.0 + z))
+    slope = rise / (1.0 + z)
+    return slope, slope / (tau * (1.0 + z))
+
+
+@compiled
+def _power(z, n):
+    """Return zⁿ for z >= 0, and infinity where it leaves the range of numbers."""
+    return math.inf if z > 1.0 and n * math.log(z) > 700.0 else z ** n
+
+
+@compiled
+def _kato_growth(rise, tau, n, z):
+    """−mu_s″ τ²/Δmu = exp(−s) (n² s^(2−2/n) + n (1−n) s^(1−2/n)) with s = zⁿ; for n > 1 the first term peaks at s = 2 − 2/n."""
+    if z == 0.0 and n < 1.0:
+        return math.inf, math.inf
+    s = _power(z, n)
+    decay = math.exp(-s)
+    if decay == 0.0:
+        return 0.0, 0.0
+    slope = rise * n * decay * (_power(z, n - 1.0) if n != 1.0 else 1.0)
+    if n > 1.0:
+        s = max(s, 2.0 - 2.0 / n)
+        return slope, rise / tau * n * n * s ** (2.0 - 2.0 / n) * math.exp(-s)
+    if z == 0.0:
+        return slope, rise / tau
+    first = n * n * _power(z, 2.0 * n - 2.0) + n * (1.0 - n) * _power(z, n - 2.0)
+    return slope, rise / tau * first * decay

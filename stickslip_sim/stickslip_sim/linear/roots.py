@@ -1,0 +1,184 @@
+"""First roots that cannot be missed.
+
+Three arguments cover every guard of a linear mode; none of them scans:
+
+1. *A zero of a free motion* (`first_zero`) has a closed form: one atan2, or one logarithm when over-damped.
+2. *Monotone pieces* (`first_passage`): between the closed-form zeros of its derivative a function is monotone, so its
+   sign at the two ends decides whether it has a root between them, and a bracketed Newton step finds it.
+3. *Safe steps* (`safe_step`): when |f″| <= M from t on, f cannot vanish before the positive root d of
+   f(t) + f′(t) d − M d²/2 = 0.  Steps of that length never pass a root, and converge to a simple one quadratically.
+
+`first_crossing` is exact for polynomials of degree two.  "Never" is infinity.
+"""
+
+import math
+
+from ..compiled import compiled
+from .oscillator import impulse, integrals
+
+_EPSILON = 2.220446049250313e-16
+_ITERATIONS = 200
+_OVERFLOW = 600.0   # largest exponent of a growing mode; by then it has left every bounded piece
+
+
+@compiled
+def first_zero(osc, z, rate):
+    """Return the first t > 0 at which a free motion with z(0) = z >= 0 and z′(0) = rate comes down to 0."""
+    gamma, _, nu, slow, fast = osc
+    if nu > 0.0:
+        return math.atan2(abs(z) * nu, -(rate + gamma * z)) / nu
+    fall = -(rate - fast * z)
+    if z == 0.0 or fall <= 0.0:
+        return math.inf
+    if nu == 0.0:
+        return z / fall
+    return math.log1p(-2.0 * nu * z / fall) / (-2.0 * nu)
+
+
+@compiled
+def next_zero(osc, t):
+    """Return the zero of a free motion that follows one at t."""
+    return t + math.pi / osc[2] if osc[2] > 0.0 else math.inf
+
+
+@compiled
+def finite_horizon(osc, t):
+    """Return t, or less where a growing mode would leave the range of numbers before."""
+    gamma, _, nu, slow, _ = osc
+    growth = -gamma if nu > 0.0 else slow
+    return min(t, _OVERFLOW / growth) if growth > 0.0 else t
+
+
+@compiled
+def first_passage(osc, rate, jerk, snap, gap, horizon):
+    """Return (t, passed): when r reaches `gap`, or stops growing, whichever is first; (inf, False) past the horizon.
+
+    r(0) = 0 and r′ = a with a = rate g′ + jerk g + snap G₁ (see `oscillator`), rising at first: rate > 0, or
+    rate = 0 and jerk (or else snap) > 0.
+    """
+    if gap <= 0.0:
+        return 0.0, True
+    horizon = finite_horizon(osc, horizon)
+    if snap == 0.0:
+        turn = first_zero(osc, rate, jerk - 2.0 * osc[0] * rate)
+    else:
+        turn = _first_turn(osc, rate, jerk, snap, horizon)
+    end = min(turn, horizon)
+    if gap < math.inf:
+        reached, _, _ = _passage(osc, rate, jerk, snap, end)
+        if reached >= gap:
+            return _monotone_root(osc, rate, jerk, snap, gap, end, reached), True
+    return (turn, False) if turn <= horizon else (math.inf, False)
+
+
+@compiled
+def _passage(osc, rate, jerk, snap, t):
+    """Return r, r′ and r″ at t."""
+    g, slope, first, second, _ = integrals(osc, t)
+    bend = -2.0 * osc[0] * slope - osc[1] * g
+    return (rate * g + jerk * first + snap * second,
+            rate * slope + jerk * g + snap * first,
+            rate * bend + jerk * slope + snap * g)
+
+
+@compiled
+def _monotone_root(osc, rate, jerk, snap, gap, end, reached):
+    """Return the root of r(t) = gap on (0, end], r growing on it: Halley's step inside a shrinking bracket.
+
+    Halley's error after a step d is about d³ (r″/r′ + frequency)²; the last step is the one that makes it rounding.
+    """
+    frequency = abs(osc[0]) + math.sqrt(osc[1])
+    low, high = 0.0, end
+    t = _first_guess(rate, jerk, gap, end, reached)
+    for _ in range(_ITERATIONS):
+        value, slope, change = _passage(osc, rate, jerk, snap, t)
+        value -= gap
+        if value < 0.0:
+            low = t
+        else:
+            high = t
+        curve = slope * slope - 0.5 * value * change
+        guess = t - value * slope / curve if curve > 0.0 else math.inf
+        if low <= guess <= high:
+            size = abs(guess - t)
+            bend = size * (abs(change) + frequency * slope)
+            if size <= 2.0 * _EPSILON * t or size * bend * bend <= 0.1 * _EPSILON * t * slope * slope:
+                return guess
+        else:
+            guess = 0.5 * (low + high)
+            if guess <= low or guess >= high:
+                return guess
+        t = guess
+    return t
+
+
+@compiled
+def _first_guess(rate, jerk, gap, end, reached):
+    if rate == 0.0 and jerk > 0.0:
+        return min(math.sqrt(2.0 * gap / jerk), 0.75 * end)
+    if reached <= 0.0:
+        return 0.5 * end
+    return end * gap / reached
+
+
+@compiled
+def _first_turn(osc, rate, jerk, snap, horizon):
+    """Return the first t in (0, horizon] at which a, rising or positive at first, comes down to 0."""
+    slope = jerk - 2.0 * osc[0] * rate
+    bend = snap - 2.0 * osc[0] * slope - osc[1] * rate
+    turn = first_zero(osc, slope, bend) if slope > 0.0 or (slope == 0.0 and bend > 0.0) else first_zero(
+        osc, -slope, -bend)
+    low = 0.0
+    while True:
+        high = min(turn, horizon)
+        if _passage(osc, rate, jerk, snap, high)[1] < 0.0:
+            return _turn_between(osc, rate, jerk, snap, low, high)
+        if high == horizon:
+            return math.inf
+        low, turn = high, next_zero(osc, turn)
+
+
+@compiled
+def _turn_between(osc, rate, jerk, snap, low, high):
+    """Return the zero of the falling, monotone a between low and high."""
+    t = 0.5 * (low + high)
+    for _ in range(_ITERATIONS):
+        _, value, slope = _passage(osc, rate, jerk, snap, t)
+        if value > 0.0:
+            low = t
+        else:
+            high = t
+        guess = t - value / slope if slope < 0.0 else math.inf
+        if not low < guess < high:
+            guess = 0.5 * (low + high)
+        if abs(guess - t) <= 2.0 * _EPSILON * t:
+            return guess
+        t = guess
+    return t
+
+
+@compiled
+def first_crossing(value, slope, bend):
+    """Return the first t >= 0 after which value + slope t + bend t²/2 is negative (value >= 0); a tie asks the next term."""
+    if value <= 0.0 and (slope < 0.0 or (slope == 0.0 and bend < 0.0)):
+        return 0.0
+    if bend == 0.0:
+        return value / -slope if slope < 0.0 else math.inf
+    inside = slope * slope - 2.0 * bend * value
+    if inside < 0.0 or (inside == 0.0 and bend > 0.0):
+        return math.inf
+    root = math.sqrt(inside)
+    if slope < 0.0:
+        return 2.0 * value / (root - slope) if value > 0.0 else (0.0 if bend < 0.0 else math.inf)
+    return -(slope + root) / bend if bend < 0.0 else math.inf
+
+
+@compiled
+def safe_step(value, slope, curvature):
+    """Return the longest d before which f >= value + slope d − curvature d²/2 cannot vanish (value >= 0)."""
+    if curvature == math.inf:
+        return 0.0
+    root = math.sqrt(slope * slope + 2.0 * curvature * value)
+    if slope < 0.0:
+        return 2.0 * value / (root - slope)
+    return (slope + root) / curvature if curvature > 0.0 else math.inf

@@ -1,0 +1,203 @@
+"""Advance a state to a time, event by event; read it in between; change its inputs.
+
+The anchor moves only at events and at jumps of an input.  Times between are read off the closed form, so that the
+motion does not depend on how often it is asked for.
+
+Arrays: `p` parameters of the axis, `s` state (both `axis.layout`), `events` a table of rows.  All functions change `s`
+in place and return the number of rows in use; `advance` also tells how it ended.
+"""
+
+import math
+
+from ...axis.layout import (
+    COMPLIANT,
+    CONTACT_STIFFNESS,
+    DEFLECTION,
+    DIRECTION,
+    DRIVE,
+    FRACTION,
+    MODE,
+    NEXT,
+    NEXT_KIND,
+    NORMAL,
+    ORIGIN,
+    POSITION,
+    REST,
+    SEARCHED,
+    SECOND,
+    SPRING,
+    STATE_SIZE,
+    VELOCITY,
+    F,
+    F_RATE,
+    V,
+    V_RATE,
+)
+from ...axis.motion import (
+    COASTING,
+    STICK,
+    begin_motion,
+    drive_force,
+    drive_travel,
+    friction_force,
+    friction_line,
+    move_anchor,
+    piece_of,
+    travel,
+)
+from ...axis.transitions import (
+    ARREST,
+    BREAKAWAY,
+    KNOT,
+    applied_force,
+    apply_inputs,
+    arrest,
+    choose_slip,
+    cross_knot,
+    force_rounding,
+    leave_coast,
+    release,
+    turn,
+)
+from ...compiled import compiled
+from .search import find_event
+
+DONE, FULL, NO_PROGRESS = 0, 1, 2
+_SAME_INSTANT = 64   # events without progress in time; a sound model needs three
+
+
+@compiled
+def start(p, s, position, velocity, rest, v, v_rate, f, f_rate, events):
+    """Set the state at time 0: the spring unstretched, at rest or sliding; return the rows written (a break-away)."""
+    for i in range(STATE_SIZE):
+        s[i] = 0.0
+    s[ORIGIN] = position
+    s[VELOCITY] = velocity
+    s[REST] = rest
+    s[V], s[V_RATE], s[F], s[F_RATE] = v, v_rate, f, f_rate
+    s[MODE] = STICK
+    rows = 0
+    if velocity == 0.0:
+        rows = _apply(p, s, events, 0)
+    else:
+        s[REST] = 0.0
+        s[DIRECTION] = 1.0 if velocity > 0.0 else -1.0
+        speed = abs(velocity)
+        coefficient, _, _, _ = friction_line(p, piece_of(p, speed, True), speed)
+        residual = s[DIRECTION] * applied_force(p, s) - p[NORMAL] * coefficient
+        choose_slip(p, s, residual, force_rounding(p, s, coefficient))
+    _begin(p, s)
+    return rows
+
+
+@compiled
+def advance(p, s, second, fraction, events, row):
+    """Bring the state to a time, which is not before its anchor; return the rows in use and how it ended."""
+    same_instant = 0
+    while True:
+        t = (second - s[SECOND]) + (fraction - s[FRACTION])
+        if s[SEARCHED] < t:
+            find_event(p, s, max(t, 2.0 * s[SEARCHED]))
+        due = s[NEXT]
+        if due > t:
+            return row, DONE
+        if row >= len(events):
+            return row, FULL
+        same_instant = same_instant + 1 if due == 0.0 else 0
+        if same_instant > _SAME_INSTANT:
+            return row, NO_PROGRESS
+        later = s[FRACTION] + due
+        whole = math.floor(later)
+        move_anchor(p, s, s[SECOND] + whole, later - whole, due)
+        _transition(p, s, events, row)
+        row += 1
+        _begin(p, s)
+
+
+@compiled
+def set_inputs(p, s, second, fraction, v, v_rate, f, f_rate, events, row):
+    """Let the inputs be v + v_rate t and f + f_rate t from a time on, up to which the state was advanced."""
+    if (s[V] == v and s[F] == f and s[V_RATE] == 0.0 and s[F_RATE] == 0.0 and v_rate == 0.0 and f_rate == 0.0):
+        return row
+    _anchor_at(p, s, second, fraction)
+    s[V], s[V_RATE], s[F], s[F_RATE] = v, v_rate, f, f_rate
+    row = _apply(p, s, events, row)
+    _begin(p, s)
+    return row
+
+
+@compiled
+def set_parameters(p, new, s, second, fraction, events, row):
+    """Let the axis have other parameters from a time on, up to which the state was advanced with the old ones."""
+    _anchor_at(p, s, second, fraction)
+    if s[MODE] == STICK and new[COMPLIANT] != 0.0:
+        force = friction_force(p, s, s[DEFLECTION], s[VELOCITY], applied_force(p, s))
+        s[DEFLECTION] = force / new[CONTACT_STIFFNESS]
+    if s[MODE] == STICK and new[COMPLIANT] == 0.0:
+        s[VELOCITY] = 0.0
+        s[DEFLECTION] = 0.0
+    row = _apply(new, s, events, row)
+    _begin(new, s)
+    return row
+
+
+@compiled
+def sample(p, s, second, fraction, out):
+    """Fill a row with the state at a time between the anchor and the next event (`words.Sample` names the columns)."""
+    t = (second - s[SECOND]) + (fraction - s[FRACTION])
+    y, u, a = travel(p, s, t)
+    drive = drive_travel(s, t)
+    v = s[V] + s[V_RATE] * t
+    force = s[F] + s[F_RATE] * t
+    pull = drive_force(p, s[SPRING] + (drive - y), v, u)
+    stuck = s[MODE] == STICK
+    deflection = s[DEFLECTION] + y if stuck else 0.0
+    friction = friction_force(p, s, deflection, u, pull + force)
+    out[0] = second
+    out[1] = fraction
+    out[2] = s[MODE]
+    out[3] = s[DIRECTION]
+    out[4] = s[ORIGIN] + (s[POSITION] + y)
+    out[5] = u
+    out[6] = a
+    out[7] = s[ORIGIN] + (s[DRIVE] + drive)
+    out[8] = v
+    out[9] = pull
+    out[10] = force
+    out[11] = friction
+    out[12] = abs(friction) / p[NORMAL] if p[NORMAL] > 0.0 else 0.0
+    out[13] = deflection if p[COMPLIANT] != 0.0 else 0.0
+    out[14] = s[REST] + t if stuck else 0.0
+
+
+@compiled
+def _begin(p, s):
+    begin_motion(p, s)
+    s[SEARCHED] = -1.0
+    s[NEXT] = math.inf
+
+
+@compiled
+def _apply(p, s, events, row):
+    return row + 1 if apply_inputs(p, s, events, row) else row
+
+
+@compiled
+def _anchor_at(p, s, second, fraction):
+    t = (second - s[SECOND]) + (fraction - s[FRACTION])
+    move_anchor(p, s, second, fraction, t)
+
+
+@compiled
+def _transition(p, s, events, row):
+    kind = s[NEXT_KIND]
+    if kind == BREAKAWAY:
+        release(p, s, events, row)
+    elif kind == ARREST:
+        arrest(p, s, events, row)
+    elif kind == KNOT:
+        cross_knot(p, s, events, row)
+    elif s[MODE] == COASTING:
+        leave_coast(p, s, events, row, kind)
+    else:
+        turn(p, s, events, row)

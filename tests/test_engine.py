@@ -1,0 +1,261 @@
+"""The exact engine: check values of the model, and properties that hold for every axis."""
+
+import math
+import random
+
+import pytest
+
+from stickslip_sim.axis import CompliantContact, InitialState
+from stickslip_sim.courses import Course, constant, ramp, steps, table
+from stickslip_sim.words import Event, EventKind, Instant, Mode
+from tests.axes import COMPLIANT, RIGID, instant, make, of_kind, paper_axis, random_axis, run
+
+# model.md: kind, t / s, x / m, ẋ / (m/s), F_d / N, from 40-digit arithmetic
+RIGID_EVENTS = [
+    (EventKind.BREAKAWAY, 0.67979883333333, 0.0, 0.0, 823.7586),
+    (EventKind.COAST, 0.76770114503556598, 5.3092642091498e-4, 1.45614975366e-2, 552.439531347),
+    (EventKind.DECELERATE, 0.79961346115854196, 9.9561753352655e-4, 1.45614975366e-2, 311.919643128),
+    (EventKind.STICK, 0.83862368925988008, 1.3615322557025e-3, 0.0, 197.42907369),
+    (EventKind.BREAKAWAY, 1.3313467055455221, 1.3615322557025e-3, 0.0, 788.696693233),
+    (EventKind.COAST, 1.4173257894649382, 1.8213175147126e-3, 1.26694996285e-2, 565.322440017),
+]
+COMPLIANT_EVENTS = [
+    (EventKind.BREAKAWAY, 0.76256755048235998, 1.6410886285782e-4, 2.14285714061e-4, 823.758600008),
+    (EventKind.COAST, 0.850707630222697, 6.6535579038665e-4, 1.34355898952e-2, 575.893322454),
+    (EventKind.DECELERATE, 0.88805371587200703, 1.1671224813629e-3, 1.34355898952e-2, 319.648610648),
+    (EventKind.STICK, 0.92738519742899923, 1.5072615660044e-3, 0.0, 216.505297312),
+    (EventKind.BREAKAWAY, 1.4463032091159095, 1.5828430395267e-3, 2.14282328562e-4, 793.000897909),
+    (EventKind.ACCELERATE, 1.4463032134383819, 1.582843040453e-3, 2.14282328562e-4, 793.00090254),
+]
+CONVENTIONAL_EVENTS = [
+    (EventKind.BREAKAWAY, 0.67979883333333, 0.0, 0.0, 823.7586),
+    (EventKind.KNOT, 0.7158107683398723, 7.2167822270819e-4, 0.035, None),
+    (EventKind.DECELERATE, None, None, None, None),
+    (EventKind.KNOT, 0.72765171843402951, None, 0.035, None),
+    (EventKind.STICK, 0.75893741627714234, 1.801901429588e-3, 0.0, -162.41595822),
+    (EventKind.BREAKAWAY, 1.5749466192221413, 1.801901429588e-3, 0.0, None),
+]
+
+
+@pytest.mark.parametrize(('contact', 'branches', 'expected'), [
+    (RIGID, True, RIGID_EVENTS), (COMPLIANT, True, COMPLIANT_EVENTS), (RIGID, False, CONVENTIONAL_EVENTS)])
+def test_check_values_of_the_model(contact: object, branches: bool, expected: list[tuple[object, ...]]) -> None:
+    events = run(paper_axis(contact, branches=branches), 0.002, 1.6)  # type: ignore[arg-type]
+    assert [e.kind for e in events[:len(expected)]] == [row[0] for row in expected]
+    for event, (_, *values) in zip(events, expected):
+        got = (event.time, event.position, event.velocity, event.drive_force)
+        for value, want, last_digit in zip(got, values, (2e-14, 1e-16, 1e-13, 1e-9)):
+            if want is not None:
+                assert value == pytest.approx(want, rel=1e-11 if last_digit == 1e-9 else 0.0, abs=last_digit), event
+
+
+@pytest.mark.parametrize(('contact', 'period', 'jump', 'peak', 'break_force', 'stick_force'), [
+    (RIGID, 0.619075168, 1.238150336e-3, 1.23285921663e-2, 781.443710909, 235.301790949),
+    (COMPLIANT, 0.659065697, 1.31813139e-3, 1.16642823367e-2, 788.081203029, 246.606758267)])
+def test_limit_cycle_of_the_model(contact: object, period: float, jump: float, peak: float, break_force: float,
+                                  stick_force: float) -> None:
+    events = run(paper_axis(contact), 0.002, 60.0)  # type: ignore[arg-type]
+    first, second = of_kind(events, EventKind.BREAKAWAY)[-2:]
+    assert second.time - first.time == pytest.approx(period, abs=6e-10)
+    assert second.position - first.position == pytest.approx(jump, abs=6e-12)
+    assert second.drive_force == pytest.approx(break_force, abs=6e-10)
+    assert of_kind(events, EventKind.COAST)[-1].velocity == pytest.approx(peak, abs=6e-14)
+    assert of_kind(events, EventKind.STICK)[-1].drive_force == pytest.approx(stick_force, abs=6e-10)
+
+
+def test_second_static_coefficients_of_the_model() -> None:
+    for contact, branches, value, digit in ((RIGID, True, 0.2297848, 1e-7), (COMPLIANT, True, 0.23103882, 1e-8),
+                                            (RIGID, False, 0.2379712, 1e-7)):
+        events = run(paper_axis(contact, branches=branches), 0.002, 1.6)
+        assert of_kind(events, EventKind.BREAKAWAY)[1].static_coefficient == pytest.approx(value, abs=0.5 * digit)
+
+
+def test_undamped_coulomb_cycle_in_closed_form() -> None:
+    """m u′ = c w − F with F_s = 824 N, F_k = 412 N, no damping, v = 5 mm/s: docs of the classical cycle."""
+    from stickslip_sim.axis import Axis, Friction
+    from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
+    v, c, m = 0.005, 6e5, 350.0
+    friction = Friction(StaticLaw(StaticLawKind.CONSTANT, 0.24, 0.24), KineticTable((0.0,), (0.12,)), None)
+    events = run(Axis(m, c, 0.0, 412.0 / 0.12, RIGID, friction), v, 20.0)
+    omega, a = math.sqrt(c / m), 412.0 / (v * math.sqrt(c * m))
+    breaks, sticks = of_kind(events, EventKind.BREAKAWAY)[5:], of_kind(events, EventKind.STICK)[5:]
+    assert sticks[0].time - breaks[0].time == pytest.approx(2.0 / omega * (math.pi - math.atan(a)), rel=1e-12)
+    assert breaks[1].time - sticks[0].time == pytest.approx(2.0 * 412.0 / (c * v), rel=1e-12)
+    assert of_kind(events, EventKind.DECELERATE)[5].velocity == pytest.approx(v * (1 + math.hypot(1, a)), rel=1e-13)
+    assert sticks[0].time - breaks[0].time == pytest.approx(84.28583e-3, abs=5e-9)
+
+
+def _courses(rng: random.Random) -> tuple[Course, Course]:
+    speed = rng.choice((-1, 1)) * 10 ** rng.uniform(-3, -1.3)
+    drive = rng.choice((constant(speed), ramp(0.0, speed, 2.0), steps('drive', [0.0, 1.0, 2.0], [speed, -speed, 0.0]),
+                        table('drive', [0.0, 0.5, 1.5], [0.0, speed, -speed], 2.0)))
+    force = rng.choice((constant(0.0), constant(rng.uniform(-100, 100)),
+                        steps('force', [0.0, 0.7, 0.9], [0.0, rng.uniform(-3e3, 3e3), 0.0])))
+    return drive, force
+
+
+def _mirrored(course: Course) -> Course:
+    return Course(course.starts, tuple(-x for x in course.values), tuple(-x for x in course.rates), course.period)
+
+
+def _scaled(course: Course, factor: float) -> Course:
+    return Course(course.starts, tuple(factor * x for x in course.values), tuple(factor * x for x in course.rates),
+                  course.period)
+
+
+@pytest.mark.parametrize('seed', range(40))
+def test_mirror_image_is_bit_identical(seed: int) -> None:
+    rng = random.Random(seed)
+    axis, (drive, force) = random_axis(rng), _courses(rng)
+    events = run(axis, drive, 3.0, force)
+    mirrored = run(axis, _mirrored(drive), 3.0, _mirrored(force))
+    assert len(events) == len(mirrored)
+    for e, image in zip(events, mirrored):
+        assert image == e._replace(direction=-e.direction, position=-e.position, velocity=-e.velocity,
+                                   drive_position=-e.drive_position, drive_force=-e.drive_force,
+                                   friction_force=-e.friction_force)
+
+
+@pytest.mark.parametrize('seed', range(20))
+def test_units_scaled_by_a_power_of_two_are_bit_identical(seed: int) -> None:
+    """Twice the mass unit: forces, stiffness, damping, mass halve; times, lengths and speeds stay."""
+    from dataclasses import replace
+    rng = random.Random(seed)
+    axis, (drive, force) = random_axis(rng), _courses(rng)
+    contact = axis.contact
+    if isinstance(contact, CompliantContact):
+        contact = CompliantContact(contact.stiffness * 0.5, contact.damping * 0.5)
+    half = replace(axis, mass=axis.mass * 0.5, drive_stiffness=axis.drive_stiffness * 0.5, contact=contact,
+                   drive_damping=axis.drive_damping * 0.5, normal_force=axis.normal_force * 0.5)
+    for e, other in zip(run(axis, drive, 3.0, force), run(half, drive, 3.0, _scaled(force, 0.5)), strict=True):
+        assert other == e._replace(drive_force=0.5 * e.drive_force, friction_force=0.5 * e.friction_force)
+
+
+def _same(a: list[Event], b: list[Event], tolerance: float) -> None:
+    assert [(e.kind, e.direction) for e in a] == [(e.kind, e.direction) for e in b]
+    for e, other in zip(a, b):
+        assert e.time == pytest.approx(other.time, abs=tolerance)
+        assert e.position == pytest.approx(other.position, abs=tolerance)
+
+
+@pytest.mark.parametrize('contact', [RIGID, COMPLIANT])
+def test_one_call_or_many_give_the_same_motion(contact: object) -> None:
+    axis = paper_axis(contact)  # type: ignore[arg-type]
+    drive = table('drive', [0.0, 3.0, 4.0, 8.0], [0.002, 0.01, -0.004, -0.001])
+    whole = make(axis, drive)
+    expected = whole.advance(instant(10.0))
+    ticks, rng = make(axis, drive), random.Random(7)
+    events = [event for k in range(1, 10001) for event in ticks.advance(Instant(k // 1000, (k % 1000) / 1000))]
+    _same(events, expected, 1e-13)
+    splits, t = make(axis, drive), 0.0
+    events = []
+    while t < 10.0:
+        t = min(t + rng.choice((1e-9, 1e-6, 1e-3, 0.3)) * rng.random(), 10.0)
+        events += splits.advance(instant(t))
+    _same(events, expected, 1e-13)
+    for other in (ticks, splits):
+        assert other.sample().position == pytest.approx(whole.sample().position, abs=1e-13)
+
+
+def test_a_command_that_repeats_the_present_value_changes_no_bit() -> None:
+    axis = paper_axis(COMPLIANT)
+    quiet, busy = make(axis, 0.002), make(axis, 0.002)
+    a: list[Event] = []
+    b: list[Event] = []
+    for k in range(1, 3001):
+        to = Instant(k // 1000, (k % 1000) / 1000)
+        a += quiet.advance(to)
+        busy.command_velocity(0.002)
+        b += busy.advance(to)
+        assert quiet.sample() == busy.sample()
+    assert a == b
+
+
+def test_state_is_continuous_and_forces_balance() -> None:
+    """m ẍ = F_d + F_e − F at every sample, and nothing jumps by more than its rate allows."""
+    axis = paper_axis(COMPLIANT)
+    simulator = make(axis, 0.005, steps('force', [0.0, 1.0, 1.2], [0.0, 400.0, -100.0]))
+    before = None
+    for k in range(1, 4001):
+        simulator.advance(Instant(k // 2000, (k % 2000) / 2000))
+        s = simulator.sample()
+        balance = s.drive_force + s.external_force - s.friction_force - 350.0 * s.acceleration
+        assert abs(balance) < 2e-11 * 824.0
+        if before is not None:
+            assert abs(s.position - before.position) <= 0.0005 * max(abs(s.velocity), abs(before.velocity)) * 1.5 + 1e-7
+        before = s
+
+
+def test_reverses_at_once_where_a_rigid_contact_cannot_hold() -> None:
+    """A frictionless slider swings for ever; a lightly braked one reverses until it stays."""
+    from dataclasses import replace
+    free = replace(paper_axis(RIGID), normal_force=0.0, drive_damping=0.0)
+    events = run(free, 0.0, 2.0, initial=InitialState(velocity=0.1))
+    turns = of_kind(events, EventKind.REVERSE)
+    half_period = math.pi / math.sqrt(6e5 / 350.0)
+    assert len(turns) == 26
+    assert turns[-1].time == pytest.approx((len(turns) - 0.5) * half_period, rel=1e-13)
+    light = replace(paper_axis(RIGID), normal_force=300.0, drive_damping=0.0)
+    events = run(light, 0.0, 5.0, initial=InitialState(velocity=0.05))
+    assert len(of_kind(events, EventKind.REVERSE)) > 2
+    assert events[-1].kind == EventKind.STICK
+    amplitudes = [abs(e.position) for e in of_kind(events, EventKind.REVERSE)]
+    assert all(b < a for a, b in zip(amplitudes, amplitudes[1:]))
+
+
+def test_break_away_is_exact_at_the_limit_and_a_force_at_the_limit_holds() -> None:
+    axis = paper_axis(RIGID)
+    limit = 0.24 * 350 * 9.80665
+    assert run(axis, 0.0, 10.0, math.nextafter(limit, 0.0)) == []
+    assert run(axis, 0.0, 10.0, limit) == []
+    beyond = run(axis, 0.0, 10.0, limit * (1.0 + 1e-12))
+    assert (beyond[0].kind, beyond[0].time) == (EventKind.BREAKAWAY, 0.0)
+
+
+def test_a_blow_shorter_than_any_step_is_not_missed() -> None:
+    rng = random.Random(3)
+    for contact in (RIGID, COMPLIANT):
+        for _ in range(50):
+            t = rng.uniform(0.0, 5.0)
+            events = run(paper_axis(contact), 0.0, 6.0, steps('force', [0.0, t, t + 0.002], [0.0, 33e3, 0.0]))
+            assert events[0].kind == EventKind.BREAKAWAY
+            assert t <= events[0].time <= t + 0.002
+
+
+def test_late_clock_and_far_position_keep_their_digits() -> None:
+    axis = paper_axis(RIGID)
+    near = run(axis, 0.002, 30.0)
+    far = run(axis, 0.002, 30.0, initial=InitialState(position=1e6))
+    for a, b in zip(near, far, strict=True):
+        assert (a.time, a.kind) == (b.time, b.kind)
+        assert b.position - 1e6 == pytest.approx(a.position, abs=2e-10)
+    late = make(axis, steps('drive', [0.0, 1e9], [0.0, 0.002]))
+    assert late.advance(Instant(1e9, 0.0)) == []
+    for a, b in zip(near, late.advance(Instant(1e9 + 30.0, 0.0)), strict=True):
+        assert (b.second - 1e9) + b.fraction == pytest.approx(a.time, abs=1e-11)
+
+
+def test_a_year_at_99_percent_of_the_limit_does_not_creep() -> None:
+    year = 365.25 * 86400.0
+    for contact in (RIGID, COMPLIANT):
+        simulator = make(paper_axis(contact), 0.0, steps('force', [0.0, year], [0.99 * 823.7586, 0.99 * 823.7586]))
+        simulator.advance(Instant(10.0, 0.0))
+        position = simulator.sample().position
+        assert simulator.advance(instant(year)) == []
+        assert simulator.sample().position == pytest.approx(position, abs=1e-18)
+        assert simulator.sample().mode == Mode.STICK
+
+
+def test_compiled_and_plain_python_agree_bit_by_bit(plain_python: object) -> None:
+    """The same source with and without numba, in two processes."""
+    assert callable(plain_python)
+    program = '''
+import random
+from tests.axes import random_axis, run
+for seed in range(25):
+    rng = random.Random(seed)
+    axis = random_axis(rng)
+    for event in run(axis, rng.choice((-1, 1)) * 10 ** rng.uniform(-3, -1.5), 3.0):
+        print([float(x).hex() for x in event])
+'''
+    assert plain_python(program, compiled=True) == plain_python(program, compiled=False)

@@ -1,0 +1,150 @@
+"""The closed form of a linear mode against 40-digit arithmetic, and its first roots against dense sampling."""
+
+import math
+import random
+
+import mpmath as mp
+import pytest
+
+from stickslip_sim.linear.oscillator import bound, impulse, integrals, oscillator
+from stickslip_sim.linear.roots import first_crossing, first_passage, first_zero, safe_step
+
+KINDS = ('under-damped', 'over-damped', 'critical', 'no spring', 'no damper', 'unstable', 'soft', 'neither')
+
+
+def _random_mode(rng: random.Random, kind: str) -> tuple[float, float]:
+    omega2 = 10.0 ** rng.uniform(-6, 6)
+    omega = math.sqrt(omega2)
+    return {
+        'under-damped': (omega * rng.uniform(-0.9, 0.99), omega2),
+        'over-damped': (omega * rng.choice((-1, 1)) * 10.0 ** rng.uniform(0, 3), omega2),
+        'critical': (omega * (1.0 + rng.choice((0.0, 1e-15, -1e-15, 1e-10, -1e-8, 1e-6))), omega2),
+        'no spring': (10.0 ** rng.uniform(-4, 4), 0.0),
+        'no damper': (0.0, omega2),
+        'unstable': (-(10.0 ** rng.uniform(-4, 3)), omega2),
+        'soft': (10.0 ** rng.uniform(-4, 4), 10.0 ** rng.uniform(-14, -6)),
+        'neither': (0.0, 0.0),
+    }[kind]
+
+
+def _exact(gamma: float, omega2: float, t: float) -> list[mp.mpf]:
+    with mp.workdps(40):
+        matrix = mp.matrix(5)
+        matrix[0, 1], matrix[1, 0], matrix[1, 1] = 1, -mp.mpf(omega2), -2 * mp.mpf(gamma)
+        matrix[2, 0] = matrix[3, 2] = matrix[4, 3] = 1
+        return list(mp.expm(matrix * mp.mpf(t), method='taylor') * mp.matrix([0, 1, 0, 0, 0]))
+
+
+@pytest.mark.parametrize('kind', KINDS)
+def test_integrals_equal_matrix_exponential(kind: str) -> None:
+    rng = random.Random(kind)
+    for _ in range(40):
+        gamma, omega2 = _random_mode(rng, kind)
+        scale = (abs(gamma) + math.sqrt(omega2)) or 1.0
+        t = 10.0 ** rng.uniform(-3, 1.2) / scale
+        osc = oscillator(gamma, omega2)
+        got, want = integrals(osc, t), _exact(gamma, omega2, t)
+        growth = math.exp(max(-gamma + math.sqrt(max(gamma * gamma - omega2, 0.0)), 0.0) * t)
+        sizes = [min(t, 1.0 / scale) * growth, growth,
+                 *(growth * min(t, 1.0 / scale) ** 2 * t ** (k - 2) for k in (2, 3, 4))]
+        for k in range(5):
+            assert abs(got[k] - want[k]) <= 3e-14 * max(sizes[k], float(abs(want[k]))), (k, gamma, omega2, t)
+        assert impulse(osc, t) == pytest.approx(got[:2], rel=1e-12, abs=1e-13 * growth)
+
+
+@pytest.mark.parametrize('kind', KINDS)
+def test_first_zero_is_the_first(kind: str) -> None:
+    rng = random.Random(kind)
+    for _ in range(50):
+        gamma, omega2 = _random_mode(rng, kind)
+        osc = oscillator(gamma, omega2)
+        scale = (abs(gamma) + math.sqrt(omega2)) or 1.0
+        z, rate = rng.choice((0.0, 1.0, 1e-6)), rng.uniform(-3, 3) * scale
+        if z == 0.0:
+            rate = abs(rate) + scale
+
+        def value(t: float, osc: tuple[float, ...] = osc, z: float = z, rate: float = rate) -> float:
+            g, slope = impulse(osc, t)
+            return z * (slope + 2.0 * osc[0] * g) + rate * g
+
+        t = first_zero(osc, z, rate)
+        end = min(t, 20.0 / scale)
+        assert all(value(end * i / 200) > 0.0 for i in range(1, 200))
+        if t < 20.0 / scale:
+            size = z + abs(rate) / scale
+            assert abs(value(t)) <= 1e-12 * size * math.exp(abs(gamma) * t)
+            assert value(t * (1.0 + 1e-6)) < 0.0
+
+
+def test_first_zero_of_a_start_at_zero_is_half_a_period() -> None:
+    assert first_zero(oscillator(3.0, 1000.0), 0.0, 2.0) == pytest.approx(math.pi / math.sqrt(991.0), rel=1e-15)
+    assert first_zero(oscillator(50.0, 1000.0), 0.0, 2.0) == math.inf
+
+
+@pytest.mark.parametrize('snap', [0.0, 40.0, -40.0])
+def test_first_passage_misses_nothing(snap: float) -> None:
+    """Against dense sampling; with gaps that the peak passes by a relative 1e-10, or misses by as much."""
+    rng = random.Random(str(snap))
+    for _ in range(150):
+        gamma, omega2 = _random_mode(rng, rng.choice(KINDS))
+        osc = oscillator(gamma, omega2)
+        scale = (abs(gamma) + math.sqrt(omega2)) or 1.0
+        horizon = 6.0 / scale
+        rate, jerk = rng.choice((0.0, 1.0)), rng.uniform(-2, 2) * scale
+        if rate == 0.0:
+            jerk = abs(jerk) + 0.1 * scale
+        bend = snap * scale * scale
+
+        def r(t: float, osc: tuple[float, ...] = osc, rate: float = rate, jerk: float = jerk,
+              bend: float = bend) -> float:
+            g, _, first, second, _ = integrals(osc, t)
+            return rate * g + jerk * first + bend * second
+
+        turn, passed = first_passage(osc, rate, jerk, bend, math.inf, horizon)
+        end = min(turn, horizon)
+        assert not passed
+        values = [r(end * i / 300) for i in range(301)]
+        assert all(b > a for a, b in zip(values[:-2], values[1:-1]))
+        peak = r(end)
+        for gap, reached in ((0.5 * peak, True), (peak * (1 - 1e-10), True), (peak * (1 + 1e-10), False)):
+            t, passed = first_passage(osc, rate, jerk, bend, gap, horizon)
+            assert passed == reached
+            if passed:
+                assert abs(r(t) - gap) <= 1e-14 * max(1.0, math.exp(-gamma * t)) * (peak + scale * end / scale**2)
+            else:
+                assert t == (turn if turn <= horizon else math.inf)
+
+
+@pytest.mark.parametrize(('value', 'slope', 'bend', 'time'), [
+    (1.0, 0.0, 0.0, math.inf), (1.0, -2.0, 0.0, 0.5), (0.0, -1.0, 5.0, 0.0), (0.0, 1.0, -2.0, 1.0),
+    (0.0, 0.0, -1.0, 0.0), (0.0, 0.0, 1.0, math.inf), (0.0, 0.0, 0.0, math.inf), (1.0, -1.0, 0.5, math.inf),
+    (1.0, -3.0, 4.0, 0.5), (3.0, 1.0, -2.0, 0.5 * (1.0 + math.sqrt(13.0))), (2.0, 0.0, -4.0, 1.0),
+])
+def test_first_crossing_of_a_parabola(value: float, slope: float, bend: float, time: float) -> None:
+    assert first_crossing(value, slope, bend) == pytest.approx(time, rel=1e-15)
+
+
+def test_safe_steps_never_pass_the_root_and_converge_quadratically() -> None:
+    t, steps = 0.0, 0
+    while steps < 50:
+        step = safe_step(max(math.cos(t) - 0.25, 0.0), -math.sin(t), 1.0)
+        t, steps = t + step, steps + 1
+        assert t <= math.acos(0.25) * (1.0 + 1e-15)
+        if step < 1e-15:
+            break
+    assert t == pytest.approx(math.acos(0.25), rel=1e-15)
+    assert steps < 9
+
+
+@pytest.mark.parametrize('kind', ['under-damped', 'over-damped', 'critical', 'no damper'])
+def test_bound_holds_for_all_later_times(kind: str) -> None:
+    rng = random.Random(kind)
+    for _ in range(100):
+        gamma, omega2 = _random_mode(rng, kind)
+        gamma = abs(gamma)
+        osc = oscillator(gamma, omega2)
+        z, rate = rng.uniform(-1, 1), rng.uniform(-5, 5) * math.sqrt(omega2)
+        ceiling = bound(osc, z, rate)
+        for i in range(200):
+            g, slope = impulse(osc, i * 0.05 / math.sqrt(omega2))
+            assert abs(z * (slope + 2.0 * gamma * g) + rate * g) <= ceiling * (1.0 + 1e-12)
