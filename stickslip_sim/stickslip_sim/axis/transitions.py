@@ -71,6 +71,7 @@ REVERSE = int(EventKind.REVERSE)
 KNOT = int(EventKind.KNOT)
 
 _ROUNDING = 8.0 * 2.220446049250313e-16
+_TIE = 1e-15   # of the friction force: a closed-form acceleration smaller than that is a tie
 
 
 @compiled
@@ -171,11 +172,13 @@ def break_away(p, s, direction, limit, margin):
         coefficient = limit
     s[DIRECTION] = direction
     residual = margin + p[NORMAL] * (limit - coefficient)
+    tolerance = force_rounding(p, s, limit)
     if p[COMPLIANT] != 0.0:
         residual += direction * p[MASS] * s[ACCELERATION]
+        tolerance = _TIE * p[NORMAL] * limit
     s[REST] = 0.0
     s[DEFLECTION] = 0.0
-    if not choose_slip(p, s, residual, force_rounding(p, s, limit)):
+    if not choose_slip(p, s, residual, tolerance):
         rest(p, s)
 
 
@@ -287,7 +290,6 @@ def apply_inputs(p, s, events, row):
     speed = abs(s[VELOCITY])
     coefficient, _, psi, _ = friction_line(p, piece_of(p, speed, True), speed)
     upper = coefficient + s[EXCESS] * psi
-    friction = friction_force(p, s, 0.0, s[VELOCITY], applied_force(p, s))
     residual = direction * applied_force(p, s) - p[NORMAL] * upper
     if not choose_slip(p, s, residual, force_rounding(p, s, upper)):
         arrest(p, s, events, row)
@@ -295,7 +297,7 @@ def apply_inputs(p, s, events, row):
     if s[MODE] == mode:
         return False
     kind = COAST if s[MODE] == COASTING else (ACCELERATE if s[MODE] == ACCELERATING else DECELERATE)
-    write_event(p, s, events, row, kind, direction, friction)
+    write_event(p, s, events, row, kind, direction, friction_force(p, s, 0.0, s[VELOCITY], applied_force(p, s)))
     events[row][EVENT_MODE] = s[MODE]
     return True
 

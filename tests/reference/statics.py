@@ -1,0 +1,115 @@
+"""Static coefficient mu_s(t^-) = mu_0 + (mu_inf - mu_0) q(t), with its power series about any age.
+
+constant     q = 0
+exponential  q = 1 - exp(-t/tau)
+kato         q = 1 - exp(-(t/tau)^n)
+hyperbolic   q = t / (t + tau)
+logarithmic  q = ln(1 + t/tau)          (unbounded: finite rest time only)
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from mpmath import exp, inf, isinf, mp, mpf
+
+from .series import Series
+
+LAWS = ("constant", "exponential", "kato", "hyperbolic", "logarithmic")
+_ORDER = 70
+
+
+@dataclass(frozen=True)
+class StaticLaw:
+    """One rise of the static coefficient with rest time; all of them are monotone."""
+
+    law: str
+    initial: mpf
+    limit: mpf
+    time_constant: mpf
+    exponent: mpf
+
+    def value(self, age: mpf) -> mpf:
+        """Return mu_s at a rest time (which may be infinite)."""
+        if self.law == "constant":
+            return self.initial
+        if isinf(age):
+            if self.law == "logarithmic":
+                raise ValueError("the logarithmic law has no limit: give a finite rest time")
+            return self.limit
+        return self.initial + (self.limit - self.initial) * self._rise(age)
+
+    def _rise(self, age: mpf) -> mpf:
+        z = age / self.time_constant
+        if self.law == "exponential":
+            return -mp.expm1(-z)
+        if self.law == "kato":
+            return -mp.expm1(-(z**self.exponent))
+        if self.law == "hyperbolic":
+            return z / (1 + z)
+        return mp.log1p(z)
+
+    def span(self, age: mpf) -> mpf:
+        """Return the longest time over which ``series`` is exact to the working precision."""
+        if self.law == "constant" or isinf(age) or self._settled(age):
+            return inf
+        if self.law == "exponential":
+            return 4 * self.time_constant
+        if self.law == "kato":
+            z = (age / self.time_constant) ** self.exponent
+            return min(age / 16, age / (self.exponent * z)) if age else mpf(0)
+        return (age + self.time_constant) / 16
+
+    def _settled(self, age: mpf) -> bool:
+        """Tell whether an exponential rise is over to well below the working precision."""
+        if self.law == "exponential":
+            z = age / self.time_constant
+        elif self.law == "kato":
+            z = (age / self.time_constant) ** self.exponent
+        else:
+            return False
+        return bool(z > 2.4 * mp.dps + 30)
+
+    def series(self, age: mpf) -> Series:
+        """Return the power series of mu_s(age + τ) in τ, valid on [0, span(age)]."""
+        if isinf(self.span(age)):
+            return [self.value(age)]
+        rise = {
+            "exponential": self._exponential,
+            "kato": self._kato,
+            "hyperbolic": self._hyperbolic,
+            "logarithmic": self._logarithmic,
+        }[self.law](age)
+        change = self.limit - self.initial
+        return [self.value(age), *(change * c for c in rise)]
+
+    def _exponential(self, age: mpf) -> Series:
+        c, out = -exp(-age / self.time_constant), []
+        for k in range(1, _ORDER):
+            c = -c / (self.time_constant * k)
+            out.append(c)
+        return out
+
+    def _kato(self, age: mpf) -> Series:
+        """Series of 1 - e^{-z}, z = ((age + τ)/tau)^n: k q_k = -Σ_{j=1..k} j z_j q_{k-j} for q = e^{-z}."""
+        z = [(age / self.time_constant) ** self.exponent]
+        for k in range(1, _ORDER):
+            z.append(z[-1] * (self.exponent - k + 1) / (k * age))
+        q = [exp(-z[0])]
+        for k in range(1, _ORDER):
+            q.append(-sum((j * z[j] * q[k - j] for j in range(1, k + 1)), mpf(0)) / k)
+        return [-c for c in q[1:]]
+
+    def _hyperbolic(self, age: mpf) -> Series:
+        c, out = -self.time_constant / (age + self.time_constant), []
+        for _ in range(1, _ORDER):
+            c = -c / (age + self.time_constant)
+            out.append(c)
+        return out
+
+    def _logarithmic(self, age: mpf) -> Series:
+        c, out = mpf(-1), []
+        for k in range(1, _ORDER):
+            c = -c / (age + self.time_constant)
+            out.append(c / k)
+        return out
