@@ -259,3 +259,48 @@ for seed in range(25):
         print([float(x).hex() for x in event])
 '''
     assert plain_python(program, compiled=True) == plain_python(program, compiled=False)
+
+
+def test_grazing_the_limit_is_neither_missed_nor_invented() -> None:
+    """A drive that slows down and turns back: the force peaks at the limit but for a relative 1e-4 to 1e-12."""
+    from dataclasses import replace
+    rng = random.Random(11)
+    axis = paper_axis(RIGID)
+    c, h = axis.drive_stiffness, axis.drive_damping
+    for margin in (1e-4, 1e-6, 1e-9, 1e-12, -1e-12, -1e-9, -1e-4):
+        for _ in range(100):
+            v, rate = rng.uniform(0.5e-3, 5e-3), -(10 ** rng.uniform(-4, -2))
+            delay = rng.uniform(0.0, 1.0)
+            t = -(v + h * rate / c) / rate
+            peak = c * (v + 0.5 * rate * t) * t + h * (v + rate * t)
+            held = replace(axis, normal_force=peak / 0.24 / (1.0 + margin))
+            drive = Course((0.0, delay), (0.0, v), (0.0, rate))
+            events = run(held, drive, delay + 1.9 * t)
+            broke = bool(events) and events[0].time < delay + 1.1 * t
+            assert broke == (margin > 0.0), (margin, v, rate)
+
+
+@pytest.mark.parametrize('law', ['CONSTANT', 'EXPONENTIAL', 'KATO', 'HYPERBOLIC', 'LOGARITHMIC'])
+@pytest.mark.parametrize('exponent', [0.4, 1.0, 2.5])
+@pytest.mark.parametrize('contact', [RIGID, COMPLIANT])
+def test_break_away_of_every_static_law_is_on_the_limit(law: str, exponent: float, contact: object) -> None:
+    """At every break-away |F| = N mu_s(t⁻), and at no sampled instant of stick before it is |F| beyond the limit."""
+    from dataclasses import replace
+
+    from stickslip_sim.friction import StaticLaw, StaticLawKind
+    axis = paper_axis(contact)  # type: ignore[arg-type]
+    static = StaticLaw(StaticLawKind[law], 0.12, 0.24, 0.2, exponent)
+    axis = replace(axis, friction=replace(axis.friction, static=static))
+    drive = table('drive', [0.0, 1.0, 2.0, 4.0], [0.006, 0.002, -0.008, 0.004])
+    simulator = make(axis, drive, initial=InitialState(rest_time=0.3))
+    breaks, n = 0, axis.normal_force
+    for k in range(1, 4001):
+        for event in simulator.advance(Instant(k // 1000, (k % 1000) / 1000)):
+            if event.kind == EventKind.BREAKAWAY:
+                breaks += 1
+                assert event.static_coefficient == pytest.approx(static.coefficient(event.rest_time), rel=1e-14)
+                assert abs(event.friction_force) == pytest.approx(n * event.static_coefficient, rel=1e-14)
+        s = simulator.sample()
+        if s.mode == Mode.STICK:
+            assert abs(s.friction_force) <= n * static.coefficient(s.rest_time) * (1.0 + 1e-12)
+    assert breaks >= 2

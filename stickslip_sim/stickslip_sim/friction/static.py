@@ -31,6 +31,7 @@ CONSTANT = int(StaticLawKind.CONSTANT)
 EXPONENTIAL = int(StaticLawKind.EXPONENTIAL)
 KATO = int(StaticLawKind.KATO)
 HYPERBOLIC = int(StaticLawKind.HYPERBOLIC)
+LOGARITHMIC = int(StaticLawKind.LOGARITHMIC)
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +75,7 @@ class StaticLaw:
 @compiled
 def static_coefficient(kind, initial, limit, tau, exponent, rest):
     """Return mu_s(rest)."""
-    if kind == CONSTANT:
+    if kind == CONSTANT or rest == 0.0:
         return initial
     rise = limit - initial
     if rest == math.inf:
@@ -90,21 +91,28 @@ def static_coefficient(kind, initial, limit, tau, exponent, rest):
 
 @compiled
 def static_growth(kind, initial, limit, tau, exponent, rest):
-    """Return mu_s′(rest), and a bound on −mu_s″ from `rest` on (infinite for Kato's law with n < 1 at rest 0)."""
-    if kind == CONSTANT or rest == math.inf:
-        return 0.0, 0.0
-    rise = (limit - initial) / tau
+    """Return mu_s(rest), mu_s′(rest), and a bound on −mu_s″ from `rest` on (but for Kato's law it is −mu_s″ itself).
+
+    Under Kato's law with n < 1 the last two are infinite at rest 0.
+    """
+    if kind == CONSTANT:
+        return initial, 0.0, 0.0
+    if rest == math.inf:
+        return limit, 0.0, 0.0
+    rise = limit - initial
     z = rest / tau
     if kind == EXPONENTIAL:
-        slope = rise * math.exp(-z)
-        return slope, slope / tau
+        risen = math.expm1(-z)
+        slope = rise / tau * (1.0 + risen)
+        return initial - rise * risen, slope, slope / tau
     if kind == KATO:
-        return _kato_growth(rise, tau, exponent, z)
+        slope, curvature = _kato_growth(rise / tau, tau, exponent, z)
+        return static_coefficient(kind, initial, limit, tau, exponent, rest), slope, curvature
     if kind == HYPERBOLIC:
-        slope = rise / ((1.0 + z) * (1.0 + z))
-        return slope, 2.0 * slope / (tau * (1.0 + z))
-    slope = rise / (1.0 + z)
-    return slope, slope / (tau * (1.0 + z))
+        slope = rise / tau / ((1.0 + z) * (1.0 + z))
+        return initial + rise * (rest / (rest + tau)), slope, 2.0 * slope / (tau * (1.0 + z))
+    slope = rise / tau / (1.0 + z)
+    return initial + rise * math.log1p(z), slope, slope / (tau * (1.0 + z))
 
 
 @compiled

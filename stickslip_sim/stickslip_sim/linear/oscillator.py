@@ -23,6 +23,7 @@ import math
 from ..compiled import compiled
 
 _SERIES_BELOW = 2.0   # (|γ| + |ν|) t up to which the power series is summed
+_SHORT_SERIES_BELOW = 0.3   # where only the first integral is asked for, which loses less to cancellation
 _SERIES_TERMS = 60    # never reached: 30 terms are below rounding at the bound above
 
 
@@ -72,6 +73,17 @@ def integrals(osc, t):
     second = (t - g - 2.0 * gamma * first) / omega2
     third = (0.5 * t * t - first - 2.0 * gamma * second) / omega2
     return g, rate, first, second, third
+
+
+@compiled
+def first_integral(osc, t):
+    """Return g, g′ and G₁ at t."""
+    gamma, omega2, nu, _, _ = osc
+    if (nu <= 0.0 and 4.0 * omega2 < gamma * gamma) or (abs(gamma) + abs(nu)) * t < _SHORT_SERIES_BELOW:
+        g, rate, first, _, _ = integrals(osc, t)
+        return g, rate, first
+    g, rate = impulse(osc, t)
+    return g, rate, (1.0 - rate - 2.0 * gamma * g) / omega2
 
 
 @compiled
@@ -128,3 +140,14 @@ def bound(osc, z, rate):
     if decay > 0.0:
         reach = min(reach, 0.36787944117144233 / decay)
     return abs(z) if drift == 0.0 else abs(z) + drift * reach
+
+
+@compiled
+def amplitude(osc, z, rate):
+    """Return (A, d) with |z(t + s)| <= A exp(−d s) for all s >= 0 of a free motion with its value and rate at t."""
+    gamma, _, nu, slow, _ = osc
+    if nu > 0.0:
+        sine = (rate + gamma * z) / nu
+        return math.sqrt(z * z + sine * sine), gamma
+    drift = abs(rate - slow * z)
+    return (abs(z) - 0.5 * drift / nu if nu < 0.0 else (abs(z) if drift == 0.0 else math.inf)), -slow

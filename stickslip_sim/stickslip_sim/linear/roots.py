@@ -14,7 +14,7 @@ Three arguments cover every guard of a linear mode; none of them scans:
 import math
 
 from ..compiled import compiled
-from .oscillator import impulse, integrals
+from .oscillator import first_integral, integrals
 
 _EPSILON = 2.220446049250313e-16
 _ITERATIONS = 200
@@ -74,7 +74,11 @@ def first_passage(osc, rate, jerk, snap, gap, horizon):
 @compiled
 def _passage(osc, rate, jerk, snap, t):
     """Return r, r′ and r″ at t."""
-    g, slope, first, second, _ = integrals(osc, t)
+    if snap != 0.0:
+        g, slope, first, second, _ = integrals(osc, t)
+    else:
+        g, slope, first = first_integral(osc, t)
+        second = 0.0
     bend = -2.0 * osc[0] * slope - osc[1] * g
     return (rate * g + jerk * first + snap * second,
             rate * slope + jerk * g + snap * first,
@@ -83,13 +87,13 @@ def _passage(osc, rate, jerk, snap, t):
 
 @compiled
 def _monotone_root(osc, rate, jerk, snap, gap, end, reached):
-    """Return the root of r(t) = gap on (0, end], r growing on it: Halley's step inside a shrinking bracket.
+    """Return the root of r(t) = gap on (0, end], r growing on it: Householder's step inside a shrinking bracket.
 
-    Halley's error after a step d is about d³ (r″/r′ + frequency)²; the last step is the one that makes it rounding.
+    Its error after a step d is about d (d (r″/r′ + frequency))³; the last step is the one that makes it rounding.
     """
     frequency = abs(osc[0]) + math.sqrt(osc[1])
     low, high = 0.0, end
-    t = _first_guess(rate, jerk, gap, end, reached)
+    t = end * _first_guess(rate, gap / reached)
     for _ in range(_ITERATIONS):
         value, slope, change = _passage(osc, rate, jerk, snap, t)
         value -= gap
@@ -97,12 +101,14 @@ def _monotone_root(osc, rate, jerk, snap, gap, end, reached):
             low = t
         else:
             high = t
-        curve = slope * slope - 0.5 * value * change
-        guess = t - value * slope / curve if curve > 0.0 else math.inf
+        third = snap - 2.0 * osc[0] * change - osc[1] * slope
+        square = slope * slope
+        curve = 6.0 * slope * (square - value * change) + value * value * third
+        guess = t - value * (6.0 * square - 3.0 * value * change) / curve if curve > 0.0 else math.inf
         if low <= guess <= high:
             size = abs(guess - t)
             bend = size * (abs(change) + frequency * slope)
-            if size <= 2.0 * _EPSILON * t or size * bend * bend <= 0.1 * _EPSILON * t * slope * slope:
+            if size <= 2.0 * _EPSILON * t or size * bend * bend * bend <= 0.1 * _EPSILON * t * square * slope:
                 return guess
         else:
             guess = 0.5 * (low + high)
@@ -113,12 +119,11 @@ def _monotone_root(osc, rate, jerk, snap, gap, end, reached):
 
 
 @compiled
-def _first_guess(rate, jerk, gap, end, reached):
-    if rate == 0.0 and jerk > 0.0:
-        return min(math.sqrt(2.0 * gap / jerk), 0.75 * end)
-    if reached <= 0.0:
-        return 0.5 * end
-    return end * gap / reached
+def _first_guess(rate, share):
+    """Return where, as a share of the interval, a sine that flattens at its end has risen to a share of its height."""
+    if not 0.0 < share < 1.0:
+        return 1.0
+    return 2.0 / math.pi * math.asin(share if rate > 0.0 else math.sqrt(share))
 
 
 @compiled

@@ -8,8 +8,9 @@ No guard is scanned; `linear.roots` gives the arguments why none of its roots ca
 * Rigid stick: N mu_s is concave for most laws and the force a polynomial.  A concave guard that is not negative at both
   ends of an interval has no root inside; and where its end is negative, Newton's method from that end descends to the
   only root without passing it.  A guard that is not concave takes safe steps.
-* Compliant stick: the contact force is a polynomial and a decaying oscillation; safe steps with a bound on its
-  curvature, or on its envelope where that reaches further.
+* Compliant stick: the contact force is a polynomial and a decaying free motion.  Once the envelope of the latter leaves
+  room, the guard less the envelope is concave again, and its root is a time before which nothing can happen; from there,
+  and as long as there is no room, safe steps with a bound on the curvature that is left.
 """
 
 import math
@@ -54,8 +55,8 @@ from ...axis.transitions import (
     force_rounding,
 )
 from ...compiled import compiled
-from ...friction.static import CONSTANT, KATO, static_growth
-from ...linear.oscillator import bound, impulse
+from ...friction.static import CONSTANT, KATO, LOGARITHMIC, static_growth
+from ...linear.oscillator import amplitude, bound, impulse
 from ...linear.roots import first_crossing, first_passage, safe_step
 
 _EPSILON = 2.220446049250313e-16
@@ -112,9 +113,13 @@ def _slipping(p, s, horizon):
 @compiled
 def _law(p, rest):
     """Return mu_s, its rate and a bound on −mu_s″ after a rest time."""
-    slope, curvature = static_growth(p[STATIC_LAW], p[STATIC_INITIAL], p[STATIC_LIMIT], p[STATIC_TAU],
-                                     p[STATIC_EXPONENT], rest)
-    return static_limit(p, rest), slope, curvature
+    return static_growth(p[STATIC_LAW], p[STATIC_INITIAL], p[STATIC_LIMIT], p[STATIC_TAU], p[STATIC_EXPONENT], rest)
+
+
+@compiled
+def _is_concave(p):
+    """Whether mu_s rises ever more slowly from the start."""
+    return p[STATIC_LAW] != KATO or p[STATIC_EXPONENT] <= 1.0
 
 
 @compiled
@@ -136,28 +141,51 @@ def _one_side(p, s, force, rate, bend, horizon):
         return t if t <= horizon else math.inf
     if rate <= 0.0 and bend <= 0.0:
         return math.inf
-    if bend >= 0.0 and (p[STATIC_LAW] != KATO or p[STATIC_EXPONENT] <= 1.0):
-        return _concave_side(p, s, force, rate, bend, horizon)
+    if bend >= 0.0 and _is_concave(p):
+        return _concave_root(p, s, rest, force, rate, 0.0, 0.0, bend, horizon)
     return _stepped_side(p, s, force, rate, bend, horizon)
 
 
 @compiled
-def _concave_side(p, s, force, rate, bend, horizon):
-    normal, rest = p[NORMAL], s[REST]
-    start, growth, _ = _law(p, rest)
-    if normal * start - force <= 0.0 and normal * growth < rate:
+def _concave_root(p, s, rest, force, rate, wave, decay, bend, horizon):
+    """Return the root of N mu_s(rest + t) − force − rate t − bend t²/2 − wave exp(−decay t), a concave function of t.
+
+    It is not negative at 0, or within rounding of it, so it has one root at the most where it comes down; infinity when
+    that lies behind the horizon.  Halley's step inside a shrinking bracket, from the time on at which the force has
+    passed the limit of mu_s.
+    """
+    normal = p[NORMAL]
+    limit, growth, _ = _law(p, rest)
+    if normal * limit - force - wave <= 0.0 and normal * growth < rate - decay * wave:
         return 0.0
-    t = horizon
+    low, high = 0.0, horizon
+    if rate > 0.0 and p[STATIC_LAW] != LOGARITHMIC:
+        high = min(high, (normal * static_limit(p, math.inf) - force) / rate)
+    t = high
     for _ in range(_STEPS):
-        limit, growth, _ = _law(p, rest + t)
-        value = normal * limit - force - (rate + 0.5 * bend * t) * t
-        slope = normal * growth - rate - bend * t
-        if t == horizon and (value > 0.0 or t == 0.0):
-            return math.inf
+        limit, growth, curvature = _law(p, rest + t)
+        fading = wave * math.exp(-decay * t) if wave > 0.0 else 0.0
+        value = normal * limit - force - (rate + 0.5 * bend * t) * t - fading
+        if value > 0.0:
+            low = t
+        else:
+            high = t
+        if low >= high or t == 0.0:
+            return math.inf if low >= horizon or t == 0.0 else t
         s[ITERATIONS] += 1.0
-        guess = t - value / slope
-        if not 0.0 <= guess < t or t - guess <= 2.0 * _EPSILON * t:
-            return max(min(guess, t), 0.0)
+        slope = normal * growth - rate - bend * t + decay * fading
+        bow = -(normal * curvature + bend + decay * decay * fading)
+        step = value / slope if slope < 0.0 else -math.inf
+        step /= max(1.0 - 0.5 * step * bow / slope, 0.5)
+        guess = t - step
+        if low <= guess <= high:
+            sharpness = bow / slope + 1.0 / p[STATIC_TAU] + 3.0 / (rest + guess) + decay
+            if abs(step) <= 2.0 * _EPSILON * t or abs(step) * (step * sharpness) ** 2 <= 0.1 * _EPSILON * t:
+                return guess
+        else:
+            guess = 0.5 * (low + high)
+            if guess <= low or guess >= high:
+                return guess
         t = guess
     return t
 
@@ -202,47 +230,51 @@ def _compliant_stick(p, s, horizon):
     gamma, omega2 = osc[0], osc[1]
     stiffness, damping = p[CONTACT_STIFFNESS], p[CONTACT_DAMPING]
     u, a = s[VELOCITY], s[ACCELERATION]
-    # the particular motion y_p = y0 + y1 t + y2 t²/2, and the free one at the anchor: position −y0, velocity free
+    # the particular motion y0 + y1 t + y2 t²/2; the free one starts at −y0 with the velocity free_u
     y2 = s[SNAP] / omega2
     y1 = u + (s[JERK] - 2.0 * gamma * y2) / omega2
     y0 = (a + 2.0 * gamma * (u - y1) - y2) / omega2
-    free_y, free_u = -y0, u - y1
+    free_u = u - y1
     steady = stiffness * (s[DEFLECTION] + y0) + damping * y1
     steady_rate = stiffness * y1 + damping * y2
     steady_bend = stiffness * y2
     normal, rest = p[NORMAL], s[REST]
-    rounding = 0.5 * force_rounding(p, s, p[STATIC_LIMIT])
+    rounding = 0.5 * force_rounding(p, s, static_limit(p, rest))
+    may_leap = steady_bend == 0.0 and _is_concave(p)
     t = 0.0
     for _ in range(_STEPS):
+        s[ITERATIONS] += 1.0
         g, slope = impulse(osc, t)
-        y = free_y * (slope + 2.0 * gamma * g) + free_u * g
-        v = free_u * slope - omega2 * free_y * g
+        y = free_u * g - y0 * (slope + 2.0 * gamma * g)
+        v = free_u * slope + omega2 * y0 * g
         acc = -2.0 * gamma * v - omega2 * y
         jerk = -2.0 * gamma * acc - omega2 * v
-        limit, growth, curvature = _law(p, rest + t)
-        curvature *= normal
         sag = steady + (steady_rate + 0.5 * steady_bend * t) * t
         sag_rate = steady_rate + steady_bend * t
-        force = sag + stiffness * y + damping * v
-        rate = sag_rate + stiffness * v + damping * acc
-        wave = stiffness * acc + damping * jerk
-        wave_rate = stiffness * jerk - damping * (2.0 * gamma * jerk + omega2 * acc)
-        bend = abs(steady_bend) + curvature + bound(osc, wave, wave_rate)
+        free, free_rate = stiffness * y + damping * v, stiffness * v + damping * acc
+        wave, wave_rate = stiffness * acc + damping * jerk, stiffness * jerk - damping * (
+            2.0 * gamma * jerk + omega2 * acc)
+        limit, growth, curvature = _law(p, rest + t)
         top, top_rate = normal * limit, normal * growth
-        s[ITERATIONS] += 1.0
+        if may_leap:
+            size, decay = amplitude(osc, free, free_rate)
+            if top - abs(sag) - size > 0.0:
+                may_leap = False
+                leap = _concave_root(p, s, rest + t, math.copysign(1.0, sag_rate) * sag, abs(sag_rate), size, decay, 0.0,
+                                     horizon - t) if sag_rate != 0.0 else math.inf
+                t += leap
+                if t > horizon:
+                    return math.inf
+                if leap > 0.0:
+                    continue
+        force, rate = sag + free, sag_rate + free_rate
         side = 1.0 if force > 0.0 or (force == 0.0 and rate > 0.0) else -1.0
         value, fall = max(top - side * force, 0.0), top_rate - side * rate
+        bend = abs(steady_bend) + normal * curvature + bound(osc, wave, wave_rate)
         if curvature == math.inf:
-            t += _steep_start(p, abs(rate), abs(steady_bend) + bound(osc, wave, wave_rate))
+            t += _steep_start(p, abs(rate), bound(osc, wave, wave_rate) + abs(steady_bend))
             continue
         step = min(safe_step(value, fall, bend), safe_step(top + side * force, top_rate + side * rate, bend))
-        envelope = bound(osc, stiffness * y + damping * v, stiffness * v + damping * acc)
-        room = top - abs(sag) - envelope
-        if room > 0.0:
-            outward = sag_rate if sag > 0.0 else (-sag_rate if sag < 0.0 else abs(sag_rate))
-            reach = min(safe_step(room, top_rate - outward, curvature + abs(steady_bend)),
-                        safe_step(room + 2.0 * abs(sag), top_rate + outward, curvature + abs(steady_bend)))
-            step = max(step, reach)
         if value <= rounding and fall < 0.0:
             return t if t == 0.0 else t + min(value / -fall, step)
         if step <= 2.0 * _EPSILON * t:
