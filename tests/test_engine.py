@@ -304,3 +304,30 @@ def test_break_away_of_every_static_law_is_on_the_limit(law: str, exponent: floa
         if s.mode == Mode.STICK:
             assert abs(s.friction_force) <= n * static.coefficient(s.rest_time) * (1.0 + 1e-12)
     assert breaks >= 2
+
+
+def test_parameters_may_change_on_the_way() -> None:
+    """Position, velocity and spring stay; a load that goes lets the slider go at once; back and forth changes nothing."""
+    from dataclasses import replace
+    for contact in (RIGID, COMPLIANT):
+        axis = paper_axis(contact)
+        simulator, twin = make(axis, 0.002), make(axis, 0.002)
+        to = Instant(0.0, 0.6)
+        assert simulator.advance(to) == twin.advance(to) == []
+        before = simulator.sample()
+        simulator.change_axis(replace(axis, normal_force=0.5 * axis.normal_force))
+        after = simulator.sample()
+        assert (after.position, after.drive_force) == (before.position, before.drive_force)
+        events = simulator.advance(to)
+        assert [(e.kind, e.time) for e in events] == [(EventKind.BREAKAWAY, 0.6)]
+        for events, sim in ((simulator.advance(instant(3.0)), simulator), (twin.advance(instant(3.0)), twin)):
+            assert events
+            assert sim.sample().time == 3.0
+    simulator = make(paper_axis(RIGID), 0.002)
+    simulator.advance(Instant(0.0, 0.5))
+    simulator.change_axis(paper_axis(COMPLIANT))
+    deflection = simulator.sample().contact_deflection
+    assert deflection == pytest.approx(simulator.sample().drive_force / 5e6, rel=1e-14)
+    simulator.change_axis(paper_axis(RIGID))
+    assert run(paper_axis(RIGID), 0.002, 2.0)[1:] != []
+    _same(simulator.advance(instant(2.0)), run(paper_axis(RIGID), 0.002, 2.0), 1e-14)
