@@ -32,7 +32,9 @@ def _axis(values: dict[str, Any]) -> Axis:
     excess = None
     if friction['acceleration_dependence']:
         shape = friction.get('excess')
-        excess = ExcessTable(tuple(shape['velocities']), tuple(shape['fractions'])) if shape else default_excess(kinetic)
+        excess = default_excess(kinetic)
+        if shape:
+            excess = ExcessTable(tuple(shape['velocities']), tuple(shape['fractions']))
     model = RigidContact() if contact['model'] == 'rigid' else CompliantContact(contact['stiffness'],
                                                                                 contact['damping'])
     return Axis(**values['axis'], contact=model, friction=Friction(law, kinetic, excess))
@@ -77,7 +79,7 @@ def test_states_between_events_equal_the_reference(name: str) -> None:
     run = RUNS[name]
     simulator, want = _simulator(run['parameters']), run['samples']
     slack = max([1.0, *(16.0 * s * ROUNDING / (1e-12 * run['duration']) for s in run['events']['time_sensitivity'])])
-    force = max([1e-300, *(abs(float(x)) for x in want['drive_force']), *(abs(float(x)) for x in want['friction_force'])])
+    force = max([1e-300, *(abs(float(x)) for x in [*want['drive_force'], *want['friction_force']])])
     length = max(abs(float(x)) for x in want['position']) or 1.0
     speed = max(abs(float(x)) for x in want['velocity']) or 1.0
     for i, time in enumerate(want['time']):

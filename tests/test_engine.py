@@ -2,6 +2,7 @@
 
 import math
 import random
+from itertools import pairwise
 
 import pytest
 
@@ -200,7 +201,7 @@ def test_reverses_at_once_where_a_rigid_contact_cannot_hold() -> None:
     assert len(of_kind(events, EventKind.REVERSE)) > 2
     assert events[-1].kind == EventKind.STICK
     amplitudes = [abs(e.position) for e in of_kind(events, EventKind.REVERSE)]
-    assert all(b < a for a, b in zip(amplitudes, amplitudes[1:]))
+    assert all(b < a for a, b in pairwise(amplitudes))
 
 
 def test_break_away_is_exact_at_the_limit_and_a_force_at_the_limit_holds() -> None:
@@ -307,7 +308,7 @@ def test_break_away_of_every_static_law_is_on_the_limit(law: str, exponent: floa
 
 
 def test_parameters_may_change_on_the_way() -> None:
-    """Position, velocity and spring stay; a load that goes lets the slider go at once; back and forth changes nothing."""
+    """Position, velocity and spring stay; a load that goes lets the slider go; back and forth changes nothing."""
     from dataclasses import replace
     for contact in (RIGID, COMPLIANT):
         axis = paper_axis(contact)

@@ -2,6 +2,7 @@
 
 import math
 import random
+from itertools import pairwise
 
 import mpmath as mp
 import pytest
@@ -65,7 +66,7 @@ def test_first_zero_is_the_first(kind: str) -> None:
 
         def value(t: float, osc: tuple[float, ...] = osc, z: float = z, rate: float = rate) -> float:
             g, slope = impulse(osc, t)
-            return z * (slope + 2.0 * osc[0] * g) + rate * g
+            return float(z * (slope + 2.0 * osc[0] * g) + rate * g)
 
         t = first_zero(osc, z, rate)
         end = min(t, 20.0 / scale)
@@ -98,13 +99,13 @@ def test_first_passage_misses_nothing(snap: float) -> None:
         def r(t: float, osc: tuple[float, ...] = osc, rate: float = rate, jerk: float = jerk,
               bend: float = bend) -> float:
             g, _, first, second, _ = integrals(osc, t)
-            return rate * g + jerk * first + bend * second
+            return float(rate * g + jerk * first + bend * second)
 
         turn, passed = first_passage(osc, rate, jerk, bend, math.inf, horizon)
         end = min(turn, horizon)
         assert not passed
         values = [r(end * i / 300) for i in range(301)]
-        assert all(b > a for a, b in zip(values[:-2], values[1:-1]))
+        assert all(b > a for a, b in pairwise(values[:-1]))
         peak = r(end)
         for gap, reached in ((0.5 * peak, True), (peak * (1 - 1e-10), True), (peak * (1 + 1e-10), False)):
             t, passed = first_passage(osc, rate, jerk, bend, gap, horizon)

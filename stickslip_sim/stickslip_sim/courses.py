@@ -60,7 +60,7 @@ def ramp(start: float, rate: float, duration: float) -> Course:
 
 
 def steps(name: str, times: Sequence[float], values: Sequence[float], period: float = math.inf) -> Course:
-    """Return a course that jumps to values[i] at times[i]; raises InputError on times that do not start at 0 and rise."""
+    """Return a course that jumps to values[i] at times[i]; raises InputError unless the times start at 0 and rise."""
     _check_times(name, times, values, period)
     return Course(tuple(times), tuple(values), (0.0,) * len(values), period)
 

@@ -17,47 +17,10 @@ from ..friction.static import static_coefficient
 from ..linear.oscillator import integrals, oscillator
 from ..words import Mode
 from .layout import (
-    ACCELERATION,
-    BRANCHES,
-    COMPLIANT,
-    CONTACT_DAMPING,
-    CONTACT_STIFFNESS,
-    DAMPING,
-    DEFLECTION,
-    DIRECTION,
-    DRIVE,
-    END_SLOPE,
-    EXCESS,
-    FAST,
-    FRACTION,
-    GAMMA,
-    JERK,
-    KNOT_SIZE,
-    KNOTS,
-    MASS,
-    MODE,
-    NORMAL,
-    NU,
-    OMEGA2,
-    PIECE,
-    POSITION,
-    REST,
-    SECOND,
-    SLOW,
-    SNAP,
-    SPRING,
-    STATIC_EXPONENT,
-    STATIC_INITIAL,
-    STATIC_LAW,
-    STATIC_LIMIT,
-    STATIC_TAU,
-    STIFFNESS,
-    TABLE,
-    VELOCITY,
-    F,
-    F_RATE,
-    V,
-    V_RATE,
+    ACCELERATION, BRANCHES, COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, DEFLECTION, DIRECTION, DRIVE,
+    END_SLOPE, EXCESS, F, FAST, FRACTION, F_RATE, GAMMA, JERK, KNOTS, KNOT_SIZE, MASS, MODE, NORMAL, NU, OMEGA2, PIECE,
+    POSITION, REST, SECOND, SLOW, SNAP, SPRING, STATIC_EXPONENT, STATIC_INITIAL, STATIC_LAW, STATIC_LIMIT, STATIC_TAU,
+    STIFFNESS, TABLE, V, VELOCITY, V_RATE,
 )
 
 STICK = int(Mode.STICK)
@@ -69,7 +32,8 @@ DECELERATING = int(Mode.DECELERATING)
 @compiled
 def static_limit(p, rest):
     """Return mu_s after the rest time."""
-    return static_coefficient(p[STATIC_LAW], p[STATIC_INITIAL], p[STATIC_LIMIT], p[STATIC_TAU], p[STATIC_EXPONENT], rest)
+    return static_coefficient(p[STATIC_LAW], p[STATIC_INITIAL], p[STATIC_LIMIT], p[STATIC_TAU], p[STATIC_EXPONENT],
+                              rest)
 
 
 @compiled

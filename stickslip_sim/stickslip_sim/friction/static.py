@@ -59,7 +59,8 @@ class StaticLaw:
             raise InputError('friction.static.time_constant', self.time_constant, 'finite and > 0 s',
                              'use law: constant for a coefficient that does not grow')
         if not 0.0 < self.exponent < math.inf:
-            raise InputError('friction.static.exponent', self.exponent, 'finite and > 0', 'n = 1 is the exponential law')
+            raise InputError('friction.static.exponent', self.exponent, 'finite and > 0',
+                             'n = 1 is the exponential law')
 
     @property
     def bounded(self) -> bool:
@@ -91,9 +92,9 @@ def static_coefficient(kind, initial, limit, tau, exponent, rest):
 
 @compiled
 def static_growth(kind, initial, limit, tau, exponent, rest):
-    """Return mu_s(rest), mu_s′(rest), and a bound on −mu_s″ from `rest` on (but for Kato's law it is −mu_s″ itself).
+    """Return mu_s(rest), mu_s′(rest), and a bound on −mu_s″ from `rest` on.
 
-    Under Kato's law with n < 1 the last two are infinite at rest 0.
+    The bound is −mu_s″ itself for a concave law.  Under Kato's law with n < 1 the last two are infinite at rest 0.
     """
     if kind == CONSTANT:
         return initial, 0.0, 0.0
@@ -123,7 +124,11 @@ def _power(z, n):
 
 @compiled
 def _kato_growth(rise, tau, n, z):
-    """−mu_s″ τ²/Δmu = exp(−s) (n² s^(2−2/n) + n (1−n) s^(1−2/n)) with s = zⁿ; for n > 1 the first term peaks at s = 2 − 2/n."""
+    """Return the last two of `static_growth`.
+
+    −mu_s″ τ²/Δmu = exp(−s) (n² s^(2−2/n) + n (1−n) s^(1−2/n)) with s = zⁿ; for n > 1 its first term peaks at
+    s = 2 − 2/n, and the other is negative.
+    """
     if z == 0.0 and n < 1.0:
         return math.inf, math.inf
     s = _power(z, n)

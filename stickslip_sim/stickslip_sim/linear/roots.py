@@ -24,7 +24,7 @@ _OVERFLOW = 600.0   # largest exponent of a growing mode; by then it has left ev
 @compiled
 def first_zero(osc, z, rate):
     """Return the first t > 0 at which a free motion with z(0) = z >= 0 and z′(0) = rate comes down to 0."""
-    gamma, _, nu, slow, fast = osc
+    gamma, _, nu, _, fast = osc
     if nu > 0.0:
         return math.atan2(abs(z) * nu, -(rate + gamma * z)) / nu
     fall = -(rate - fast * z)
@@ -164,7 +164,10 @@ def _turn_between(osc, rate, jerk, snap, low, high):
 
 @compiled
 def first_crossing(value, slope, bend):
-    """Return the first t >= 0 after which value + slope t + bend t²/2 is negative (value >= 0); a tie asks the next term."""
+    """Return the first t >= 0 after which value + slope t + bend t²/2 is negative.
+
+    value >= 0; where it is 0 the next term decides.
+    """
     if value <= 0.0 and (slope < 0.0 or (slope == 0.0 and bend < 0.0)):
         return 0.0
     if bend == 0.0:

@@ -9,50 +9,20 @@ No guard is scanned; `linear.roots` gives the arguments why none of its roots ca
   ends of an interval has no root inside; and where its end is negative, Newton's method from that end descends to the
   only root without passing it.  A guard that is not concave takes safe steps.
 * Compliant stick: the contact force is a polynomial and a decaying free motion.  Once the envelope of the latter leaves
-  room, the guard less the envelope is concave again, and its root is a time before which nothing can happen; from there,
-  and as long as there is no room, safe steps with a bound on the curvature that is left.
+  room, the guard less the envelope is concave again, and its root is a time before which nothing can happen; from
+  there, and as long as there is no room, safe steps with a bound on the curvature that is left.
 """
 
 import math
 
 from ...axis.layout import (
-    ACCELERATION,
-    COMPLIANT,
-    CONTACT_DAMPING,
-    CONTACT_STIFFNESS,
-    DEFLECTION,
-    DIRECTION,
-    ITERATIONS,
-    JERK,
-    KNOTS,
-    MODE,
-    NEXT,
-    NEXT_KIND,
-    NORMAL,
-    PIECE,
-    RESIDUAL,
-    REST,
-    SEARCHED,
-    SNAP,
-    STATIC_EXPONENT,
-    STATIC_INITIAL,
-    STATIC_LAW,
-    STATIC_LIMIT,
-    STATIC_TAU,
-    VELOCITY,
+    ACCELERATION, COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DEFLECTION, DIRECTION, ITERATIONS, JERK, KNOTS, MODE,
+    NEXT, NEXT_KIND, NORMAL, PIECE, RESIDUAL, REST, SEARCHED, SNAP, STATIC_EXPONENT, STATIC_INITIAL, STATIC_LAW,
+    STATIC_LIMIT, STATIC_TAU, VELOCITY,
 )
 from ...axis.motion import ACCELERATING, COASTING, STICK, knot_speed, oscillator_of, static_limit
 from ...axis.transitions import (
-    ACCELERATE,
-    ARREST,
-    BREAKAWAY,
-    COAST,
-    DECELERATE,
-    KNOT,
-    applied_force,
-    band_of,
-    force_rate,
-    force_rounding,
+    ACCELERATE, ARREST, BREAKAWAY, COAST, DECELERATE, KNOT, applied_force, band_of, force_rate, force_rounding,
 )
 from ...compiled import compiled
 from ...friction.static import CONSTANT, KATO, LOGARITHMIC, static_growth
@@ -260,8 +230,10 @@ def _compliant_stick(p, s, horizon):
             size, decay = amplitude(osc, free, free_rate)
             if top - abs(sag) - size > 0.0:
                 may_leap = False
-                leap = _concave_root(p, s, rest + t, math.copysign(1.0, sag_rate) * sag, abs(sag_rate), size, decay, 0.0,
-                                     horizon - t) if sag_rate != 0.0 else math.inf
+                leap = math.inf
+                if sag_rate != 0.0:
+                    leap = _concave_root(p, s, rest + t, math.copysign(1.0, sag_rate) * sag, abs(sag_rate), size,
+                                         decay, 0.0, horizon - t)
                 t += leap
                 if t > horizon:
                     return math.inf

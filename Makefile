@@ -1,0 +1,39 @@
+# The two commands:  make run  (drive the axis and look at it),  make test
+# `make help` lists the rest.  PYTHON=python3.12 sets up with another Python than python3.
+
+DISTRO ?= jazzy
+export DISTRO
+
+SHELL := /bin/bash
+HERE := ros2_ws/on_this_machine
+TOOLS := ros2_ws/.venv/bin
+
+.PHONY: help build run test check bench clean
+
+help:  ## list the targets
+	@sed -nE 's/^([a-z]+):.*## (.*)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 14
+
+build:  ## set up ros2_ws: ROS 2 from wheels, both packages with colcon
+	@ros2_ws/bootstrap
+
+run: build  ## run the node on the paper's scene, drive it, record it, show what happened
+	@$(HERE) python3 -m stickslip_sim.ros.demo
+
+test: tools  ## all tests, in a ROS domain of their own
+	@$(HERE) --own-domain python3 -m pytest tests
+
+check: tools  ## style, types, architecture
+	@$(TOOLS)/ruff check .
+	@$(TOOLS)/mypy
+	@PYTHONPATH=stickslip_sim $(TOOLS)/lint-imports
+
+bench: build  ## speed and accuracy of every solver
+	@$(HERE) python3 -m stickslip_sim bench
+
+clean:  ## remove everything that was set up, built or cached in this tree
+	rm -rf ros2_ws/{.venv,build,install,log} runs .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
+	find . -name __pycache__ -prune -exec rm -rf {} +
+
+.PHONY: tools
+tools:
+	@ros2_ws/bootstrap --tests

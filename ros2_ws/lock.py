@@ -1,0 +1,50 @@
+#!/usr/bin/env python3
+"""Resolve requirements-DISTRO.in and requirements-test.in into full locks.
+
+    python3.10 lock.py [DISTRO]
+
+Run it with the oldest Python that is supported: what installs there also
+installs on the newer ones, so one lock serves them all.  Names and versions are
+those that pip resolves.  `pip freeze` would not do: the ROS wheels carry a
+second set of names (`rclpy` beside `ros-rclpy`) that are not theirs on PyPI.
+"""
+
+import json
+import pathlib
+import subprocess
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+OLDEST = (3, 10)
+
+
+def resolve(*requirements: pathlib.Path) -> set[str]:
+    """Return the pins `name==version` of everything that the files need."""
+    files = [word for path in requirements for word in ('-r', str(path))]
+    command = [sys.executable, '-m', 'pip', 'install', '--quiet', '--dry-run',
+               '--ignore-installed', '--report', '-', *files]
+    report = json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout)
+    metadata = [item['metadata'] for item in report['install']]
+    return {f"{item['name'].lower()}=={item['version']}" for item in metadata}
+
+
+def write(path: pathlib.Path, pins: set[str]) -> None:
+    """Write a lock, sorted, with a line that says where it comes from."""
+    head = f'# Full lock of {path.stem}.in; made by lock.py, not by hand.'
+    path.write_text('\n'.join([head, *sorted(pins)]) + '\n')
+    print(f'{path.name}: {len(pins)} packages')
+
+
+def main() -> None:
+    """Write both locks; the second holds only what the first lacks."""
+    if sys.version_info[:2] != OLDEST:
+        sys.exit('run lock.py with Python {}.{}, the oldest supported'.format(*OLDEST))
+    distro = sys.argv[1] if len(sys.argv) > 1 else 'jazzy'
+    product, test = HERE / f'requirements-{distro}.in', HERE / 'requirements-test.in'
+    pins = resolve(product)
+    write(product.with_suffix('.txt'), pins)
+    write(test.with_suffix('.txt'), resolve(product, test) - pins)
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,31 @@
+"""Runs on disk as ROS bags: written by the node and by the offline tool, read back whole or cut off."""
+
+from .bag import BagWriter
+from .offline import OfflineBag, samples_of, write_bag
+from .reader import RecordedMessage, Run, read_run
+from .run import RunFacts, open_run, receipt_file
+from .schemas import MessageCodec, Schema, schema
+from .thread import RecorderThread
+from .topics import DIAGNOSTICS, RECORDED, QosProfile, Topic, recorded
+
+__all__ = [
+    'DIAGNOSTICS',
+    'RECORDED',
+    'BagWriter',
+    'MessageCodec',
+    'OfflineBag',
+    'QosProfile',
+    'RecordedMessage',
+    'RecorderThread',
+    'Run',
+    'RunFacts',
+    'Schema',
+    'Topic',
+    'open_run',
+    'read_run',
+    'receipt_file',
+    'recorded',
+    'samples_of',
+    'schema',
+    'write_bag',
+]

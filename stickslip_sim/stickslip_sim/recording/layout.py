@@ -1,0 +1,70 @@
+"""Messages that always have their numbers at the same places: packed and unpacked without looking at each field."""
+
+import struct
+from collections.abc import Mapping
+from operator import itemgetter
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from rosbags.interfaces import Nodetype
+from rosbags.typesys.store import Typestore
+
+# By type of field: its character in `struct`, its size in bytes, which is its alignment too.
+_NUMBERS = {
+    'bool': ('?', 1), 'int8': ('b', 1), 'uint8': ('B', 1), 'int16': ('h', 2), 'uint16': ('H', 2), 'int32': ('i', 4),
+    'uint32': ('I', 4), 'int64': ('q', 8), 'uint64': ('Q', 8), 'float32': ('f', 4), 'float64': ('d', 8),
+}
+_ENCAPSULATION = 4                   # bytes before the message: CDR, little endian
+_HEADER = 'std_msgs/msg/Header'
+_HEADER_FORMAT, _HEADER_SIZE = '<4siIIx', 13  # sec, nanosec, a text of one byte, which is its end
+
+
+class Layout:
+    """A std_msgs/Header without a frame, then numbers only."""
+
+    def __init__(self, fields: Mapping[str, str]) -> None:
+        code, at, places = _HEADER_FORMAT, _HEADER_SIZE, {}
+        for name, kind in fields.items():
+            character, size = _NUMBERS[kind]
+            gap = -at % size
+            code += f'{gap}x{character}'
+            places[name] = at + gap
+            at += gap + size
+        self._struct = struct.Struct(code)
+        self._numbers = itemgetter(*fields, next(iter(fields)))  # one more, so that it is always a tuple
+        self._dtype = np.dtype({
+            'names': list(fields), 'formats': [f'<{np.dtype(kind).str[1:]}' for kind in fields.values()],
+            'offsets': [place + _ENCAPSULATION for place in places.values()], 'itemsize': self._struct.size,
+        })
+
+    @property
+    def size(self) -> int:
+        """Bytes of a message."""
+        return self._struct.size
+
+    def pack(self, values: Mapping[str, Any]) -> bytes:
+        """Return the CDR bytes of a message; its frame must be empty."""
+        stamp = values['header']['stamp']
+        return self._struct.pack(b'\0\1\0\0', stamp['sec'], stamp['nanosec'], 1, *self._numbers(values)[:-1])
+
+    def unpack(self, messages: list[bytes]) -> NDArray[Any]:
+        """Return the numbers of messages of this size as a structured array."""
+        return np.frombuffer(b''.join(messages), self._dtype)
+
+
+def layout_of(store: Typestore, type_name: str) -> Layout | None:
+    """Return the layout of a type, None when its numbers have no fixed places."""
+    fields = store.fielddefs[type_name][1]
+    if len(fields) < 2 or fields[0][1] != (Nodetype.NAME, _HEADER):
+        return None
+    numbers = numbers_of(store, type_name)
+    return Layout(numbers) if len(numbers) == len(fields) - 1 else None
+
+
+def numbers_of(store: Typestore, type_name: str) -> dict[str, str]:
+    """Return the fields of a type that are single numbers, with their types."""
+    return {
+        name: str(inner[0]) for name, (node, inner) in store.fielddefs[type_name][1]
+        if node == Nodetype.BASE and inner[0] in _NUMBERS
+    }

@@ -1,0 +1,76 @@
+"""What `metadata.yaml` of a bag says: rosbag2, version 9."""
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from .blocks import to_yaml
+from .topics import Topic, Yaml
+
+
+@dataclass(slots=True)
+class Tally:
+    """How many messages a bag holds, and of which span of time (ns)."""
+
+    counts: list[int]
+    total: int = 0
+    first: int = 0
+    last: int = 0
+
+    def add(self, topic_index: int, time_ns: int) -> None:
+        """Count a message."""
+        self.first = min(self.first, time_ns) if self.total else time_ns
+        self.last = max(self.last, time_ns)
+        self.counts[topic_index] += 1
+        self.total += 1
+
+
+def ros_distro() -> str:
+    """Return the ROS distro of the sourced workspace, empty without one."""
+    return os.environ.get('ROS_DISTRO', '')
+
+
+def information(
+    file: str, topics: Sequence[Topic], hashes: Mapping[str, str], tally: Tally, custom: Mapping[str, str],
+) -> Yaml:
+    """Return the body of metadata.yaml; `hashes` by type name."""
+    duration = {'nanoseconds': tally.last - tally.first}
+    start = {'nanoseconds_since_epoch': tally.first}
+    return {
+        'version': 9,
+        'storage_identifier': 'mcap',
+        'duration': duration,
+        'starting_time': start,
+        'message_count': tally.total,
+        'topics_with_message_count': [
+            _topic(topic, hashes[topic.type], count) for topic, count in zip(topics, tally.counts, strict=True)
+        ],
+        'compression_format': '',
+        'compression_mode': '',
+        'relative_file_paths': [file],
+        'files': [{'path': file, 'starting_time': start, 'duration': duration, 'message_count': tally.total}],
+        'custom_data': dict(custom),
+        'ros_distro': ros_distro(),
+    }
+
+
+def write_metadata(folder: Path, body: Yaml) -> None:
+    """Write metadata.yaml so that a reader sees the old one or the new one, never a part; raises OSError."""
+    temporary = folder / 'metadata.yaml.tmp'
+    temporary.write_text(to_yaml({'rosbag2_bagfile_information': body}) + '\n', encoding='utf-8')
+    temporary.replace(folder / 'metadata.yaml')
+
+
+def _topic(topic: Topic, type_hash: str, count: int) -> Yaml:
+    return {
+        'topic_metadata': {
+            'name': topic.name,
+            'type': topic.type,
+            'serialization_format': 'cdr',
+            'offered_qos_profiles': [topic.qos.as_yaml()],
+            'type_description_hash': type_hash,
+        },
+        'message_count': count,
+    }
+

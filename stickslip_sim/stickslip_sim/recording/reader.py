@@ -1,0 +1,146 @@
+"""Reads runs back, also those of a process that was killed or of a disk that was full."""
+
+import json
+import struct
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import zstandard
+from mcap.exceptions import McapError
+from mcap.records import Attachment, Channel, Footer, McapRecord, Message, Metadata, Schema
+from mcap.stream_reader import CRCValidationError, StreamReader
+from numpy.typing import NDArray
+from rosbags.typesys.store import Typestore
+
+from ..errors import RecordingError
+from .layout import layout_of, numbers_of
+from .schemas import store_of
+
+# What a file that ends anywhere makes the reader stumble over.
+_CUT_OFF = (McapError, CRCValidationError, struct.error, zstandard.ZstdError, UnicodeDecodeError)
+
+
+class RecordedMessage(NamedTuple):
+    """One message as it stands in the file; times in ns."""
+
+    topic: str
+    type: str
+    sequence: int
+    log_time: int
+    publish_time: int
+    data: bytes  # CDR
+
+
+@dataclass
+class Run:
+    """A recorded run; messages are read from the file each time, in the order in which they were written."""
+
+    path: Path
+    is_complete: bool = False
+    attachments: dict[str, bytes] = field(default_factory=dict)
+    metadata: dict[str, dict[str, str]] = field(default_factory=dict)
+    schemas: dict[str, str] = field(default_factory=dict)   # definitions by type name
+    topics: dict[str, str] = field(default_factory=dict)    # type names by topic
+    channel_metadata: dict[str, dict[str, str]] = field(default_factory=dict)
+    counts: dict[str, int] = field(default_factory=dict)
+
+    @property
+    def receipt(self) -> dict[str, Any]:
+        """The final figures; empty when the run was cut off."""
+        return dict(json.loads(self.attachments.get('receipt.json', b'{}')))
+
+    def messages(self, topics: Iterable[str] | None = None) -> Iterator[RecordedMessage]:
+        """Yield the messages of some topics (None: all)."""
+        wanted = set(self.topics if topics is None else topics)
+        channels: dict[int, Channel] = {}
+        for record in _records(self.path):
+            if isinstance(record, Channel):
+                channels[record.id] = record
+            elif isinstance(record, Message) and (topic := channels[record.channel_id].topic) in wanted:
+                yield RecordedMessage(topic, self.topics[topic], record.sequence, record.log_time,
+                                      record.publish_time, record.data)
+
+    def decode(self, message: RecordedMessage) -> Any:
+        """Return the message as an object with its fields as attributes."""
+        return self._store.deserialize_cdr(message.data, message.type)
+
+    def columns(self, topic: str) -> dict[str, NDArray[Any]]:
+        """Return the numbers of a topic as one array for each field, with `log_time`, `publish_time` and `sequence`."""
+        type_name = self.topics.get(topic)
+        if type_name is None:
+            raise RecordingError(f'{self.path}: no topic {topic}; there are {", ".join(self.topics)}')
+        messages = list(self.messages([topic]))
+        columns = self._numbers(type_name, [message.data for message in messages])
+        for name in ('log_time', 'publish_time', 'sequence'):
+            columns[name] = np.array([getattr(message, name) for message in messages], dtype=np.int64)
+        return columns
+
+    def _numbers(self, type_name: str, data: list[bytes]) -> dict[str, NDArray[Any]]:
+        layout = layout_of(self._store, type_name)
+        if layout and all(len(item) == layout.size for item in data):
+            rows = layout.unpack(data)
+            return {name: rows[name].copy() for name in rows.dtype.names or ()}
+        decoded = [self._store.deserialize_cdr(item, type_name) for item in data]
+        return {
+            name: np.array([getattr(message, name) for message in decoded], dtype=kind)
+            for name, kind in numbers_of(self._store, type_name).items()
+        }
+
+    @cached_property
+    def _store(self) -> Typestore:
+        return store_of(self.schemas)
+
+
+def read_run(path: Path | str) -> Run:
+    """Return the run in a folder, or in an MCAP file by itself; raises RecordingError when there is none."""
+    run = Run(_file_of(Path(path)))
+    names: dict[int, str] = {}
+    channels: dict[int, str] = {}
+    for record in _records(run.path):
+        if isinstance(record, Message):
+            run.counts[channels[record.channel_id]] += 1
+        elif isinstance(record, Schema):
+            names[record.id] = record.name
+            run.schemas[record.name] = record.data.decode()
+        elif isinstance(record, Channel) and record.id not in channels:
+            channels[record.id] = record.topic
+            run.topics[record.topic] = names[record.schema_id]
+            run.channel_metadata[record.topic] = record.metadata
+            run.counts[record.topic] = 0
+        elif isinstance(record, Attachment):
+            run.attachments[record.name] = record.data
+        elif isinstance(record, Metadata):
+            run.metadata[record.name] = record.metadata
+        elif isinstance(record, Footer):
+            run.is_complete = True
+    return run
+
+
+def _file_of(path: Path) -> Path:
+    files = sorted(path.glob('*.mcap')) if path.is_dir() else [path]
+    if not files or not files[0].is_file():
+        raise RecordingError(f'{path}: no recorded run there; give the folder of a run or an .mcap file')
+    if len(files) > 1:
+        raise RecordingError(f'{path}: {len(files)} .mcap files; give the one to read')
+    return files[0]
+
+
+def _records(path: Path) -> Iterator[McapRecord]:
+    """Yield the records that are whole; a file that is cut off just ends earlier."""
+    try:
+        with path.open('rb') as stream:
+            begin = True
+            try:
+                for record in StreamReader(stream, validate_crcs=True).records:
+                    begin = False
+                    yield record
+            except _CUT_OFF as error:
+                if begin:
+                    raise RecordingError(f'{path} is not an MCAP file: {error}') from None
+    except OSError as error:
+        raise RecordingError(f'{path}: {error.strerror}') from None
+

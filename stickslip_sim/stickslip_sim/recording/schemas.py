@@ -1,0 +1,101 @@
+"""Message definitions as bags carry them, their type hashes, and CDR encoding; no ROS needed beyond its .msg files.
+
+The files are those of the sourced workspace (AMENT_PREFIX_PATH), so a bag describes exactly what was built.
+"""
+
+import os
+import re
+from collections.abc import Iterable, Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from rosbags.interfaces import Nodetype
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+from rosbags.typesys.store import Typestore
+
+from ..errors import RecordingError
+from .layout import layout_of
+
+_RULE = '=' * 80
+_TYPE_OF_FIELD = re.compile(r'^\s*([A-Za-z]\w*(?:/\w+)*)(?:<=\d+)?(?:\[[^\]]*\])?\s+\w', re.MULTILINE)
+_PRIMITIVE = frozenset(
+    ['bool', 'byte', 'char', 'string', 'wstring', 'float32', 'float64']
+    + [f'{sign}int{bits}' for sign in ('', 'u') for bits in (8, 16, 32, 64)]
+)
+
+
+class Schema(NamedTuple):
+    """A message type: its name, its definition with all that it depends on, and its RIHS01 hash."""
+
+    type: str
+    text: str
+    hash: str
+
+
+@cache
+def schema(type_name: str) -> Schema:
+    """Return the schema of 'package/msg/Name'; raises RecordingError when its definition is not installed."""
+    text = _full_text(type_name, set())
+    return Schema(type_name, text, store_of({type_name: text}).hash_rihs01(type_name))
+
+
+def store_of(definitions: Mapping[str, str]) -> Typestore:
+    """Return a rosbags type store made of definitions like `Schema.text`, by type name."""
+    store = get_typestore(Stores.EMPTY)
+    types: dict[str, Any] = {}
+    for name, text in definitions.items():
+        types.update(get_types_from_msg(text, name))
+    store.register(types)
+    return store
+
+
+class MessageCodec:
+    """Encodes messages given as mappings, and decodes them; bytes as rclpy makes them (padding zero)."""
+
+    def __init__(self, type_names: Iterable[str]) -> None:
+        definitions = {name: schema(name).text for name in type_names}
+        self._store = store_of(definitions)
+        self._layouts = {name: layout_of(self._store, name) for name in definitions}
+
+    def encode(self, type_name: str, values: Mapping[str, Any]) -> bytes:
+        """Return the CDR bytes of a message with all its fields given; nested messages are mappings too."""
+        layout = self._layouts[type_name]
+        if layout and values['header']['frame_id'] == '':
+            return layout.pack(values)
+        return bytes(self._store.serialize_cdr(self._message(type_name, values), type_name, little_endian=True))
+
+    def decode(self, type_name: str, data: bytes) -> Any:
+        """Return the message as an object with the fields as attributes."""
+        return self._store.deserialize_cdr(data, type_name)
+
+    def _message(self, type_name: str, values: Mapping[str, Any]) -> Any:
+        arguments = dict(values)
+        for field, (node, inner) in self._store.fielddefs[type_name][1]:
+            value = arguments.get(field)
+            if node == Nodetype.NAME and isinstance(value, Mapping):
+                arguments[field] = self._message(str(inner), value)
+        create: Any = self._store.types[type_name]
+        return create(**arguments)
+
+
+def _full_text(type_name: str, seen: set[str]) -> str:
+    """Put the definitions one after the other as rosbag2_storage_mcap does: depth first, each once."""
+    package = type_name.split('/')[0]
+    text = _definition(type_name)
+    names = {name for name in _TYPE_OF_FIELD.findall(text) if name not in _PRIMITIVE}
+    for name in sorted(name if '/' in name else f'{package}/{name}' for name in names):
+        if name not in seen:
+            seen.add(name)
+            owner, short = name.split('/')[0], name.split('/')[-1]
+            text += f'\n{_RULE}\nMSG: {name}\n' + _full_text(f'{owner}/msg/{short}', seen)
+    return text
+
+
+def _definition(type_name: str) -> str:
+    package, kind, name = type_name.split('/')
+    for prefix in os.environ.get('AMENT_PREFIX_PATH', '').split(os.pathsep):
+        file = Path(prefix, 'share', package, kind, f'{name}.msg')
+        if prefix and file.is_file():
+            return file.read_text(encoding='utf-8')
+    raise RecordingError(f'no definition of {type_name} in AMENT_PREFIX_PATH; source the setup.bash of the workspace')

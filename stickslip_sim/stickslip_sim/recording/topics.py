@@ -1,0 +1,68 @@
+"""Every topic of the node, once: name, type and quality of service.  ROS endpoints and bags are built from this."""
+
+from typing import NamedTuple
+
+Yaml = dict[str, object]
+
+# What ROS writes for "no deadline": the largest duration, in two parts.
+_INFINITE: Yaml = {'sec': 9223372036, 'nsec': 854775807}
+
+
+class QosProfile(NamedTuple):
+    """Quality of service; history is always "keep last" with `depth` messages."""
+
+    depth: int
+    reliability: str = 'reliable'  # or best_effort
+    durability: str = 'volatile'   # or transient_local
+
+    def as_yaml(self) -> Yaml:
+        """Return the profile as rosbag2 writes it since version 9 of its metadata."""
+        return {
+            'history': 'keep_last',
+            'depth': self.depth,
+            'reliability': self.reliability,
+            'durability': self.durability,
+            'deadline': _INFINITE,
+            'lifespan': _INFINITE,
+            'liveliness': 'automatic',
+            'liveliness_lease_duration': _INFINITE,
+            'avoid_ros_namespace_conventions': False,
+        }
+
+
+class Topic(NamedTuple):
+    """A topic; its name is relative to the node's namespace unless it begins with a slash."""
+
+    name: str
+    type: str
+    qos: QosProfile
+
+    def resolved(self, namespace: str = '/') -> 'Topic':
+        """Return the topic with its name resolved in a namespace."""
+        if self.name.startswith('/'):
+            return self
+        return self._replace(name=f'{namespace.rstrip("/")}/{self.name}')
+
+
+_COMMAND = QosProfile(1, reliability='best_effort')
+_STATE = QosProfile(10)
+
+SLIDER_STATE = Topic('slider_state', 'stickslip_msgs/msg/SliderState', _STATE)
+FRICTION_FORCE = Topic('friction_force', 'stickslip_msgs/msg/FrictionForce', _STATE)
+MODE_EVENT = Topic('mode_event', 'stickslip_msgs/msg/ModeEvent', QosProfile(1000))
+DRIVE_VELOCITY = Topic('drive_velocity', 'stickslip_msgs/msg/DriveVelocity', _COMMAND)
+EXTERNAL_FORCE = Topic('external_force', 'stickslip_msgs/msg/ExternalForce', _COMMAND)
+RUN_INFO = Topic('run_info', 'stickslip_msgs/msg/RunInfo', QosProfile(1, durability='transient_local'))
+TIMING = Topic('timing', 'stickslip_msgs/msg/StepTiming', _STATE)
+PARAMETER_EVENTS = Topic('/parameter_events', 'rcl_interfaces/msg/ParameterEvent', QosProfile(1000))
+DIAGNOSTICS = Topic('/diagnostics', 'diagnostic_msgs/msg/DiagnosticArray', _STATE)
+
+# What a bag holds; `BagWriter.write` takes the place in this list.
+RECORDED = (
+    SLIDER_STATE, FRICTION_FORCE, MODE_EVENT, DRIVE_VELOCITY, EXTERNAL_FORCE, RUN_INFO, TIMING, PARAMETER_EVENTS,
+)
+
+
+def recorded(namespace: str = '/') -> list[Topic]:
+    """Return the topics of a bag with their names resolved in a namespace."""
+    return [topic.resolved(namespace) for topic in RECORDED]

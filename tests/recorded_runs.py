@@ -1,0 +1,38 @@
+"""Runs to record: made-up samples and events that differ in every field."""
+
+import math
+import time
+from collections.abc import Iterator
+from typing import Any
+
+from stickslip_sim.recording.run import RunFacts
+from stickslip_sim.words import Event, EventKind, Mode, Sample
+
+FACTS = RunFacts('made_up', '/**:\n  ros__parameters:\n    scene: made_up\n', 'ab' * 32, 'exact', 7, 1000.0)
+
+
+def samples(count: int, first: int = 0) -> Iterator[Sample]:
+    for k in range(first, first + count):
+        second, part = divmod(k, 1000)
+        yield Sample(
+            float(second), part / 1000, Mode(k % 4), k % 3 - 1, math.sin(k), math.cos(k), -k * 1e-3, k * 2e-6,
+            0.002 if k < 50 else -0.001, 100.0 + k, 5.0 if 20 <= k < 30 else 0.0, 1e3 * math.sin(k / 7),
+            0.1 + k * 1e-6, k * 1e-9, math.inf if k < 3 else k * 0.5,
+        )
+
+
+def events() -> list[Event]:
+    times = (0.0, 0.0105, 0.011, 0.04, 0.0990000004)
+    return [
+        Event(0.0, time, EventKind(i), Mode(i % 4), 1 - 2 * (i % 2), i + 0.1, i + 0.2, i + 0.3, i + 0.4, i + 0.5,
+              i + 0.6, i + 0.7)
+        for i, time in enumerate(times)
+    ] + [Event(0.0, 0.0995, EventKind.KNOT, Mode.ACCELERATING, 1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)]
+
+
+def wait_for(look: Any, timeout: float = 10.0) -> Any:
+    end = time.monotonic() + timeout
+    while not (found := look()):
+        assert time.monotonic() < end
+        time.sleep(0.02)
+    return found
