@@ -94,7 +94,7 @@ def test_first_passage_misses_nothing(snap: float) -> None:
         rate, jerk = rng.choice((0.0, 1.0)), rng.uniform(-2, 2) * scale
         if rate == 0.0:
             jerk = abs(jerk) + 0.1 * scale
-        bend = snap * scale * scale
+        bend = snap * scale * scale if omega2 > 0.0 else 0.0
 
         def r(t: float, osc: tuple[float, ...] = osc, rate: float = rate, jerk: float = jerk,
               bend: float = bend) -> float:

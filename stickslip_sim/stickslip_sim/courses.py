@@ -33,13 +33,15 @@ class Course:
 
     def piece_at(self, time: float) -> Piece:
         """Return the piece that holds from `time` >= 0 s on (at a border: the one that begins)."""
-        turn = 0.0
+        turns = 0.0
         if self.period < math.inf:
-            turn = math.floor(time / self.period) * self.period
-            turn += self.period if time >= turn + self.period else 0.0
-        i = max(bisect_right(self.starts, time - turn) - 1, 0)
-        after = self.starts[i + 1] if i + 1 < len(self.starts) else self.period
-        return Piece(turn + self.starts[i], turn + after, self.values[i], self.rates[i])
+            turns = math.floor(time / self.period)
+            turns += (time >= (turns + 1.0) * self.period) - (time < turns * self.period)
+        turn = turns * self.period if turns else 0.0
+        # sums are compared, so that the end of a piece is the start of the next to the last bit
+        i = max(bisect_right(self.starts, time, key=lambda start: turn + start) - 1, 0)
+        end = turn + self.starts[i + 1] if i + 1 < len(self.starts) else (turns + 1.0) * self.period
+        return Piece(turn + self.starts[i], end, self.values[i], self.rates[i])
 
     def value_at(self, time: float) -> float:
         """Return the value at `time` >= 0 s."""

@@ -13,6 +13,7 @@ from .solvers import exact
 from .solvers.exact.engine import DONE, FULL
 from .words import Event, EventKind, Instant, Mode, Sample
 
+_KINDS, _MODES = tuple(EventKind), tuple(Mode)
 _ROWS = 64                       # of the event table; it is emptied as often as it fills
 MAX_EVENTS_PER_ADVANCE = 100_000
 
@@ -104,7 +105,7 @@ class Simulator:
         row = self._row
         exact.sample(self._parameters, self._state, *self._time, row)
         second, fraction, mode, direction, *rest = row.tolist() if IS_COMPILED else row
-        return Sample(second, fraction, Mode(int(mode)), int(direction), *rest)
+        return Sample(second, fraction, _MODES[int(mode)], int(direction), *rest)
 
     def _advance(self, to: Instant, events: list[Event]) -> None:
         taken = 0
@@ -133,7 +134,7 @@ class Simulator:
         for i in range(count):
             row = self._table[i]
             second, fraction, kind, mode, direction, *rest = row.tolist() if IS_COMPILED else row
-            yield Event(second, fraction, EventKind(int(kind)), Mode(int(mode)), int(direction), *rest)
+            yield Event(second, fraction, _KINDS[int(kind)], _MODES[int(mode)], int(direction), *rest)
 
 
 def _numbers(values: Any) -> Any:

@@ -194,7 +194,7 @@ def turn(p, s, events, row):
     friction = friction_force(p, s, 0.0, s[VELOCITY], 0.0)
     band = band_of(p, s)
     s[ACCELERATION] = 0.0
-    if band > 0.0:
+    if band > 0.0 or _slides_with_drive(p, s):
         s[MODE] = COASTING
         s[RESIDUAL] = band if mode == ACCELERATING else 0.0
         kind = COAST
@@ -206,6 +206,16 @@ def turn(p, s, events, row):
         kind = ACCELERATE
     write_event(p, s, events, row, kind, direction, friction)
     events[row][EVENT_MODE] = s[MODE]
+
+
+@compiled
+def _slides_with_drive(p, s):
+    """Whether the speed is the drive's but for rounding; it is set to it then: steady sliding is an equilibrium."""
+    v, u = s[V], s[VELOCITY]
+    if s[V_RATE] != 0.0 or s[F_RATE] != 0.0 or abs(v - u) > _ROUNDING * abs(v):
+        return False
+    s[VELOCITY] = v
+    return True
 
 
 @compiled

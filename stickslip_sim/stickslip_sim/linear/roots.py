@@ -54,7 +54,7 @@ def first_passage(osc, rate, jerk, snap, gap, horizon):
     """Return (t, passed): when r reaches `gap`, or stops growing, whichever is first; (inf, False) past the horizon.
 
     r(0) = 0 and r′ = a with a = rate g′ + jerk g + snap G₁ (see `oscillator`), rising at first: rate > 0, or
-    rate = 0 and jerk (or else snap) > 0.
+    rate = 0 and jerk (or else snap) > 0.  The horizon decides whether there is a root, never which digits it has.
     """
     if gap <= 0.0:
         return 0.0, True
@@ -62,13 +62,28 @@ def first_passage(osc, rate, jerk, snap, gap, horizon):
     if snap == 0.0:
         turn = first_zero(osc, rate, jerk - 2.0 * osc[0] * rate)
     else:
-        turn = _first_turn(osc, rate, jerk, snap, horizon)
+        turn = _first_turn(osc, rate, jerk, snap)
     end = min(turn, horizon)
     if gap < math.inf:
         reached, _, _ = _passage(osc, rate, jerk, snap, end)
         if reached >= gap:
+            if end < turn:
+                end, reached = _bracket(osc, rate, jerk, snap, gap, turn)
             return _monotone_root(osc, rate, jerk, snap, gap, end, reached), True
     return (turn, False) if turn <= horizon else (math.inf, False)
+
+
+@compiled
+def _bracket(osc, rate, jerk, snap, gap, turn):
+    """Return an end of the rise of r at which it has reached the gap, and r there."""
+    if turn < math.inf:
+        return turn, _passage(osc, rate, jerk, snap, turn)[0]
+    end = 1.0 / (abs(osc[0]) + math.sqrt(osc[1])) if osc[0] != 0.0 or osc[1] > 0.0 else 1.0
+    while True:
+        reached = _passage(osc, rate, jerk, snap, end)[0]
+        if reached >= gap:
+            return end, reached
+        end *= 2.0
 
 
 @compiled
@@ -94,6 +109,7 @@ def _monotone_root(osc, rate, jerk, snap, gap, end, reached):
     frequency = abs(osc[0]) + math.sqrt(osc[1])
     low, high = 0.0, end
     t = end * _first_guess(rate, gap / reached)
+    before = end
     for _ in range(_ITERATIONS):
         value, slope, change = _passage(osc, rate, jerk, snap, t)
         value -= gap
@@ -101,19 +117,23 @@ def _monotone_root(osc, rate, jerk, snap, gap, end, reached):
             low = t
         else:
             high = t
+        if abs(value) <= 2.0 * _EPSILON * t * slope:
+            return min(max(t - value / slope, low), high) if slope > 0.0 else t
         third = snap - 2.0 * osc[0] * change - osc[1] * slope
         square = slope * slope
         curve = 6.0 * slope * (square - value * change) + value * value * third
         guess = t - value * (6.0 * square - 3.0 * value * change) / curve if curve > 0.0 else math.inf
-        if low <= guess <= high:
-            size = abs(guess - t)
-            bend = size * (abs(change) + frequency * slope)
-            if size <= 2.0 * _EPSILON * t or size * bend * bend * bend <= 0.1 * _EPSILON * t * square * slope:
+        size = abs(guess - t)
+        if low <= guess <= high and size <= 0.5 * before and slope > 0.0:
+            sharpness = size * (abs(change) / slope + frequency)
+            if sharpness < 0.3 and size * sharpness * sharpness * sharpness <= 0.1 * _EPSILON * t:
                 return guess
         else:
             guess = 0.5 * (low + high)
+            size = 0.5 * (high - low)
             if guess <= low or guess >= high:
                 return guess
+        before = size
         t = guess
     return t
 
@@ -127,26 +147,37 @@ def _first_guess(rate, share):
 
 
 @compiled
-def _first_turn(osc, rate, jerk, snap, horizon):
-    """Return the first t in (0, horizon] at which a, rising or positive at first, comes down to 0."""
+def _first_turn(osc, rate, jerk, snap):
+    """Return the first t > 0 at which a, rising or positive at first, comes down to 0; snap is not 0, and so ω² > 0.
+
+    a is monotone between the zeros of the free motion a′.  It swings around snap/ω² ever less (γ > 0), so that it stays
+    positive once its swing is smaller than that.
+    """
     slope = jerk - 2.0 * osc[0] * rate
     bend = snap - 2.0 * osc[0] * slope - osc[1] * rate
-    turn = first_zero(osc, slope, bend) if slope > 0.0 or (slope == 0.0 and bend > 0.0) else first_zero(
-        osc, -slope, -bend)
-    low = 0.0
+    steady = snap / osc[1]
+    sign = 1.0 if slope > 0.0 or (slope == 0.0 and bend > 0.0) else -1.0
+    last = finite_horizon(osc, math.inf)
+    low, high = 0.0, first_zero(osc, sign * slope, sign * bend)
+    if high == math.inf and (sign > 0.0 or (osc[0] >= 0.0 and steady >= 0.0)):
+        return math.inf
     while True:
-        high = min(turn, horizon)
-        if _passage(osc, rate, jerk, snap, high)[1] < 0.0:
+        high = min(high, last)
+        if high == math.inf:
+            high = max(2.0 * low, 1.0 / math.sqrt(osc[1]))
+        value = _passage(osc, rate, jerk, snap, high)[1]
+        if value < 0.0:
             return _turn_between(osc, rate, jerk, snap, low, high)
-        if high == horizon:
+        if high == last or (osc[0] >= 0.0 and abs(value - steady) <= steady):
             return math.inf
-        low, turn = high, next_zero(osc, turn)
+        low, high = high, next_zero(osc, high)
 
 
 @compiled
 def _turn_between(osc, rate, jerk, snap, low, high):
-    """Return the zero of the falling, monotone a between low and high."""
+    """Return the zero of the falling, monotone a between low and high: Newton's step inside a shrinking bracket."""
     t = 0.5 * (low + high)
+    before = high - low
     for _ in range(_ITERATIONS):
         _, value, slope = _passage(osc, rate, jerk, snap, t)
         if value > 0.0:
@@ -154,9 +185,10 @@ def _turn_between(osc, rate, jerk, snap, low, high):
         else:
             high = t
         guess = t - value / slope if slope < 0.0 else math.inf
-        if not low < guess < high:
+        if not (low <= guess <= high and abs(guess - t) <= 0.5 * before):
             guess = 0.5 * (low + high)
-        if abs(guess - t) <= 2.0 * _EPSILON * t:
+        before = abs(guess - t)
+        if before <= 2.0 * _EPSILON * t:
             return guess
         t = guess
     return t

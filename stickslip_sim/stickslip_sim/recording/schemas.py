@@ -59,7 +59,10 @@ class MessageCodec:
         self._layouts = {name: layout_of(self._store, name) for name in definitions}
 
     def encode(self, type_name: str, values: Mapping[str, Any]) -> bytes:
-        """Return the CDR bytes of a message with all its fields given; nested messages are mappings too."""
+        """Return the CDR bytes of a message with all its fields given.
+
+        Nested messages are mappings too, lists of numbers numpy arrays.
+        """
         layout = self._layouts[type_name]
         if layout and values['header']['frame_id'] == '':
             return layout.pack(values)
@@ -75,6 +78,8 @@ class MessageCodec:
             value = arguments.get(field)
             if node == Nodetype.NAME and isinstance(value, Mapping):
                 arguments[field] = self._message(str(inner), value)
+            elif node == Nodetype.SEQUENCE and inner[0][0] == Nodetype.NAME and isinstance(value, list):
+                arguments[field] = [self._message(str(inner[0][1]), item) for item in value]
         create: Any = self._store.types[type_name]
         return create(**arguments)
 

@@ -121,17 +121,18 @@ def _concave_root(p, s, rest, force, rate, wave, decay, bend, horizon):
     """Return the root of N mu_s(rest + t) − force − rate t − bend t²/2 − wave exp(−decay t), a concave function of t.
 
     It is not negative at 0, or within rounding of it, so it has one root at the most where it comes down; infinity when
-    that lies behind the horizon.  Halley's step inside a shrinking bracket, from the time on at which the force has
-    passed the limit of mu_s.
+    that lies behind the horizon.  Halley's step inside a shrinking bracket, whose end does not depend on the horizon.
     """
     normal = p[NORMAL]
     limit, growth, _ = _law(p, rest)
     if normal * limit - force - wave <= 0.0 and normal * growth < rate - decay * wave:
         return 0.0
-    low, high = 0.0, horizon
-    if rate > 0.0 and p[STATIC_LAW] != LOGARITHMIC:
-        high = min(high, (normal * static_limit(p, math.inf) - force) / rate)
-    t = high
+    fading = wave * math.exp(-decay * horizon) if wave > 0.0 else 0.0
+    if horizon == 0.0 or normal * static_limit(p, rest + horizon) - force - (
+            rate + 0.5 * bend * horizon) * horizon - fading > 0.0:
+        return math.inf
+    low = 0.0
+    t = high = _time_to_pass(p, rest, force, rate, bend)
     for _ in range(_STEPS):
         limit, growth, curvature = _law(p, rest + t)
         fading = wave * math.exp(-decay * t) if wave > 0.0 else 0.0
@@ -140,8 +141,8 @@ def _concave_root(p, s, rest, force, rate, wave, decay, bend, horizon):
             low = t
         else:
             high = t
-        if low >= high or t == 0.0:
-            return math.inf if low >= horizon or t == 0.0 else t
+        if low >= high:
+            return t
         s[ITERATIONS] += 1.0
         slope = normal * growth - rate - bend * t + decay * fading
         bow = -(normal * curvature + bend + decay * decay * fading)
@@ -157,6 +158,17 @@ def _concave_root(p, s, rest, force, rate, wave, decay, bend, horizon):
             if guess <= low or guess >= high:
                 return guess
         t = guess
+    return t
+
+
+@compiled
+def _time_to_pass(p, rest, force, rate, bend):
+    """Return a time by which force + rate t + bend t²/2 has passed N mu_s(rest + t), given that it does."""
+    if p[STATIC_LAW] != LOGARITHMIC:
+        return first_crossing(max(p[NORMAL] * static_limit(p, math.inf) - force, 0.0), -rate, -bend)
+    t = p[STATIC_TAU]
+    while p[NORMAL] * static_limit(p, rest + t) > force + (rate + 0.5 * bend * t) * t:
+        t *= 2.0
     return t
 
 

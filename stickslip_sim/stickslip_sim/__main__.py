@@ -1,0 +1,6 @@
+"""`python3 -m stickslip_sim` is the tool `stickslip`."""
+
+from .cli import main
+
+if __name__ == '__main__':
+    main()

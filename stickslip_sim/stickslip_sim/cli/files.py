@@ -1,0 +1,97 @@
+"""Where results go: checked before the work begins, and written whole or not at all."""
+
+import os
+import sys
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from ..errors import InputError
+
+STDOUT = '-'
+
+
+def check_file(option: str, path: str) -> None:
+    """Raise InputError unless a file can be written there; an existing one may be replaced."""
+    place = _real(path)
+    if place.is_dir():
+        raise InputError(option, path, 'a file', 'this is a folder: add a file name')
+    _check_folder(option, path, place.parent)
+    if place.exists() and not os.access(place, os.W_OK):
+        raise InputError(option, path, 'a file that can be written', 'change its permissions or choose another name')
+
+
+def check_new_folder(option: str, path: str) -> None:
+    """Raise InputError unless a new folder can be made there."""
+    place = Path(os.path.abspath(path))
+    if os.path.lexists(place):
+        raise InputError(option, path, 'a folder that does not exist',
+                         'a run is never overwritten: choose another name')
+    _check_folder(option, path, place.parent)
+
+
+def check_distinct(targets: Iterable[tuple[str, str]]) -> None:
+    """Raise InputError when two options name the same place."""
+    seen: dict[Path, str] = {}
+    for option, path in targets:
+        place = _real(path)
+        if place in seen and (path == STDOUT or not _is_special(place)):
+            raise InputError(option, path, f'another place than that of {seen[place]}', 'name a file of its own')
+        seen[place] = option
+
+
+@contextmanager
+def whole(path: str) -> Iterator[Path]:
+    """Yield the path of a temporary file that takes the place of `path` at the end, or vanishes on an error.
+
+    Raises InputError when the disk refuses.  What is no ordinary file (a pipe, /dev/null) is written to directly.
+    """
+    place = _real(path)
+    if _is_special(place):
+        with _refusing(path):
+            yield place
+        return
+    temporary = place.with_name(f'.{os.getpid()}.{place.name}')
+    try:
+        with _refusing(path):
+            yield temporary
+            temporary.replace(place)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def write_text(path: str, lines: Iterable[str]) -> None:
+    """Write lines to a file, or to standard output for '-'."""
+    if path == STDOUT:
+        with _refusing('standard output'):
+            sys.stdout.writelines(lines)
+            sys.stdout.flush()
+        return
+    with whole(path) as temporary, open(temporary, 'w', encoding='utf-8', newline='\n') as file:
+        file.writelines(lines)
+
+
+@contextmanager
+def _refusing(path: str) -> Iterator[None]:
+    """Turn what the disk says into an InputError; a reader who left is no error of the output."""
+    try:
+        yield
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        raise InputError('output', path, 'a place that can be written', error.strerror or str(error)) from None
+
+
+def _real(path: str) -> Path:
+    return Path(os.path.realpath(path))
+
+
+def _is_special(place: Path) -> bool:
+    return place.exists() and not place.is_file() and not place.is_dir()
+
+
+def _check_folder(option: str, path: str, folder: Path) -> None:
+    if not folder.is_dir():
+        raise InputError(option, path, 'in a folder that exists', f'make the folder {folder} first')
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise InputError(option, path, 'in a folder that can be written', 'choose another place')

@@ -1,0 +1,87 @@
+"""The command `stickslip`: its verbs, and what becomes of errors.
+
+Exit codes: 0 done; 1 internal error; 2 wrong use, scene, parameter or file; 3 the verdict is "failed" or "differs";
+4 the solver gave up; 130 interrupted.  One line on standard error says why; STICKSLIP_DEBUG=1 shows the traceback.
+"""
+
+import os
+import signal
+import sys
+from collections.abc import Sequence
+from types import FrameType
+from typing import NoReturn
+
+import click
+
+from .. import __version__
+from ..errors import StickslipError
+from .scenes import scenes
+from .simulate import simulate
+from .warm import warm
+
+_INTERRUPTED = 130
+_TERMINATED = 143
+
+
+@click.group(context_settings={'help_option_names': ['-h', '--help'], 'max_content_width': 100})
+@click.version_option(__version__, message='stickslip %(version)s')
+def stickslip() -> None:
+    """Stick-slip motion of a feed axis, simulated exactly."""
+
+
+for verb in (scenes, simulate, warm):
+    stickslip.add_command(verb)
+
+
+def main(arguments: Sequence[str] | None = None) -> NoReturn:
+    """Run the tool and exit with its code."""
+    signal.signal(signal.SIGTERM, _leave)
+    sys.exit(run(sys.argv[1:] if arguments is None else arguments))
+
+
+def run(arguments: Sequence[str]) -> int:
+    """Run the tool and return its exit code."""
+    try:
+        with stickslip.make_context('stickslip', list(arguments)) as context:
+            stickslip.invoke(context)
+        sys.stdout.flush()
+        return 0
+    except click.exceptions.Exit as end:
+        return end.exit_code
+    except click.exceptions.NoArgsIsHelpError as error:
+        error.show()
+        return error.exit_code
+    except click.ClickException as error:
+        return _refuse(_usage(error), error.exit_code)
+    except StickslipError as error:
+        return _refuse(str(error), error.exit_code)
+    except KeyboardInterrupt:
+        return _refuse('interrupted', _INTERRUPTED)
+    except BrokenPipeError:
+        return _reader_left()
+    except Exception as error:
+        if os.environ.get('STICKSLIP_DEBUG') == '1':
+            raise
+        first, *_ = str(error).splitlines() or ['']
+        return _refuse(f'internal error: {type(error).__name__}: {first} (STICKSLIP_DEBUG=1 shows where)', 1)
+
+
+def _refuse(text: str, code: int) -> int:
+    print(f'stickslip: {" ".join(text.split())}', file=sys.stderr)
+    return code
+
+
+def _usage(error: click.ClickException) -> str:
+    context = getattr(error, 'ctx', None)
+    command = context.command_path if context else 'stickslip'
+    return f'{error.format_message()} See {command} --help'
+
+
+def _reader_left() -> int:
+    """End quietly when whoever reads standard output has seen enough; Python must not flush into it at its end."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return 0
+
+
+def _leave(signum: int, frame: FrameType | None) -> NoReturn:
+    sys.exit(_TERMINATED)

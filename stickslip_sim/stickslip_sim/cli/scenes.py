@@ -1,0 +1,14 @@
+"""`stickslip scenes`: what can be simulated without writing a file."""
+
+import click
+
+
+@click.command()
+def scenes() -> None:
+    """List the shipped scenes with a line each."""
+    from ..scene import load_scene, scene_names
+
+    names = scene_names()
+    width = max(map(len, names))
+    for name in names:
+        print(f'{name:{width}}  {load_scene(name).summary}')

@@ -1,0 +1,155 @@
+"""`stickslip simulate`: run a scene as fast as possible and write what is asked for."""
+
+import json
+import shutil
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import click
+
+from .files import STDOUT, check_distinct, check_file, check_new_folder, whole, write_text
+
+if TYPE_CHECKING:
+    from ..offline import Trajectory
+    from ..scene import Scene
+
+_PLOT_POINTS = 20_000
+
+
+class _Wishes(NamedTuple):
+    """What the user asked for."""
+
+    duration: float
+    events: str | None
+    knots: bool
+    samples: str | None
+    sample_period: float | None
+    bag: str | None
+    receipt: str | None
+    plot: str | None
+
+
+@click.command()
+@click.argument('scene', metavar='SCENE')
+@click.option('--duration', type=float, required=True, metavar='S', help='Simulated time, s.')
+@click.option('--set', 'changes', multiple=True, metavar='A.B=VALUE', help='Change a parameter of the scene.')
+@click.option('--events', metavar='FILE.csv', help='Write the events ("-": to standard output).')
+@click.option('--knots', is_flag=True, help='List the crossings of friction knots among the events.')
+@click.option('--samples', metavar='FILE.csv', help='Write the state over time ("-": to standard output).')
+@click.option('--sample-period', type=float, metavar='S', help="Time between samples [default: a step of the scene].")
+@click.option('--bag', metavar='FOLDER', help='Record the run as a ROS 2 bag, one state a step.')
+@click.option('--receipt', metavar='FILE.json', help='Write versions, figures and cost.')
+@click.option('--plot', metavar='FILE.png', help='Draw position, velocity, forces and mode (.png or .svg).')
+def simulate(scene: str, changes: tuple[str, ...], **options: object) -> None:
+    """Simulate SCENE, the name of a shipped scene or a file.
+
+    Without any output a summary is printed.
+    """
+    wishes = _Wishes(**options)  # type: ignore[arg-type]
+    _check(wishes)
+    from ..offline import check_times, run_offline
+    from ..scene import load_scene, parse_override
+    from .progress import progress_bar
+
+    check_times(wishes.duration, wishes.sample_period)
+    loaded = load_scene(scene, dict(parse_override(change) for change in changes))
+    period = _sample_period(wishes, loaded)
+    with progress_bar('simulating') as progress:
+        run = run_offline(loaded, wishes.duration, period, progress)
+    _write(wishes, run)
+
+
+def _check(wishes: _Wishes) -> None:
+    """Raise before the work begins when an output cannot be written or an option has no effect."""
+    if wishes.knots and wishes.events is None:
+        raise click.UsageError('--knots chooses what --events lists: give --events FILE.csv too.')
+    if wishes.sample_period is not None and wishes.samples is None and wishes.plot is None:
+        raise click.UsageError('--sample-period is of no use alone: give --samples FILE.csv too.')
+    files = {'--events': wishes.events, '--samples': wishes.samples, '--receipt': wishes.receipt, '--plot': wishes.plot}
+    targets = [(option, path) for option, path in files.items() if path is not None]
+    for option, path in targets:
+        if path != STDOUT or option == '--plot':
+            check_file(option, path)
+    if wishes.plot is not None:
+        _check_picture(wishes.plot)
+    if wishes.bag is not None:
+        check_new_folder('--bag', wishes.bag)
+        targets.append(('--bag', wishes.bag))
+    check_distinct(targets)
+
+
+def _check_picture(path: str) -> None:
+    from ..errors import InputError
+    if Path(path).suffix.lower() not in ('.png', '.svg'):
+        raise InputError('--plot', path, 'a file ending in .png or .svg', 'name it so')
+
+
+def _sample_period(wishes: _Wishes, scene: 'Scene') -> Fraction | float | None:
+    if wishes.sample_period is not None:
+        return wishes.sample_period
+    return _step(scene) if wishes.samples or wishes.bag else None
+
+
+def _step(scene: 'Scene') -> Fraction:
+    return 1 / Fraction(repr(scene.time.rate))
+
+
+def _write(wishes: _Wishes, run: 'Trajectory') -> None:
+    """Write the outputs, standard output last: whoever reads it may leave early."""
+    from .tables import event_lines, sample_lines
+
+    if wishes.bag is not None:
+        _write_bag(wishes.bag, run)
+    if wishes.plot is not None:
+        _draw(wishes.plot, run)
+    receipt = json.dumps(run.receipt, indent=2, allow_nan=False) + '\n'
+    texts = [(wishes.receipt, [receipt]), (wishes.events, event_lines(run.events, wishes.knots)),
+             (wishes.samples, sample_lines(run.samples))]
+    for path, lines in sorted(texts, key=lambda text: text[0] == STDOUT):
+        if path is not None:
+            write_text(path, lines)
+    if not any((wishes.bag, wishes.plot, wishes.receipt, wishes.events, wishes.samples)):
+        _tell(run)
+
+
+def _write_bag(folder: str, run: 'Trajectory') -> None:
+    """Record the run step by step; a folder that was begun vanishes on any error."""
+    from ..recording.offline import write_bag
+    from ..recording.run import RunFacts
+
+    run = _sampled(run, _step(run.scene))
+    check_new_folder('--bag', folder)
+    try:
+        write_bag(folder, RunFacts.of(run.scene), run.sample_rows(), run.events, run.receipt)
+    except BaseException:
+        shutil.rmtree(folder, ignore_errors=True)
+        raise
+
+
+def _draw(path: str, run: 'Trajectory') -> None:
+    from ..plots import plot_run
+    from .format import headline
+
+    if len(run.samples['time']) < _PLOT_POINTS:
+        run = _sampled(run, Fraction(repr(run.duration)) / _PLOT_POINTS)
+    title = f'{run.scene.name}, {run.duration:g} s\n{headline(run.summary)}'
+    with whole(path) as temporary:
+        plot_run(run.samples, run.events, title, temporary)
+
+
+def _sampled(run: 'Trajectory', period: Fraction) -> 'Trajectory':
+    """Return the same run with other samples."""
+    from ..offline import run_offline
+
+    return run if run.sample_period == period else run_offline(run.scene, run.duration, period)
+
+
+def _tell(run: 'Trajectory') -> None:
+    from .format import quantity, summary_lines
+
+    cost = run.receipt['cost']
+    print(f'{run.scene.name}: {run.duration:g} s with the {run.scene.solver.name} solver')
+    print('\n'.join(summary_lines(run.summary)))
+    print(f'{"cost":22} {quantity(cost["cpu_time_s"], "s")} CPU, '
+          f'{quantity(cost["cpu_time_per_simulated_second"], "s")} per simulated second')

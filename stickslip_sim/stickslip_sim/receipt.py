@@ -1,0 +1,62 @@
+"""The receipt of an offline run: what ran, with which versions, what came out, what it cost.  JSON values only."""
+
+import math
+import platform
+from collections.abc import Mapping
+from enum import Enum
+from typing import Any
+
+import numpy
+
+from . import __version__
+from .analysis import Summary
+from .compiled import IS_COMPILED
+from .scene import Scene
+from .words import Mode, Sample
+
+
+def receipt_of(scene: Scene, duration: float, sample_period: float | None, figures: Summary, root_iterations: int,
+               final: Sample, cpu_time: float, wall_time: float) -> dict[str, Any]:
+    """Return the receipt of a run of `duration` s that took `cpu_time` and `wall_time` s.
+
+    `results` is the same on every machine; `versions` and `cost` are not.  An infinite number is the text 'inf'.
+    """
+    receipt = {
+        'scene': scene.name,
+        'scene_hash': scene.hash,
+        'solver': scene.solver.name,
+        'duration': duration,
+        'sample_period': sample_period,
+        'versions': versions(),
+        'results': {**figures._asdict(), 'root_iterations': root_iterations, 'final_state': final},
+        'cost': {'cpu_time_s': cpu_time, 'cpu_time_per_simulated_second': cpu_time / duration,
+                 'wall_time_s': wall_time},
+    }
+    result: dict[str, Any] = _plain(receipt)
+    return result
+
+
+def versions() -> dict[str, str]:
+    """Return the versions of everything that the numbers depend on."""
+    return {'stickslip': __version__, 'python': platform.python_version(), 'numpy': numpy.__version__,
+            'hot_path': _hot_path()}
+
+
+def _hot_path() -> str:
+    if not IS_COMPILED:
+        return 'plain python'
+    import numba
+    return f'numba {numba.__version__}'
+
+
+def _plain(value: Any) -> Any:
+    """Turn named tuples into mappings, words and infinities into text."""
+    if isinstance(value, Enum):
+        return value.name if isinstance(value, Mode) else value.name.lower()
+    if isinstance(value, tuple) and hasattr(value, '_asdict'):
+        value = value._asdict()
+    if isinstance(value, Mapping):
+        return {_plain(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, float) and not math.isfinite(value):
+        return str(value)
+    return value

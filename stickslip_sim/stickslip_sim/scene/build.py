@@ -1,0 +1,99 @@
+"""From effective values to a scene: each section becomes the object that the lower rooms know, which checks it."""
+
+import hashlib
+import math
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from ..axis import Axis, CompliantContact, Friction, InitialState, RigidContact, check_start
+from ..courses import Course, constant, ramp, steps, table
+from ..errors import InputError
+from ..friction import ExcessTable, KineticTable, StaticLaw, StaticLawKind
+from ..friction.kinetic import default_excess
+from .model import CommandSettings, RecordSettings, Scene, SolverSettings, TimeSettings
+from .text import scene_text
+from .values import effective_values
+
+_KNOTS: dict[str, Callable[..., Course]] = {'steps': steps, 'table': table}
+
+
+def build_scene(given: Mapping[str, object], summary: str = '') -> Scene:
+    """Return the scene of the values given by dotted name; raises InputError."""
+    values: dict[str, Any] = effective_values(given)
+    axis = _axis(values)
+    initial = InitialState(**_section(values, 'initial'))
+    check_start(axis, initial)
+    text = scene_text(values)
+    return Scene(
+        name=values['scene'],
+        summary=summary or _summary(values),
+        axis=axis,
+        initial=initial,
+        drive=_course(values, 'drive', 'velocity', 'acceleration', 'velocities'),
+        force=_course(values, 'force', 'constant', 'rate', 'forces'),
+        solver=SolverSettings(**_section(values, 'solver')),
+        time=TimeSettings(**_section(values, 'time')),
+        command=CommandSettings(**_section(values, 'command')),
+        record=RecordSettings(**_section(values, 'record')),
+        seed=values['seed'],
+        values=values,
+        text=text,
+        hash=hashlib.sha256(text.encode()).hexdigest(),
+    )
+
+
+def _section(values: Mapping[str, Any], section: str) -> dict[str, Any]:
+    start = len(section) + 1
+    return {name[start:]: value for name, value in values.items() if name.startswith(f'{section}.')}
+
+
+def _axis(values: Mapping[str, Any]) -> Axis:
+    contact = _section(values, 'contact')
+    model = contact.pop('model')
+    return Axis(**_section(values, 'axis'), friction=_friction(values),
+                contact=CompliantContact(**contact) if model == 'compliant' else RigidContact())
+
+
+def _friction(values: Mapping[str, Any]) -> Friction:
+    static = _section(values, 'friction.static')
+    law = StaticLawKind[static.pop('law').upper()]
+    static.setdefault('limit', static['initial'])
+    kinetic = KineticTable(**_section(values, 'friction.kinetic'))
+    return Friction(StaticLaw(law, **static), kinetic, _excess(values, kinetic))
+
+
+def _excess(values: Mapping[str, Any], kinetic: KineticTable) -> ExcessTable | None:
+    if not values['friction.acceleration_dependence']:
+        return None
+    excess = _section(values, 'friction.excess')
+    if len(excess) == 1:
+        (given,) = excess
+        raise InputError(f'friction.excess.{given}', excess[given], 'given with both velocities and fractions',
+                         'add the other, or leave both out')
+    return ExcessTable(**excess) if excess else default_excess(kinetic)
+
+
+def _course(values: Mapping[str, Any], section: str, value: str, rate: str, knots: str) -> Course:
+    given = _section(values, section)
+    form = given['course']
+    if form == 'constant':
+        return constant(given[value])
+    if form == 'ramp':
+        course = ramp(given[value], given[rate], given['duration'])
+        name = f'{section}.{rate}'
+    else:
+        course = _KNOTS[form](section, given['times'], given[knots], given['period'])
+        name = f'{section}.{knots}'
+    for number in (*course.values, *course.rates):
+        if not math.isfinite(number):
+            raise InputError(name, given[name.rpartition('.')[2]], 'a course of finite values and rates',
+                             'make it smaller or the times longer')
+    return course
+
+
+def _summary(values: Mapping[str, Any]) -> str:
+    """Return a line about a scene whose file says nothing itself."""
+    branches = 'with' if values['friction.acceleration_dependence'] else 'without'
+    drive = values['drive.course'] if 'drive.velocity' not in values else f'{values["drive.velocity"] * 1e3:g} mm/s'
+    return (f'{values["contact.model"]} contact, {values["friction.static.law"]} static friction,'
+            f' {branches} acceleration dependence, drive {drive}')

@@ -1,0 +1,56 @@
+"""The reference of all scene parameters as Markdown: `python3 -m stickslip_sim.scene.document > docs/scene.md`."""
+
+import sys
+from itertools import groupby
+
+from .parameter import Parameter
+from .schema import PARAMETERS
+from .text import yaml_value
+
+_HEAD = """\
+# Every parameter of a scene
+
+Made from the schema by `python3 -m stickslip_sim.scene.document > docs/scene.md`; a test keeps it up to date.
+
+A scene is a ROS 2 parameter file: sections below `/**:` (or `feed_axis:`) and `ros__parameters:`.  The node loads it
+with `--params-file`, the tool by its path; both refuse unknown names, wrong types and ranges, and values that
+contradict a choice, with one line.  The shipped files in `stickslip_sim/stickslip_sim/scenes/` are the models to copy.
+
+* What is left out takes the default.  Only the axis has the paper's values there; everything else that is left out is
+  not modelled: no friction, a rigid contact, a drive that stands still, no force.  (A node that gets no file runs the
+  scene `paper_fig8`.)
+* "with" says for which choice a parameter has a meaning.  Given with another choice it is refused; without a default
+  (*needed*) it must be given.
+* Write numbers with a dot, `350.0` or `6.0e5`.  A whole number is taken for a double, but inside a list ROS wants all
+  alike: `[0.0, 0.035]`.  Infinity is `.inf`.  Anchors, aliases, tags and a name given twice are refused.
+* "live" parameters may change while the node runs (`ros2 param set`); all changes of one request are checked together.
+* `--set a.b=value` of the tool changes one value of the file.  If it changes a choice, what the file gives for the old
+  choice goes with it: `--set contact.model=rigid` needs no more.
+"""
+
+
+def document() -> str:
+    """Return the reference."""
+    parts = [_HEAD]
+    for section, entries in groupby(PARAMETERS, lambda entry: entry.name.rpartition('.')[0] or entry.name):
+        parts.append(f'\n## {section}\n\n| name | type | unit | default | range | with | live | meaning |\n'
+                     '|---|---|---|---|---|---|---|---|\n')
+        parts.extend(map(_row, entries))
+    return ''.join(parts)
+
+
+def _row(entry: Parameter) -> str:
+    limits = ', '.join(f'`{choice}`' for choice in entry.choices) or entry.range
+    cells = [f'`{entry.name}`', entry.type.replace('_', ' '), entry.unit, _default(entry), limits,
+             f'`{entry.when}`' if entry.when else '', 'yes' if entry.live else '', entry.description]
+    return '| ' + ' | '.join(cell.replace('|', '\\|') for cell in cells) + ' |\n'
+
+
+def _default(entry: Parameter) -> str:
+    if entry.default is None:
+        return '*needed*' if entry.required else '*none*'
+    return f'`{yaml_value(entry, entry.default)}`'
+
+
+if __name__ == '__main__':
+    sys.stdout.write(document())

@@ -1,0 +1,100 @@
+"""Scenes by name, from a file, or from values."""
+
+import difflib
+import os
+import pathlib
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+
+from ..errors import InputError
+from .build import build_scene
+from .model import Scene
+from .ros_yaml import read_yaml
+from .sections import parameters_of
+from .values import overridden
+
+SIZE_LIMIT = 1 << 20   # bytes of a scene file
+_SHIPPED = pathlib.Path(__file__).parent.parent / 'scenes'
+_ENDINGS = ('.yaml', '.yml')
+
+
+def scene_names() -> list[str]:
+    """Return the names of the shipped scenes."""
+    return sorted(path.stem for path in _SHIPPED.glob('*.yaml'))
+
+
+def load_scene(name_or_path: str, overrides: Mapping[str, object] | None = None) -> Scene:
+    """Return a shipped scene or one from a file, with other values by dotted name.
+
+    An override of a choice (contact.model) drops what the file gives for the old one (contact.stiffness).  Raises
+    InputError, whose text begins with the file.
+    """
+    with _named(name_or_path):
+        text = _read(_find(name_or_path))
+        values = parameters_of(read_yaml(text))
+        return build_scene(overridden(values, overrides or {}), _first_comment(text))
+
+
+def scene_from_values(values: Mapping[str, object], name: str = 'unnamed') -> Scene:
+    """Return the scene of values by dotted name, as a file with these values would; None counts as not given.
+
+    `name` is for values without a `scene`.  Raises InputError.
+    """
+    return build_scene({'scene': name, **{key: value for key, value in values.items() if value is not None}})
+
+
+def parse_override(text: str) -> tuple[str, object]:
+    """Return name and value of `a.b=value`, the value as in a scene file; raises InputError."""
+    name, equals, word = text.partition('=')
+    name = name.strip()
+    if not equals or not name or not word.strip():
+        raise InputError('override', text, 'a.b=value', 'for example axis.mass=400.0')
+    with _named(text):
+        value = read_yaml(word)
+    if isinstance(value, dict) or value is None:
+        raise InputError(name, word.strip(), 'a number, a word, or a list of numbers', 'give one parameter at a time')
+    return name, value
+
+
+def _find(name: str) -> pathlib.Path:
+    """Return the file of a shipped name or path; a shipped name wins over a file of the same name."""
+    if name in scene_names():
+        return _SHIPPED / f'{name}.yaml'
+    path = pathlib.Path(name)
+    if name.endswith(_ENDINGS) or os.sep in name or path.is_file():
+        return path
+    names = scene_names()
+    close = difflib.get_close_matches(name, names, 1)
+    raise InputError('scene', name, 'a file or one of ' + ', '.join(names),
+                     f'did you mean {close[0]}?' if close else 'check the name')
+
+
+def _read(path: pathlib.Path) -> str:
+    try:
+        with path.open('rb') as file:
+            data = file.read(SIZE_LIMIT + 1)
+        text = data.decode('utf-8-sig')
+    except UnicodeDecodeError as error:
+        raise InputError('scene', path.name, 'text in UTF-8', f'byte {error.start} is none; is it a scene?') from None
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+        raise InputError('scene', path.name, 'a readable file', f'{reason}; check path and permissions') from None
+    if len(data) > SIZE_LIMIT:
+        raise InputError('scene', path.name, f'a file of at most {SIZE_LIMIT} bytes', 'is this a scene file?')
+    return text
+
+
+def _first_comment(text: str) -> str:
+    """Return the comment in the first line, which says what a scene shows; empty without one."""
+    first = text.partition('\n')[0].strip()
+    return first.lstrip('#').strip() if first.startswith('#') else ''
+
+
+@contextmanager
+def _named(source: str) -> Iterator[None]:
+    """Put the source in front of the text of an InputError."""
+    try:
+        yield
+    except InputError as error:
+        error.args = (f'{" ".join(source.split())}: {error}',)
+        raise

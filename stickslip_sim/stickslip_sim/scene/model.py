@@ -1,0 +1,61 @@
+"""A scene: everything that decides a run, checked and ready for the simulator."""
+
+from dataclasses import dataclass, field
+
+from ..axis import Axis, InitialState
+from ..courses import Course
+
+
+@dataclass(frozen=True, slots=True)
+class SolverSettings:
+    """How the motion is computed."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class TimeSettings:
+    """How simulation time goes: `rate` in steps per second of it, `factor` in simulation time per real time."""
+
+    mode: str
+    rate: float
+    factor: float
+
+
+@dataclass(frozen=True, slots=True)
+class CommandSettings:
+    """Commands whose magnitude is beyond `max_velocity` (m/s) or `max_force` (N) are refused."""
+
+    max_velocity: float
+    max_force: float
+
+
+@dataclass(frozen=True, slots=True)
+class RecordSettings:
+    """Whether the node records from its start, and into which folder (empty: it chooses one)."""
+
+    enabled: bool
+    folder: str
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """One scene; `values` are all effective parameters by dotted name, `text` is the same as a parameter file.
+
+    `hash` is the sha256 of the text in hexadecimal.  `summary` is one line for people and no part of the scene.
+    """
+
+    name: str
+    summary: str = field(compare=False)
+    axis: Axis
+    initial: InitialState
+    drive: Course   # m/s
+    force: Course   # N
+    solver: SolverSettings
+    time: TimeSettings
+    command: CommandSettings
+    record: RecordSettings
+    seed: int
+    values: dict[str, object] = field(hash=False)
+    text: str
+    hash: str

@@ -1,0 +1,56 @@
+"""What of a ROS 2 parameter file belongs to the axis: node sections in, parameters by dotted name out."""
+
+from collections.abc import Iterator, Mapping
+
+from ..errors import InputError
+
+NODE = 'feed_axis'
+_ALL_NODES = ('/**', '/*', '/**/' + NODE)
+_PARAMETERS = 'ros__parameters'
+
+
+def parameters_of(document: object) -> dict[str, object]:
+    """Return the parameters for the node of the axis by dotted name.
+
+    Sections that match (`/**`, `/feed_axis`, in any namespace) are merged, and none may repeat what another gives, so
+    that their order does not matter.  Raises InputError on anything else in the file.
+    """
+    values: dict[str, object] = {}
+    for node, section in _nodes(document, ''):
+        if node not in _ALL_NODES and not node.endswith(f'/{NODE}'):
+            raise InputError('node', node, f'/** or {NODE}', 'a scene file holds the parameters of one axis only')
+        for name, value in _flat(section, ''):
+            if name in values:
+                raise InputError(name, value, 'given once', 'it stands in this file twice; drop one')
+            values[name] = value
+    if not values:
+        raise InputError('parameters', None, f'given in a section /**: {_PARAMETERS}:', 'see the shipped scenes')
+    return values
+
+
+def _nodes(tree: object, path: str) -> Iterator[tuple[str, Mapping[str, object]]]:
+    """Yield the path of each node with its parameters."""
+    if not isinstance(tree, Mapping):
+        raise InputError(path or 'file', tree, f'a section /**: with {_PARAMETERS}: in it', 'see the shipped scenes')
+    for key, inner in tree.items():
+        if key != _PARAMETERS:
+            yield from _nodes(inner, _joined(path, key))
+        elif not path or not isinstance(inner, Mapping):
+            raise InputError(key, inner, 'a mapping inside /**:', f'write /**: and below it {_PARAMETERS}:')
+        else:
+            yield path, inner
+
+
+def _joined(path: str, key: str) -> str:
+    return f'{path}/{key.strip("/")}'
+
+
+def _flat(tree: Mapping[str, object], path: str) -> Iterator[tuple[str, object]]:
+    for key, value in tree.items():
+        name = f'{path}.{key}' if path else key
+        if isinstance(value, Mapping):
+            yield from _flat(value, name)
+            continue
+        if isinstance(value, list) and len({type(item) for item in value}) > 1:
+            raise InputError(name, value, 'a list of one type', 'ROS wants 0.0, not 0, beside other numbers with a dot')
+        yield name, value

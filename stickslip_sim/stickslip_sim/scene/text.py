@@ -1,0 +1,47 @@
+"""A scene as text: one canonical ROS 2 parameter file for one set of effective values."""
+
+import json
+import math
+from collections.abc import Mapping
+
+from .parameter import Parameter, yaml_word
+from .schema import PARAMETERS
+
+
+def scene_text(values: Mapping[str, object]) -> str:
+    """Return effective values as a scene file, in the order of the schema; equal values give equal text."""
+    lines = ['/**:', '  ros__parameters:']
+    inside: list[str] = []
+    for entry in PARAMETERS:
+        if entry.name not in values:
+            continue
+        *sections, leaf = entry.name.split('.')
+        for depth, section in enumerate(sections):
+            if inside[:depth + 1] != sections[:depth + 1]:
+                lines.append(f'{_indent(depth)}{section}:')
+        inside = sections
+        lines.append(f'{_indent(len(sections))}{leaf}: {yaml_value(entry, values[entry.name])}')
+    return '\n'.join(lines) + '\n'
+
+
+def _indent(depth: int) -> str:
+    return '  ' * (depth + 2)
+
+
+def yaml_value(entry: Parameter, value: object) -> str:
+    """Return an effective value as it is written in a scene file."""
+    if isinstance(value, tuple):
+        return '[' + ', '.join(map(_double, value)) + ']'
+    if isinstance(value, float):
+        return _double(value)
+    if isinstance(value, str) and not entry.choices:
+        return json.dumps(value, ensure_ascii=False)
+    return yaml_word(value)
+
+
+def _double(value: float) -> str:
+    """Return the shortest text of the same double, with a dot, so that every YAML reader sees a double."""
+    if math.isinf(value):
+        return '.inf' if value > 0.0 else '-.inf'
+    mantissa, e, exponent = repr(value).partition('e')
+    return mantissa + ('' if '.' in mantissa else '.0') + e + exponent

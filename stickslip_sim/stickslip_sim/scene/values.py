@@ -1,0 +1,73 @@
+"""From the values given to the effective ones: names known, types and ranges right, defaults in place."""
+
+import difflib
+from collections.abc import Mapping
+
+from ..errors import InputError
+from .parameter import Parameter, yaml_word
+from .schema import BY_NAME, PARAMETERS
+
+
+def effective_values(given: Mapping[str, object]) -> dict[str, object]:
+    """Return the value of every parameter that has a meaning, in the order of the schema; None counts as not given.
+
+    Raises InputError on unknown names, wrong types and ranges, what is missing, and what contradicts a choice.
+    """
+    given = {name: value for name, value in given.items() if value is not None}
+    for name, value in given.items():
+        if name not in BY_NAME:
+            raise _unknown(name, value)
+    values: dict[str, object] = {}
+    for entry in PARAMETERS:   # what a choice decides about stands after it
+        value = given.get(entry.name)
+        if value is not None:
+            values[entry.name] = _given(entry, value, values)
+        elif entry.when is None or entry.when.holds(values):
+            _leave_out(entry, values)
+    return values
+
+
+def overridden(base: Mapping[str, object], changes: Mapping[str, object]) -> dict[str, object]:
+    """Return base values with changes; a changed choice takes with it what belonged to the old one in the base."""
+    kept = {name: value for name, value in base.items() if not _outlived(name, changes)}
+    return {**kept, **changes}
+
+
+def _outlived(name: str, changes: Mapping[str, object]) -> bool:
+    entry = BY_NAME.get(name)
+    if entry is None or entry.when is None or entry.when.name not in changes:
+        return False
+    return changes[entry.when.name] not in entry.when.values
+
+
+def _given(entry: Parameter, value: object, values: Mapping[str, object]) -> object:
+    checked = entry.checked(value)
+    if entry.when is not None and not entry.when.holds(values):
+        choice = f'{entry.when.name}: {yaml_word(values.get(entry.when.name))}'
+        raise InputError(entry.name, value, f'left out with {choice}', f'drop it, or set {entry.when}')
+    return checked
+
+
+def _leave_out(entry: Parameter, values: dict[str, object]) -> None:
+    if entry.default is not None:
+        values[entry.name] = entry.default
+    elif entry.required:
+        raise InputError(entry.name, None, f'given with {entry.when}: {entry.allowed}', 'add it')
+
+
+def _unknown(name: str, value: object) -> InputError:
+    """Return the error for a name that no parameter has: what there is, and which is meant perhaps."""
+    section = name
+    while section and not any(known.startswith(f'{section}.') for known in BY_NAME):
+        section = section.rpartition('.')[0]
+    if section:
+        names = [known for known in BY_NAME if known.startswith(f'{section}.')]
+        allowed = f'one of the parameters in {section}: ' + ', '.join(known[len(section) + 1:] for known in names)
+    else:
+        names = list(BY_NAME)
+        allowed = 'in one of the sections ' + ', '.join(dict.fromkeys(known.partition('.')[0] for known in names))
+    close = difflib.get_close_matches(name, names, 1) or difflib.get_close_matches(name, BY_NAME, 1)
+    fix = f'did you mean {close[0]}?' if close and close[0] != name else 'there is no such parameter yet; drop it'
+    if section == name:
+        fix = 'it is a section: give one of its parameters'
+    return InputError(name, value, allowed, fix)

@@ -1,0 +1,25 @@
+"""Scene files for tests, and what refuses them."""
+
+import pathlib
+from typing import Any
+
+import pytest
+
+from stickslip_sim.errors import InputError
+
+HEAD = '/**:\n  ros__parameters:\n'
+
+
+def write(folder: pathlib.Path, body: str, head: str = HEAD) -> str:
+    """Write a scene file; return its path."""
+    path = folder / 'scene.yaml'
+    path.write_text(head + body, encoding='utf-8')
+    return str(path)
+
+
+def refusal(function: Any, *arguments: Any) -> InputError:
+    """Return the error of a call that must be refused in one line."""
+    with pytest.raises(InputError) as caught:
+        function(*arguments)
+    assert '\n' not in str(caught.value)
+    return caught.value

@@ -1,0 +1,277 @@
+"""The tool `stickslip` as a user meets it: in a process of its own, except where a great many calls are made."""
+
+import csv
+import io
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from stickslip_sim import __version__
+from stickslip_sim.cli.main import run
+from stickslip_sim.offline import run_offline
+from stickslip_sim.scene import load_scene, scene_names
+from stickslip_sim.words import EventKind, Mode
+
+EVENT_HEADER = 'time,kind,direction,position,velocity,drive_force,friction_force,static_coefficient,rest_time'
+SAMPLE_HEADER = 'time,position,velocity,acceleration,drive_position,drive_force,friction_force,mode'
+
+
+def tool(*arguments: str | Path, **environment: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([sys.executable, '-m', 'stickslip_sim', *map(str, arguments)], capture_output=True, text=True,
+                          timeout=60, check=False, env={**os.environ, **environment})
+
+
+Capture = pytest.CaptureFixture[str]
+
+
+def refused(capsys: Capture, code: int, *arguments: str | Path) -> str:
+    """Run the tool in this process; return the one line that it says on standard error."""
+    assert run([*map(str, arguments)]) == code
+    out, err = capsys.readouterr()
+    assert out == ''
+    assert err.startswith('stickslip: ')
+    assert err.count('\n') == 1
+    return err
+
+
+def test_version_and_help() -> None:
+    done = tool('--version')
+    assert (done.returncode, done.stdout) == (0, f'stickslip {__version__}\n')
+    assert 'simulate' in tool('--help').stdout
+    assert '--sample-period' in tool('simulate', '--help').stdout
+    assert 'warm' not in tool('--help').stdout
+
+
+def test_scenes_are_listed_with_a_line_each(capsys: Capture) -> None:
+    assert run(['scenes']) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines] == scene_names()
+    assert all(len(line.split()) > 2 for line in lines)
+
+
+def test_summary_for_people(capsys: Capture) -> None:
+    assert run(['simulate', 'paper_fig8', '--duration', '60']) == 0
+    out = capsys.readouterr().out
+    for words in ('paper_fig8', '90 breakaway', 'stick-slip', 'settled', '659.07 ms', '1.3181 mm', '11.664 mm/s'):
+        assert words in out
+
+
+def test_summary_of_smooth_sliding(capsys: Capture) -> None:
+    assert run(['simulate', 'fast_feed', '--duration', '3']) == 0
+    assert 'smooth sliding' in capsys.readouterr().out
+
+
+def test_events_to_standard_output_are_exact() -> None:
+    done = tool('simulate', 'paper_fig8', '--duration', '3', '--events', '-')
+    assert (done.returncode, done.stderr) == (0, '')
+    assert done.stdout.splitlines()[0] == EVENT_HEADER
+    rows = list(csv.DictReader(io.StringIO(done.stdout)))
+    events = [e for e in run_offline(load_scene('paper_fig8'), 3.0).events if e.kind != EventKind.KNOT]
+    assert len(rows) == len(events) > 10
+    for row, event in zip(rows, events):
+        assert row['kind'] == event.kind.name.lower()
+        assert int(row['direction']) == event.direction
+        for name in ('time', *EVENT_HEADER.split(',')[3:]):
+            assert float(row[name]) == getattr(event, name)
+    assert rows[0]['rest_time'] == 'inf'
+
+
+def test_knots_are_listed_on_request(capsys: Capture) -> None:
+    arguments = ['simulate', 'paper_fig4_falling', '--duration', '3', '--events', '-']
+    assert run(arguments) == 0
+    assert 'knot' not in capsys.readouterr().out
+    assert run([*arguments, '--knots']) == 0
+    assert ',' in capsys.readouterr().out.partition('knot')[2]
+
+
+def test_samples(tmp_path: Path) -> None:
+    path = tmp_path / 's.csv'
+    assert run(['simulate', 'paper_fig7', '--duration', '2', '--samples', str(path), '--sample-period', '0.01']) == 0
+    assert path.read_text().splitlines()[0] == SAMPLE_HEADER
+    rows = list(csv.DictReader(path.read_text().splitlines()))
+    expected = run_offline(load_scene('paper_fig7'), 2.0, 0.01).samples
+    assert len(rows) == 201
+    for k, row in enumerate(rows):
+        assert float(row['time']) == k / 100
+        assert Mode[row['mode']] == expected['mode'][k]
+        for name in SAMPLE_HEADER.split(',')[1:-1]:
+            assert float(row[name]) == expected[name][k]
+
+
+def test_samples_are_every_step_of_the_scene_by_default(tmp_path: Path) -> None:
+    assert run(['simulate', 'paper_fig7', '--duration', '0.1', '--samples', str(tmp_path / 's.csv'),
+                '--set', 'time.rate=500']) == 0
+    assert len((tmp_path / 's.csv').read_text().splitlines()) == 1 + 51
+
+
+def test_receipt_and_settings(tmp_path: Path) -> None:
+    for number, mass in enumerate(('350.0', '700.0')):
+        assert run(['simulate', 'paper_fig7', '--duration', '5', '--set', f'axis.mass={mass}', '--set',
+                    'drive.velocity=0.003', '--receipt', str(tmp_path / f'{number}.json')]) == 0
+    first, second = (json.loads((tmp_path / f'{number}.json').read_text()) for number in range(2))
+    assert first['duration'] == 5.0
+    assert first['scene_hash'] != second['scene_hash']
+    assert first['results']['last']['peak_speed'] != second['results']['last']['peak_speed']
+
+
+def test_plot(tmp_path: Path) -> None:
+    assert run(['simulate', 'paper_fig7', '--duration', '2', '--plot', str(tmp_path / 'p.png')]) == 0
+    assert (tmp_path / 'p.png').read_bytes().startswith(b'\x89PNG')
+    assert run(['simulate', 'paper_fig7', '--duration', '2', '--plot', str(tmp_path / 'p.svg')]) == 0
+    assert '<svg' in (tmp_path / 'p.svg').read_text()
+    assert sorted(path.name for path in tmp_path.iterdir()) == ['p.png', 'p.svg']
+
+
+def test_existing_files_are_replaced(tmp_path: Path) -> None:
+    path = tmp_path / 'e.csv'
+    path.write_text('old')
+    assert run(['simulate', 'paper_fig7', '--duration', '1', '--events', str(path)]) == 0
+    assert path.read_text().startswith(EVENT_HEADER)
+    assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.parametrize(('arguments', 'words'), [
+    (['simulate', 'paper_fig7'], ['--duration', 'simulate --help']),
+    (['simulate', '--duration', '1'], ['SCENE']),
+    (['simulate', 'paper_fig7', '--duration', 'long'], ['--duration', 'long', 'float']),
+    (['simulate', 'paper_fig7', '--duration', '-1'], ['duration', '-1', '> 0']),
+    (['simulate', 'paper_fig7', '--duration', 'nan'], ['duration', 'nan', '> 0']),
+    (['simulate', 'paper_fig7', '--duration', 'inf'], ['duration', 'inf', '<= 1e+09 s']),
+    (['simulate', 'no_such_scene', '--duration', '1'], ['no_such_scene', 'paper_fig8']),
+    (['simulate', 'paper_fig7', '--duration', '1', '--set', 'axis.mas=1'], ['axis.mas']),
+    (['simulate', 'paper_fig7', '--duration', '1', '--set', 'axis.mass=-1'], ['axis.mass', '-1', '> 0']),
+    (['simulate', 'paper_fig7', '--duration', '1', '--set', 'axis.mass'], ['axis.mass']),
+    (['simulate', 'paper_fig7', '--duration', '1', '--knots'], ['--knots', '--events']),
+    (['simulate', 'paper_fig7', '--duration', '1', '--sample-period', '1'], ['--sample-period', '--samples']),
+    (['simulate', 'paper_fig7', '--duration', '1', '--samples', '-', '--sample-period', '0'], ['sample period', '> 0']),
+    (['simulate', 'paper_fig7', '--duration', '1e6', '--samples', '-', '--sample-period', '1e-6'], ['rows']),
+    (['simulate', 'paper_fig7', '--duration', '1', '--events', '-', '--samples', '-'], ['--samples', '--events']),
+    (['simulate', 'paper_fig7', '--duration', '1', '--plot', 'run.jpg'], ['--plot', '.png']),
+    (['simulate', 'paper_fig7', '--duration', '1', '--events', '/no/folder/e.csv'], ['--events', '/no/folder']),
+    (['simulate', 'paper_fig7', '--duration', '1', '--receipt', '/'], ['--receipt', 'file name']),
+    (['simulate', 'paper_fig7', '--duration', '1', '--frobnicate'], ['--frobnicate']),
+    (['sing'], ['sing']),
+])
+def test_wrong_use(arguments: list[str], words: list[str], capsys: Capture) -> None:
+    line = refused(capsys, 2, *arguments)
+    for word in words:
+        assert word in line
+
+
+def test_an_existing_bag_folder_is_refused_before_the_work(tmp_path: Path, capsys: Capture) -> None:
+    assert str(tmp_path) in refused(capsys, 2, 'simulate', 'paper_fig7', '--duration', '1e8', '--bag', tmp_path)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason='root may write anywhere')
+def test_unwritable_folder(tmp_path: Path, capsys: Capture) -> None:
+    tmp_path.chmod(0o500)
+    assert 'written' in refused(capsys, 2, 'simulate', 'paper_fig7', '--duration', '1', '--events', tmp_path / 'e.csv')
+
+
+def test_a_full_disk_gets_one_line(capsys: Capture) -> None:
+    line = refused(capsys, 2, 'simulate', 'paper_fig7', '--duration', '1', '--events', '/dev/full')
+    assert 'No space left' in line
+
+
+def test_special_files_are_written_to_and_stay(capsys: Capture) -> None:
+    assert run(['simulate', 'paper_fig7', '--duration', '1', '--events', '/dev/null', '--receipt', '/dev/null']) == 0
+    assert Path('/dev/null').is_char_device()
+
+
+def test_internal_errors_get_one_line(monkeypatch: pytest.MonkeyPatch, capsys: Capture) -> None:
+    def fail(*_: object) -> None:
+        raise ZeroDivisionError('first\nsecond')
+
+    monkeypatch.setattr('stickslip_sim.offline.run_offline', fail)
+    assert 'ZeroDivisionError: first' in refused(capsys, 1, 'simulate', 'paper_fig7', '--duration', '1')
+    monkeypatch.setenv('STICKSLIP_DEBUG', '1')
+    with pytest.raises(ZeroDivisionError):
+        run(['simulate', 'paper_fig7', '--duration', '1'])
+
+
+def test_a_reader_that_leaves_early_is_no_error() -> None:
+    command = [sys.executable, '-m', 'stickslip_sim', 'simulate', 'paper_fig8', '--duration', '10', '--samples', '-']
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        assert process.stdout.readline().strip() == SAMPLE_HEADER
+        process.stdout.close()
+        assert process.stderr.read() == ''
+        assert process.wait(30) == 0
+
+
+@pytest.mark.parametrize(('number', 'code'), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_an_interrupted_run_leaves_nothing(number: signal.Signals, code: int, tmp_path: Path) -> None:
+    with started('--duration', '5e5', '--events', tmp_path / 'e.csv') as process:
+        time.sleep(0.5)
+        process.send_signal(number)
+        _, err = process.communicate(timeout=30)
+    assert process.returncode == code
+    assert err == ('stickslip: interrupted\n' if number == signal.SIGINT else '')
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.ros
+def test_an_interrupted_bag_vanishes(tmp_path: Path) -> None:
+    with started('--duration', '500', '--bag', tmp_path / 'bag') as process:
+        while process.poll() is None and not (tmp_path / 'bag').exists():
+            time.sleep(0.02)
+        process.send_signal(signal.SIGINT)
+        _, err = process.communicate(timeout=30)
+    assert (process.returncode, err) == (130, 'stickslip: interrupted\n')
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.ros
+def test_bag(tmp_path: Path) -> None:
+    from stickslip_sim.recording.reader import read_run
+
+    assert run(['simulate', 'paper_fig8', '--duration', '2', '--bag', str(tmp_path / 'bag'), '--samples',
+                str(tmp_path / 's.csv'), '--sample-period', '0.5']) == 0
+    assert len((tmp_path / 's.csv').read_text().splitlines()) == 1 + 5
+    recorded = read_run(tmp_path / 'bag')
+    assert recorded.is_complete
+    assert recorded.counts['/slider_state'] == 2001
+    assert recorded.counts['/mode_event'] == len(run_offline(load_scene('paper_fig8'), 2.0).events)
+    assert recorded.receipt['scene'] == 'paper_fig8'
+    assert 'paper_fig8' in recorded.attachments['scene.yaml'].decode()
+
+
+def started(*arguments: str | Path) -> subprocess.Popen[str]:
+    """Start a run of paper_fig8; return when the tool is about to parse its arguments."""
+    program = 'from stickslip_sim.cli import main; print(flush=True); main()'
+    process = subprocess.Popen([sys.executable, '-c', program, 'simulate', 'paper_fig8', *map(str, arguments)],
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=_default_interrupt)
+    assert process.stdout is not None
+    process.stdout.readline()
+    return process
+
+
+def test_no_ros_and_no_plots_unless_asked_for() -> None:
+    program = ('import sys; from stickslip_sim.cli.main import run; '
+               'assert run(["simulate", "paper_fig8", "--duration", "1"]) == 0; '
+               'found = {"rclpy", "stickslip_msgs", "matplotlib", "mcap", "rosbags"} & set(sys.modules); '
+               'assert not found, found')
+    subprocess.run([sys.executable, '-c', program], check=True, timeout=60, stdout=subprocess.DEVNULL)
+
+
+def test_help_loads_nothing_heavy() -> None:
+    program = ('import sys; from stickslip_sim.cli.main import run; assert run(["--help"]) == 0; '
+               'assert not {"numba", "numpy", "yaml"} & set(sys.modules)')
+    subprocess.run([sys.executable, '-c', program], check=True, timeout=60, stdout=subprocess.DEVNULL)
+
+
+def test_warm_is_quiet(capsys: Capture) -> None:
+    assert run(['warm']) == 0
+    assert capsys.readouterr() == ('', '')
+
+
+def _default_interrupt() -> None:
+    signal.signal(signal.SIGINT, signal.default_int_handler)

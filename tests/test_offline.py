@@ -1,0 +1,115 @@
+"""Offline runs: samples at exact instants, receipts, limits."""
+
+import json
+import math
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from stickslip_sim.errors import InputError
+from stickslip_sim.offline import MAX_SAMPLES, Trajectory, check_times, run_offline
+from stickslip_sim.scene import load_scene
+from stickslip_sim.words import Event, EventKind, Sample
+
+
+@pytest.fixture(scope='module')
+def run() -> Trajectory:
+    return run_offline(load_scene('paper_fig8'), 5.0, 0.001)
+
+
+def test_samples_are_at_exact_instants(run: Trajectory) -> None:
+    assert len(run.samples['time']) == 5001
+    assert run.samples['time'].tolist() == [k / 1000 for k in range(5001)]
+    for k, (second, fraction) in enumerate(zip(run.samples['second'], run.samples['fraction'])):
+        whole, rest = divmod(Fraction(k, 1000), 1)
+        assert (second, fraction) == (float(whole), float(rest))
+
+
+def test_columns_are_those_of_a_sample(run: Trajectory) -> None:
+    assert set(run.samples) == {*Sample._fields, 'time'}
+    last = list(run.sample_rows())[-1]
+    assert last.time == 5.0
+    assert last.position == run.samples['position'][-1]
+    assert last.mode.name == run.receipt['results']['final_state']['mode']
+
+
+def test_events_do_not_depend_on_the_samples(run: Trajectory) -> None:
+    other = run_offline(load_scene('paper_fig8'), 5.0)
+    _assert_same(other.events, run.events)
+    assert len(other.samples['time']) == 0
+    coarse = run_offline(load_scene('paper_fig8'), 5.0, 0.5)
+    _assert_same(coarse.events, run.events)
+    np.testing.assert_allclose(coarse.samples['position'], run.samples['position'][::500], rtol=0, atol=1e-14)
+
+
+def _assert_same(some: list[Event], others: list[Event]) -> None:
+    assert [event.kind for event in some] == [event.kind for event in others]
+    for event, other in zip(some, others):
+        assert event.time == pytest.approx(other.time, rel=0, abs=1e-13)
+        assert event.position == pytest.approx(other.position, rel=0, abs=1e-13)
+
+
+def test_a_period_that_does_not_divide_the_duration_ends_before_it() -> None:
+    run = run_offline(load_scene('paper_fig7'), 1.0, Fraction(3, 10))
+    assert run.samples['time'].tolist() == [0.0, 0.3, 0.6, 0.9]
+    assert run.receipt['results']['final_state']['second'] == 1.0
+    assert len(run_offline(load_scene('paper_fig7'), 1.0, 7.0).samples['time']) == 1
+
+
+def test_same_run_twice_is_bit_identical(run: Trajectory) -> None:
+    again = run_offline(load_scene('paper_fig8'), 5.0, 0.001)
+    assert again.events == run.events
+    assert all(np.array_equal(again.samples[name], run.samples[name]) for name in run.samples)
+    assert again.receipt['results'] == run.receipt['results']
+
+
+def test_receipt_says_what_ran_and_what_came_out(run: Trajectory) -> None:
+    receipt = json.loads(json.dumps(run.receipt, allow_nan=False))
+    assert receipt['scene'] == 'paper_fig8'
+    assert receipt['scene_hash'] == run.scene.hash
+    assert receipt['solver'] == 'exact'
+    assert set(receipt['versions']) == {'stickslip', 'python', 'numpy', 'hot_path'}
+    results = receipt['results']
+    assert results['events']['breakaway'] == sum(event.kind == EventKind.BREAKAWAY for event in run.events)
+    assert results['motion'] == 'stick-slip'
+    assert results['root_iterations'] > 0
+    assert results['mean']['rest_time'] == 'inf'
+    assert set(receipt['cost']) == {'cpu_time_s', 'cpu_time_per_simulated_second', 'wall_time_s'}
+
+
+def test_smooth_sliding_gets_a_receipt_too() -> None:
+    run = run_offline(load_scene('fast_feed'), 3.0)
+    assert run.receipt['results']['motion'] == 'smooth sliding'
+    assert run.receipt['results']['last'] is None
+
+
+def test_progress_reaches_the_end() -> None:
+    seen: list[float] = []
+    run_offline(load_scene('paper_fig7'), 1.0, 0.01, seen.append)
+    assert seen == sorted(seen)
+    assert seen[-1] == 1.0
+
+
+@pytest.mark.parametrize('duration', [0.0, -1.0, math.nan, math.inf, 1e12])
+def test_refused_durations(duration: float) -> None:
+    with pytest.raises(InputError, match='duration'):
+        run_offline(load_scene('paper_fig7'), duration)
+
+
+@pytest.mark.parametrize('period', [0.0, -0.001, math.nan, math.inf])
+def test_refused_sample_periods(period: float) -> None:
+    with pytest.raises(InputError, match='sample period'):
+        run_offline(load_scene('paper_fig7'), 1.0, period)
+
+
+def test_too_many_samples_are_refused_with_their_number() -> None:
+    check_times(1.0, 1.0 / (MAX_SAMPLES - 2))
+    with pytest.raises(InputError, match='60000000001 rows'):
+        check_times(60.0, 1e-9)
+
+
+def test_too_many_events_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr('stickslip_sim.offline.MAX_EVENTS', 10)
+    with pytest.raises(InputError, match='at most 10 events'):
+        run_offline(load_scene('paper_fig8'), 60.0)

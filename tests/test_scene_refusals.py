@@ -1,0 +1,127 @@
+"""Scene files with something wrong: one line that names the file, the thing, its value, the range and the fix."""
+
+import math
+import os
+import pathlib
+
+import pytest
+
+from stickslip_sim.scene import load_scene, scene_from_values
+from stickslip_sim.scene.load import SIZE_LIMIT
+from stickslip_sim.scene.ros_yaml import plain_value, read_yaml
+from tests.scene_files import refusal, write
+
+
+@pytest.mark.parametrize(('word', 'value'), [
+    ('350', 350), ('350.', 350.0), ('.5', 0.5), ('6e5', 6e5), ('6.0e+05', 6e5), ('-1E-3', -1e-3), ('.inf', math.inf),
+    ('-.inf', -math.inf), ('inf', math.inf), ('0x10', 16), ('010', 8), ('08', 8.0), ('1_000', '1_000'),
+    ('1:30', '1:30'), ('null', 'null'), ('~', '~'), ('2020-01-01', '2020-01-01'), ('1e400', '1e400'),
+    ('1e-320', '1e-320'), ('yes', True), ('Off', False), ('1.0f', '1.0f'), ('9223372036854775808', 2.0**63),
+    ('9' * 400, '9' * 400), ('rigid', 'rigid'),
+])
+def test_plain_words_have_the_types_of_ros(word: str, value: object) -> None:
+    assert (plain_value(word), type(plain_value(word))) == (value, type(value))
+
+
+def test_not_a_number_is_read_as_one_and_refused_as_a_value() -> None:
+    assert math.isnan(plain_value('.nan'))   # type: ignore[arg-type]
+    assert refusal(scene_from_values, {'axis.mass': math.nan}).name == 'axis.mass'
+    assert refusal(scene_from_values, {'initial.rest_time': math.nan}).name == 'initial.rest_time'
+
+
+@pytest.mark.parametrize(('text', 'hint'), [
+    ('a: &x 1.0\nb: *x\n', 'aliases'), ('a: 1\na: 2\n', 'twice'), ('a: !!python/object:os.system 1\n', 'tags'),
+    ('a: [1, 2\n', 'line 2'), ('a:\n', 'missing'), ('a: 1\n---\nb: 2\n', 'document'), ('a: b: c\n', 'line 1'),
+    ('[' * 400, 'deep'), ('? [1]\n: 2\n', 'word'), ('a: \x00\n', 'printable'), ('a: !x 1\n', 'tags'),
+])
+def test_yaml_that_ros_refuses_or_passes_over(text: str, hint: str) -> None:
+    assert hint in str(refusal(read_yaml, text))
+
+
+@pytest.mark.parametrize(('body', 'name', 'hint'), [
+    ('    axis: {mass: -1.0}\n', 'axis.mass', '> 0 kg'),
+    ('    axis: {mass: .nan}\n', 'axis.mass', 'finite'),
+    ('    axis: {mass: .inf}\n', 'axis.mass', 'finite'),
+    ('    axis: {mass: "350"}\n', 'axis.mass', 'without quotes'),
+    ('    axis: {mass: true}\n', 'axis.mass', 'a number'),
+    ('    axis: {mass: [1.0]}\n', 'axis.mass', 'a number'),
+    ('    axis: {mas: 1.0}\n', 'axis.mas', 'did you mean axis.mass?'),
+    ('    axis: 5.0\n', 'axis', 'it is a section'),
+    ('    axes: {mass: 1.0}\n', 'axes.mass', 'did you mean axis.mass?'),
+    ('    encoder: {resolution: 1.0}\n', 'encoder.resolution', 'axis, contact'),
+    ('    command: {timeout: 0.5}\n', 'command.timeout', 'max_velocity'),
+    ('    drive: {course: sine}\n', 'drive.course', 'constant, ramp, steps, table'),
+    ('    solver: {name: fixed_step}\n', 'solver.name', 'exact'),
+    ('    time: {mode: lockstep}\n', 'time.mode', 'realtime'),
+    ('    time: {rate: 0.5}\n', 'time.rate', '>= 1 and <= 20000 Hz'),
+    ('    time: {factor: 0.0}\n', 'time.factor', '>= 0.001'),
+    ('    seed: 1.5\n', 'seed', 'a whole number'),
+    ('    seed: -1\n', 'seed', '>= 0'),
+    ('    record: {enabled: 1}\n', 'record.enabled', 'true or false'),
+    ('    scene: 5\n', 'scene', 'quotes'),
+    ('    scene: "a\\nb"\n', 'scene', 'printable'),
+    ('    command: {max_force: 0.0}\n', 'command.max_force', '> 0'),
+    ('    contact: {stiffness: 1.0e6}\n', 'contact.stiffness', 'contact.model: rigid'),
+    ('    contact: {model: compliant}\n', 'contact.stiffness', 'contact.model: compliant'),
+    ('    friction: {static: {limit: 0.2}}\n', 'friction.static.limit', 'law: constant'),
+    ('    friction: {static: {law: exponential, limit: 0.2, time_constant: 0.1, exponent: 2.0}}\n',
+     'friction.static.exponent', 'kato'),
+    ('    friction: {static: {law: kato, limit: 0.2, time_constant: 0.1}}\n', 'friction.static.exponent', 'add it'),
+    ('    friction: {kinetic: {law: stribeck}}\n', 'friction.kinetic.law', 'velocities, coefficients'),
+    ('    friction: {excess: {velocities: [0.0, 1.0], fractions: [1.0, 0.0]}}\n', 'friction.excess.velocities',
+     'acceleration_dependence: false'),
+    ('    friction: {kinetic: {velocities: [0, 0.035]}}\n', 'friction.kinetic.velocities', 'one type'),
+    ('    friction: {kinetic: {velocities: [0.0, -0.1]}}\n', 'friction.kinetic.velocities', '>= 0'),
+    ('    friction: {kinetic: {velocities: []}}\n', 'friction.kinetic.velocities', 'at least one'),
+    ('    friction: {kinetic: {velocities: 0.0}}\n', 'friction.kinetic.velocities', 'a list'),
+    ('    friction: {kinetic: {velocities: [0.0, 0.0], coefficients: [0.0, 0.0]}}\n', 'friction.kinetic.velocities',
+     'increasing'),
+    ('    friction: {kinetic: {coefficients: [0.1]}}\n', 'friction.kinetic.coefficients[0]', 'static.initial'),
+    ('    friction: {static: {law: logarithmic, initial: 0.1, limit: 0.2, time_constant: 1.0}}\n', 'initial.rest_time',
+     'finite'),
+    ('    drive: {velocity: 1.0, course: table, times: [0.0], velocities: [1.0]}\n', 'drive.velocity', 'course: table'),
+    ('    drive: {times: [0.0]}\n', 'drive.times', 'drive.course: steps or table'),
+    ('    drive: {course: steps, times: [0.0]}\n', 'drive.velocities', 'add it'),
+    ('    drive: {course: steps, times: [0.0, 2.0], velocities: [0.0, 1.0], period: 1.0}\n', 'drive.times', 'period'),
+    ('    drive: {course: steps, times: [0.0], velocities: [0.0], period: 1.0e-9}\n', 'drive.period', '>= 1e-06 s'),
+    ('    force: {course: ramp, rate: 1.0e200, duration: 1.0e200}\n', 'force.rate', 'finite'),
+    ('    force: {velocity: 1.0}\n', 'force.velocity', 'constant, rate'),
+])
+def test_a_wrong_file_is_refused_by_name_in_one_line(body: str, name: str, hint: str, tmp_path: pathlib.Path) -> None:
+    path = write(tmp_path, body)
+    error = refusal(load_scene, path)
+    assert error.name == name
+    assert str(error).startswith(f'{path}: {name} = ')
+    assert hint in str(error)
+
+
+@pytest.mark.parametrize(('text', 'hint'), [
+    ('', '/**'), ('5\n', '/**'), ('- 1\n', '/**'), ('/**: 5\n', '/**'), ('/**:\n  ros__parameters: {}\n', 'shipped'),
+    ('ros__parameters: {seed: 1}\n', '/**'), ('axis: {mass: 1.0}\n', 'ros__parameters'),
+    ('/other: {ros__parameters: {seed: 1}}\n', 'one axis only'), ('/**: {ros__parameters: 5}\n', 'mapping'),
+    ('/**: {ros__parameters: {axis: {mass: 1.0}, axis.mass: 2.0}}\n', 'twice'),
+    ('/**: {ros__parameters: {seed: 1}, extra: 2}\n', 'ros__parameters'),
+])
+def test_a_file_that_is_no_scene(text: str, hint: str, tmp_path: pathlib.Path) -> None:
+    path = write(tmp_path, '', text)
+    error = refusal(load_scene, path)
+    assert str(error).startswith(path)
+    assert hint in str(error)
+
+
+def test_files_that_cannot_be_read(tmp_path: pathlib.Path) -> None:
+    binary = tmp_path / 'binary.yaml'
+    binary.write_bytes(b'\x89\xff\x00')
+    assert 'UTF-8' in str(refusal(load_scene, str(binary)))
+    huge = tmp_path / 'huge.yaml'
+    huge.write_bytes(b'#' * (SIZE_LIMIT + 1))
+    assert 'at most' in str(refusal(load_scene, str(huge)))
+    assert 'No such file' in str(refusal(load_scene, str(tmp_path / 'none.yaml')))
+    assert 'directory' in str(refusal(load_scene, str(tmp_path) + os.sep))
+
+
+def test_an_unknown_name_lists_the_scenes() -> None:
+    error = refusal(load_scene, 'paper_fig9')
+    assert 'positioning' in str(error)
+    assert 'did you mean paper_fig' in str(error)
+    assert refusal(load_scene, '').name == 'scene'

@@ -1,0 +1,58 @@
+"""The canonical text of a scene."""
+
+import math
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from stickslip_sim.scene import load_scene, scene_from_values
+from stickslip_sim.scene.ros_yaml import read_yaml
+from stickslip_sim.scene.sections import parameters_of
+
+positive = st.floats(1e-300, 1e300)
+signed = st.floats(-1e300, 1e300).filter(lambda x: x == 0.0 or abs(x) > 1e-300)
+words = st.text(st.characters(categories=['L', 'N', 'P', 'S', 'Zs']), max_size=40).filter(str.isprintable)
+knots = st.lists(st.floats(1e-9, 1e9), max_size=4, unique=True).map(lambda speeds: [0.0, *sorted(speeds)])
+
+
+@st.composite
+def overrides(draw: st.DrawFn) -> dict[str, object]:
+    speeds = draw(knots)
+    times = draw(knots)
+    courses: list[dict[str, object]] = [
+        {'drive.course': 'constant', 'drive.velocity': draw(signed)},
+        {'drive.course': 'ramp', 'drive.acceleration': draw(st.floats(-1e9, 1e9).filter(lambda x: abs(x) > 1e-9))},
+        {'drive.course': 'steps', 'drive.times': times, 'drive.velocities': [0.1] * len(times), 'drive.period': 1e10},
+        {'force.course': 'table', 'force.times': times, 'force.period': 1e10, 'force.forces': draw(
+            st.lists(st.floats(-1e5, 1e5, allow_subnormal=False), min_size=len(times), max_size=len(times)))},
+    ]
+    return {
+        'scene': draw(words), 'axis.mass': draw(positive), 'axis.drive_damping': draw(positive),
+        'friction.kinetic.velocities': speeds, 'friction.kinetic.coefficients': [0.1] * len(speeds),
+        'friction.acceleration_dependence': len(speeds) > 1, 'initial.position': draw(signed),
+        'initial.rest_time': draw(st.one_of(positive, st.just(math.inf))), 'record.folder': draw(words),
+        'record.enabled': draw(st.booleans()), 'seed': draw(st.integers(0, 2**63 - 1)),
+        **draw(st.sampled_from(courses)),
+    }
+
+
+@settings(max_examples=30, deadline=None, derandomize=True)
+@given(overrides(), st.sampled_from(['paper_fig7', 'paper_fig8', 'cutting_force']))
+def test_the_text_of_a_scene_loads_as_the_same_scene(changes: dict[str, object], name: str) -> None:
+    scene = load_scene(name, changes)
+    again = scene_from_values(parameters_of(read_yaml(scene.text)))
+    assert again == scene
+    assert again.text == scene.text
+
+
+def test_doubles_in_the_text_have_a_dot_for_every_yaml_reader() -> None:
+    text = scene_from_values({'axis.mass': 1e22, 'axis.drive_stiffness': 1e-5, 'initial.position': -0.0}).text
+    assert 'mass: 1.0e+22\n' in text
+    assert 'drive_stiffness: 1.0e-05\n' in text
+    assert 'position: 0.0\n' in text
+    assert 'rest_time: .inf\n' in text
+
+
+def test_equal_values_give_equal_hashes_in_any_order() -> None:
+    values = load_scene('paper_fig8').values
+    assert scene_from_values(dict(reversed(values.items()))).hash == load_scene('paper_fig8').hash
