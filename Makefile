@@ -27,8 +27,8 @@ check: tools  ## style, types, architecture
 	@$(TOOLS)/mypy
 	@PYTHONPATH=stickslip_sim $(TOOLS)/lint-imports
 
-bench: build  ## speed and accuracy of every solver
-	@$(HERE) python3 -m stickslip_sim bench
+bench: build  ## measure the loop of the node; writes docs/loop.md (six minutes)
+	@$(HERE) --own-domain python3 benchmarks/loop.py
 
 clean:  ## remove everything that was set up, built or cached in this tree
 	rm -rf ros2_ws/{.venv,build,install,log} runs .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache

@@ -149,7 +149,7 @@ def test_one_call_or_many_give_the_same_bits(seed: int) -> None:
 
 
 def test_smooth_sliding_ends_in_steady_coasting() -> None:
-    """A decaying oscillation ends where it drowns in rounding: the speed is the drive's, and there are no more events."""
+    """A decaying oscillation ends where it drowns in rounding: at the speed of the drive, without more events."""
     for contact in (RIGID, COMPLIANT):
         simulator = make(paper_axis(contact), 0.08)
         simulator.advance(instant(20.0))

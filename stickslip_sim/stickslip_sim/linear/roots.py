@@ -59,10 +59,7 @@ def first_passage(osc, rate, jerk, snap, gap, horizon):
     if gap <= 0.0:
         return 0.0, True
     horizon = finite_horizon(osc, horizon)
-    if snap == 0.0:
-        turn = first_zero(osc, rate, jerk - 2.0 * osc[0] * rate)
-    else:
-        turn = _first_turn(osc, rate, jerk, snap)
+    turn = _first_turn(osc, rate, jerk, snap) if snap != 0.0 else first_zero(osc, rate, jerk - 2.0 * osc[0] * rate)
     end = min(turn, horizon)
     if gap < math.inf:
         reached, _, _ = _passage(osc, rate, jerk, snap, end)

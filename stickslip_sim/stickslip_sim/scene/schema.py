@@ -114,7 +114,8 @@ PARAMETERS: tuple[Parameter, ...] = (
             live=True),
 
     Parameter('record.enabled', 'bool', False, '', 'whether the node records a bag from the start'),
-    Parameter('record.folder', 'string', '', '', 'folder of the bag, which must not exist; empty: the node chooses'),
+    Parameter('record.folder', 'string', '', '', 'folder of the bag, which must not exist; empty: the node chooses',
+              live=True),
 
     Parameter('seed', 'integer', 0, '', 'of everything random in the run', 0, 2**63 - 1),
 )

@@ -1,0 +1,146 @@
+"""The only wall clock: which step is due when, on the steady clock.  Everywhere else time is an argument.
+
+Deadlines are absolute: step n is due at start + n / (rate · factor), computed from the integer n, so that nothing
+accumulates.  A late step is caught up at once; what is later than the allowed backlog is skipped and counted.
+"""
+
+import ctypes
+import time
+from contextlib import suppress
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Protocol
+
+from .words import Instant
+
+NANOSECONDS = 1_000_000_000
+_MAX_BACKLOG = NANOSECONDS // 2   # ns that a stalled loop catches up
+_PR_SET_TIMERSLACK = 29
+_SLICE = 0.05                     # s: how soon a waiting loop notices that it shall stop
+
+
+class Clock(Protocol):
+    """A clock that never jumps, ns from an arbitrary origin."""
+
+    def now(self) -> int:
+        """Return the time, ns."""
+
+    def sleep(self, seconds: float) -> None:
+        """Wait."""
+
+
+class SteadyClock:
+    """The machine's steady clock."""
+
+    now = staticmethod(time.monotonic_ns)
+    sleep = staticmethod(time.sleep)
+
+
+def wall_clock_ns() -> int:
+    """Return the time of day, ns since 1970 (what ROS time is without a simulated clock)."""
+    return time.time_ns()
+
+
+def utc_stamp() -> str:
+    """Return the time of day as a part of a folder name, to the second."""
+    return time.strftime('%Y%m%dT%H%M%SZ', time.gmtime())
+
+
+def wake_precisely() -> None:
+    """Let the kernel wake this thread when it is due; it may be 50 µs late by default (docs/loop.md has the effect)."""
+    with suppress(OSError, AttributeError):    # of Linux only
+        ctypes.CDLL(None).prctl(_PR_SET_TIMERSLACK, 1, 0, 0, 0)
+
+
+class Grid:
+    """The times of the steps: step n ends at n / rate, exact for every rate (1/s, > 0)."""
+
+    def __init__(self, rate: float) -> None:
+        self.rate = rate
+        self._up, self._down = _decimal(rate).as_integer_ratio()
+
+    def instant(self, step: int) -> Instant:
+        """Return the simulation time at which a step ends."""
+        second, rest = divmod(step * self._down, self._up)
+        return Instant(float(second), rest / self._up)
+
+    def nanoseconds(self, step: int) -> int:
+        """Return that time rounded to nanoseconds."""
+        return self.instant(step).nanoseconds
+
+
+@dataclass(slots=True)
+class Account:
+    """How the steps kept their time; durations in ns."""
+
+    steps: int = 0
+    overruns: int = 0       # began more than a period late
+    caught_up: int = 0      # made without waiting
+    skips: int = 0          # times that wall time was given up
+    skipped: int = 0        # ns of wall time given up
+
+
+class Pacer:
+    """Says when each step is due, and accounts for lateness.
+
+    `factor` is simulation time per wall time.
+    """
+
+    def __init__(self, grid: Grid, factor: float = 1.0, clock: Clock | None = None) -> None:
+        up, down = (_decimal(grid.rate) * _decimal(factor)).as_integer_ratio()
+        self._numerator, self._denominator = NANOSECONDS * down, up
+        self.period = self._numerator // self._denominator
+        self.account = Account()
+        self._backlog = max(_MAX_BACKLOG, 2 * self.period)
+        self._clock: Clock = clock or SteadyClock()
+        self._origin = 0
+        self._waited = False
+        self.restart(0)
+
+    def restart(self, step: int) -> None:
+        """Let a step be due now, and those after it follow."""
+        self._origin = self._clock.now() - self._offset(step)
+
+    def due(self, step: int) -> int:
+        """Return when a step is due, ns on the steady clock."""
+        return self._origin + self._offset(step)
+
+    def wait(self, step: int) -> bool:
+        """Wait until a step is due, at most a while; return whether it is."""
+        left = self.due(step) - self._clock.now()
+        if left <= 0:
+            return True
+        self._waited = True
+        self._clock.sleep(min(left / NANOSECONDS, _SLICE))
+        return self.due(step) <= self._clock.now()
+
+    def idle(self, seconds: float) -> None:
+        """Wait while time stands still."""
+        self._clock.sleep(seconds)
+
+    def begin(self, step: int) -> tuple[int, int]:
+        """Account for a step that begins; return the time now and how late it is, ns."""
+        now = self._clock.now()
+        lateness = now - self.due(step)
+        account = self.account
+        account.steps += 1
+        account.caught_up += not self._waited
+        account.overruns += lateness > self.period
+        if lateness > self._backlog:
+            account.skips += 1
+            account.skipped += lateness
+            self._origin += lateness
+        self._waited = False
+        return now, lateness
+
+    def now(self) -> int:
+        """Return the time, ns on the steady clock."""
+        return self._clock.now()
+
+    def _offset(self, step: int) -> int:
+        return step * self._numerator // self._denominator
+
+
+def _decimal(number: float) -> Fraction:
+    """Return the decimal number that a float was written as, so that 3333 steps at 333.3 Hz take 10 s."""
+    return Fraction(repr(number))

@@ -1,0 +1,41 @@
+"""Commands on their way in: checked when they arrive, the latest good one kept until the step loop takes it."""
+
+from typing import NamedTuple
+
+
+class Command(NamedTuple):
+    """A command and when it arrived, ns on the steady clock."""
+
+    value: float
+    arrival: int
+
+
+class CommandSlot:
+    """The latest good command of one kind; one thread offers, one takes.
+
+    `limit` bounds its magnitude; what lies beyond, and NaN, is refused and counted.
+    """
+
+    def __init__(self, name: str, unit: str, limit: float) -> None:
+        self.name = name
+        self.unit = unit
+        self.limit = limit
+        self.received = 0
+        self.refused = 0
+        self.last_refusal = ''
+        self.latest: Command | None = None
+
+    def offer(self, value: float, arrival: int) -> str:
+        """Take a value that arrived; return why it is refused, or an empty text.  The one before stays then."""
+        self.received += 1
+        if -self.limit <= value <= self.limit:   # false for NaN
+            self.latest = Command(value, arrival)
+            return ''
+        self.refused += 1
+        self.last_refusal = (f'{self.name} = {value!r} is refused: must be finite and within '
+                             f'±{self.limit!r} {self.unit}; the previous command stays')
+        return self.last_refusal
+
+    def forget(self) -> None:
+        """Drop the command that waits or holds, as if none had come."""
+        self.latest = None

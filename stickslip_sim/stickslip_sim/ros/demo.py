@@ -1,0 +1,157 @@
+"""The demonstration, `make run`: drives the installed node from a process of its own, and shows what was recorded."""
+
+import argparse
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import NamedTuple
+
+import rclpy
+from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
+
+from stickslip_msgs.msg import DriveVelocity, ExternalForce, SliderState
+
+from ..errors import RecordingError, StickslipError
+from ..pacing import utc_stamp
+from ..recording import topics as names
+from ..words import Mode
+from .demo_report import report
+from .recordings import first_free
+from .topics import publisher, subscription
+
+SCENE = 'paper_fig8'
+_PATIENCE = 30.0    # s for the node to appear, and to end
+
+
+class Order(NamedTuple):
+    """A command and when it is sent, as a share of the duration."""
+
+    share: float
+    message: DriveVelocity | ExternalForce
+
+
+_COURSE = (
+    Order(0.30, DriveVelocity(velocity=0.005)),
+    Order(0.45, DriveVelocity(velocity=-0.003)),
+    Order(0.60, DriveVelocity(velocity=0.002)),
+    Order(0.72, ExternalForce(force=400.0)),
+    Order(0.74, ExternalForce(force=0.0)),
+)
+
+
+class Driver(Node):  # type: ignore[misc]
+    """Sends the course when simulation time has come for it, and tells the state once a second."""
+
+    def __init__(self, duration: float) -> None:
+        super().__init__('demo')
+        self.time = -1.0
+        self._duration = duration
+        self._orders = list(_COURSE)
+        self._told = -1
+        self._out = {DriveVelocity: publisher(self, names.DRIVE_VELOCITY),
+                     ExternalForce: publisher(self, names.EXTERNAL_FORCE)}
+        subscription(self, names.SLIDER_STATE, self._take)
+
+    @property
+    def is_connected(self) -> bool:
+        """Whether the node hears the commands and is heard."""
+        return self.time >= 0.0 and all(out.get_subscription_count() for out in self._out.values())
+
+    def _take(self, state: SliderState) -> None:
+        self.time = state.time
+        while self._orders and self.is_connected and self.time >= self._orders[0].share * self._duration:
+            self._send(self._orders.pop(0).message)
+        if int(self.time) > self._told:
+            self._told = int(self.time)
+            print(f'  t {state.time:5.1f} s   drive {state.drive_velocity * 1e3:5.1f} mm/s   slider '
+                  f'{state.velocity * 1e3:6.2f} mm/s at {state.position * 1e3:6.2f} mm   '
+                  f'{Mode(state.mode).name.lower()}',
+                  flush=True)
+
+    def _send(self, message: DriveVelocity | ExternalForce) -> None:
+        message.header.stamp = self.get_clock().now().to_msg()
+        self._out[type(message)].publish(message)
+        is_force = isinstance(message, ExternalForce)
+        told = f'force {message.force:g} N' if is_force else f'drive velocity {message.velocity * 1e3:g} mm/s'
+        print(f'  t {self.time:5.1f} s   sent: {told}', flush=True)
+
+
+def main() -> int:
+    """Run the demonstration; return the exit code."""
+    options = _options()
+    folder = first_free(lambda number: options.out / f'{SCENE}_{utc_stamp()}{f"_{number}" if number > 1 else ""}')
+    try:
+        print(f'starting sim_node on {SCENE} for {options.duration:g} s of real time')
+        with _node_process(folder) as process:
+            _drive(process, options.duration)
+        print('\n'.join(report(folder)))
+    except (StickslipError, OSError) as error:
+        sys.stderr.write(f'demo: {error}\n')
+        return 1
+    return 0
+
+
+def _options() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog='python3 -m stickslip_sim.ros.demo', description=__doc__)
+    parser.add_argument('--duration', type=float, default=10.0, metavar='S',
+                        help='simulated and real time [%(default)s s]')
+    parser.add_argument('--out', type=Path, default=Path('runs'), metavar='FOLDER', help='where runs go [%(default)s]')
+    options = parser.parse_args()
+    if not 1.0 <= options.duration <= 1e6:
+        parser.error(f'argument --duration: {options.duration:g} s; give 1 to 1e6 s')
+    return options
+
+
+@contextmanager
+def _node_process(folder: Path) -> Iterator[subprocess.Popen[bytes]]:
+    """Run the node, recording into a folder, and end it as Ctrl-C does; raises RecordingError unless it ends well."""
+    process = subprocess.Popen(
+        [_executable('sim_node'), '--ros-args', '--log-level', 'warn', '-p', f'scene:={SCENE}',
+         '-p', 'record.enabled:=true', '-p', f'record.folder:={folder.absolute()}'],
+        start_new_session=True)    # so that Ctrl-C reaches it through here only
+    try:
+        yield process
+        if process.poll() is None:
+            process.send_signal(signal.SIGINT)
+        if process.wait(_PATIENCE) != 0:
+            raise RecordingError(f'sim_node ended with exit code {process.returncode}')
+    finally:
+        if process.poll() is None:
+            process.kill()
+            process.wait()
+
+
+def _executable(name: str) -> str:
+    """Return an installed program of the package, found as `ros2 run` finds it."""
+    for prefix in os.environ.get('AMENT_PREFIX_PATH', '').split(os.pathsep):
+        path = Path(prefix, 'lib', 'stickslip_sim', name)
+        if path.is_file():
+            return str(path)
+    raise RecordingError(f'{name} is not installed; run `make build` and source ros2_ws/install/setup.bash')
+
+
+def _drive(process: subprocess.Popen[bytes], duration: float) -> None:
+    """Send the course; Ctrl-C ends it early and well."""
+    rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
+    driver = Driver(duration)
+    begin = time.monotonic()
+    try:
+        while driver.time < duration and process.poll() is None:
+            rclpy.spin_once(driver, timeout_sec=0.5)
+            if not driver.is_connected and time.monotonic() - begin > _PATIENCE:
+                raise RecordingError(f'no sign of sim_node within {_PATIENCE:g} s; is another ROS_DOMAIN_ID in force?')
+    except KeyboardInterrupt:
+        print('  interrupted; the run ends here')
+    finally:
+        driver.destroy_node()
+        rclpy.try_shutdown()
+
+
+if __name__ == '__main__':
+    sys.exit(main())

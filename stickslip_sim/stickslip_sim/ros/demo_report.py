@@ -1,0 +1,84 @@
+"""What the demonstration tells about its recorded run: read back from the bag, with nothing else to go by."""
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..analysis import Summary, summary
+from ..plots import plot_run
+from ..recording import Run, read_run
+from ..words import Event, EventKind, Mode
+
+PICTURE = 'run.png'
+_FIGURES = (
+    ('period', 'period', 1.0, 's'), ('stick time', 'stick_time', 1.0, 's'), ('slip time', 'slip_time', 1.0, 's'),
+    ('jump', 'jump', 1e3, 'mm'), ('peak speed', 'peak_speed', 1e3, 'mm/s'),
+    ('break-away force', 'break_away_force', 1.0, 'N'),
+)
+
+
+def report(folder: Path) -> list[str]:
+    """Draw the picture of a run into its folder; return what to tell about the run, in lines."""
+    run = read_run(folder)
+    samples, events = samples_of(run), events_of(run)
+    figures = summary(events, float(samples['time'][-1]), Mode(int(samples['mode'][0])))
+    scene = run.metadata['stickslip']['scene']
+    plot_run(samples, events, f'{scene} in real time\n{headline(figures)}', folder / PICTURE)
+    return [f'bag      {folder} ({sum(run.counts.values())} messages)', f'picture  {folder / PICTURE}',
+            *cycle_lines(figures), *timing_lines(run.columns('/timing'))]
+
+
+def samples_of(run: Run) -> dict[str, NDArray[Any]]:
+    """Return the states of a run by the columns of `words.Sample`, and `time`."""
+    states, friction = run.columns('/slider_state'), run.columns('/friction_force')
+    force = np.zeros(len(states['step']))
+    for message in run.messages(['/external_force']):
+        force[states['step'] >= message.sequence] = run.decode(message).force
+    return {**states, 'friction_force': friction['force'], 'friction_coefficient': friction['coefficient'],
+            'contact_deflection': friction['contact_deflection'], 'external_force': force}
+
+
+def events_of(run: Run) -> list[Event]:
+    """Return the events of a run."""
+    events = []
+    for message in map(run.decode, run.messages(['/mode_event'])):
+        second = math.floor(message.time)
+        events.append(Event(float(second), message.time - second, EventKind(message.kind), Mode(message.mode),
+                            message.direction, message.position, message.velocity, math.nan, message.drive_force,
+                            message.friction_force, message.static_coefficient, message.rest_time))
+    return events
+
+
+def headline(figures: Summary) -> str:
+    """Return the figures of the last cycle in one line."""
+    if figures.last is None:
+        return figures.motion
+    return 'last cycle: ' + ' · '.join(f'{name} {getattr(figures.last, field) * scale:.4g} {unit}'
+                                       for name, field, scale, unit in _FIGURES)
+
+
+def cycle_lines(figures: Summary) -> list[str]:
+    """Return the cycle figures."""
+    if figures.last is None:
+        return [f'cycles   none: {figures.motion}']
+    lines = [f'{name:17} {getattr(figures.last, field) * scale:9.4g} {unit}' for name, field, scale, unit in _FIGURES]
+    return [f'cycles   {figures.cycles}; of the last one:', *(f'         {line}' for line in lines)]
+
+
+def timing_lines(windows: dict[str, NDArray[Any]]) -> list[str]:
+    """Return how the steps kept their time, from the seconds recorded."""
+    if not len(windows['steps']):
+        return ['timing   no second was completed']
+    micro = 1e6
+    return [
+        f'timing   {windows["steps"].sum()} steps of {windows["period"][0] * 1e3:g} ms; lateness'
+        f' p50 {np.nanmedian(windows["lateness_p50"]) * micro:.0f} µs,'
+        f' p99 {np.nanmedian(windows["lateness_p99"]) * micro:.0f} µs (median of the seconds),'
+        f' max {np.nanmax(windows["lateness_max"]) * micro:.0f} µs',
+        f'         cost p50 {np.nanmedian(windows["cost_p50"]) * micro:.0f} µs,'
+        f' p99 {np.nanmedian(windows["cost_p99"]) * micro:.0f} µs;'
+        f' {windows["total_overruns"][-1]} overruns, {windows["total_caught_up"][-1]} steps caught up',
+    ]

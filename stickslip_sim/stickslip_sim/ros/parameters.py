@@ -1,0 +1,120 @@
+"""The scene as ROS parameters: declared from the one schema, and checked together whenever any of them changes."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor, SetParametersResult
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+
+from ..errors import InputError
+from ..scene.load import load_scene, scene_from_values
+from ..scene.model import Scene
+from ..scene.parameter import Parameter as Entry
+from ..scene.schema import BY_NAME, PARAMETERS
+
+DEFAULT_SCENE = 'paper_fig8'
+_TYPES = {
+    'double': Parameter.Type.DOUBLE, 'double_array': Parameter.Type.DOUBLE_ARRAY, 'string': Parameter.Type.STRING,
+    'bool': Parameter.Type.BOOL, 'integer': Parameter.Type.INTEGER,
+}
+_NOT_OF_THE_AXIS = ('scene', 'record.', 'time.', 'command.', 'seed')
+_OF_ROS = ('use_sim_time', 'start_type_description_service', 'qos_overrides.')
+
+
+class SceneNode(Node):  # type: ignore[misc]
+    """A node whose parameters are a scene; `scene` is the one in force.
+
+    Raises InputError when the parameters given at the start are no scene.
+    """
+
+    scene: Scene
+
+    def __init__(self, name: str, from_file: bool) -> None:
+        super().__init__(name)
+        # rclpy has no public way to see what was given but never declared
+        given = {name: parameter.value for name, parameter in self._parameter_overrides.items()
+                 if not name.startswith(_OF_ROS)}
+        self.scene = scene_at_start(given, from_file)
+        self._declare(self.scene.values)
+
+    def scene_changed(self, scene: Scene, changed: Sequence[Parameter]) -> None:
+        """Let a change take effect; for the heir."""
+
+    def get_parameter(self, name: str) -> Parameter:
+        """Return a parameter; one without a value as such, where rclpy would refuse all that is asked for with it."""
+        if self.has_parameter(name):
+            return self.get_parameter_or(name)
+        parameter: Parameter = super().get_parameter(name)
+        return parameter
+
+    def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
+        """Set all or none; refused with one line that says what, why and what to do."""
+        wanted = [_promoted(parameter) for parameter in parameter_list]
+        ours = {parameter.name: parameter.value for parameter in wanted
+                if parameter.name in BY_NAME or not self.has_parameter(parameter.name)}
+        try:
+            scene = changed_scene(self.scene, ours)
+        except InputError as error:
+            return SetParametersResult(successful=False, reason=str(error))
+        result = super().set_parameters_atomically(wanted)
+        if result.successful and ours:
+            self.scene = scene
+            self.scene_changed(scene, [parameter for parameter in wanted if parameter.name in ours])
+        return result
+
+    def _declare(self, values: Mapping[str, object]) -> None:
+        for entry in PARAMETERS:
+            value = _plain(values.get(entry.name))
+            self.declare_parameter(entry.name, _TYPES[entry.type] if value in (None, []) else value, describe(entry),
+                                   ignore_override=True)
+
+
+def scene_at_start(given: Mapping[str, object], from_file: bool) -> Scene:
+    """Return the scene of the parameters given at the start; raises InputError.
+
+    A parameter file that describes an axis is a whole scene, as for the offline tool; then `scene` is just its name.
+    Otherwise `scene` is a shipped one or a file (as for the tool), and what else is given changes it.
+    """
+    if from_file and any(not name.startswith(_NOT_OF_THE_AXIS) for name in given):
+        return scene_from_values(given)
+    rest = {name: value for name, value in given.items() if name != 'scene'}
+    return load_scene(str(given.get('scene', DEFAULT_SCENE)), rest)
+
+
+def changed_scene(scene: Scene, changes: Mapping[str, object]) -> Scene:
+    """Return the scene with other values; raises InputError on those that may not change while the axis runs."""
+    for name, value in changes.items():
+        if name in BY_NAME and not BY_NAME[name].live and value != scene.values.get(name):
+            raise InputError(name, value, f'{scene.values.get(name)!r} as at the start',
+                             'it cannot change while the node runs: start it with another parameter file')
+    return scene_from_values({**scene.values, **changes}) if changes else scene
+
+
+def describe(entry: Entry) -> ParameterDescriptor:
+    """Return the ROS description of a parameter."""
+    descriptor = ParameterDescriptor(
+        description=entry.description + (f' [{entry.unit}]' if entry.unit else ''),
+        additional_constraints=entry.allowed + (f'; only with {entry.when}' if entry.when else ''),
+        read_only=not entry.live)
+    if entry.low is not None and entry.high is not None:
+        if entry.type == 'double':
+            descriptor.floating_point_range = [FloatingPointRange(from_value=entry.low, to_value=entry.high)]
+        if entry.type == 'integer':
+            descriptor.integer_range = [IntegerRange(from_value=int(entry.low), to_value=int(entry.high), step=1)]
+    return descriptor
+
+
+def _promoted(parameter: Parameter) -> Parameter:
+    """Return whole numbers as the doubles that they stand for, as in a scene file."""
+    entry = BY_NAME.get(parameter.name)
+    value: Any = parameter.value
+    if entry is not None and entry.type == 'double' and parameter.type_ == Parameter.Type.INTEGER:
+        return Parameter(parameter.name, Parameter.Type.DOUBLE, float(value))
+    if entry is not None and entry.type == 'double_array' and parameter.type_ == Parameter.Type.INTEGER_ARRAY:
+        return Parameter(parameter.name, Parameter.Type.DOUBLE_ARRAY, [float(number) for number in value])
+    return parameter
+
+
+def _plain(value: object) -> object:
+    return list(value) if isinstance(value, (list, tuple)) else value

@@ -1,0 +1,87 @@
+"""Recordings of the node: begun, watched and ended while the axis runs."""
+
+import os
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from ..errors import RecordingError
+from ..pacing import utc_stamp
+from ..recording import RECORDED, MessageCodec, RecorderThread, RunFacts, open_run, receipt_file, schema
+from ..recording.topics import PARAMETER_EVENTS
+from ..scene.model import Scene
+
+_RUNS = Path('runs')
+
+
+class Recordings:
+    """At most one recording at a time; a failure ends the recording and is kept to be told, never raised."""
+
+    def __init__(self, namespace: str) -> None:
+        self.recorder: RecorderThread | None = None
+        self.folder = ''             # of the recording under way
+        self.failure = ''            # why the latest recording ended or did not begin
+        self.dropped = 0             # messages of earlier recordings
+        self._namespace = namespace
+        self._codec = MessageCodec([PARAMETER_EVENTS.type])
+
+    @property
+    def total_dropped(self) -> int:
+        """Messages that did not get into a bag, of all recordings."""
+        return self.dropped + (self.recorder.dropped if self.recorder else 0)
+
+    def prepare(self) -> None:
+        """Do now what would disturb the step loop later: read the message definitions."""
+        for topic in RECORDED:
+            schema(topic.type)
+
+    def begin(self, scene: Scene) -> None:
+        """Open a new run folder; raises RecordingError."""
+        try:
+            writer = open_run(_folder_of(scene), RunFacts.of(scene), self._namespace)
+        except RecordingError as error:
+            self.failure = str(error)
+            raise
+        self.recorder, self.folder, self.failure = RecorderThread(writer), str(writer.folder), ''
+
+    def end(self, receipt: Mapping[str, object]) -> None:
+        """Finish the bag; raises RecordingError when it could not be written to its end."""
+        recorder, self.recorder, self.folder = self.recorder, None, ''
+        if recorder is None:
+            return
+        ended_well = recorder.close(receipt_file(receipt))
+        self.dropped += recorder.dropped
+        if not ended_well:
+            self.failure = recorder.failure or 'the bag could not be finished'
+            raise RecordingError(self.failure)
+
+    def parameter_event(self, fields: Mapping[str, Any]) -> bytes:
+        """Return the CDR bytes of a ParameterEvent.
+
+        rclpy allots a few bytes too many to a message with empty lists, and strict readers of bags refuse those.
+        """
+        return self._codec.encode(PARAMETER_EVENTS.type, fields)
+
+    def check(self) -> str:
+        """Return why the recording under way has failed, once; empty while all is well."""
+        if self.recorder is None or self.recorder.failure is None:
+            return ''
+        self.failure = self.recorder.failure
+        self.dropped += self.recorder.dropped
+        self.recorder, self.folder = None, ''
+        return self.failure
+
+
+def _folder_of(scene: Scene) -> Path:
+    """Return the folder of the scene, or a new one that is named after scene and time."""
+    if scene.record.folder:
+        return Path(scene.record.folder).expanduser()
+    return first_free(lambda number: _RUNS / f'{scene.name}_{utc_stamp()}{f"_{number}" if number > 1 else ""}')
+
+
+def first_free(name: Callable[[int], Path]) -> Path:
+    """Return the first of the names for 1, 2, ... that is not in use."""
+    number = 1
+    while os.path.lexists(name(number)):
+        number += 1
+    return name(number)

@@ -1,0 +1,214 @@
+"""Real nodes in processes of their own, and a client that talks to them over DDS.  Conditions have deadlines."""
+
+import importlib
+import os
+import signal
+import subprocess
+import threading
+import time
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+rclpy = pytest.importorskip('rclpy')
+with warnings.catch_warnings():   # rclpy loads it at the first message, and it loads what Python wants to be rid of
+    warnings.simplefilter('ignore')
+    importlib.import_module('rosidl_generator_py')
+
+from diagnostic_msgs.msg import DiagnosticArray  # noqa: E402
+from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParametersAtomically  # noqa: E402
+from rclpy.context import Context  # noqa: E402
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor  # noqa: E402
+from rclpy.node import Node  # noqa: E402
+from rclpy.parameter import Parameter  # noqa: E402
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy  # noqa: E402
+from std_srvs.srv import SetBool, Trigger  # noqa: E402
+
+from stickslip_msgs.msg import (  # noqa: E402
+    DriveVelocity,
+    ExternalForce,
+    FrictionForce,
+    ModeEvent,
+    RunInfo,
+    SliderState,
+    StepTiming,
+)
+
+# Without `make test` every session still keeps to itself.
+os.environ.setdefault('ROS_DOMAIN_ID', str(1 + os.getpid() % 100))
+os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
+
+DEADLINE = 20.0   # s
+_LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+_ALL = QoSProfile(depth=5000)
+_COMMAND = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+_HEARD = {
+    'slider_state': (SliderState, _ALL), 'friction_force': (FrictionForce, _ALL), 'mode_event': (ModeEvent, _ALL),
+    'timing': (StepTiming, _ALL), 'run_info': (RunInfo, _LATCHED), '/diagnostics': (DiagnosticArray, _ALL),
+}
+
+
+def wait_for(look: Callable[[], Any], what: str, deadline: float = DEADLINE) -> Any:
+    """Return what `look` returns as soon as that is true."""
+    end = time.monotonic() + deadline
+    while not (found := look()):
+        assert time.monotonic() < end, f'waited {deadline} s for {what}'
+        time.sleep(0.01)
+    return found
+
+
+def executable(name: str) -> str:
+    """Return an installed program, as `ros2 run` finds it."""
+    for prefix in os.environ['AMENT_PREFIX_PATH'].split(os.pathsep):
+        path = Path(prefix, 'lib', 'stickslip_sim', name)
+        if path.is_file():
+            return str(path)
+    raise AssertionError(f'{name} is not installed: run `make build`')
+
+
+class NodeProcess:
+    """A sim_node with default signal handling, in a process group of its own, as a terminal starts it."""
+
+    def __init__(self, *ros_args: str, folder: Path | None = None, prepare: Callable[[], None] | None = None) -> None:
+        self._process = subprocess.Popen(
+            [executable('sim_node'), '--ros-args', *ros_args], cwd=folder, stderr=subprocess.PIPE, text=True,
+            start_new_session=True, preexec_fn=prepare or restore_interrupt)
+
+    def send(self, number: int) -> None:
+        self._process.send_signal(number)
+
+    def wait(self) -> tuple[int, str]:
+        """Return the exit code and standard error."""
+        try:
+            _, errors = self._process.communicate(timeout=DEADLINE)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            raise
+        return self._process.returncode, errors
+
+    def end(self, number: int = signal.SIGINT) -> tuple[int, str]:
+        self.send(number)
+        return self.wait()
+
+    def kill(self) -> None:
+        if self._process.poll() is None:
+            self._process.kill()
+            self._process.communicate()
+
+
+def restore_interrupt() -> None:
+    """Undo what a shell does to background jobs."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+@contextmanager
+def running(*ros_args: str, folder: Path | None = None,
+            prepare: Callable[[], None] | None = None) -> Iterator[NodeProcess]:
+    process = NodeProcess(*ros_args, folder=folder, prepare=prepare)
+    try:
+        yield process
+    finally:
+        process.kill()
+
+
+class Client:
+    """Hears all topics of a node, sends commands, calls services; its callbacks run in a thread."""
+
+    def __init__(self, namespace: str = '/') -> None:
+        self._context = Context()
+        rclpy.init(context=self._context)
+        self.node = Node('client', context=self._context, namespace=namespace)
+        self.heard: dict[str, list[Any]] = {name: [] for name in _HEARD}
+        for name, (kind, qos) in _HEARD.items():
+            self.node.create_subscription(kind, name, self.heard[name].append, qos)
+        self._velocity = self.node.create_publisher(DriveVelocity, 'drive_velocity', _COMMAND)
+        self._force = self.node.create_publisher(ExternalForce, 'external_force', _COMMAND)
+        self._executor = SingleThreadedExecutor(context=self._context)
+        self._executor.add_node(self.node)
+        self._thread = threading.Thread(target=self._spin, daemon=True)
+        self._thread.start()
+
+    def _spin(self) -> None:
+        with suppress(ExternalShutdownException):
+            self._executor.spin()
+
+    def close(self) -> None:
+        self._context.try_shutdown()
+        self._thread.join(DEADLINE)
+        self._executor.shutdown()
+        self.node.destroy_node()
+
+    def connect(self) -> None:
+        """Wait until a node hears the commands and is heard."""
+        wait_for(lambda: self._velocity.get_subscription_count() and self._force.get_subscription_count()
+                 and self.heard['slider_state'] and self.heard['run_info'], 'the node')
+
+    def latest(self, topic: str) -> Any:
+        return self.heard[topic][-1]
+
+    def next(self, topic: str, is_it: Callable[[Any], bool] = lambda _: True, deadline: float = DEADLINE) -> Any:
+        """Return the next message of a topic that fulfils a condition."""
+        begin = len(self.heard[topic])
+        return wait_for(lambda: next(filter(is_it, self.heard[topic][begin:]), None), f'a message on {topic}', deadline)
+
+    def send_velocity(self, velocity: float) -> None:
+        self._velocity.publish(DriveVelocity(velocity=velocity))
+
+    def send_force(self, force: float) -> None:
+        self._force.publish(ExternalForce(force=force))
+
+    def call(self, kind: Any, name: str, **request: Any) -> Any:
+        client = self.node.create_client(kind, f'feed_axis/{name}')
+        try:
+            assert client.wait_for_service(DEADLINE), name
+            future = client.call_async(kind.Request(**request))
+            wait_for(future.done, f'the answer of {name}')
+            return future.result()
+        finally:
+            self.node.destroy_client(client)
+
+    def trigger(self, name: str) -> Any:
+        return self.call(Trigger, name)
+
+    def switch(self, name: str, on: bool) -> Any:
+        return self.call(SetBool, name, data=on)
+
+    def set_parameters(self, **values: object) -> Any:
+        """Set parameters together; `__` in a name stands for a dot."""
+        parameters = [Parameter(name.replace('__', '.'), value=value).to_parameter_msg()
+                      for name, value in values.items()]
+        return self.call(SetParametersAtomically, 'set_parameters_atomically', parameters=parameters).result
+
+    def parameter_names(self) -> list[str]:
+        names: list[str] = self.call(ListParameters, 'list_parameters').result.names
+        return names
+
+    def describe(self, *names: str) -> Any:
+        return self.call(DescribeParameters, 'describe_parameters', names=list(names)).descriptors
+
+    def values(self, *names: str) -> Any:
+        return self.call(GetParameters, 'get_parameters', names=list(names)).values
+
+    def status(self, name: str, is_it: Callable[[dict[str, str]], bool] = lambda _: True) -> Any:
+        """Return the next status of /diagnostics by that name and its values that fulfil a condition."""
+        def find(message: Any) -> Any:
+            return next(status for status in message.status if status.name == name)
+
+        def pairs(status: Any) -> dict[str, str]:
+            return {pair.key: pair.value for pair in status.values}
+
+        status = find(self.next('/diagnostics', lambda message: is_it(pairs(find(message)))))
+        return status, pairs(status)
+
+
+@contextmanager
+def client(namespace: str = '/') -> Iterator[Client]:
+    it = Client(namespace)
+    try:
+        yield it
+    finally:
+        it.close()

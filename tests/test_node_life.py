@@ -1,0 +1,198 @@
+"""The life of the node as a process: refused starts, signals, recordings that end well, badly or not at all."""
+
+import itertools
+import resource
+import signal
+import subprocess
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from stickslip_sim.recording import Run, read_run
+from tests.ros_nodes import client, executable, restore_interrupt, running, wait_for
+
+pytestmark = pytest.mark.ros
+
+
+def recording_into(folder: Path) -> list[str]:
+    return ['-p', 'record.enabled:=true', '-p', f'record.folder:={folder}']
+
+
+class TestRefusedStart:
+    @pytest.mark.parametrize(('content', 'told'), [
+        ('axis: {mass: -1.0}', ['axis.mass = -1.0', '> 0 kg']),
+        ('axis: {weight: 1.0}', ['axis.weight = 1.0']),
+        ('axis: {mass: heavy}', ["axis.mass = 'heavy'"]),
+        ('friction: {kinetic: {velocities: [0.0, 1], coefficients: [0.1, 0.1]}}', ['same type']),
+        ('axis: [', ['params file']),
+        (None, ['params file', 'opening']),
+    ])
+    def test_one_line_and_exit_code(self, tmp_path: Path, content: str | None, told: list[str]) -> None:
+        file = tmp_path / 'scene.yaml'
+        if content is not None:
+            file.write_text(f'/**:\n  ros__parameters:\n    scene: mine\n    {content}\n')
+        code, errors = start('--params-file', str(file))
+        assert code == 2
+        assert errors.startswith('sim_node: ')
+        assert len(errors.splitlines()) == 1, errors
+        assert all(words in errors for words in told), errors
+
+    @pytest.mark.parametrize(('arguments', 'told'), [
+        (['-p', 'axis.mas:=1.0'], ['axis.mas = 1.0', 'did you mean axis.mass?']),
+        (['-p', 'scene:=paper_fig9'], ['paper_fig9', 'paper_fig8']),
+        (['--nonsense'], ['--nonsense']),
+    ])
+    def test_arguments(self, arguments: list[str], told: list[str]) -> None:
+        code, errors = start(*arguments)
+        assert (code, len(errors.splitlines())) == (2, 1), errors
+        assert all(words in errors for words in told), errors
+
+
+def start(*ros_args: str) -> tuple[int, str]:
+    done = subprocess.run([executable('sim_node'), '--ros-args', *ros_args], capture_output=True, text=True, timeout=60,
+                          check=False)
+    return done.returncode, done.stderr
+
+
+class TestSignals:
+    @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+    def test_the_bag_is_closed(self, tmp_path: Path, number: int) -> None:
+        folder = tmp_path / 'run'
+        with running(*recording_into(folder)) as process, client() as axis:
+            axis.connect()
+            axis.send_velocity(0.004)
+            axis.next('slider_state', lambda state: state.drive_velocity == 0.004)
+            axis.send_force(50.0)
+            assert axis.set_parameters(axis__mass=300.0).successful
+            axis.next('timing')
+            process.send(number)
+            process.send(number)      # impatient
+            assert_clean(*process.wait())
+        run = read_run(folder)
+        assert run.is_complete
+        states = run.columns('/slider_state')
+        assert list(states['step']) == list(range(len(states['step'])))
+        assert list(states['sequence']) == list(states['step'])
+        assert list(states['log_time']) == [step * 1_000_000 for step in states['step']]
+        (velocity,), (force,) = run.messages(['/drive_velocity']), run.messages(['/external_force'])
+        assert run.decode(velocity).velocity == 0.004
+        assert run.decode(force).force == 50.0
+        before, after = (states['drive_velocity'][velocity.sequence + i] for i in (-1, 0))
+        assert (before, after) == (0.002, 0.004)
+        (change,) = (run.decode(message) for message in run.messages(['/parameter_events']))
+        assert change.changed_parameters[0].name == 'axis.mass'
+        assert run.receipt['timing']['steps'] == len(states['step'])
+        assert run.columns('/timing')['steps'].sum() == len(states['step'])
+        assert run.receipt['commands']['velocity'] == {'received': 1, 'refused': 0}
+        assert b'paper_fig8' in run.attachments['scene.yaml']
+
+    @pytest.mark.parametrize('delay', [0.2, 0.5, 0.8])
+    @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+    def test_while_it_starts(self, number: int, delay: float) -> None:
+        with running() as process:
+            time.sleep(delay)
+            assert_clean(*process.end(number))
+
+    def test_killed(self, tmp_path: Path) -> None:
+        folder = tmp_path / 'run'
+        with running(*recording_into(folder)) as process, client() as axis:
+            axis.connect()
+            axis.next('slider_state', lambda state: state.step > 2500)
+            process.kill()
+            last = axis.latest('slider_state').step
+        run = read_run(folder)
+        assert not run.is_complete
+        steps = run.columns('/slider_state')['step']
+        assert list(steps) == list(range(len(steps)))
+        assert last - 1000 < steps[-1] <= last + 1000
+
+    def test_stopped_for_a_while(self) -> None:
+        with running() as process, client() as axis:
+            axis.connect()
+            before = axis.next('slider_state')
+            process.send(signal.SIGSTOP)
+            time.sleep(1.0)
+            process.send(signal.SIGCONT)
+            timing = axis.next('timing', lambda timing: timing.lateness_max > 0.5)
+            assert timing.real_time_factor < 0.95
+            _, values = axis.status('step loop')
+            assert values['times skipped'] == '1'
+            states = [state for state in axis.heard['slider_state'] if state.step >= before.step]
+            assert [b.step - a.step for a, b in itertools.pairwise(states)] == [1] * (len(states) - 1)
+
+
+class TestRecording:
+    def test_an_existing_folder_stays_and_the_axis_goes_on(self, tmp_path: Path) -> None:
+        (tmp_path / 'mine').write_text('precious')
+        with running(*recording_into(tmp_path)) as process, client() as axis:
+            axis.connect()
+            status, _ = axis.status('recorder')
+            assert status.level == b'\2'
+            assert f'{tmp_path} exists and is never overwritten' in status.message
+            answer = axis.switch('record', True)
+            assert (answer.success, answer.message) == (False, status.message)
+            axis.next('slider_state', lambda state: state.step > 500)
+            assert_clean(*process.end())
+        assert [file.name for file in tmp_path.iterdir()] == ['mine']
+
+    def test_a_full_disk_ends_the_recording_not_the_axis(self, tmp_path: Path) -> None:
+        folder = tmp_path / 'run'
+        with running(*recording_into(folder), prepare=with_small_files) as process, client() as axis:
+            axis.connect()
+            status, _ = axis.status('recorder', lambda values: int(values['dropped']) > 0)
+            assert status.level == b'\2'
+            assert 'File too large; the recording ends here' in status.message
+            wait_for(lambda: axis.latest('run_info').bag_path == '', 'run_info without a bag')
+            step = axis.latest('slider_state').step
+            axis.next('slider_state', lambda state: state.step > step + 100)
+            assert_clean(*process.end())
+        assert len(read_run(folder).columns('/slider_state')['step']) > 100
+
+    def test_namespace(self, tmp_path: Path) -> None:
+        folder = tmp_path / 'run'
+        with running('-r', '__ns:=/cell/press', *recording_into(folder)) as process, client('/cell/press') as axis:
+            axis.connect()
+            names = {name for name, _ in axis.node.get_topic_names_and_types()}
+            assert {'/cell/press/slider_state', '/cell/press/drive_velocity', '/diagnostics'} <= names
+            assert axis.next('/diagnostics').status[0].hardware_id == '/cell/press/feed_axis'
+            assert_clean(*process.end())
+        assert set(read_run(folder).topics) >= {'/cell/press/slider_state', '/parameter_events'}
+
+    def test_bytes_are_those_that_were_published(self, tmp_path: Path) -> None:
+        """Also from a recording that begins and ends while the axis runs."""
+        folder = tmp_path / 'run'
+        with running('-p', f'record.folder:={folder}') as process, client() as axis:
+            axis.connect()
+            axis.send_velocity(0.003)
+            axis.next('slider_state', lambda state: state.drive_velocity == 0.003)
+            assert axis.switch('record', True).success
+            axis.next('timing', lambda timing: True)
+            assert axis.switch('record', False).success
+            heard = {state.step: state for state in axis.heard['slider_state']}
+            assert_clean(*process.end())
+        run = read_run(folder)
+        assert run.is_complete
+        assert_same(run, '/slider_state', heard)
+        (command,) = (run.decode(message) for message in run.messages(['/drive_velocity']))
+        assert command.velocity == 0.003      # the one in force when it began
+
+
+def assert_same(run: Run, topic: str, heard: dict[int, Any]) -> None:
+    from rclpy.serialization import serialize_message
+    messages = list(run.messages([topic]))
+    assert len(messages) > 500
+    for message in messages:
+        assert message.data == serialize_message(heard[message.sequence])
+
+
+def with_small_files() -> None:
+    restore_interrupt()
+    resource.setrlimit(resource.RLIMIT_FSIZE, (200_000, 200_000))
+
+
+def assert_clean(code: int, errors: str) -> None:
+    assert code == 0, errors
+    assert 'Traceback' not in errors
+    assert 'Exception' not in errors
