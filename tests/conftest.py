@@ -3,14 +3,20 @@
 import os
 import subprocess
 import sys
-from collections.abc import Callable
+from typing import Protocol
 
 import pytest
 
 
+class Program(Protocol):
+    """Runs a program in a process of its own, with compiled code or as plain Python; returns what it printed."""
+
+    def __call__(self, program: str, *, compiled: bool) -> str:
+        """Run it."""
+
+
 @pytest.fixture(scope='session')
-def plain_python() -> Callable[..., str]:
-    """Run a program in a process of its own, with compiled code or as plain Python; return what it printed."""
+def in_a_process() -> Program:
 
     def run(program: str, *, compiled: bool) -> str:
         environment = {**os.environ, 'STICKSLIP_COMPILED': '1' if compiled else '0',

@@ -246,9 +246,8 @@ def test_a_year_at_99_percent_of_the_limit_does_not_creep() -> None:
         assert simulator.sample().mode == Mode.STICK
 
 
-def test_compiled_and_plain_python_agree_bit_by_bit(plain_python: object) -> None:
+def test_compiled_and_in_a_process_agree_bit_by_bit(in_a_process: object) -> None:
     """The same source with and without numba, in two processes."""
-    assert callable(plain_python)
     program = '''
 import random
 from tests.axes import random_axis, run
@@ -258,7 +257,7 @@ for seed in range(25):
     for event in run(axis, rng.choice((-1, 1)) * 10 ** rng.uniform(-3, -1.5), 3.0):
         print([float(x).hex() for x in event])
 '''
-    assert plain_python(program, compiled=True) == plain_python(program, compiled=False)
+    assert in_a_process(program, compiled=True) == in_a_process(program, compiled=False)
 
 
 def test_grazing_the_limit_is_neither_missed_nor_invented() -> None:

@@ -44,7 +44,7 @@ class Simulator:
         self._until = min(v.end, f.end)
         start = self._initial
         rows = exact.start(self._parameters, self._state, start.position, start.velocity, start.rest_time,
-                           v.value, v.rate, f.value, f.rate, self._table)
+                           v.value, v.rate, f.value, f.rate, self._table, 0)
         self._waiting = list(self._rows(rows))
         self._counts = dict.fromkeys(EventKind, 0)
         return self._waiting

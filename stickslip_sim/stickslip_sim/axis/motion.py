@@ -23,10 +23,11 @@ from .layout import (
     STIFFNESS, TABLE, V, VELOCITY, V_RATE,
 )
 
-STICK = int(Mode.STICK)
-ACCELERATING = int(Mode.ACCELERATING)
-COASTING = int(Mode.COASTING)
-DECELERATING = int(Mode.DECELERATING)
+# floats: numba would compile a function anew for every integer constant that it is called with
+STICK = float(Mode.STICK)
+ACCELERATING = float(Mode.ACCELERATING)
+COASTING = float(Mode.COASTING)
+DECELERATING = float(Mode.DECELERATING)
 
 
 @compiled
@@ -37,14 +38,20 @@ def static_limit(p, rest):
 
 
 @compiled
-def piece_of(p, speed, rising):
-    """Return the index of the knot below `speed`; exactly on a knot, the piece above it when rising, else below."""
+def piece_above(p, speed):
+    """Return the index of the piece of the table that goes up from a speed: a knot belongs to the piece above it."""
     piece = 0
     for i in range(1, int(p[KNOTS])):
-        knot = p[TABLE + KNOT_SIZE * i]
-        if knot < speed or (knot == speed and rising):
+        if p[TABLE + KNOT_SIZE * i] <= speed:
             piece = i
     return piece
+
+
+@compiled
+def piece_below(p, speed):
+    """Return the index of the piece of the table that goes down from a speed: a knot belongs to the piece below it."""
+    piece = piece_above(p, speed)
+    return piece - 1 if piece > 0 and p[TABLE + KNOT_SIZE * piece] == speed else piece
 
 
 @compiled
@@ -71,6 +78,12 @@ def friction_line(p, piece, speed):
 def is_rigid_stick(p, s):
     """Whether the slider stands still in a rigid contact."""
     return s[MODE] == STICK and p[COMPLIANT] == 0.0
+
+
+@compiled
+def kinetic_at_rest(p):
+    """Return mu_k(0)."""
+    return p[TABLE + 1]
 
 
 @compiled

@@ -14,16 +14,16 @@ from .layout import (
 )
 from .motion import (
     ACCELERATING, COASTING, DECELERATING, STICK, contact_force, drive_force, friction_force, friction_line,
-    has_branches, is_rigid_stick, knot_speed, piece_of, static_limit,
+    has_branches, is_rigid_stick, kinetic_at_rest, knot_speed, piece_above, piece_below, static_limit,
 )
 
-BREAKAWAY = int(EventKind.BREAKAWAY)
-COAST = int(EventKind.COAST)
-ACCELERATE = int(EventKind.ACCELERATE)
-DECELERATE = int(EventKind.DECELERATE)
-ARREST = int(EventKind.STICK)
-REVERSE = int(EventKind.REVERSE)
-KNOT = int(EventKind.KNOT)
+BREAKAWAY = float(EventKind.BREAKAWAY)
+COAST = float(EventKind.COAST)
+ACCELERATE = float(EventKind.ACCELERATE)
+DECELERATE = float(EventKind.DECELERATE)
+ARREST = float(EventKind.STICK)
+REVERSE = float(EventKind.REVERSE)
+KNOT = float(EventKind.KNOT)
 
 _ROUNDING = 8.0 * 2.220446049250313e-16
 _TIE = 1e-15   # of the friction force: a closed-form acceleration smaller than that is a tie
@@ -81,12 +81,12 @@ def choose_slip(p, s, residual, tolerance):
         residual = 0.0
     if residual > 0.0 or (residual == 0.0 and (rate > 0.0 or (rate == 0.0 and bend > 0.0))):
         s[MODE] = ACCELERATING
-        s[PIECE] = piece_of(p, speed, True)
+        s[PIECE] = piece_above(p, speed)
         s[ACCELERATION] = direction * residual / p[MASS]
         return True
     if speed == 0.0:
         return False
-    piece = piece_of(p, speed, True)
+    piece = piece_above(p, speed)
     _, _, psi, _ = friction_line(p, piece, speed)
     band = p[NORMAL] * s[EXCESS] * psi
     lower = residual + band
@@ -100,7 +100,7 @@ def choose_slip(p, s, residual, tolerance):
         s[ACCELERATION] = 0.0
         return True
     s[MODE] = DECELERATING
-    s[PIECE] = piece_of(p, speed, False)
+    s[PIECE] = piece_below(p, speed)
     s[ACCELERATION] = direction * lower / p[MASS]
     return True
 
@@ -120,7 +120,7 @@ def break_away(p, s, direction, limit, margin):
     ended, friction drops to mu_k at once.
     """
     speed = abs(s[VELOCITY])
-    coefficient, _, psi, _ = friction_line(p, piece_of(p, speed, True), speed)
+    coefficient, _, psi, _ = friction_line(p, piece_above(p, speed), speed)
     s[EXCESS] = 0.0
     if has_branches(p) and psi > 0.0 and limit >= coefficient:
         s[EXCESS] = (limit - coefficient) / psi
@@ -146,7 +146,7 @@ def rest(p, s):
     s[ACCELERATION] = 0.0
     s[DEFLECTION] = 0.0
     if p[COMPLIANT] != 0.0:
-        friction = s[DIRECTION] * p[NORMAL] * friction_line(p, 0, 0.0)[0]
+        friction = s[DIRECTION] * p[NORMAL] * kinetic_at_rest(p)
         s[DEFLECTION] = friction / p[CONTACT_STIFFNESS]
         s[ACCELERATION] = (applied_force(p, s) - friction) / p[MASS]
     s[DIRECTION] = 0.0
@@ -156,7 +156,7 @@ def rest(p, s):
 def arrest(p, s, events, row):
     """End a slip at standstill: stick, or reverse at once where a rigid contact cannot hold the force."""
     s[VELOCITY] = 0.0
-    friction = s[DIRECTION] * p[NORMAL] * friction_line(p, 0, 0.0)[0]
+    friction = s[DIRECTION] * p[NORMAL] * kinetic_at_rest(p)
     force = applied_force(p, s)
     limit = static_limit(p, 0.0)
     margin = abs(force) - p[NORMAL] * limit
@@ -222,7 +222,8 @@ def _slides_with_drive(p, s):
 def enter_branch(p, s, mode):
     """Begin to accelerate or decelerate with no acceleration yet."""
     s[MODE] = mode
-    s[PIECE] = piece_of(p, abs(s[VELOCITY]), mode == ACCELERATING)
+    speed = abs(s[VELOCITY])
+    s[PIECE] = piece_above(p, speed) if mode == ACCELERATING else piece_below(p, speed)
     s[ACCELERATION] = 0.0
 
 
@@ -253,7 +254,7 @@ def apply_inputs(p, s, events, row):
         return _press_stick(p, s, events, row)
     direction = s[DIRECTION]
     speed = abs(s[VELOCITY])
-    coefficient, _, psi, _ = friction_line(p, piece_of(p, speed, True), speed)
+    coefficient, _, psi, _ = friction_line(p, piece_above(p, speed), speed)
     upper = coefficient + s[EXCESS] * psi
     residual = direction * applied_force(p, s) - p[NORMAL] * upper
     if not choose_slip(p, s, residual, force_rounding(p, s, upper)):

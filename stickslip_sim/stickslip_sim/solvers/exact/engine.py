@@ -14,7 +14,7 @@ from ...axis.layout import (
     ORIGIN, POSITION, REST, SEARCHED, SECOND, SPRING, STATE_SIZE, V, VELOCITY, V_RATE,
 )
 from ...axis.motion import (
-    COASTING, STICK, begin_motion, drive_force, drive_travel, friction_force, friction_line, move_anchor, piece_of,
+    COASTING, STICK, begin_motion, drive_force, drive_travel, friction_force, friction_line, move_anchor, piece_above,
     travel,
 )
 from ...axis.transitions import (
@@ -29,8 +29,8 @@ _SAME_INSTANT = 64   # events without progress in time; a sound model needs thre
 
 
 @compiled
-def start(p, s, position, velocity, rest, v, v_rate, f, f_rate, events):
-    """Set the state at time 0: the spring unstretched, at rest or sliding; return the rows written (a break-away)."""
+def start(p, s, position, velocity, rest, v, v_rate, f, f_rate, events, row):
+    """Set the state at time 0: the spring unstretched, at rest (it may break away at once) or sliding."""
     for i in range(STATE_SIZE):
         s[i] = 0.0
     s[ORIGIN] = position
@@ -38,18 +38,17 @@ def start(p, s, position, velocity, rest, v, v_rate, f, f_rate, events):
     s[REST] = rest
     s[V], s[V_RATE], s[F], s[F_RATE] = v, v_rate, f, f_rate
     s[MODE] = STICK
-    rows = 0
     if velocity == 0.0:
-        rows = _apply(p, s, events, 0)
+        row = _apply(p, s, events, row)
     else:
         s[REST] = 0.0
         s[DIRECTION] = 1.0 if velocity > 0.0 else -1.0
         speed = abs(velocity)
-        coefficient, _, _, _ = friction_line(p, piece_of(p, speed, True), speed)
+        coefficient, _, _, _ = friction_line(p, piece_above(p, speed), speed)
         residual = s[DIRECTION] * applied_force(p, s) - p[NORMAL] * coefficient
         choose_slip(p, s, residual, force_rounding(p, s, coefficient))
     _begin(p, s)
-    return rows
+    return row
 
 
 @compiled
