@@ -19,7 +19,7 @@ def _cache_folder() -> pathlib.Path:
     root = pathlib.Path(__file__).parent
     digest = hashlib.sha256()
     for room in _ROOMS:
-        for path in sorted([root / room, *(root / room).glob('*.py')]):
+        for path in sorted([root / room, *(root / room).rglob('*.py')]):
             if path.is_file():
                 digest.update(path.read_bytes())
     base = os.environ.get('XDG_CACHE_HOME') or os.path.join(os.path.expanduser('~'), '.cache')

@@ -1,0 +1,161 @@
+"""When the contact force of a compliant stick reaches N mu_s(t⁻).
+
+F_c = P(t) + H(t): P is linear (quadratic under a ramp of the drive), H a decaying free motion.
+
+1. Once the envelope of H leaves room between P and the limit, the guard less the envelope is concave, and its root is a
+   time before which nothing can happen: one leap over the ring-down.
+2. From there, and as long as there is no room, safe steps with a bound on the curvature that is left.
+3. Where that bound proves that the guard falls all the way to its root, the root is bracketed and found there.
+"""
+
+import math
+
+from ...axis.layout import (
+    ACCELERATION, CONTACT_DAMPING, CONTACT_STIFFNESS, DEFLECTION, ITERATIONS, JERK, NORMAL, REST, SNAP, VELOCITY,
+)
+from ...axis.motion import oscillator_of, static_limit
+from ...axis.transitions import force_rounding
+from ...compiled import compiled
+from ...linear.oscillator import amplitude, bound, impulse
+from ...linear.roots import safe_step
+from .static_guards import STEPS, concave_root, is_concave, law, steep_start
+
+_EPSILON = 2.220446049250313e-16
+_GO_ON, _IS_ROOT, _IN_BRACKET = 0.0, 1.0, 2.0
+
+
+@compiled
+def compliant_stick(p, s, horizon):
+    """Return when |F_c| reaches N mu_s, or infinity when that is behind the horizon."""
+    osc = oscillator_of(s)
+    motion = _contact_motion(p, s, osc)
+    rounding = 0.5 * force_rounding(p, s, static_limit(p, s[REST]))
+    may_leap = motion[4] == 0.0 and is_concave(p)
+    t = 0.0
+    for _ in range(STEPS):
+        s[ITERATIONS] += 1.0
+        contact = _contact_at(p, osc, motion, t)
+        if may_leap:
+            leap = _leap(p, s, osc, contact, t, horizon - t)
+            may_leap = leap == 0.0
+            t += leap
+            if leap > 0.0 and t <= horizon:
+                continue
+        if t <= horizon:
+            step, found, side = _step(p, s, osc, contact, motion[4], t, rounding)
+            if found == _IN_BRACKET:
+                return _bracketed_root(p, s, osc, motion, side, t, t + step)
+            t += step
+            if found == _IS_ROOT:
+                return t
+        if t > horizon:
+            return math.inf
+    return t
+
+
+@compiled
+def _contact_motion(p, s, osc):
+    """Return (y₀, free velocity, P, P′, P″) at the anchor.
+
+    The slider's travel is y₀ + y₁ t + y₂ t²/2 and a free motion that starts at −y₀ with the free velocity.
+    """
+    stiffness, damping = p[CONTACT_STIFFNESS], p[CONTACT_DAMPING]
+    gamma, omega2 = osc[0], osc[1]
+    u = s[VELOCITY]
+    y2 = s[SNAP] / omega2
+    y1 = u + (s[JERK] - 2.0 * gamma * y2) / omega2
+    y0 = (s[ACCELERATION] + 2.0 * gamma * (u - y1) - y2) / omega2
+    return (y0, u - y1, stiffness * (s[DEFLECTION] + y0) + damping * y1, stiffness * y1 + damping * y2,
+            stiffness * y2)
+
+
+@compiled
+def _contact_at(p, osc, motion, t):
+    """Return P, P′, H, H′, H″ and H‴ at t."""
+    stiffness, damping = p[CONTACT_STIFFNESS], p[CONTACT_DAMPING]
+    gamma, omega2 = osc[0], osc[1]
+    y0, free_u, steady, rate, bend = motion
+    g, slope = impulse(osc, t)
+    y = free_u * g - y0 * (slope + 2.0 * gamma * g)
+    v = free_u * slope + omega2 * y0 * g
+    acc = -2.0 * gamma * v - omega2 * y
+    jerk = -2.0 * gamma * acc - omega2 * v
+    return (steady + (rate + 0.5 * bend * t) * t, rate + bend * t, stiffness * y + damping * v,
+            stiffness * v + damping * acc, stiffness * acc + damping * jerk,
+            stiffness * jerk - damping * (2.0 * gamma * jerk + omega2 * acc))
+
+
+@compiled
+def _leap(p, s, osc, contact, t, horizon):
+    """Return how long the envelope keeps off the limit for certain; 0 when there is no room yet."""
+    sag, rate, free, free_rate, _, _ = contact
+    size, decay = amplitude(osc, free, free_rate)
+    rest = s[REST] + t
+    if p[NORMAL] * static_limit(p, rest) - abs(sag) - size <= 0.0:
+        return 0.0
+    if rate == 0.0:
+        return math.inf
+    return concave_root(p, s, rest, math.copysign(1.0, rate) * sag, abs(rate), size, decay, 0.0, horizon)
+
+
+@compiled
+def _step(p, s, osc, contact, sag_bend, t, rounding):
+    """Return a step, what is at its end (nothing yet, the root, the upper end of a bracket around it), and the side."""
+    sag, sag_rate, free, free_rate, wave, wave_rate = contact
+    force, rate = sag + free, sag_rate + free_rate
+    limit, growth, curvature = law(p, s[REST] + t)
+    top, top_rate = p[NORMAL] * limit, p[NORMAL] * growth
+    swing = bound(osc, wave, wave_rate) + abs(sag_bend)
+    if curvature == math.inf:
+        return steep_start(p, abs(rate), swing), _GO_ON, 1.0
+    bend = swing + p[NORMAL] * curvature
+    side = 1.0 if force > 0.0 or (force == 0.0 and rate > 0.0) else -1.0
+    value, fall = max(top - side * force, 0.0), top_rate - side * rate
+    near = safe_step(value, fall, bend)
+    if value <= rounding and fall < 0.0:
+        return (0.0 if t == 0.0 else min(value / -fall, near)), _IS_ROOT, side
+    step = min(near, safe_step(top + side * force, top_rate + side * rate, bend))
+    if step <= 2.0 * _EPSILON * t:
+        if fall != 0.0 or side * (sag_bend + wave) > 0.0:
+            return 0.0, _IS_ROOT, side
+        return _nudge(osc, wave, wave_rate), _GO_ON, side
+    if step == near and fall < 0.0 and fall * fall > 2.0 * bend * value:
+        return 2.0 * value / (math.sqrt(fall * fall - 2.0 * bend * value) - fall), _IN_BRACKET, side
+    return step, _GO_ON, side
+
+
+@compiled
+def _bracketed_root(p, s, osc, motion, side, low, high):
+    """Return the root of the falling guard between low and high: Halley's step inside a shrinking bracket."""
+    t, before = 0.5 * (low + high), high - low
+    for _ in range(STEPS):
+        s[ITERATIONS] += 1.0
+        sag, sag_rate, free, free_rate, wave, _ = _contact_at(p, osc, motion, t)
+        limit, growth, curvature = law(p, s[REST] + t)
+        value = p[NORMAL] * limit - side * (sag + free)
+        if value > 0.0:
+            low = t
+        else:
+            high = t
+        fall = p[NORMAL] * growth - side * (sag_rate + free_rate)
+        bow = -p[NORMAL] * curvature - side * (motion[4] + wave)
+        newton = value / fall if fall < 0.0 else math.inf
+        size = newton / max(1.0 - 0.5 * newton * bow / fall, 0.5) if fall < 0.0 else math.inf
+        guess = t - size
+        if abs(newton) <= 2.0 * _EPSILON * t:
+            return guess
+        if not (low <= guess <= high and abs(size) <= 0.5 * before):
+            guess = 0.5 * (low + high)
+        before = abs(guess - t)
+        if before <= _EPSILON * t:
+            return guess
+        t = guess
+    return t
+
+
+@compiled
+def _nudge(osc, wave, wave_rate):
+    """Return a step off a guard that touches its limit: value = slope = 0, and f″ > 0 with a bound on |f‴|."""
+    wave_bend = -2.0 * osc[0] * wave_rate - osc[1] * wave
+    third = bound(osc, wave_rate, wave_bend)
+    return 3.0 * abs(wave) / third if third > 0.0 else 0.0

@@ -1,0 +1,144 @@
+"""When a known force reaches N mu_s(t⁻): the guards that hold the static law.
+
+N mu_s is concave for most laws.  A concave guard that is not negative at both ends of an interval has no root inside;
+where its end is negative it has one root, and a bracket to find it in.  A guard that is not concave takes safe steps.
+"""
+
+import math
+
+from ...axis.layout import (
+    ITERATIONS, NORMAL, REST, STATIC_EXPONENT, STATIC_INITIAL, STATIC_LAW, STATIC_LIMIT, STATIC_TAU,
+)
+from ...axis.motion import static_limit
+from ...axis.transitions import applied_force, force_rate
+from ...compiled import compiled
+from ...friction.static import CONSTANT, KATO, LOGARITHMIC, static_growth
+from ...linear.roots import first_crossing, safe_step
+
+_EPSILON = 2.220446049250313e-16
+STEPS = 100_000
+
+
+@compiled
+def rigid_stick(p, s, horizon):
+    """Return when |F_d + F_e| reaches N mu_s; both are known in closed form."""
+    force = applied_force(p, s)
+    rate, bend = force_rate(p, s)
+    if rate == 0.0 and bend == 0.0:
+        return math.inf
+    return min(_one_side(p, s, force, rate, bend, horizon), _one_side(p, s, -force, -rate, -bend, horizon))
+
+
+@compiled
+def _one_side(p, s, force, rate, bend, horizon):
+    """Return when N mu_s − force comes down to 0."""
+    normal, rest = p[NORMAL], s[REST]
+    if p[STATIC_LAW] == CONSTANT or rest == math.inf:
+        t = first_crossing(max(normal * static_limit(p, rest) - force, 0.0), -rate, -bend)
+        return t if t <= horizon else math.inf
+    if rate <= 0.0 and bend <= 0.0:
+        return math.inf
+    if bend >= 0.0 and is_concave(p):
+        return concave_root(p, s, rest, force, rate, 0.0, 0.0, bend, horizon)
+    return _stepped_side(p, s, force, rate, bend, horizon)
+
+
+@compiled
+def law(p, rest):
+    """Return mu_s, its rate and a bound on −mu_s″ after a rest time."""
+    return static_growth(p[STATIC_LAW], p[STATIC_INITIAL], p[STATIC_LIMIT], p[STATIC_TAU], p[STATIC_EXPONENT], rest)
+
+
+@compiled
+def is_concave(p):
+    """Whether mu_s rises ever more slowly from the start."""
+    return p[STATIC_LAW] != KATO or p[STATIC_EXPONENT] <= 1.0
+
+
+@compiled
+def concave_root(p, s, rest, force, rate, wave, decay, bend, horizon):
+    """Return the root of N mu_s(rest + t) − force − rate t − bend t²/2 − wave exp(−decay t), a concave function of t.
+
+    It is not negative at 0, or within rounding of it, so it has one root at the most where it comes down; infinity when
+    that lies behind the horizon.  Halley's step inside a shrinking bracket, whose end does not depend on the horizon.
+    """
+    normal = p[NORMAL]
+    limit, growth, _ = law(p, rest)
+    if normal * limit - force - wave <= 0.0 and normal * growth < rate - decay * wave:
+        return 0.0
+    fading = wave * math.exp(-decay * horizon) if wave > 0.0 else 0.0
+    if horizon == 0.0 or normal * static_limit(p, rest + horizon) - force - (
+            rate + 0.5 * bend * horizon) * horizon - fading > 0.0:
+        return math.inf
+    low = 0.0
+    t = high = _time_to_pass(p, rest, force, rate, bend)
+    for _ in range(STEPS):
+        limit, growth, curvature = law(p, rest + t)
+        fading = wave * math.exp(-decay * t) if wave > 0.0 else 0.0
+        value = normal * limit - force - (rate + 0.5 * bend * t) * t - fading
+        if value > 0.0:
+            low = t
+        else:
+            high = t
+        if low >= high:
+            return t
+        s[ITERATIONS] += 1.0
+        slope = normal * growth - rate - bend * t + decay * fading
+        bow = -(normal * curvature + bend + decay * decay * fading)
+        step = value / slope if slope < 0.0 else -math.inf
+        step /= max(1.0 - 0.5 * step * bow / slope, 0.5)
+        guess = t - step
+        if low <= guess <= high:
+            sharpness = bow / slope + 1.0 / p[STATIC_TAU] + 3.0 / (rest + guess) + decay
+            if abs(step) <= 2.0 * _EPSILON * t or abs(step) * (step * sharpness) ** 2 <= 0.1 * _EPSILON * t:
+                return guess
+        else:
+            guess = 0.5 * (low + high)
+            if guess <= low or guess >= high:
+                return guess
+        t = guess
+    return t
+
+
+@compiled
+def _time_to_pass(p, rest, force, rate, bend):
+    """Return a time by which force + rate t + bend t²/2 has passed N mu_s(rest + t), given that it does."""
+    if p[STATIC_LAW] != LOGARITHMIC:
+        return first_crossing(max(p[NORMAL] * static_limit(p, math.inf) - force, 0.0), -rate, -bend)
+    t = p[STATIC_TAU]
+    while p[NORMAL] * static_limit(p, rest + t) > force + (rate + 0.5 * bend * t) * t:
+        t *= 2.0
+    return t
+
+
+@compiled
+def _stepped_side(p, s, force, rate, bend, horizon):
+    normal, rest = p[NORMAL], s[REST]
+    t = 0.0
+    for _ in range(STEPS):
+        limit, growth, curvature = law(p, rest + t)
+        now = force + (rate + 0.5 * bend * t) * t
+        value = max(normal * limit - now, 0.0)
+        slope = normal * growth - rate - bend * t
+        step = safe_step(value, slope, normal * curvature + max(bend, 0.0))
+        if curvature == math.inf:
+            step = steep_start(p, abs(rate), abs(bend))
+        s[ITERATIONS] += 1.0
+        if step <= 2.0 * _EPSILON * t or (value <= 4.0 * _EPSILON * normal * limit and slope < 0.0):
+            return t
+        t += step
+        if t > horizon:
+            return math.inf
+    return t
+
+
+@compiled
+def steep_start(p, rate, bend):
+    """Return a safe step from rest time 0 under Kato's law with n < 1, whose rate is infinite there.
+
+    The law is concave: on [0, d] it rises at least as fast as at d, so that it stays above a force that rises less.
+    """
+    step = p[STATIC_TAU]
+    while p[NORMAL] * law(p, step)[1] < rate + bend * step and step > 0.0:
+        step *= 0.125
+    return step
