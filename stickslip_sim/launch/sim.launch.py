@@ -3,12 +3,11 @@
 ros2 launch stickslip_sim sim.launch.py scene:=paper_fig7 namespace:=press record:=true
 """
 
+from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
-
-from launch import LaunchDescription
 
 
 def generate_launch_description() -> LaunchDescription:
