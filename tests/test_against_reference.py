@@ -45,7 +45,7 @@ def _course(segments: list[list[float]]) -> Course:
     return Course(starts, values, rates)
 
 
-def _simulator(values: dict[str, Any]) -> Simulator:
+def simulator_of(values: dict[str, Any]) -> Simulator:
     return Simulator(_axis(values), InitialState(**values['initial']), _course(values['drive']),
                      _course(values['force']))
 
@@ -53,7 +53,7 @@ def _simulator(values: dict[str, Any]) -> Simulator:
 @pytest.mark.parametrize('name', RUNS)
 def test_events_equal_the_reference(name: str) -> None:
     run = RUNS[name]
-    events, want = _simulator(run['parameters']).advance(instant(run['duration'])), run['events']
+    events, want = simulator_of(run['parameters']).advance(instant(run['duration'])), run['events']
     assert [(e.kind.name.lower(), e.direction) for e in events] == list(zip(want['kind'], want['direction']))
     travel = max([abs(float(x) - run['parameters']['initial']['position']) for x in want['position']] or [0.0])
     size = max(travel, abs(run['parameters']['initial']['position']))
@@ -77,7 +77,7 @@ def test_events_equal_the_reference(name: str) -> None:
 @pytest.mark.parametrize('name', RUNS)
 def test_states_between_events_equal_the_reference(name: str) -> None:
     run = RUNS[name]
-    simulator, want = _simulator(run['parameters']), run['samples']
+    simulator, want = simulator_of(run['parameters']), run['samples']
     slack = max([1.0, *(16.0 * s * ROUNDING / (1e-12 * run['duration']) for s in run['events']['time_sensitivity'])])
     force = max([1e-300, *(abs(float(x)) for x in [*want['drive_force'], *want['friction_force']])])
     length = max(abs(float(x)) for x in want['position']) or 1.0

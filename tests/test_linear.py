@@ -68,7 +68,7 @@ def test_first_zero_is_the_first(kind: str) -> None:
             g, slope = impulse(osc, t)
             return float(z * (slope + 2.0 * osc[0] * g) + rate * g)
 
-        t = first_zero(osc, z, rate)
+        t = first_zero(osc, z, rate + 2.0 * osc[0] * z)
         end = min(t, 20.0 / scale)
         assert all(value(end * i / 200) > 0.0 for i in range(1, 200))
         if t < 20.0 / scale:

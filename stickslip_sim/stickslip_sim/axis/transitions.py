@@ -62,8 +62,12 @@ def write_event(p, s, events, row, kind, direction, friction):
 
 @compiled
 def force_rate(p, s):
-    """Return the rate of F_d + F_e at constant velocity, and the rate's rate."""
-    return (p[STIFFNESS] * (s[V] - s[VELOCITY]) + p[DAMPING] * s[V_RATE] + s[F_RATE], p[STIFFNESS] * s[V_RATE])
+    """Return the rate of F_d + F_e at constant velocity, and the rate's rate; within rounding of 0 the first is 0."""
+    pushed = p[DAMPING] * s[V_RATE] + s[F_RATE]
+    rate = p[STIFFNESS] * (s[V] - s[VELOCITY]) + pushed
+    if abs(rate) <= _ROUNDING * (p[STIFFNESS] * (abs(s[V]) + abs(s[VELOCITY])) + abs(pushed)):
+        rate = 0.0
+    return rate, p[STIFFNESS] * s[V_RATE]
 
 
 @compiled
@@ -194,7 +198,11 @@ def turn(p, s, events, row):
     friction = friction_force(p, s, 0.0, s[VELOCITY], 0.0)
     band = band_of(p, s)
     s[ACCELERATION] = 0.0
-    if band > 0.0 or _slides_with_drive(p, s):
+    rate, bend = force_rate(p, s)
+    slides_steadily = rate == 0.0 and bend == 0.0
+    if band > 0.0 or slides_steadily:
+        if slides_steadily and s[F_RATE] == 0.0:
+            s[VELOCITY] = s[V]
         s[MODE] = COASTING
         s[RESIDUAL] = band if mode == ACCELERATING else 0.0
         kind = COAST
@@ -206,16 +214,6 @@ def turn(p, s, events, row):
         kind = ACCELERATE
     write_event(p, s, events, row, kind, direction, friction)
     events[row][EVENT_MODE] = s[MODE]
-
-
-@compiled
-def _slides_with_drive(p, s):
-    """Whether the speed is the drive's but for rounding; it is set to it then: steady sliding is an equilibrium."""
-    v, u = s[V], s[VELOCITY]
-    if s[V_RATE] != 0.0 or s[F_RATE] != 0.0 or abs(v - u) > _ROUNDING * abs(v):
-        return False
-    s[VELOCITY] = v
-    return True
 
 
 @compiled

@@ -96,7 +96,7 @@ def static_growth(kind, initial, limit, tau, exponent, rest):
 
     The bound is −mu_s″ itself for a concave law.  Under Kato's law with n < 1 the last two are infinite at rest 0.
     """
-    if kind == CONSTANT:
+    if kind == CONSTANT or limit == initial:
         return initial, 0.0, 0.0
     if rest == math.inf:
         return limit, 0.0, 0.0
@@ -119,7 +119,9 @@ def static_growth(kind, initial, limit, tau, exponent, rest):
 @compiled
 def _power(z, n):
     """Return zⁿ for z >= 0, and infinity where it leaves the range of numbers."""
-    return math.inf if z > 1.0 and n * math.log(z) > 700.0 else z ** n
+    if z == 0.0:
+        return 0.0 if n > 0.0 else math.inf
+    return math.inf if n * math.log(z) > 700.0 else z ** n
 
 
 @compiled

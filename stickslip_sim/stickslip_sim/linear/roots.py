@@ -22,12 +22,12 @@ _OVERFLOW = 600.0   # largest exponent of a growing mode; by then it has left ev
 
 
 @compiled
-def first_zero(osc, z, rate):
-    """Return the first t > 0 at which a free motion with z(0) = z >= 0 and z′(0) = rate comes down to 0."""
-    gamma, _, nu, _, fast = osc
+def first_zero(osc, z, jerk):
+    """Return the first t > 0 at which the free motion z g′ + jerk g comes down to 0; z >= 0."""
+    gamma, _, nu, slow, _ = osc
     if nu > 0.0:
-        return math.atan2(abs(z) * nu, -(rate + gamma * z)) / nu
-    fall = -(rate - fast * z)
+        return math.atan2(abs(z) * nu, gamma * z - jerk) / nu
+    fall = -(jerk + slow * z)
     if z == 0.0 or fall <= 0.0:
         return math.inf
     if nu == 0.0:
@@ -59,7 +59,7 @@ def first_passage(osc, rate, jerk, snap, gap, horizon):
     if gap <= 0.0:
         return 0.0, True
     horizon = finite_horizon(osc, horizon)
-    turn = _first_turn(osc, rate, jerk, snap) if snap != 0.0 else first_zero(osc, rate, jerk - 2.0 * osc[0] * rate)
+    turn = _first_turn(osc, rate, jerk, snap) if snap != 0.0 else first_zero(osc, rate, jerk)
     end = min(turn, horizon)
     if gap < math.inf:
         reached, _, _ = _passage(osc, rate, jerk, snap, end)
@@ -151,7 +151,7 @@ def _first_turn(osc, rate, jerk, snap):
     positive once its swing is smaller than that.
     """
     slope = jerk - 2.0 * osc[0] * rate
-    bend = snap - 2.0 * osc[0] * slope - osc[1] * rate
+    bend = snap - osc[1] * rate      # a′ = slope g′ + bend g
     steady = snap / osc[1]
     sign = 1.0 if slope > 0.0 or (slope == 0.0 and bend > 0.0) else -1.0
     last = finite_horizon(osc, math.inf)

@@ -5,7 +5,8 @@ F_c = P(t) + H(t): P is linear (quadratic under a ramp of the drive), H a decayi
 1. Once the envelope of H leaves room between P and the limit, the guard less the envelope is concave, and its root is a
    time before which nothing can happen: one leap over the ring-down.
 2. From there, and as long as there is no room, safe steps with a bound on the curvature that is left.
-3. Where that bound proves that the guard falls all the way to its root, the root is bracketed and found there.
+3. Where that bound proves that the guard falls all the way to its root, the root is bracketed and found there (under
+   a concave law).
 """
 
 import math
@@ -120,7 +121,8 @@ def _step(p, s, osc, contact, sag_bend, t, rounding):
         if fall != 0.0 or side * (sag_bend + wave) > 0.0:
             return 0.0, _IS_ROOT, side
         return _nudge(osc, wave, wave_rate), _GO_ON, side
-    if step == near and fall < 0.0 and fall * fall > 2.0 * bend * value:
+    # a law that is not concave may bend the guard up more than `bend`: no upper end then
+    if step == near and fall < 0.0 and fall * fall > 2.0 * bend * value and is_concave(p):
         return 2.0 * value / (math.sqrt(fall * fall - 2.0 * bend * value) - fall), _IN_BRACKET, side
     return step, _GO_ON, side
 

@@ -1,0 +1,52 @@
+"""Scenes that once were wrong, each against the 40-digit automaton run on the spot."""
+
+from typing import Any
+
+import pytest
+
+from tests.axes import instant
+from tests.reference import simulate
+from tests.test_against_reference import simulator_of
+
+OVERDAMPED_SLIP: dict[str, Any] = {
+    'axis': {'mass': 16.446948494982106, 'drive_stiffness': 175885.98157369555, 'drive_damping': 170081.97082383372,
+             'normal_force': 83.26794526381126},
+    'contact': {'model': 'rigid'},
+    'friction': {'static': {'law': 'exponential', 'initial': 0.07077598440132506, 'limit': 0.18908444510979028,
+                            'time_constant': 0.01711587765437397},
+                 'kinetic': {'velocities': [0.0, 0.0017832506254085658],
+                             'coefficients': [0.07077598440132506, 0.054928209239847564]},
+                 'acceleration_dependence': True},
+    'drive': [[0.0, 0.00463367275569588, 0.0]], 'force': [[0.0, 7.657407661926342, 0.0]],
+    'initial': {'position': 0.0, 'velocity': 0.0, 'rest_time': float('inf')}}
+KATO_IN_AN_OVERDAMPED_CONTACT: dict[str, Any] = {
+    'axis': {'mass': 8.450498813714473, 'drive_stiffness': 548621.3378468909, 'drive_damping': 0.0,
+             'normal_force': 160.7667181464546},
+    'contact': {'model': 'compliant', 'stiffness': 15007399.089951735, 'damping': 450457.5597440039},
+    'friction': {'static': {'law': 'kato', 'initial': 0.3100035400160625, 'limit': 0.32550371701686565,
+                            'time_constant': 0.541806530068847, 'exponent': 1.5},
+                 'kinetic': {'velocities': [0.0], 'coefficients': [0.3100035400160625]},
+                 'acceleration_dependence': False},
+    'drive': [[0.0, 0.007406879132777259, 0.0]], 'force': [[0.0, -19.809695726210332, 0.0]],
+    'initial': {'position': 0.0, 'velocity': 0.0, 'rest_time': 0.0}}
+KATO_THAT_DOES_NOT_RISE: dict[str, Any] = {
+    'axis': {'mass': 1.451899440495982, 'drive_stiffness': 2077.6380903047884, 'drive_damping': 10.984573875880052,
+             'normal_force': 0.001451899440495982},
+    'contact': {'model': 'compliant', 'stiffness': 2687.0777693336768, 'damping': 2498.436858474436},
+    'friction': {'static': {'law': 'kato', 'initial': 0.10267952414132435, 'limit': 0.10267952414132435,
+                            'time_constant': 1000.0, 'exponent': 0.3},
+                 'kinetic': {'velocities': [0.0, 8.3e-8, 1.08e-7], 'coefficients': [0.0318, 0.0141, 0.0071]},
+                 'acceleration_dependence': False},
+    'drive': [[0.0, -1.0048e-05, 0.0], [0.1792, 1.0048e-05, 0.0]], 'force': [[0.0, 0.0, 0.0003624806147554921]],
+    'initial': {'position': 0.0, 'velocity': 0.0, 'rest_time': 0.1}}
+
+
+@pytest.mark.parametrize(('scene', 'duration'), [
+    (OVERDAMPED_SLIP, 0.1), (KATO_IN_AN_OVERDAMPED_CONTACT, 0.05), (KATO_THAT_DOES_NOT_RISE, 0.3)])
+def test_events_equal_the_reference(scene: dict[str, Any], duration: float) -> None:
+    events, want = simulator_of(scene).advance(instant(duration)), simulate(scene, duration)
+    assert [(e.kind.name.lower(), e.direction) for e in events] == [(e.kind, e.direction) for e in want]
+    travel = max(abs(float(e.position)) for e in want)
+    for event, exact in zip(events, want):
+        assert abs(float(event.time - exact.time)) <= 1e-12 * duration
+        assert abs(float(event.position - exact.position)) <= 1e-11 * travel
