@@ -9,6 +9,7 @@ import pytest
 
 from stickslip_sim.axis import CompliantContact, InitialState
 from stickslip_sim.courses import Course, constant, ramp, steps, table
+from stickslip_sim.errors import SolverError
 from stickslip_sim.friction import StaticLaw, StaticLawKind
 from stickslip_sim.words import Event, EventKind, Instant, Mode
 from tests.axes import COMPLIANT, RIGID, instant, make, of_kind, paper_axis, random_axis, run
@@ -254,3 +255,10 @@ def test_parameters_may_change_on_the_way() -> None:
     for event, other in zip(simulator.advance(instant(2.0)), run(paper_axis(RIGID), 0.002, 2.0), strict=True):
         assert (event.kind, event.direction) == (other.kind, other.direction)
         assert event.time == pytest.approx(other.time, abs=1e-14)
+
+
+def test_a_state_that_is_not_finite_is_an_error() -> None:
+    simulator = make(replace(paper_axis(RIGID), mass=1e-300), 0.002)
+    simulator.advance(instant(0.7))
+    with pytest.raises(SolverError, match='range of numbers'):
+        simulator.sample()

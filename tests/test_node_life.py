@@ -43,6 +43,7 @@ class TestRefusedStart:
         (['-p', 'axis.mas:=1.0'], ['axis.mas = 1.0', 'did you mean axis.mass?']),
         (['-p', 'scene:=paper_fig9'], ['paper_fig9', 'paper_fig8']),
         (['--nonsense'], ['--nonsense']),
+        (['-p', 'record.enabled:=true', '-p', 'axis.mass:=-1.0'], ['axis.mass = -1.0']),
     ])
     def test_arguments(self, arguments: list[str], told: list[str]) -> None:
         code, errors = start(*arguments)

@@ -48,8 +48,9 @@ def test_yaml_that_ros_refuses_or_passes_over(text: str, hint: str) -> None:
     ('    axis: {mas: 1.0}\n', 'axis.mas', 'did you mean axis.mass?'),
     ('    axis: 5.0\n', 'axis', 'it is a section'),
     ('    axes: {mass: 1.0}\n', 'axes.mass', 'did you mean axis.mass?'),
-    ('    encoder: {resolution: 1.0}\n', 'encoder.resolution', 'axis, contact'),
-    ('    command: {timeout: 0.5}\n', 'command.timeout', 'max_velocity'),
+    ('    encoder: {resolution: 1.0}\n', 'encoder.resolution', '<= 0'),
+    ('    encoder: {offset: 1.0}\n', 'encoder.offset', 'resolution'),
+    ('    command: {timeout: 0.5}\n', 'command.timeout', '<= 0'),
     ('    drive: {course: sine}\n', 'drive.course', 'constant, ramp, steps, table'),
     ('    solver: {name: fixed_step}\n', 'solver.name', 'exact'),
     ('    time: {mode: lockstep}\n', 'time.mode', 'realtime'),
@@ -125,3 +126,9 @@ def test_an_unknown_name_lists_the_scenes() -> None:
     assert 'positioning' in str(error)
     assert 'did you mean paper_fig' in str(error)
     assert refusal(load_scene, '').name == 'scene'
+
+
+def test_a_table_longer_than_a_step_can_walk_is_refused() -> None:
+    values = {'friction.kinetic.velocities': [float(i) for i in range(1001)],
+              'friction.kinetic.coefficients': [0.0] * 1001}
+    assert 'at most 1000 knots' in str(refusal(scene_from_values, values))

@@ -101,10 +101,13 @@ class Simulator:
         self._waiting.extend(self._rows(rows))
 
     def sample(self) -> Sample:
-        """Return the state at the present time."""
+        """Return the state at the present time; raises SolverError when it is not finite."""
         row = self._row
         exact.sample(self._parameters, self._state, *self._time, row)
         second, fraction, mode, direction, *rest = row.tolist() if IS_COMPILED else row
+        if not all(map(math.isfinite, rest[:8])):
+            raise SolverError(f'the state leaves the range of numbers at t = {second + fraction!r} s; '
+                              'a parameter or an input is too extreme for this axis: check the scene')
         return Sample(second, fraction, _MODES[int(mode)], int(direction), *rest)
 
     def _advance(self, to: Instant, events: list[Event]) -> None:

@@ -5,11 +5,14 @@ Both start at speed 0.  The kinetic coefficient continues beyond its last knot w
 """
 
 import math
+from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 from ..errors import InputError
+
+MAX_KNOTS = 1000   # a table is walked at every break-away, within a step
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,16 +79,19 @@ def default_excess(kinetic: KineticTable) -> ExcessTable:
 
 
 def _interpolate(xs: Sequence[float], ys: Sequence[float], x: float, end_slope: float) -> float:
-    for (x0, x1), (y0, y1) in zip(pairwise(xs), pairwise(ys), strict=True):
-        if x0 <= x < x1:
-            return y0 + (y1 - y0) / (x1 - x0) * (x - x0)
-    return ys[-1] + end_slope * (x - xs[-1])
+    i = bisect_right(xs, x) - 1
+    if i + 1 == len(xs):
+        return ys[-1] + end_slope * (x - xs[-1])
+    return ys[i] + (ys[i + 1] - ys[i]) / (xs[i + 1] - xs[i]) * (x - xs[i])
 
 
 def _check_knots(name: str, velocities: Sequence[float], other: str, values: Sequence[float]) -> None:
     if not velocities or len(velocities) != len(values):
         raise InputError(f'{name}.velocities', list(velocities), f'as many numbers as {name}.{other} ({len(values)})',
                          'give one value for every knot')
+    if len(velocities) > MAX_KNOTS:
+        raise InputError(f'{name}.velocities', f'{len(velocities)} knots', f'at most {MAX_KNOTS} knots',
+                         'leave out those that hardly bend the table')
     if velocities[0] != 0.0:
         raise InputError(f'{name}.velocities', velocities[0], '0 m/s at the first knot',
                          'the table starts at standstill')

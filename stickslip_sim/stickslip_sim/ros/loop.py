@@ -7,6 +7,7 @@ hands out the events and the state, then lets the latest commands take effect: t
 import threading
 from collections import deque
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from typing import NamedTuple, Protocol
 
 from ..errors import SolverError
@@ -69,10 +70,10 @@ class StepLoop:
         self._thread.start()
 
     def stop(self) -> None:
-        """Let the step at hand be the last, and wait for it."""
+        """Let the step at hand be the last, and wait for it, but not for ever."""
         self._is_over.set()
         if self._thread.ident is not None:
-            self._thread.join()
+            self._thread.join(_PATIENCE)
 
     def at_boundary(self, action: Callable[[], None]) -> bool:
         """Have an action done between two steps by the loop's thread; wait for it and return whether it was done."""
@@ -83,6 +84,10 @@ class StepLoop:
             done.set()
 
         self._requests.append(do)
+        if not done.wait(_PATIENCE):
+            with suppress(ValueError):    # it was begun after all
+                self._requests.remove(do)
+                return False
         return done.wait(_PATIENCE)
 
     def pause(self, paused: bool) -> None:

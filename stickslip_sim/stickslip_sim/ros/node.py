@@ -94,7 +94,8 @@ class FeedAxis(SceneNode):
             data = self._recordings.parameter_event(conversion.fields_of(event))
             self._outlet.record(RECORDED.index(names.PARAMETER_EVENTS), data, self.loop.time_ns, self.loop.step + 1)
 
-        self.loop.at_boundary(apply)
+        if not self.loop.at_boundary(apply):
+            self.get_logger().error('the step loop is busy: the changed parameters did not take effect')
 
     def _open_endpoints(self) -> None:
         self._run_info_out = publisher(self, names.RUN_INFO)
@@ -150,7 +151,9 @@ class FeedAxis(SceneNode):
             self.get_logger().error(f'no recording: {error}')
             self._publish_run_info()
             return str(error)
-        at_boundary(self._attach_recorder)
+        if at_boundary(self._attach_recorder) is False:
+            self._recordings.end({})
+            return 'the step loop is busy'
         self.get_logger().info(f'recording into {self._recordings.folder}')
         return ''
 

@@ -39,9 +39,9 @@ class Recordings:
         """Open a new run folder; raises RecordingError."""
         try:
             writer = open_run(_folder_of(scene), RunFacts.of(scene), self._namespace)
-        except RecordingError as error:
-            self.failure = str(error)
-            raise
+        except (RecordingError, OSError, RuntimeError, ValueError) as error:    # the last two: no such home, odd names
+            self.failure = f'record.folder = {scene.record.folder!r}: {error}'
+            raise RecordingError(self.failure) from None
         self.recorder, self.folder, self.failure = RecorderThread(writer), str(writer.folder), ''
 
     def end(self, receipt: Mapping[str, object]) -> None:

@@ -86,6 +86,8 @@ def loop_status(loop: StepLoop, account: Account, second: Second) -> DiagnosticS
     if loop.paused or loop.failure:
         text = 'paused: simulation time stands still' if loop.paused else 'stopped by the solver'
         level = ERROR if loop.failure else OK
+    elif second.steps == 0 and loop.step > 0:
+        level, text = ERROR, 'no step in the last second'
     elif second.skipped > 0.0:
         level, text = WARN, f'{second.skipped:.3f} s behind the clock given up: too slow, or suspended'
     elif second.overruns > _MANY_OVERRUNS * max(second.steps, 1):

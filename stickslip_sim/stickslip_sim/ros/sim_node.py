@@ -1,5 +1,6 @@
 """The executable `sim_node`: the life of the process around the node, from the first signal to the exit code."""
 
+import os
 import re
 import signal
 import sys
@@ -7,6 +8,12 @@ import threading
 from collections.abc import Sequence
 from typing import Any
 
+_USAGE = """\
+usage: sim_node [--help] [--ros-args [--params-file SCENE.yaml] [-p NAME:=VALUE]... [-r __ns:=/NAMESPACE]]
+
+Simulates a feed axis with stick-slip friction in real time (node feed_axis).  Without a file it runs the scene
+paper_fig8; -p scene:=NAME takes another shipped one, -p record.enabled:=true records a bag from the start.
+"""
 _POLL = 0.1                # s: how soon a signal is acted on
 _SWITCH_INTERVAL = 2e-4    # s that a callback may keep the interpreter from the step loop (the default is 5 ms)
 
@@ -22,8 +29,8 @@ class _Signals:
 
     def _take(self, *_: object) -> None:
         self.stop.set()
-        if self.is_starting:    # nothing is open yet, and compiling may take long
-            raise SystemExit(0)
+        if self.is_starting:    # nothing is open yet; compiling may take long, and swallows exceptions
+            os._exit(0)
 
 
 def main(args: Sequence[str] | None = None) -> int:
@@ -41,6 +48,9 @@ def _run(args: Sequence[str] | None, signals: _Signals) -> int:
     sys.setswitchinterval(_SWITCH_INTERVAL)
     try:
         _init_ros(args)
+        if _wants_help(args):
+            sys.stdout.write(_USAGE)
+            return 0
         return _live(signals, '--params-file' in (sys.argv if args is None else args))
     except StickslipError as error:
         return _refuse(str(error), error.exit_code)
@@ -48,6 +58,18 @@ def _run(args: Sequence[str] | None, signals: _Signals) -> int:
         return 0
     finally:
         rclpy.try_shutdown()
+
+
+def _wants_help(args: Sequence[str] | None) -> bool:
+    """Return whether help is asked for; raises InputError on words that are none of ROS's."""
+    from rclpy.utilities import remove_ros_args
+
+    from ..errors import InputError
+
+    words = remove_ros_args(sys.argv if args is None else ['sim_node', *args])[1:]
+    if words and words[0] not in ('-h', '--help'):
+        raise InputError('argument', words[0], 'one of -h, --help, or behind --ros-args', 'see sim_node --help')
+    return bool(words)
 
 
 def _live(signals: _Signals, from_file: bool) -> int:

@@ -24,10 +24,12 @@ class TimeSettings:
 
 @dataclass(frozen=True, slots=True)
 class CommandSettings:
-    """Commands whose magnitude is beyond `max_velocity` (m/s) or `max_force` (N) are refused."""
+    """Commands whose magnitude is beyond `max_velocity` (m/s) or `max_force` (N) are refused; held for ever."""
 
     max_velocity: float
     max_force: float
+    timeout: float
+    on_timeout: str
 
 
 @dataclass(frozen=True, slots=True)

@@ -113,6 +113,13 @@ PARAMETERS: tuple[Parameter, ...] = (
     _number('command.max_force', 1.0e5, 'N', 'an external_force beyond it, either way, is refused', low=0.0, above=True,
             live=True),
 
+    _number('command.timeout', 0.0, 's', 'silence after which a command is stale; 0: off, and nothing else yet',
+            low=0.0, high=0.0),
+    _choice('command.on_timeout', 'hold', 'what follows a stale command: hold, and nothing else yet', ('hold',)),
+
+    _number('encoder.resolution', 0.0, 'm', 'of the measured position; 0: exact, and nothing else yet', low=0.0,
+            high=0.0),
+
     Parameter('record.enabled', 'bool', False, '', 'whether the node records a bag from the start'),
     Parameter('record.folder', 'string', '', '', 'folder of the bag, which must not exist; empty: the node chooses',
               live=True),
