@@ -79,6 +79,10 @@ class Account:
     skips: int = 0          # times that wall time was given up
     skipped: int = 0        # ns of wall time given up
 
+    def clear(self) -> None:
+        """Begin to count anew."""
+        self.steps = self.overruns = self.caught_up = self.skips = self.skipped = 0
+
 
 class Pacer:
     """Says when each step is due, and accounts for lateness.

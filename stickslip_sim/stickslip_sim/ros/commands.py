@@ -37,5 +37,6 @@ class CommandSlot:
         return self.last_refusal
 
     def forget(self) -> None:
-        """Drop the command that waits or holds, as if none had come."""
+        """Drop the command that waits or holds, and begin to count anew, as if none had come."""
         self.latest = None
+        self.received = self.refused = 0

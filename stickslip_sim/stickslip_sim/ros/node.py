@@ -10,7 +10,7 @@ from rclpy.parameter import Parameter
 from rclpy.serialization import serialize_message
 from std_srvs.srv import SetBool, Trigger
 
-from ..errors import RecordingError
+from ..errors import RecordingError, SolverError
 from ..offline import warm_up
 from ..pacing import Grid, Pacer
 from ..recording import RECORDED, RunFacts, messages
@@ -123,6 +123,10 @@ class FeedAxis(SceneNode):
             self._outlet.begin_run(self._now_ns())
 
         done = self.loop.at_boundary(restart)
+        if done:
+            self._pacer.account.clear()
+            self._reporter.forget_counts()
+            self._wall, self._cpu = time.monotonic(), time.process_time()
         self._publish_run_info()
         return _answer(response, done, 'simulation time and steps begin anew at 0' if done else 'the step loop is busy')
 
@@ -182,6 +186,12 @@ class FeedAxis(SceneNode):
 
     def _receipt(self) -> dict[str, Any]:
         cost = (time.process_time() - self._cpu, time.monotonic() - self._wall)
+        try:
+            return self._whole_receipt(cost)
+        except SolverError as error:    # the state has left the range of numbers
+            return {'failure': str(error)}
+
+    def _whole_receipt(self, cost: tuple[float, float]) -> dict[str, Any]:
         return run_receipt(self.scene, self._simulator, self._outlet, self._pacer.account, self._slots,
                            self._recordings.total_dropped, cost)
 

@@ -40,6 +40,10 @@ class Reporter:
     def __init__(self, loop: StepLoop, account: Account, slots: Sequence[CommandSlot]) -> None:
         self._loop, self._account, self._slots = loop, account, slots
         self._wall = self._time = 0
+        self.forget_counts()
+
+    def forget_counts(self) -> None:
+        """Begin anew, as the counters do."""
         self._before = (0, 0, 0, 0)
 
     def begin(self, now: int) -> None:
