@@ -10,7 +10,7 @@ import pytest
 from stickslip_sim.axis import CompliantContact, InitialState
 from stickslip_sim.courses import Course, constant, ramp, steps, table
 from stickslip_sim.errors import SolverError
-from stickslip_sim.friction import StaticLaw, StaticLawKind
+from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
 from stickslip_sim.words import Event, EventKind, Instant, Mode
 from tests.axes import COMPLIANT, RIGID, instant, make, of_kind, paper_axis, random_axis, run
 from tests.conftest import Program
@@ -262,3 +262,33 @@ def test_a_state_that_is_not_finite_is_an_error() -> None:
     simulator.advance(instant(0.7))
     with pytest.raises(SolverError, match='range of numbers'):
         simulator.sample()
+
+
+@pytest.mark.parametrize('sign', [1.0, -1.0])
+def test_without_friction_the_drive_takes_the_slider_along_either_way(sign: float) -> None:
+    for contact in (RIGID, COMPLIANT):
+        free = replace(paper_axis(contact), normal_force=0.0)
+        events = run(free, ramp(0.0, sign * 0.01, 1.0), 1.0)
+        assert (events[0].kind, events[0].direction) == (EventKind.BREAKAWAY, sign)
+
+
+def test_an_undamped_contact_breaks_away_on_the_other_side_too() -> None:
+    """After the arrest the contact swings back; nothing grows, and |F| never passes the limit."""
+    static = StaticLaw(StaticLawKind.CONSTANT, 0.12, 0.12)
+    axis = paper_axis(CompliantContact(5e6, 0.0))
+    axis = replace(axis, drive_damping=0.0, friction=replace(
+        axis.friction, static=static, kinetic=KineticTable((0.0,), (0.12,)), excess=None))
+    simulator = make(axis, 0.0, initial=InitialState(velocity=0.08))
+    for k in range(1, 1001):
+        simulator.advance(instant(k * 1e-4))
+        sample = simulator.sample()
+        assert abs(sample.friction_force) <= 0.12 * axis.normal_force * (1.0 + 1e-12)
+
+
+def test_changing_to_the_same_axis_changes_no_force() -> None:
+    axis = paper_axis(COMPLIANT)
+    simulator = make(axis, 0.0, steps('force', [0.0, 0.1], [0.0, 400.0]))
+    simulator.advance(instant(0.105))
+    before = simulator.sample().friction_force
+    simulator.change_axis(axis)
+    assert simulator.sample().friction_force == pytest.approx(before, rel=1e-14)

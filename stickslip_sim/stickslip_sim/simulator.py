@@ -119,7 +119,7 @@ class Simulator:
             if end == DONE:
                 self._time = to
                 return
-            self._time = events[-1].instant
+            self._time = events[-1].instant if events else self._time
             if end != FULL or taken > MAX_EVENTS_PER_ADVANCE:
                 raise SolverError(f'{taken} events up to t = {self._time.seconds!r} s and time hardly goes on; '
                                   'friction or inputs are too extreme for this axis: check the scene')

@@ -179,7 +179,7 @@ def release(p, s, events, row):
     """Begin a slip from stick, where |F| has reached N mu_s(t⁻)."""
     limit = static_limit(p, s[REST])
     force = applied_force(p, s) if is_rigid_stick(p, s) else contact_force(p, s[DEFLECTION], s[VELOCITY])
-    direction = 1.0 if force > 0.0 else -1.0
+    direction = _way_out(p, s, force)
     margin = abs(force) - p[NORMAL] * limit
     if margin <= force_rounding(p, s, limit):
         margin = 0.0
@@ -188,6 +188,18 @@ def release(p, s, events, row):
     write_event(p, s, events, row, BREAKAWAY, direction, direction * p[NORMAL] * limit)
     break_away(p, s, direction, limit, margin)
     events[row][EVENT_MODE] = s[MODE]
+
+
+@compiled
+def _way_out(p, s, force):
+    """Return the way that stick breaks; where nothing holds and nothing pulls yet, that of the next derivative."""
+    rate, bend = force_rate(p, s)
+    way = force if abs(force) > force_rounding(p, s, 0.0) else 0.0
+    if way == 0.0 and p[COMPLIANT] != 0.0:
+        way = s[VELOCITY] if s[VELOCITY] != 0.0 else s[ACCELERATION]
+    if way == 0.0:
+        way = rate if rate != 0.0 else bend
+    return 1.0 if way > 0.0 else -1.0
 
 
 @compiled

@@ -20,7 +20,7 @@ from ...axis.transitions import force_rounding
 from ...compiled import compiled
 from ...linear.oscillator import amplitude, bound, impulse
 from ...linear.roots import safe_step
-from .static_guards import STEPS, concave_root, is_concave, law, steep_start
+from .static_guards import GAVE_UP, STEPS, concave_root, is_concave, law, steep_start
 
 _EPSILON = 2.220446049250313e-16
 _GO_ON, _IS_ROOT, _IN_BRACKET = 0.0, 1.0, 2.0
@@ -28,7 +28,7 @@ _GO_ON, _IS_ROOT, _IN_BRACKET = 0.0, 1.0, 2.0
 
 @compiled
 def compliant_stick(p, s, horizon):
-    """Return when |F_c| reaches N mu_s, or infinity when that is behind the horizon."""
+    """Return when |F_c| reaches N mu_s, infinity when that is behind the horizon, or GAVE_UP."""
     osc = oscillator_of(s)
     motion = _contact_motion(p, s, osc)
     rounding = 0.5 * force_rounding(p, s, static_limit(p, s[REST]))
@@ -52,7 +52,7 @@ def compliant_stick(p, s, horizon):
                 return t
         if t > horizon:
             return math.inf
-    return t
+    return GAVE_UP
 
 
 @compiled
@@ -108,19 +108,20 @@ def _step(p, s, osc, contact, sag_bend, t, rounding):
     limit, growth, curvature = law(p, s[REST] + t)
     top, top_rate = p[NORMAL] * limit, p[NORMAL] * growth
     swing = bound(osc, wave, wave_rate) + abs(sag_bend)
-    if curvature == math.inf:
-        return steep_start(p, abs(rate), swing), _GO_ON, 1.0
-    bend = swing + p[NORMAL] * curvature
     side = 1.0 if force > 0.0 or (force == 0.0 and rate > 0.0) else -1.0
     value, fall = max(top - side * force, 0.0), top_rate - side * rate
-    near = safe_step(value, fall, bend)
+    if curvature == math.inf:
+        step = steep_start(p, value, abs(rate), swing)
+        return step, (_GO_ON if step > 0.0 else _IS_ROOT), side
+    bend = swing + p[NORMAL] * curvature
+    near, far = safe_step(value, fall, bend), safe_step(top + side * force, top_rate + side * rate, bend)
     if value <= rounding and fall < 0.0:
         return (0.0 if t == 0.0 else min(value / -fall, near)), _IS_ROOT, side
-    step = min(near, safe_step(top + side * force, top_rate + side * rate, bend))
+    step = min(near, far)
     if step <= 2.0 * _EPSILON * t:
-        if fall != 0.0 or side * (sag_bend + wave) > 0.0:
+        if fall != 0.0 or side * (sag_bend + wave) > 0.0 or (top == 0.0 and sag_bend + wave != 0.0):
             return 0.0, _IS_ROOT, side
-        return _nudge(osc, wave, wave_rate), _GO_ON, side
+        return min(_nudge(osc, wave, wave_rate), far), _GO_ON, side
     # a law that is not concave may bend the guard up more than `bend`: no upper end then
     if step == near and fall < 0.0 and fall * fall > 2.0 * bend * value and is_concave(p):
         return 2.0 * value / (math.sqrt(fall * fall - 2.0 * bend * value) - fall), _IN_BRACKET, side

@@ -10,8 +10,8 @@ in place and return the number of rows in use; `advance` also tells how it ended
 import math
 
 from ...axis.layout import (
-    COMPLIANT, CONTACT_STIFFNESS, DEFLECTION, DIRECTION, DRIVE, F, FRACTION, F_RATE, MODE, NEXT, NEXT_KIND, NORMAL,
-    ORIGIN, POSITION, REST, SEARCHED, SECOND, SPRING, STATE_SIZE, V, VELOCITY, V_RATE,
+    COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DEFLECTION, DIRECTION, DRIVE, F, FRACTION, F_RATE, MODE, NEXT,
+    NEXT_KIND, NORMAL, ORIGIN, POSITION, REST, SEARCHED, SECOND, SPRING, STATE_SIZE, V, VELOCITY, V_RATE,
 )
 from ...axis.motion import (
     COASTING, STICK, begin_motion, drive_force, drive_travel, friction_force, friction_line, move_anchor, piece_above,
@@ -62,6 +62,8 @@ def advance(p, s, second, fraction, events, row):
         due = s[NEXT]
         if due > t:
             return row, DONE
+        if due < 0.0:
+            return row, NO_PROGRESS
         if row >= len(events):
             return row, FULL
         same_instant = same_instant + 1 if due == 0.0 else 0
@@ -93,7 +95,7 @@ def set_parameters(p, new, s, second, fraction, events, row):
     _anchor_at(p, s, second, fraction)
     if s[MODE] == STICK and new[COMPLIANT] != 0.0:
         force = friction_force(p, s, s[DEFLECTION], s[VELOCITY], applied_force(p, s))
-        s[DEFLECTION] = force / new[CONTACT_STIFFNESS]
+        s[DEFLECTION] = (force - new[CONTACT_DAMPING] * s[VELOCITY]) / new[CONTACT_STIFFNESS]
     if s[MODE] == STICK and new[COMPLIANT] == 0.0:
         s[VELOCITY] = 0.0
         s[DEFLECTION] = 0.0

@@ -17,6 +17,7 @@ from ...linear.roots import first_crossing, safe_step
 
 _EPSILON = 2.220446049250313e-16
 STEPS = 100_000
+GAVE_UP = -1.0     # instead of a time: the steps were used up
 
 
 @compiled
@@ -122,23 +123,24 @@ def _stepped_side(p, s, force, rate, bend, horizon):
         slope = normal * growth - rate - bend * t
         step = safe_step(value, slope, normal * curvature + max(bend, 0.0))
         if curvature == math.inf:
-            step = steep_start(p, abs(rate), abs(bend))
+            step = steep_start(p, value, abs(rate), abs(bend))
         s[ITERATIONS] += 1.0
         if step <= 2.0 * _EPSILON * t or (value <= 4.0 * _EPSILON * normal * limit and slope < 0.0):
             return t
         t += step
         if t > horizon:
             return math.inf
-    return t
+    return GAVE_UP
 
 
 @compiled
-def steep_start(p, rate, bend):
+def steep_start(p, value, rate, bend):
     """Return a safe step from rest time 0 under Kato's law with n < 1, whose rate is infinite there.
 
     The law is concave: on [0, d] it rises at least as fast as at d, so that it stays above a force that rises less.
+    It never falls, so a force that is off the limit by `value` takes its time as well.
     """
     step = p[STATIC_TAU]
     while p[NORMAL] * law(p, step)[1] < rate + bend * step and step > 0.0:
         step *= 0.125
-    return step
+    return max(step, safe_step(value, -rate, bend))
