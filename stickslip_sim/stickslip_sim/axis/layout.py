@@ -26,9 +26,9 @@ V, V_RATE, F, F_RATE = range(14, 18)
 GAMMA, OMEGA2, NU, SLOW, FAST, JERK, SNAP = range(18, 25)
 # the next event: time after the anchor, its kind, and up to when it was searched
 NEXT, NEXT_KIND, SEARCHED = range(25, 28)
-EVENTS, ITERATIONS = range(28, 30)      # counters
-ORIGIN = 30                             # m, where the run began: POSITION and DRIVE count from there
-STATE_SIZE = 31
+ITERATIONS = 28                         # of all searches for events so far
+ORIGIN = 29                             # m, where the run began: POSITION and DRIVE count from there
+STATE_SIZE = 30
 
 # a row of the event table; words.Event has the same order
 (EVENT_SECOND, EVENT_FRACTION, EVENT_KIND, EVENT_MODE, EVENT_DIRECTION, EVENT_POSITION, EVENT_VELOCITY, EVENT_DRIVE,
