@@ -19,17 +19,30 @@ class Piece(NamedTuple):
     rate: float
 
 
+class Wave(NamedTuple):
+    """amplitude · sin(2π frequency t + phase), t being simulation time."""
+
+    amplitude: float
+    frequency: float   # Hz
+    phase: float       # rad
+
+    def at(self, time: float) -> float:
+        """Return the value at a time."""
+        return self.amplitude * math.sin(2.0 * math.pi * self.frequency * time + self.phase)
+
+
 @dataclass(frozen=True, slots=True)
 class Course:
-    """A course as pieces: `starts` (s, the first is 0), `values` there, `rates` (per s) from there.
+    """A course as pieces: `starts` (s, the first is 0), `values` there, `rates` (per s) from there; and `waves` on top.
 
-    With a finite `period` it starts anew every `period` seconds.
+    With a finite `period` the pieces start anew every `period` seconds; the waves go on.
     """
 
     starts: tuple[float, ...]
     values: tuple[float, ...]
     rates: tuple[float, ...]
     period: float = math.inf
+    waves: tuple[Wave, ...] = ()
 
     def piece_at(self, time: float) -> Piece:
         """Return the piece that holds from `time` >= 0 s on (at a border: the one that begins)."""
@@ -46,7 +59,7 @@ class Course:
     def value_at(self, time: float) -> float:
         """Return the value at `time` >= 0 s."""
         piece = self.piece_at(time)
-        return piece.value + piece.rate * (time - piece.start)
+        return piece.value + piece.rate * (time - piece.start) + sum(wave.at(time) for wave in self.waves)
 
 
 def constant(value: float) -> Course:

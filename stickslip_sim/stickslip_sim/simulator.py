@@ -9,8 +9,7 @@ from .axis.layout import EVENT_SIZE, ITERATIONS, SAMPLE_SIZE, STATE_SIZE
 from .compiled import IS_COMPILED
 from .courses import Course, constant
 from .errors import SolverError
-from .solvers import exact
-from .solvers.exact.engine import DONE, FULL
+from .solvers import DONE, FULL, Solver, exact
 from .words import Event, EventKind, Instant, Mode, Sample
 
 _KINDS, _MODES = tuple(EventKind), tuple(Mode)
@@ -25,8 +24,10 @@ class Simulator:
     present time on.  Events come back from the call in which they fall, in the order of time.
     """
 
-    def __init__(self, axis: Axis, initial: InitialState, drive: Course, force: Course) -> None:
+    def __init__(self, axis: Axis, initial: InitialState, drive: Course, force: Course,
+                 solver: Solver = exact.SOLVER) -> None:
         check_start(axis, initial)
+        self._solver = solver
         self._initial = initial
         self._courses = (drive, force)
         self._axis = axis
@@ -40,11 +41,12 @@ class Simulator:
         """Begin anew at time 0 with the initial state and the original courses; return the events at time 0."""
         self._drive, self._force = self._courses
         self._time = Instant(0.0, 0.0)
+        self._waves = _waves(self._drive, self._force)
         v, f = self._drive.piece_at(0.0), self._force.piece_at(0.0)
         self._until = min(v.end, f.end)
         start = self._initial
-        rows = exact.start(self._parameters, self._state, start.position, start.velocity, start.rest_time,
-                           v.value, v.rate, f.value, f.rate, self._table, 0)
+        rows = self._solver.start(self._parameters, self._state, start.position, start.velocity, start.rest_time,
+                                  v.value, v.rate, f.value, f.rate, self._waves, self._table, 0)
         self._waiting = list(self._rows(rows))
         self._counts = dict.fromkeys(EventKind, 0)
         return self._waiting
@@ -86,24 +88,26 @@ class Simulator:
     def command_velocity(self, velocity: float) -> None:
         """Let the drive move at a constant velocity (m/s) from now on; events that this causes come with `advance`."""
         self._drive = constant(velocity)
+        self._waves = _waves(self._drive, self._force)
         self._enter_pieces(self._waiting)
 
     def command_force(self, force: float) -> None:
         """Let a constant external force (N) act from now on; events that this causes come with `advance`."""
         self._force = constant(force)
+        self._waves = _waves(self._drive, self._force)
         self._enter_pieces(self._waiting)
 
     def change_axis(self, axis: Axis) -> None:
         """Go on with other parameters from now on; position, velocity and the spring stay continuous."""
         new = _numbers(pack(axis))
-        rows = exact.set_parameters(self._parameters, new, self._state, *self._time, self._table, 0)
+        rows = self._solver.set_parameters(self._parameters, new, self._state, *self._time, self._table, 0)
         self._parameters, self._axis = new, axis
         self._waiting.extend(self._rows(rows))
 
     def sample(self) -> Sample:
         """Return the state at the present time; raises SolverError when it is not finite."""
         row = self._row
-        exact.sample(self._parameters, self._state, *self._time, row)
+        self._solver.sample(self._parameters, self._state, *self._time, row)
         second, fraction, mode, direction, *rest = row.tolist() if IS_COMPILED else row
         if not all(map(math.isfinite, rest[:8])):
             raise SolverError(f'the state leaves the range of numbers at t = {second + fraction!r} s; '
@@ -113,7 +117,7 @@ class Simulator:
     def _advance(self, to: Instant, events: list[Event]) -> None:
         taken = 0
         while True:
-            rows, end = exact.advance(self._parameters, self._state, *to, self._table, 0)
+            rows, end = self._solver.advance(self._parameters, self._state, *to, self._table, 0)
             events.extend(self._rows(rows))
             taken += rows
             if end == DONE:
@@ -128,9 +132,9 @@ class Simulator:
         time = self._time.seconds
         v, f = self._drive.piece_at(time), self._force.piece_at(time)
         self._until = min(v.end, f.end)
-        rows = exact.set_inputs(self._parameters, self._state, *self._time,
-                                v.value + v.rate * (time - v.start), v.rate,
-                                f.value + f.rate * (time - f.start), f.rate, self._table, 0)
+        rows = self._solver.set_inputs(self._parameters, self._state, *self._time,
+                                       v.value + v.rate * (time - v.start), v.rate,
+                                       f.value + f.rate * (time - f.start), f.rate, self._waves, self._table, 0)
         events.extend(self._rows(rows))
 
     def _rows(self, count: int) -> Iterator[Event]:
@@ -138,6 +142,14 @@ class Simulator:
             row = self._table[i]
             second, fraction, kind, mode, direction, *rest = row.tolist() if IS_COMPILED else row
             yield Event(second, fraction, _KINDS[int(kind)], _MODES[int(mode)], int(direction), *rest)
+
+
+def _waves(drive: Course, force: Course) -> Any:
+    """Return the waves of both courses as `solvers.Solver` wants them."""
+    of_drive = [(wave.frequency, wave.phase, wave.amplitude, 0.0) for wave in drive.waves]
+    of_force = [(wave.frequency, wave.phase, 0.0, wave.amplitude) for wave in force.waves]
+    return _numbers([number for frequency, phase, v, f in of_drive + of_force
+                     for number in (frequency, 0.5 * phase / math.pi, v, f)])
 
 
 def _numbers(values: Any) -> Any:

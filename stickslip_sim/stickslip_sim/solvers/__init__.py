@@ -1,1 +1,30 @@
-"""Solvers: each brings a state to a time and writes the events on the way."""
+"""Solvers: each brings a state to a time and writes the events on the way; all behind the same functions."""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+DONE, FULL, NO_PROGRESS = 0, 1, 2   # how `advance` ended: at its time, with a full event table, or stuck
+
+
+class Solver(NamedTuple):
+    """The functions of a solver.  `p` parameters and `s` state are flat arrays, see `axis.layout`.
+
+    `waves` is a flat array of four numbers a wave: frequency in Hz, phase in turns, amplitude of the drive velocity in
+    m/s and of the external force in N.  Functions with `events, row` write rows into the table and return the rows in
+    use.
+
+    | function       | arguments                                                                              |
+    |----------------|----------------------------------------------------------------------------------------|
+    | start          | p, s, position, velocity, rest, v, v_rate, f, f_rate, waves, events, row               |
+    | advance        | p, s, second, fraction, events, row; returns (rows, how it ended)                      |
+    | set_inputs     | p, s, second, fraction, v, v_rate, f, f_rate, waves, events, row                       |
+    | set_parameters | p, new p, s, second, fraction, events, row                                             |
+    | sample         | p, s, second, fraction, out                                                            |
+    """
+
+    name: str
+    start: Callable[..., Any]
+    advance: Callable[..., Any]
+    set_inputs: Callable[..., Any]
+    set_parameters: Callable[..., Any]
+    sample: Callable[..., Any]

@@ -1,5 +1,8 @@
 """The exact solver: from event to event in closed form."""
 
+from .. import Solver
 from .engine import advance, sample, set_inputs, set_parameters, start
 
-__all__ = ['advance', 'sample', 'set_inputs', 'set_parameters', 'start']
+SOLVER = Solver('exact', start, advance, set_inputs, set_parameters, sample)
+
+__all__ = ['SOLVER', 'advance', 'sample', 'set_inputs', 'set_parameters', 'start']

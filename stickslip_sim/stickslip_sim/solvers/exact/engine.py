@@ -22,14 +22,14 @@ from ...axis.transitions import (
     release, turn,
 )
 from ...compiled import compiled
+from .. import DONE, FULL, NO_PROGRESS
 from .search import find_event
 
-DONE, FULL, NO_PROGRESS = 0, 1, 2
 _SAME_INSTANT = 64   # events without progress in time; a sound model needs three
 
 
 @compiled
-def start(p, s, position, velocity, rest, v, v_rate, f, f_rate, events, row):
+def start(p, s, position, velocity, rest, v, v_rate, f, f_rate, waves, events, row):
     """Set the state at time 0: the spring unstretched, at rest (it may break away at once) or sliding."""
     for i in range(STATE_SIZE):
         s[i] = 0.0
@@ -78,7 +78,7 @@ def advance(p, s, second, fraction, events, row):
 
 
 @compiled
-def set_inputs(p, s, second, fraction, v, v_rate, f, f_rate, events, row):
+def set_inputs(p, s, second, fraction, v, v_rate, f, f_rate, waves, events, row):
     """Let the inputs be v + v_rate t and f + f_rate t from a time on, up to which the state was advanced."""
     if (s[V] == v and s[F] == f and s[V_RATE] == 0.0 and s[F_RATE] == 0.0 and v_rate == 0.0 and f_rate == 0.0):
         return row
