@@ -28,7 +28,10 @@ GAMMA, OMEGA2, NU, SLOW, FAST, JERK, SNAP = range(18, 25)
 NEXT, NEXT_KIND, SEARCHED = range(25, 28)
 ITERATIONS = 28                         # of all searches for events so far
 ORIGIN = 29                             # m, where the run began: POSITION and DRIVE count from there
-STATE_SIZE = 30
+# g, g′, G₁ and G₂ at AT after the anchor, near the next event or where the search ended; AT < 0: not there
+AT, AT_G, AT_RATE, AT_FIRST, AT_SECOND = range(30, 35)
+LAST = 35                               # how long each mode lasted last time: a first guess for the next time
+STATE_SIZE = 39
 
 # a row of the event table; words.Event has the same order
 (EVENT_SECOND, EVENT_FRACTION, EVENT_KIND, EVENT_MODE, EVENT_DIRECTION, EVENT_POSITION, EVENT_VELOCITY, EVENT_DRIVE,

@@ -14,11 +14,11 @@ with w = s − x, and b the slope of the friction branch on the present piece of
 
 from ..compiled import compiled
 from ..friction.static import static_coefficient
-from ..linear.oscillator import integrals, oscillator
+from ..linear.oscillator import integrals, oscillator, short_integrals
 from ..words import Mode
 from .layout import (
-    ACCELERATION, BRANCHES, COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, DEFLECTION, DIRECTION, DRIVE,
-    END_SLOPE, EXCESS, F, FAST, FRACTION, F_RATE, GAMMA, JERK, KNOTS, KNOT_SIZE, MASS, MODE, NORMAL, NU, OMEGA2, PIECE,
+    ACCELERATION, AT, AT_FIRST, AT_G, AT_RATE, AT_SECOND, BRANCHES, COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, DEFLECTION, DIRECTION, DRIVE,
+    END_SLOPE, EXCESS, F, FAST, FRACTION, F_RATE, GAMMA, JERK, KNOTS, KNOT_SIZE, MASS, MODE, NEXT, NORMAL, NU, OMEGA2, PIECE,
     POSITION, REST, SECOND, SLOW, SNAP, SPRING, STATIC_EXPONENT, STATIC_INITIAL, STATIC_LAW, STATIC_LIMIT, STATIC_TAU,
     STIFFNESS, TABLE, V, VELOCITY, V_RATE,
 )
@@ -122,10 +122,33 @@ def travel(p, s, t):
     if is_rigid_stick(p, s):
         return 0.0, 0.0, 0.0
     u, a, jerk, snap = s[VELOCITY], s[ACCELERATION], s[JERK], s[SNAP]
+    if snap == 0.0:
+        g, rate, first, second = short_integrals(oscillator_of(s), t)
+        return u * t + a * first + jerk * second, u + a * g + jerk * first, a * rate + jerk * g
     g, rate, first, second, third = integrals(oscillator_of(s), t)
     return (u * t + a * first + jerk * second + snap * third,
             u + a * g + jerk * first + snap * second,
             a * rate + jerk * g + snap * first)
+
+
+@compiled
+def travel_to_event(p, s, t):
+    """Return `travel` for the time of the next event, or where its search ended: from the last evaluation there."""
+    at = s[AT]
+    if at < 0.0:
+        return travel(p, s, t)
+    u, a, jerk = s[VELOCITY], s[ACCELERATION], s[JERK]
+    y = u * at + a * s[AT_FIRST] + jerk * s[AT_SECOND]
+    v = u + a * s[AT_G] + jerk * s[AT_FIRST]
+    acceleration = a * s[AT_RATE] + jerk * s[AT_G]
+    d = t - at
+    if d == 0.0:
+        return y, v, acceleration
+    bend = jerk * s[AT_RATE] - a * (2.0 * s[GAMMA] * s[AT_RATE] + s[OMEGA2] * s[AT_G])
+    snap = -2.0 * s[GAMMA] * bend - s[OMEGA2] * acceleration
+    return (y + (v + (0.5 * acceleration + bend * d / 6.0) * d) * d,
+            v + (acceleration + (0.5 * bend + snap * d / 6.0) * d) * d,
+            acceleration + (bend + 0.5 * snap * d) * d)
 
 
 @compiled
@@ -137,7 +160,7 @@ def drive_travel(s, t):
 @compiled
 def move_anchor(p, s, second, fraction, t):
     """Move the anchor by t, to the time (second, fraction), along the present mode."""
-    y, u, a = travel(p, s, t)
+    y, u, a = travel_to_event(p, s, t) if t == s[NEXT] or t == s[AT] else travel(p, s, t)
     drive = drive_travel(s, t)
     if s[MODE] == STICK:
         s[REST] += t

@@ -10,7 +10,7 @@ in place and return the number of rows in use; `advance` also tells how it ended
 import math
 
 from ...axis.layout import (
-    COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DEFLECTION, DIRECTION, DRIVE, F, FRACTION, F_RATE, MODE, NEXT,
+    AT, COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DEFLECTION, DIRECTION, DRIVE, F, FRACTION, F_RATE, LAST, MODE, NEXT,
     NEXT_KIND, NORMAL, ORIGIN, POSITION, REST, SEARCHED, SECOND, SPRING, STATE_SIZE, V, VELOCITY, V_RATE,
 )
 from ...axis.motion import (
@@ -18,7 +18,7 @@ from ...axis.motion import (
     travel,
 )
 from ...axis.transitions import (
-    ARREST, BREAKAWAY, KNOT, applied_force, apply_inputs, arrest, choose_slip, cross_knot, force_rounding, leave_coast,
+    ARREST, BREAKAWAY, COAST, KNOT, applied_force, apply_inputs, arrest, choose_slip, cross_knot, force_rounding, leave_coast,
     release, turn,
 )
 from ...compiled import compiled
@@ -71,7 +71,9 @@ def advance(p, s, second, fraction, events, row):
             return row, NO_PROGRESS
         later = s[FRACTION] + due
         whole = math.floor(later)
+        mode = int(s[MODE])
         move_anchor(p, s, s[SECOND] + whole, later - whole, due)
+        s[LAST + mode] = due if s[NEXT_KIND] != COAST else 0.0
         _transition(p, s, events, row)
         row += 1
         _begin(p, s)
@@ -138,6 +140,7 @@ def _begin(p, s):
     begin_motion(p, s)
     s[SEARCHED] = -1.0
     s[NEXT] = math.inf
+    s[AT] = -1.0
 
 
 @compiled

@@ -11,7 +11,7 @@ No guard is scanned; `linear.roots` gives the arguments why none of its roots ca
 import math
 
 from ...axis.layout import (
-    ACCELERATION, COMPLIANT, DIRECTION, JERK, KNOTS, MODE, NEXT, NEXT_KIND, PIECE, RESIDUAL, SEARCHED, SNAP, VELOCITY,
+    ACCELERATION, AT, AT_FIRST, AT_G, AT_RATE, AT_SECOND, COMPLIANT, DIRECTION, JERK, KNOTS, LAST, MODE, NEXT, NEXT_KIND, PIECE, RESIDUAL, SEARCHED, SNAP, VELOCITY,
 )
 from ...axis.motion import ACCELERATING, COASTING, STICK, knot_speed, oscillator_of
 from ...axis.transitions import ACCELERATE, ARREST, BREAKAWAY, COAST, DECELERATE, KNOT, band_of, force_rate
@@ -59,8 +59,9 @@ def _slipping(p, s, horizon):
     else:
         gap = speed - knot_speed(p, piece)
         sign = -s[DIRECTION]
-    t, passed = first_passage(oscillator_of(s), sign * s[ACCELERATION] + 0.0, sign * s[JERK], sign * s[SNAP], gap,
-                              horizon)
+    t, passed, s[AT], s[AT_G], s[AT_RATE], s[AT_FIRST], s[AT_SECOND] = first_passage(
+        oscillator_of(s), sign * s[ACCELERATION] + 0.0, sign * s[JERK], sign * s[SNAP], gap, horizon,
+        s[LAST + int(s[MODE])])
     s[NEXT] = t
     if not passed:
         s[NEXT_KIND] = COAST
