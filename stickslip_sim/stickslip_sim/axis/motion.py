@@ -132,19 +132,24 @@ def travel(p, s, t):
 
 
 @compiled
+def travel_at(s):
+    """Return `travel` for the time AT of the last evaluation."""
+    u, a, jerk = s[VELOCITY], s[ACCELERATION], s[JERK]
+    return (u * s[AT] + a * s[AT_FIRST] + jerk * s[AT_SECOND],
+            u + a * s[AT_G] + jerk * s[AT_FIRST],
+            a * s[AT_RATE] + jerk * s[AT_G])
+
+
+@compiled
 def travel_to_event(p, s, t):
     """Return `travel` for the time of the next event, or where its search ended: from the last evaluation there."""
-    at = s[AT]
-    if at < 0.0:
+    if s[AT] < 0.0:
         return travel(p, s, t)
-    u, a, jerk = s[VELOCITY], s[ACCELERATION], s[JERK]
-    y = u * at + a * s[AT_FIRST] + jerk * s[AT_SECOND]
-    v = u + a * s[AT_G] + jerk * s[AT_FIRST]
-    acceleration = a * s[AT_RATE] + jerk * s[AT_G]
-    d = t - at
+    y, v, acceleration = travel_at(s)
+    d = t - s[AT]
     if d == 0.0:
         return y, v, acceleration
-    bend = jerk * s[AT_RATE] - a * (2.0 * s[GAMMA] * s[AT_RATE] + s[OMEGA2] * s[AT_G])
+    bend = s[JERK] * s[AT_RATE] - s[ACCELERATION] * (2.0 * s[GAMMA] * s[AT_RATE] + s[OMEGA2] * s[AT_G])
     snap = -2.0 * s[GAMMA] * bend - s[OMEGA2] * acceleration
     return (y + (v + (0.5 * acceleration + bend * d / 6.0) * d) * d,
             v + (acceleration + (0.5 * bend + snap * d / 6.0) * d) * d,
