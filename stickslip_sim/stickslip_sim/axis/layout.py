@@ -31,7 +31,9 @@ ORIGIN = 29                             # m, where the run began: POSITION and D
 # g, g′, G₁ and G₂ at AT after the anchor, near the next event or where the search ended; AT < 0: not there
 AT, AT_G, AT_RATE, AT_FIRST, AT_SECOND = range(30, 35)
 LAST = 35                               # how long each mode lasted last time: a first guess for the next time
-STATE_SIZE = 39
+# the same four at the instant GRID after an anchor, for the oscillator with these two: what ticks of one length share
+GRID, GRID_GAMMA, GRID_OMEGA2, GRID_G, GRID_RATE, GRID_FIRST, GRID_SECOND = range(39, 46)
+STATE_SIZE = 46
 
 # a row of the event table; words.Event has the same order
 (EVENT_SECOND, EVENT_FRACTION, EVENT_KIND, EVENT_MODE, EVENT_DIRECTION, EVENT_POSITION, EVENT_VELOCITY, EVENT_DRIVE,

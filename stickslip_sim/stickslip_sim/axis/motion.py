@@ -17,10 +17,11 @@ from ..friction.static import static_coefficient
 from ..linear.oscillator import integrals, oscillator, short_integrals
 from ..words import Mode
 from .layout import (
-    ACCELERATION, AT, AT_FIRST, AT_G, AT_RATE, AT_SECOND, BRANCHES, COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, DEFLECTION, DIRECTION, DRIVE,
-    END_SLOPE, EXCESS, F, FAST, FRACTION, F_RATE, GAMMA, JERK, KNOTS, KNOT_SIZE, MASS, MODE, NEXT, NORMAL, NU, OMEGA2, PIECE,
-    POSITION, REST, SECOND, SLOW, SNAP, SPRING, STATIC_EXPONENT, STATIC_INITIAL, STATIC_LAW, STATIC_LIMIT, STATIC_TAU,
-    STIFFNESS, TABLE, V, VELOCITY, V_RATE,
+    ACCELERATION, AT, AT_FIRST, AT_G, AT_RATE, AT_SECOND, BRANCHES, COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS,
+    DAMPING, DEFLECTION, DIRECTION, DRIVE, END_SLOPE, EXCESS, F, FAST, FRACTION, F_RATE, GAMMA, GRID, GRID_FIRST,
+    GRID_G, GRID_GAMMA, GRID_OMEGA2, GRID_RATE, GRID_SECOND, JERK, KNOTS, KNOT_SIZE, MASS, MODE, NEXT, NORMAL, NU,
+    OMEGA2, PIECE, POSITION, REST, SECOND, SLOW, SNAP, SPRING, STATIC_EXPONENT, STATIC_INITIAL, STATIC_LAW,
+    STATIC_LIMIT, STATIC_TAU, STIFFNESS, TABLE, V, VELOCITY, V_RATE,
 )
 
 # floats: numba would compile a function anew for every integer constant that it is called with
@@ -28,6 +29,9 @@ STICK = float(Mode.STICK)
 ACCELERATING = float(Mode.ACCELERATING)
 COASTING = float(Mode.COASTING)
 DECELERATING = float(Mode.DECELERATING)
+
+TICK = 0.1                    # s; longer steps gain nothing from what is kept
+_SHIFTER = 1.5 * 2.0 ** 8      # adding it rounds to multiples of 2⁻⁴⁴
 
 
 @compiled
@@ -101,8 +105,9 @@ def begin_motion(p, s):
         if mode == ACCELERATING:
             slope += s[EXCESS] * psi_slope
         damping += p[NORMAL] * slope
-    osc = oscillator(0.5 * damping / p[MASS], (stiffness + contact) / p[MASS])
-    s[GAMMA], s[OMEGA2], s[NU], s[SLOW], s[FAST] = osc
+    gamma, omega2 = 0.5 * damping / p[MASS], (stiffness + contact) / p[MASS]
+    if gamma != s[GAMMA] or omega2 != s[OMEGA2]:
+        s[GAMMA], s[OMEGA2], s[NU], s[SLOW], s[FAST] = oscillator(gamma, omega2)
     pull = stiffness * (s[V] - s[VELOCITY]) + p[DAMPING] * s[V_RATE] + s[F_RATE]
     s[JERK] = (pull - contact * s[VELOCITY]) / p[MASS]
     s[SNAP] = stiffness * s[V_RATE] / p[MASS]
@@ -115,6 +120,28 @@ def oscillator_of(s):
 
 
 @compiled
+def tick_integrals(s, t):
+    """Return `short_integrals` at t, from those at the nearest multiple of 2⁻⁴⁴ s.
+
+    Ticks of one length differ by the rounding of their times.  The nearest multiple is the same for them, and what was
+    computed for it is kept; the way from there is less than 3e-14 s.  The result depends on t alone, not on what is
+    kept.
+    """
+    if t >= TICK:
+        return short_integrals(oscillator_of(s), t)
+    near = (t + _SHIFTER) - _SHIFTER
+    gamma, omega2 = s[GAMMA], s[OMEGA2]
+    if near != s[GRID] or gamma != s[GRID_GAMMA] or omega2 != s[GRID_OMEGA2]:
+        s[GRID], s[GRID_GAMMA], s[GRID_OMEGA2] = near, gamma, omega2
+        s[GRID_G], s[GRID_RATE], s[GRID_FIRST], s[GRID_SECOND] = short_integrals(oscillator_of(s), near)
+    d = t - near
+    g, rate, first = s[GRID_G], s[GRID_RATE], s[GRID_FIRST]
+    bend = -2.0 * gamma * rate - omega2 * g
+    return (g + (rate + 0.5 * bend * d) * d, rate + bend * d, first + (g + 0.5 * rate * d) * d,
+            s[GRID_SECOND] + (first + 0.5 * g * d) * d)
+
+
+@compiled
 def travel(p, s, t):
     """Return the slider's travel, velocity and acceleration at t after the anchor."""
     if s[MODE] == COASTING:
@@ -123,7 +150,7 @@ def travel(p, s, t):
         return 0.0, 0.0, 0.0
     u, a, jerk, snap = s[VELOCITY], s[ACCELERATION], s[JERK], s[SNAP]
     if snap == 0.0:
-        g, rate, first, second = short_integrals(oscillator_of(s), t)
+        g, rate, first, second = tick_integrals(s, t)
         return u * t + a * first + jerk * second, u + a * g + jerk * first, a * rate + jerk * g
     g, rate, first, second, third = integrals(oscillator_of(s), t)
     return (u * t + a * first + jerk * second + snap * third,

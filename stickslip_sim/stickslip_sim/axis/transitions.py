@@ -7,10 +7,10 @@ rate, then of the rate's rate, decides.
 from ..compiled import compiled
 from ..words import EventKind
 from .layout import (
-    ACCELERATION, COMPLIANT, CONTACT_STIFFNESS, DAMPING, DEFLECTION, DIRECTION, DRIVE, EVENT_DIRECTION,
-    EVENT_DRIVE, EVENT_DRIVE_FORCE, EVENT_FRACTION, EVENT_FRICTION, EVENT_KIND, EVENT_MODE, EVENT_POSITION, EVENT_REST,
-    EVENT_SECOND, EVENT_STATIC, EVENT_VELOCITY, EXCESS, F, FRACTION, F_RATE, MASS, MODE, NORMAL, ORIGIN, PIECE,
-    POSITION, RESIDUAL, REST, SECOND, SPRING, STATIC_INITIAL, STIFFNESS, V, VELOCITY, V_RATE,
+    ACCELERATION, COMPLIANT, CONTACT_STIFFNESS, DAMPING, DEFLECTION, DIRECTION, DRIVE, EVENT_DIRECTION, EVENT_DRIVE,
+    EVENT_DRIVE_FORCE, EVENT_FRACTION, EVENT_FRICTION, EVENT_KIND, EVENT_MODE, EVENT_POSITION, EVENT_REST, EVENT_SECOND,
+    EVENT_STATIC, EVENT_VELOCITY, EXCESS, F, FRACTION, F_RATE, MASS, MODE, NORMAL, ORIGIN, PIECE, POSITION, RESIDUAL,
+    REST, SECOND, SPRING, STATIC_INITIAL, STIFFNESS, V, VELOCITY, V_RATE,
 )
 from .motion import (
     ACCELERATING, COASTING, DECELERATING, STICK, contact_force, drive_force, friction_force, friction_line,
@@ -280,12 +280,14 @@ def apply_inputs(p, s, events, row):
 
 @compiled
 def _press_stick(p, s, events, row):
-    limit = static_limit(p, s[REST])
     if p[COMPLIANT] != 0.0:
         force = contact_force(p, s[DEFLECTION], s[VELOCITY])
         s[ACCELERATION] = (applied_force(p, s) - force) / p[MASS]
     else:
         force = applied_force(p, s)
+    if abs(force) <= p[NORMAL] * p[STATIC_INITIAL]:
+        return False
+    limit = static_limit(p, s[REST])
     if abs(force) - p[NORMAL] * limit <= force_rounding(p, s, limit):
         return False
     release(p, s, events, row)

@@ -41,9 +41,15 @@ def first_zero(osc, z, jerk):
 
 
 @compiled
+def half_period(osc):
+    """Return the least distance of two zeros of a free motion: infinite when it has one at most."""
+    return math.pi / osc[2] if osc[2] > 0.0 else math.inf
+
+
+@compiled
 def next_zero(osc, t):
     """Return the zero of a free motion that follows one at t."""
-    return t + math.pi / osc[2] if osc[2] > 0.0 else math.inf
+    return t + half_period(osc)
 
 
 @compiled
@@ -71,11 +77,7 @@ def first_passage(osc, rate, jerk, snap, gap, horizon, guess):
     if snap != 0.0:
         t, passed = _passage_under_ramp(osc, rate, jerk, snap, gap, horizon)
         return t, passed, -1.0, 0.0, 0.0, 0.0, 0.0
-    half = finite_horizon(osc, math.pi / osc[2] if osc[2] > 0.0 else math.inf)
-    if horizon < half:
-        g, slope, first, second = short_integrals(osc, horizon)
-        if rate * slope + jerk * g > 0.0 and rate * g + jerk * first < gap:
-            return math.inf, False, horizon, g, slope, first, second
+    half = finite_horizon(osc, half_period(osc))
     if guess > 0.0:
         t, at, g, slope, first, second = _direct_root(osc, rate, jerk, gap, half, guess)
         if 0.0 <= t <= horizon:

@@ -2,11 +2,11 @@
 
 F_c = P(t) + H(t): P is linear (quadratic under a ramp of the drive), H a decaying free motion with |H| <= A exp(−d t).
 
-1. Safe steps with a bound on the curvature that is left, from a contact that may sit on its limit when it begins, until
-   the envelope of H leaves room between P and the limit.
-2. From there on the guard less the envelope is concave: positive at both ends of an interval, it has no zero in it.  The
-   root of the guard is sought directly; a time shortly before it, at which the guard less the envelope is positive and
-   from which on the guard falls for certain, proves that it is the first (`_direct_root`).
+1. Safe steps with a bound on the curvature that is left, from a contact that may sit on its limit when it begins,
+   until the envelope of H leaves room between P and the limit.
+2. From there on the guard less the envelope is concave: positive at both ends of an interval, it has no zero in it.
+   The root of the guard is sought directly; a time shortly before it, at which the guard less the envelope is positive
+   and from which on the guard falls for certain, proves that it is the first (`_direct_root`).
 3. Without that proof: the root of the guard less the envelope is a time before which nothing can happen, one leap over
    the ring-down; then safe steps again.
 4. Where their bound proves that the guard falls all the way to its root, the root is bracketed and found there (under
@@ -17,10 +17,9 @@ import math
 
 from ...axis.layout import (
     ACCELERATION, AT, AT_FIRST, AT_G, AT_RATE, AT_SECOND, CONTACT_DAMPING, CONTACT_STIFFNESS, DEFLECTION, ITERATIONS,
-    JERK, LAST, NORMAL, REST, SNAP, STATIC_TAU,
-    VELOCITY,
+    JERK, LAST, NORMAL, REST, SNAP, STATIC_INITIAL, STATIC_TAU, VELOCITY,
 )
-from ...axis.motion import oscillator_of, static_limit, travel_at
+from ...axis.motion import TICK, oscillator_of, static_limit, travel_at
 from ...axis.transitions import force_rounding
 from ...compiled import compiled
 from ...linear.oscillator import amplitude, bound, impulse, short_integrals
@@ -36,6 +35,8 @@ _GO_ON, _IS_ROOT, _IN_BRACKET = 0.0, 1.0, 2.0
 def compliant_stick(p, s, horizon):
     """Return when |F_c| reaches N mu_s, infinity when that is behind the horizon, or GAVE_UP."""
     osc = oscillator_of(s)
+    if horizon < TICK and _keeps_off(p, s, osc, horizon):
+        return math.inf
     motion = _contact_motion(p, s, osc)
     rounding = 0.5 * force_rounding(p, s, static_limit(p, s[REST]))
     may_leap = motion[4] == 0.0 and is_concave(p)
@@ -64,6 +65,18 @@ def compliant_stick(p, s, horizon):
         if t > horizon:
             return math.inf
     return GAVE_UP
+
+
+@compiled
+def _keeps_off(p, s, osc, t):
+    """Whether the force surely stays below N mu_s(0) up to t: by its rate and a bound on its curvature."""
+    stiffness, damping = p[CONTACT_STIFFNESS], p[CONTACT_DAMPING]
+    u, a, jerk = s[VELOCITY], s[ACCELERATION], s[JERK] - 2.0 * osc[0] * s[ACCELERATION]
+    snap = s[SNAP] - 2.0 * osc[0] * jerk - osc[1] * a
+    rate = abs(stiffness * u + damping * a)
+    sag_bend = stiffness * s[SNAP] / osc[1]
+    bend = bound(osc, stiffness * a + damping * jerk - sag_bend, stiffness * jerk + damping * snap) + abs(sag_bend)
+    return abs(stiffness * s[DEFLECTION] + damping * u) + (rate + 0.5 * bend * t) * t < p[NORMAL] * p[STATIC_INITIAL]
 
 
 @compiled
@@ -102,8 +115,8 @@ def _contact_at(p, osc, motion, t):
 def _direct_root(p, s, osc, motion, contact, begin):
     """Return the root of the guard after `begin`, if it proves to be the first; 0 otherwise.
 
-    `contact` is `_contact_at` at begin.  The steps are Halley's, from the time that stick lasted last time, or else from
-    where the steady part alone reaches the limit.
+    `contact` is `_contact_at` at begin.  The steps are Halley's, from the time that stick lasted last time, or else
+    from where the steady part alone reaches the limit.
     """
     sag, rate, free, free_rate, wave, _ = contact
     side = 1.0 if rate > 0.0 else -1.0

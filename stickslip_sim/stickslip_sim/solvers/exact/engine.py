@@ -10,16 +10,16 @@ in place and return the number of rows in use; `advance` also tells how it ended
 import math
 
 from ...axis.layout import (
-    AT, COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DEFLECTION, DIRECTION, DRIVE, F, FRACTION, F_RATE, LAST, MODE, NEXT,
-    NEXT_KIND, NORMAL, ORIGIN, POSITION, REST, SEARCHED, SECOND, SPRING, STATE_SIZE, V, VELOCITY, V_RATE,
+    AT, COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DEFLECTION, DIRECTION, DRIVE, F, FRACTION, F_RATE, LAST, MODE,
+    NEXT, NEXT_KIND, NORMAL, ORIGIN, POSITION, REST, SEARCHED, SECOND, SPRING, STATE_SIZE, V, VELOCITY, V_RATE,
 )
 from ...axis.motion import (
     COASTING, STICK, begin_motion, drive_force, drive_travel, friction_force, friction_line, move_anchor, piece_above,
     travel,
 )
 from ...axis.transitions import (
-    ARREST, BREAKAWAY, COAST, KNOT, applied_force, apply_inputs, arrest, choose_slip, cross_knot, force_rounding, leave_coast,
-    release, turn,
+    ARREST, BREAKAWAY, COAST, KNOT, applied_force, apply_inputs, arrest, choose_slip, cross_knot, force_rounding,
+    leave_coast, release, turn,
 )
 from ...compiled import compiled
 from .. import DONE, FULL, NO_PROGRESS

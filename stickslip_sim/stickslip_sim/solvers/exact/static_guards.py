@@ -55,8 +55,8 @@ def _exponential_root(p, s, force, rate, horizon):
     """Return when force + rate t, rate > 0, reaches N mu_s of the exponential law; −1 where the steps do not settle.
 
     With z = t/τ the guard is a − d (exp(−z) − 1) − b z: concave and not negative at 0, so that of its zeros after 0
-    there is but one at which it falls.  Householder's step, from the last stick's time or else from above: 1 − exp(−z) is
-    less than 2z/(2 + z), with which the guard is a quadratic.
+    there is but one at which it falls.  Householder's step, from the last stick's time or else from above: 1 − exp(−z)
+    is less than 2z/(2 + z), with which the guard is a quadratic.
     """
     normal, rest, tau = p[NORMAL], s[REST], p[STATIC_TAU]
     gap = max(normal * static_limit(p, rest) - force, 0.0)
