@@ -63,7 +63,7 @@ def order(z: mpf) -> int:
 
 def row(**entries: mpf) -> Row:
     """Build a row from named components, leaving zeros out."""
-    names = {"w": W, "u": U, "d": D, "x": X, "v": V, "a": A, "F": F, "G": G, "one": ONE}
+    names = {'w': W, 'u': U, 'd': D, 'x': X, 'v': V, 'a': A, 'F': F, 'G': G, 'one': ONE}
     return tuple((names[n], mpf(c)) for n, c in entries.items() if c)
 
 

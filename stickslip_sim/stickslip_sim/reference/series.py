@@ -167,4 +167,4 @@ def _refine(p: Series, slope: Series, low: mpf, high: mpf) -> mpf:
         if high - low <= tiny * high:
             return high
         x = guess if rate and low < guess < high else (low + high) * _HALF
-    raise ArithmeticError("the root was bracketed but not refined")
+    raise ArithmeticError('the root was bracketed but not refined')

@@ -11,11 +11,11 @@ from .modes import ACCELERATE, COAST, Physics, Slip, Stick
 from .series import Series, combine, derivative, first_root, reach, scaled, value
 
 LIMIT, SURPLUS_UP, SURPLUS_DOWN, SPEED_UP, SPEED_DOWN = (
-    "limit",
-    "surplus up",
-    "surplus down",
-    "speed up",
-    "speed down",
+    'limit',
+    'surplus up',
+    'surplus down',
+    'speed up',
+    'speed down',
 )
 
 

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import Any
 
 import mpmath
 from mpmath import mpf
 
-from .linear import A, D, F, Flow, G, U, V, X
-from .modes import ACCELERATE, COAST, DECELERATE, Mode, Physics, Slip, Stick
-from .parameters import Axis, parse
+from .. import words
+from ..errors import SolverError
+from .inputs import Walk
+from .linear import A, D, F, Flow, G, U, V, W, X
+from .modes import ACCELERATE, COAST, DECELERATE, Mode, Physics, Slip, Stick, word
+from .problem import Problem
 from .search import LIMIT, SPEED_DOWN, SPEED_UP, SURPLUS_UP, Step, slip_step, stick_step
 from .series import value
 
@@ -24,13 +26,19 @@ _ZERO = mpf(0)
 
 @dataclass(frozen=True)
 class Event:
-    """One transition.  Values are those just after it, except ``friction_force`` (see ``simulate``)."""
+    """One transition, with `mode` after it.
+
+    The state is continuous.  `friction_force` is the limit σ N mu_s at a break-away, that of the slip which ends at a
+    stick or reversal, and that of the new sub-mode otherwise (different from the old one only where an input jumps).
+    """
 
     time: mpf
     kind: str
+    mode: words.Mode
     direction: int
     position: mpf
     velocity: mpf
+    drive_position: mpf
     drive_force: mpf
     friction_force: mpf
     static_coefficient: mpf
@@ -42,8 +50,10 @@ class Sample:
     """State at a given time (after the transition when there is one at that time)."""
 
     time: mpf
+    mode: words.Mode
     position: mpf
     velocity: mpf
+    drive_position: mpf
     drive_force: mpf
     friction_force: mpf
 
@@ -62,7 +72,8 @@ class Piece:
 class Run(list[Event]):
     """The events of a simulation, with its motion in closed form.
 
-    ``disputed`` counts compliant break-aways on which the model is silent: force and motion of opposite
+    `final` is the state at its end.
+    `disputed` counts compliant break-aways on which the model is silent: force and motion of opposite
     signs, or kinetic friction at the break-away speed above the static limit (E is then kept at 0).
     """
 
@@ -72,6 +83,7 @@ class Run(list[Event]):
         self.digits = digits
         self.pieces: list[Piece] = []
         self.disputed = 0
+        self.final: Sample
 
     def state_at(self, times: Iterable[float | mpf]) -> list[Sample]:
         """Return position, velocity, drive force and friction force at the given times."""
@@ -81,28 +93,37 @@ class Run(list[Event]):
     def _sample(self, t: mpf) -> Sample:
         index = bisect_right(self.pieces, t, key=lambda p: p.start) - 1
         if index < 0 or t > self.pieces[-1].start + self.pieces[-1].length:
-            raise ValueError("the time lies outside the simulated interval")
+            raise ValueError('the time lies outside the simulated interval')
         piece = self.pieces[index]
         series = piece.flow.series(piece.state, piece.length)
         state = [value(c, t - piece.start) for c in series]
-        return Sample(t, state[X], state[U], self.physics.drive_force(state), self.physics.friction(piece.mode, state))
+        return sample(self.physics, piece.mode, t, state)
 
 
-def simulate(parameters: Mapping[str, Any], duration: float, dps: int = 40) -> Run:
-    """Simulate from t = 0 and return the list of events up to ``duration``, with ``state_at``.
+def sample(physics: Physics, mode: Mode, t: mpf, state: list[mpf]) -> Sample:
+    """Return a state of a mode with its forces."""
+    return Sample(
+        t,
+        word(mode),
+        state[X],
+        state[U],
+        state[X] + state[W],
+        physics.drive_force(state),
+        physics.friction(mode, state),
+    )
 
-    ``friction_force`` of an event is the limit σ N mu_s at a break-away or reversal, the slip value
-    σ N mu_k(0) at a stick, and the (mostly continuous) friction of the new sub-mode otherwise.
-    """
-    digits = dps + GUARD_DIGITS
-    with mpmath.workdps(digits):
-        return _Automaton(parse(parameters), mpf(duration), digits).run()
+
+def run(problem: Problem, duration: float, digits: int) -> Run:
+    """Return the events from t = 0 up to `duration`; raises SolverError when they do not end."""
+    working = digits + GUARD_DIGITS
+    with mpmath.workdps(working):
+        return _Automaton(problem, mpf(duration), working).run()
 
 
 class _Automaton:
     """State of a running simulation: time, y = [w, u, d, x, v, a, F, G, 1], mode."""
 
-    def __init__(self, axis: Axis, duration: mpf, digits: int) -> None:
+    def __init__(self, axis: Problem, duration: mpf, digits: int) -> None:
         self.axis, self.physics, self.duration = axis, Physics(axis), duration
         self.result = Run(self.physics, digits)
         self.t = mpf(0)
@@ -110,16 +131,19 @@ class _Automaton:
         self.state = [zero, axis.velocity, zero, axis.position, zero, zero, zero, zero, mpf(1)]
         self.mode: Mode = Stick(zero, axis.rest_time)
         self.flow: Flow
+        self.drive, self.force = Walk(axis.drive), Walk(axis.force)
 
     def run(self) -> Run:
+        """Follow the modes and the pieces of the inputs to the end."""
         self._load_inputs()
         if self.axis.velocity:
             self._enter_slip(1 if self.axis.velocity > 0 else -1, mpf(0))
         self.flow = self.physics.flow(self.mode)
-        for stop in [b for b in self.axis.breakpoints() if b < self.duration]:
+        while (stop := self._next_change()) <= self.duration:
             self._advance_to(stop)
             self._change_inputs()
         self._advance_to(self.duration)
+        self.result.final = sample(self.physics, self.mode, self.t, self.state)
         return self.result
 
     def _advance_to(self, stop: mpf) -> None:
@@ -140,8 +164,11 @@ class _Automaton:
 
     # ---- inputs -------------------------------------------------------------------------------
 
+    def _next_change(self) -> mpf:
+        return min(self.drive.until, self.force.until)
+
     def _load_inputs(self) -> None:
-        drive, force = self.axis.drive.segment(self.t), self.axis.force.segment(self.t)
+        drive, force = self.drive.at(self.t), self.force.at(self.t)
         self.state[V], self.state[A] = drive.at(self.t), drive.slope
         self.state[F], self.state[G] = force.at(self.t), force.slope
 
@@ -194,7 +221,7 @@ class _Automaton:
         assert knot is not None
         self.state[U] = slip.direction * knot
         self.mode = replace(slip, piece=slip.piece + way)
-        self._emit("knot", slip.direction, self.physics.friction(self.mode, self.state))
+        self._emit('knot', slip.direction, self.physics.friction(self.mode, self.state))
 
     def _enter_slip(self, direction: int, excess: mpf) -> None:
         phase = self.physics.phase(direction, excess, self.state)
@@ -213,7 +240,7 @@ class _Automaton:
         self.result.disputed += direction != sign or bool(above)
         self._enter_slip(direction, self.physics.excess_at(static, speed))
         self._hide_short_coast(static)
-        self._emit("breakaway", direction, sign * self.axis.normal * static, static, age)
+        self._emit('breakaway', direction, sign * self.axis.normal * static, age)
 
     def _direction(self, sign: int) -> int:
         """σ = sign(ẋ); at rest the sign of the force."""
@@ -225,7 +252,7 @@ class _Automaton:
     def _hide_short_coast(self, static: mpf) -> None:
         """Mark a coast that exists only by 1e-15 of the force and ends by accelerating."""
         slip = self._slip()
-        if slip.phase != COAST or self.axis.contact != "compliant":
+        if slip.phase != COAST or self.axis.contact != 'compliant':
             return
         gap = self.physics.surplus(slip.direction, self.state) - self.physics.band(slip.excess, abs(self.state[U]))
         if (
@@ -239,33 +266,35 @@ class _Automaton:
         sigma = self._slip().direction
         self.state[U] = mpf(0)
         static = self.axis.static.value(mpf(0))
-        if self.axis.contact == "rigid" and self._pulled_back(sigma, static):
-            self._enter_slip(-sigma, self.physics.excess_at(static, mpf(0)))
-            self._emit("reverse", -sigma, -sigma * self.axis.normal * static, static)
-            return
         friction = sigma * self.axis.normal * self.axis.kinetic.values[0]
-        if self.axis.contact == "compliant":
+        if self.axis.contact == 'rigid' and self._pulled_back(sigma, static):
+            self._enter_slip(-sigma, self.physics.excess_at(static, mpf(0)))
+            self._emit('reverse', -sigma, friction)
+            return
+        if self.axis.contact == 'compliant':
             self.state[D] = friction / self.axis.contact_stiffness
         self.mode = Stick(self.t, mpf(0))
-        self._emit("stick", sigma, friction)
+        self._emit('stick', sigma, friction)
 
     def _pulled_back(self, sigma: int, static: mpf) -> bool:
         excess = -sigma * self.physics.net_force(self.state) - self.axis.normal * static
         return bool(excess > self.physics.tiny(self.state))
 
-    def _emit(self, kind: str, direction: int, friction: mpf, static: mpf = _ZERO, rest: mpf = _ZERO) -> None:
+    def _emit(self, kind: str, direction: int, friction: mpf, rest: mpf = _ZERO) -> None:
         if len(self.result) >= MOST_EVENTS:
-            raise ArithmeticError("too many events")
+            raise SolverError(f'{MOST_EVENTS} events up to t = {mpmath.nstr(self.t, 17)} s: check the scene')
         self.result.append(
             Event(
                 self.t,
                 kind,
+                word(self.mode),
                 direction,
                 self.state[X],
                 self.state[U],
+                self.state[X] + self.state[W],
                 self.physics.drive_force(self.state),
                 friction,
-                static,
+                self.axis.static.value(rest),
                 rest,
             )
         )

@@ -13,11 +13,12 @@ from dataclasses import dataclass, field
 
 from mpmath import mp, mpf, sqrt
 
+from .. import words
 from .linear import A, D, F, Flow, G, Row, U, V, W, motion, row
-from .parameters import Axis, Line
+from .problem import Line, Problem
 from .series import Series, combine
 
-ACCELERATE, COAST, DECELERATE = "accelerate", "coast", "decelerate"
+ACCELERATE, COAST, DECELERATE = 'accelerate', 'coast', 'decelerate'
 
 
 @dataclass(frozen=True)
@@ -28,6 +29,7 @@ class Stick:
     age: mpf
 
     def rest_time(self, t: mpf) -> mpf:
+        """Return the age of the contact at an instant."""
         return self.age + (t - self.since)
 
 
@@ -43,13 +45,21 @@ class Slip:
 
 
 Mode = Stick | Slip
+_WORDS = {ACCELERATE: words.Mode.ACCELERATING, COAST: words.Mode.COASTING, DECELERATE: words.Mode.DECELERATING}
+
+
+def word(mode: Mode) -> words.Mode:
+    """Return the product's name of a mode."""
+    if isinstance(mode, Stick):
+        return words.Mode.STICK
+    return words.Mode.ACCELERATING if mode.silent else _WORDS[mode.phase]
 
 
 @dataclass
 class Physics:
     """The equations of one axis."""
 
-    axis: Axis
+    axis: Problem
     knots: list[mpf] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -72,13 +82,13 @@ class Physics:
 
     def stick_force_series(self, series: list[Series]) -> Series:
         """Contact force as a power series: c_c d + h_c u, or F_d + F_e when the contact is rigid."""
-        if self.axis.contact == "rigid":
+        if self.axis.contact == 'rigid':
             return self.net_series(series)
         return combine((self.axis.contact_stiffness, series[D]), (self.axis.contact_damping, series[U]))
 
     def friction(self, mode: Mode, state: Sequence[mpf]) -> mpf:
         """Friction (slip) or contact force (stick), positive when it opposes positive motion."""
-        if isinstance(mode, Stick) and self.axis.contact == "compliant":
+        if isinstance(mode, Stick) and self.axis.contact == 'compliant':
             return self.axis.contact_stiffness * state[D] + self.axis.contact_damping * state[U]
         if isinstance(mode, Stick) or mode.phase == COAST:
             return self.net_force(state)
@@ -86,7 +96,7 @@ class Physics:
         return mode.direction * self.axis.normal * line.at(mode.direction * state[U])
 
     def force_scale(self, state: Sequence[mpf]) -> mpf:
-        """A force against which rounding is judged."""
+        """Return a force against which rounding is judged."""
         a = self.axis
         top = max(max(a.kinetic.values), a.static.initial, a.static.limit)
         return a.normal * top + abs(a.stiffness * state[W]) + abs(state[F]) + a.damping * abs(state[V])
@@ -94,9 +104,11 @@ class Physics:
     # ---- friction pieces ----------------------------------------------------------------------
 
     def lower_knot(self, piece: int) -> mpf:
+        """Return the speed at which a piece begins."""
         return self.knots[piece - 1] if piece else mpf(0)
 
     def upper_knot(self, piece: int) -> mpf | None:
+        """Return the speed at which a piece ends; None for the last one."""
         return self.knots[piece] if piece < len(self.knots) else None
 
     def locate(self, speed: mpf, rising: bool) -> int:
@@ -106,9 +118,11 @@ class Physics:
         return sum(1 for k in self.knots if speed >= k * (1 - side))
 
     def kinetic_line(self, piece: int) -> Line:
+        """Return mu_k(w) on a piece."""
         return self.axis.kinetic.piece_above(self.lower_knot(piece))
 
     def psi_line(self, piece: int) -> Line:
+        """Return psi(w) on a piece."""
         if self.axis.excess is None:
             return Line(mpf(0), mpf(0))
         return self.axis.excess.piece_above(self.lower_knot(piece))
@@ -152,7 +166,7 @@ class Physics:
         return direction * second if abs(second) * time**2 > self.tiny(state) else mpf(0)
 
     def tiny(self, state: Sequence[mpf]) -> mpf:
-        """Rounding of a force at the working precision."""
+        """Return the rounding of a force at the working precision."""
         return self.force_scale(state) * mpf(10) ** (18 - mp.dps)
 
     def phase(self, direction: int, excess: mpf, state: Sequence[mpf]) -> str:
@@ -173,14 +187,15 @@ class Physics:
     # ---- flows --------------------------------------------------------------------------------
 
     def flow(self, mode: Mode) -> Flow:
+        """Return the linear dynamics of a mode."""
         if isinstance(mode, Slip):
             return self._slip_flow(mode)
-        if self.axis.contact == "rigid":
+        if self.axis.contact == 'rigid':
             return motion((), moves=False, deflects=False, rate=mpf(0))
         return self._ringing_flow()
 
     def _slip_flow(self, slip: Slip) -> Flow:
-        """m u' = F_d + F_e - σ N (α + β σ u), or u' = 0 while coasting."""
+        """M u' = F_d + F_e - σ N (α + β σ u), or u' = 0 while coasting."""
         if slip.phase == COAST:
             return motion((), moves=True, deflects=False, rate=mpf(0))
         a, line = self.axis, self.branch(slip)
@@ -196,7 +211,7 @@ class Physics:
         return motion(u_row, moves=True, deflects=False, rate=rate)
 
     def _ringing_flow(self) -> Flow:
-        """m u' = F_d + F_e - c_c d - h_c u."""
+        """M u' = F_d + F_e - c_c d - h_c u."""
         a = self.axis
         damping = a.damping + a.contact_damping
         u_row = row(
