@@ -15,7 +15,7 @@ mpmath = pytest.importorskip('mpmath')
 from mpmath import mpf  # noqa: E402
 
 from stickslip_sim.reference.automaton import Run  # noqa: E402
-from stickslip_sim.reference.series import bernstein, first_root  # noqa: E402
+from stickslip_sim.reference.roots import bernstein, first_root  # noqa: E402
 from tests.reference.inclusion import violations  # noqa: E402
 from tests.reference.objects import exact_run as simulate  # noqa: E402
 from tests.reference.scenes import Parameters, Scene, paper, random_scenes  # noqa: E402
@@ -195,7 +195,7 @@ def test_grazing_minimum_is_found_and_a_miss_is_not(depth: str) -> None:
 
 
 def test_bernstein_coefficients_of_a_parabola() -> None:
-    assert bernstein([mpf(1), mpf(2), mpf(4)]) == [1, 2, 7]
+    assert bernstein([1, 2, 4]) == [1, 2, 7]
 
 
 # ---- the law itself, rules at the edges ---------------------------------------------------------------

@@ -30,8 +30,6 @@ def simulate(
     """
     if not 0.0 <= duration < float('inf'):
         raise InputError('duration', duration, 'finite and >= 0 s', 'give the seconds to simulate')
-    if drive.waves or force.waves:
-        raise InputError('waves', drive.waves + force.waves, 'none for the reference', 'use pieces')
     if digits < FEWEST_DIGITS:
         raise InputError('digits', digits, f'>= {FEWEST_DIGITS}', 'a judge of doubles needs more digits than they have')
     try:

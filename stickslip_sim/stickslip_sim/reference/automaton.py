@@ -11,12 +11,12 @@ from mpmath import mpf
 
 from .. import words
 from ..errors import SolverError
-from .inputs import Walk
-from .linear import A, D, F, Flow, G, U, V, W, X
-from .modes import ACCELERATE, COAST, DECELERATE, Mode, Physics, Slip, Stick, word
+from .flow import Flow, State, after
+from .inputs import Input, Signal
+from .modes import ACCELERATE, COAST, DECELERATE, Mode, Slip, Stick, word
+from .physics import Physics
 from .problem import Problem
 from .search import LIMIT, SPEED_DOWN, SPEED_UP, SURPLUS_UP, Step, slip_step, stick_step
-from .series import value
 
 GUARD_DIGITS = 12
 UNSEEN_COAST = mpf(10) ** -15  # |R - B| against N mu_b after a compliant break-away
@@ -64,7 +64,7 @@ class Piece:
 
     start: mpf
     length: mpf
-    state: list[mpf]
+    state: State
     flow: Flow
     mode: Mode
 
@@ -95,19 +95,25 @@ class Run(list[Event]):
         if index < 0 or t > self.pieces[-1].start + self.pieces[-1].length:
             raise ValueError('the time lies outside the simulated interval')
         piece = self.pieces[index]
-        series = piece.flow.series(piece.state, piece.length)
-        state = [value(c, t - piece.start) for c in series]
-        return sample(self.physics, piece.mode, t, state)
+        drive, force = self._inputs(t)
+        place = after(piece.state, piece.flow, piece.flow.expand(piece.state, piece.length), t - piece.start)
+        return sample(self.physics, piece.mode, t, State(*place, drive, force))
+
+    def _inputs(self, t: mpf) -> tuple[Signal, Signal]:
+        drive, force = Input(self.physics.axis.drive), Input(self.physics.axis.force)
+        drive.enter(t)
+        force.enter(t)
+        return drive.at(t), force.at(t)
 
 
-def sample(physics: Physics, mode: Mode, t: mpf, state: list[mpf]) -> Sample:
+def sample(physics: Physics, mode: Mode, t: mpf, state: State) -> Sample:
     """Return a state of a mode with its forces."""
     return Sample(
         t,
         word(mode),
-        state[X],
-        state[U],
-        state[X] + state[W],
+        state.position,
+        state.velocity,
+        state.position + state.stretch,
         physics.drive_force(state),
         physics.friction(mode, state),
     )
@@ -121,25 +127,23 @@ def run(problem: Problem, duration: float, digits: int) -> Run:
 
 
 class _Automaton:
-    """State of a running simulation: time, y = [w, u, d, x, v, a, F, G, 1], mode."""
+    """A running simulation: time, state, mode."""
 
     def __init__(self, axis: Problem, duration: mpf, digits: int) -> None:
         self.axis, self.physics, self.duration = axis, Physics(axis), duration
+        self.drive, self.force = Input(axis.drive), Input(axis.force)
         self.result = Run(self.physics, digits)
-        self.t = mpf(0)
-        zero = mpf(0)
-        self.state = [zero, axis.velocity, zero, axis.position, zero, zero, zero, zero, mpf(1)]
+        zero = self.t = mpf(0)
+        self.state = State(zero, axis.velocity, zero, axis.position, self.drive.at(zero), self.force.at(zero))
         self.mode: Mode = Stick(zero, axis.rest_time)
         self.flow: Flow
-        self.drive, self.force = Walk(axis.drive), Walk(axis.force)
 
     def run(self) -> Run:
         """Follow the modes and the pieces of the inputs to the end."""
-        self._load_inputs()
         if self.axis.velocity:
             self._enter_slip(1 if self.axis.velocity > 0 else -1, mpf(0))
         self.flow = self.physics.flow(self.mode)
-        while (stop := self._next_change()) <= self.duration:
+        while (stop := min(self.drive.until, self.force.until)) <= self.duration:
             self._advance_to(stop)
             self._change_inputs()
         self._advance_to(self.duration)
@@ -149,10 +153,10 @@ class _Automaton:
     def _advance_to(self, stop: mpf) -> None:
         while self.t < stop:
             left = stop - self.t
-            step = self._step(self.flow.longest_step(left))
+            step = self._step(self.flow.longest_step(self.state, left))
             self.result.pieces.append(Piece(self.t, step.length, self.state, self.flow, self.mode))
-            self.state = list(step.state)
             self.t = stop if step.length == left else self.t + step.length
+            self.state = State(*step.place, self.drive.at(self.t), self.force.at(self.t))
             if step.guard:
                 self._transition(step)
                 self.flow = self.physics.flow(self.mode)
@@ -162,19 +166,11 @@ class _Automaton:
             return slip_step(self.physics, self.mode, self.flow, self.state, h)
         return stick_step(self.physics, self.mode, self.flow, self.state, self.t, h)
 
-    # ---- inputs -------------------------------------------------------------------------------
-
-    def _next_change(self) -> mpf:
-        return min(self.drive.until, self.force.until)
-
-    def _load_inputs(self) -> None:
-        drive, force = self.drive.at(self.t), self.force.at(self.t)
-        self.state[V], self.state[A] = drive.at(self.t), drive.slope
-        self.state[F], self.state[G] = force.at(self.t), force.slope
-
     def _change_inputs(self) -> None:
-        """Load the new input laws and re-classify a slip; a rest leaves by its own guard, at once if need be."""
-        self._load_inputs()
+        """Load the new inputs and re-classify a slip; a rest leaves by its own guard, at once if need be."""
+        self.drive.enter(self.t)
+        self.force.enter(self.t)
+        self.state = self.state._replace(drive=self.drive.at(self.t), force=self.force.at(self.t))
         if isinstance(self.mode, Slip):
             phase = self.physics.phase(self.mode.direction, self.mode.excess, self.state)
             if phase != self.mode.phase:
@@ -204,13 +200,13 @@ class _Automaton:
         slip = self._slip()
         if slip.phase == COAST:
             return ACCELERATE if upward else DECELERATE
-        if self.physics.band(slip.excess, abs(self.state[U])) > self.physics.tiny(self.state):
+        if self.physics.band(slip.excess, abs(self.state.velocity)) > self.physics.tiny(self.state):
             return COAST
         return ACCELERATE if upward else DECELERATE
 
     def _change_phase(self, phase: str) -> None:
         old = self._slip()
-        piece = self.physics.locate(abs(self.state[U]), phase == ACCELERATE)
+        piece = self.physics.locate(abs(self.state.velocity), phase == ACCELERATE)
         self.mode = replace(old, phase=phase, piece=piece, silent=False)
         if not (old.silent and phase == ACCELERATE):
             self._emit(phase, old.direction, self.physics.friction(self.mode, self.state))
@@ -219,14 +215,14 @@ class _Automaton:
         slip = self._slip()
         knot = self.physics.upper_knot(slip.piece) if way > 0 else self.physics.lower_knot(slip.piece)
         assert knot is not None
-        self.state[U] = slip.direction * knot
+        self.state = self.state._replace(velocity=slip.direction * knot)
         self.mode = replace(slip, piece=slip.piece + way)
         self._emit('knot', slip.direction, self.physics.friction(self.mode, self.state))
 
     def _enter_slip(self, direction: int, excess: mpf) -> None:
         phase = self.physics.phase(direction, excess, self.state)
-        piece = self.physics.locate(abs(self.state[U]), phase == ACCELERATE)
-        self.state[D] = mpf(0)
+        piece = self.physics.locate(abs(self.state.velocity), phase == ACCELERATE)
+        self.state = self.state._replace(deflection=mpf(0))
         self.mode = Slip(direction, phase, excess, piece)
 
     def _break_away(self, sign: int) -> None:
@@ -235,7 +231,7 @@ class _Automaton:
         age = self.mode.rest_time(self.t)
         static = self.axis.static.value(age)
         direction = self._direction(sign)
-        speed = abs(self.state[U])
+        speed = abs(self.state.velocity)
         above = self.physics.kinetic_line(self.physics.locate(speed, True)).at(speed) > static
         self.result.disputed += direction != sign or bool(above)
         self._enter_slip(direction, self.physics.excess_at(static, speed))
@@ -244,7 +240,7 @@ class _Automaton:
 
     def _direction(self, sign: int) -> int:
         """σ = sign(ẋ); at rest the sign of the force."""
-        u = self.state[U]
+        u = self.state.velocity
         if abs(u) * self.flow.rate * self.axis.mass <= self.physics.tiny(self.state):
             return sign
         return 1 if u > 0 else -1
@@ -254,7 +250,9 @@ class _Automaton:
         slip = self._slip()
         if slip.phase != COAST or self.axis.contact != 'compliant':
             return
-        gap = self.physics.surplus(slip.direction, self.state) - self.physics.band(slip.excess, abs(self.state[U]))
+        gap = self.physics.surplus(slip.direction, self.state) - self.physics.band(
+            slip.excess, abs(self.state.velocity)
+        )
         if (
             abs(gap) <= UNSEEN_COAST * self.axis.normal * static
             and self.physics.surplus_rate(slip.direction, self.state) > 0
@@ -264,7 +262,7 @@ class _Automaton:
     def _arrest(self) -> None:
         """End a slip at ẋ = 0: reverse at once (rigid contact, |F| > N mu_s(0)) or stick."""
         sigma = self._slip().direction
-        self.state[U] = mpf(0)
+        self.state = self.state._replace(velocity=mpf(0))
         static = self.axis.static.value(mpf(0))
         friction = sigma * self.axis.normal * self.axis.kinetic.values[0]
         if self.axis.contact == 'rigid' and self._pulled_back(sigma, static):
@@ -272,7 +270,7 @@ class _Automaton:
             self._emit('reverse', -sigma, friction)
             return
         if self.axis.contact == 'compliant':
-            self.state[D] = friction / self.axis.contact_stiffness
+            self.state = self.state._replace(deflection=friction / self.axis.contact_stiffness)
         self.mode = Stick(self.t, mpf(0))
         self._emit('stick', sigma, friction)
 
@@ -289,9 +287,9 @@ class _Automaton:
                 kind,
                 word(self.mode),
                 direction,
-                self.state[X],
-                self.state[U],
-                self.state[X] + self.state[W],
+                self.state.position,
+                self.state.velocity,
+                self.state.position + self.state.stretch,
                 self.physics.drive_force(self.state),
                 friction,
                 self.axis.static.value(rest),

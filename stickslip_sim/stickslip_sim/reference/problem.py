@@ -12,7 +12,6 @@ from mpmath import mpf
 from .. import courses
 from ..axis import parameters as product
 from ..friction import ExcessTable, KineticTable
-from .inputs import Input
 from .statics import StaticLaw
 
 
@@ -59,8 +58,8 @@ class Problem:
     static: StaticLaw
     kinetic: Table
     excess: Table | None
-    drive: Input
-    force: Input
+    drive: courses.Course
+    force: courses.Course
     position: mpf
     velocity: mpf
     rest_time: mpf
@@ -71,9 +70,7 @@ class Problem:
         return sorted(k for k in speeds if k > 0)
 
 
-def problem(
-    axis: product.Axis, initial: product.InitialState, drive: courses.Course, force: courses.Course
-) -> Problem:
+def problem(axis: product.Axis, initial: product.InitialState, drive: courses.Course, force: courses.Course) -> Problem:
     """Return the problem in multiple precision; raises InputError when the start has no finite static friction."""
     product.check_start(axis, initial)
     contact = axis.contact if isinstance(axis.contact, product.CompliantContact) else None
@@ -95,8 +92,8 @@ def problem(
         ),
         kinetic=_kinetic(axis.friction.kinetic),
         excess=_excess(axis.friction.excess),
-        drive=Input(drive),
-        force=Input(force),
+        drive=drive,
+        force=force,
         position=mpf(initial.position),
         velocity=mpf(initial.velocity),
         rest_time=mpf(initial.rest_time),

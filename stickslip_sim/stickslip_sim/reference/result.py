@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 class Final(NamedTuple):
     """The state at the end of a run."""
 
-    position: float        # m
-    velocity: float        # m/s
+    position: float  # m
+    velocity: float  # m/s
     drive_position: float  # m
     mode: Mode
 

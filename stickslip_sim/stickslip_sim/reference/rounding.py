@@ -46,4 +46,3 @@ def split(time: mpf) -> tuple[float, float]:
 def _final(run: automaton.Run) -> Final:
     end = run.final
     return Final(float(end.position), float(end.velocity), float(end.drive_position), end.mode)
-
