@@ -20,7 +20,7 @@ from .shapes import Shape
 _BEND = 0.5        # of the tolerance, on the other side in the middle of a line: parabolas of zero mean
 _BEND_FIRST = 1 / 3   # the same for the first line, which begins on the curve
 _COARSEST = 0.25   # a tolerance beyond it asks for nothing: the table is as for this one
-_MARGIN = 1.0 - 1e-6   # of the tolerance is used; the rest is for rounding
+_MARGIN = 0.999    # of the tolerance is used; the rest is for rounding, also of a viscous part at high speed
 
 Knot = tuple[float, float]
 

@@ -1,7 +1,6 @@
 """Smooth laws become the tables that the engine works on, with an error that is stated and proven."""
 
 import math
-from collections.abc import Callable
 from functools import lru_cache
 
 from ..errors import InputError
@@ -45,10 +44,8 @@ def _knots(name: str, shape: Shape, tolerance: float, scale: float) -> list[Knot
         raise InputError(f'{name}.tolerance', tolerance, 'finite and > 0', 'give the error that the table may have')
     knots = _cached_shape_table(shape, tolerance / scale)
     if knots is None:
-        fits = _fitting(lambda coarser: _cached_shape_table(shape, coarser / scale) is not None,
-                        max(tolerance, 1e-9 * scale))   # no shape but a straight line fits with less
         raise InputError(f'{name}.tolerance', tolerance, f'large enough for at most {MAX_KNOTS} knots',
-                         f'{fits:.1e} fits')
+                         f'{_fitting(shape, scale):.1e} fits')
     return knots
 
 
@@ -58,11 +55,14 @@ def _cached_shape_table(shape: Shape, tolerance: float) -> list[Knot] | None:
     return shape_table(shape, tolerance, MAX_KNOTS)
 
 
-def _fitting(fits: Callable[[float], bool], tolerance: float) -> float:
-    """Return a tolerance of two digits that fits, at most about 26 % above the smallest."""
-    while not fits(tolerance):
-        tolerance = float(f'{1.25 * tolerance:.1e}')
-    return tolerance
+def _fitting(shape: Shape, scale: float) -> float:
+    """Return a tolerance of two digits that fits; little more than the smallest, since knots go with 1/√tolerance."""
+    sample = 1e-3
+    knots = _cached_shape_table(shape, sample) or []
+    tolerance = sample * (len(knots) / MAX_KNOTS) ** 2
+    while _cached_shape_table(shape, float(f'{tolerance * scale:.1e}') / scale) is None:
+        tolerance *= 1.1
+    return float(f'{tolerance * scale:.1e}')
 
 
 def _speeds(name: str, scale: float, knots: list[Knot]) -> list[float]:
@@ -75,5 +75,6 @@ def _speeds(name: str, scale: float, knots: list[Knot]) -> list[float]:
 def _checked(name: str, tolerance: float, error: float) -> float:
     """Return the error of a finished table; raises InputError when rounding alone is beyond the tolerance."""
     if not error <= tolerance:
-        raise InputError(f'{name}.tolerance', tolerance, 'above the rounding of the coefficients', f'{error:.1e} fits')
+        raise InputError(f'{name}.tolerance', tolerance, 'above the rounding of the coefficients',
+                         f'with the knots rounded it is {error!r}')
     return error

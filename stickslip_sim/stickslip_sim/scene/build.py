@@ -91,7 +91,8 @@ def _excess(values: Mapping[str, Any], kinetic: KineticTable) -> ExcessTable | N
     law = excess.pop('law')
     if law != 'table':
         tolerance = excess.pop('tolerance')
-        excess.setdefault('limit_velocity', default_excess(kinetic).velocities[-1])
+        if 'limit_velocity' not in excess:
+            excess['limit_velocity'] = default_excess(kinetic).velocities[-1]
         return excess_table(_EXCESS[law](**excess), tolerance)
     if len(excess) == 1:
         (given,) = excess
