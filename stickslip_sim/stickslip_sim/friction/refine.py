@@ -115,10 +115,9 @@ def _tangent(shape: Shape, knot: Knot, bend: float, concave: bool) -> tuple[floa
     if sign * (shape.value(z) - p) + bend <= 0.0:
         return z, shape.slope(z)
     if concave and gap(shape.inflection) > 0.0:
-        touch = shape.inflection   # the steepest line that there is
-    else:
-        touch = _where(gap, z, (shape.inflection - z) if concave else max(z, 1e-3), sign * (shape.value(z) - p) + bend)
-    return touch, shape.slope(touch)
+        return shape.inflection, shape.slope(shape.inflection)   # the steepest line that there is
+    touch = _where(gap, z, (shape.inflection - z) if concave else max(z, 1e-3), sign * (shape.value(z) - p) + bend)
+    return touch, (shape.value(touch) + sign * bend - p) / (touch - z)   # a slope may jump within rounding of `touch`
 
 
 def _where(f: Callable[[float], float], start: float, step: float, first: float | None = None) -> float:

@@ -76,5 +76,5 @@ def _checked(name: str, tolerance: float, error: float) -> float:
     """Return the error of a finished table; raises InputError when rounding alone is beyond the tolerance."""
     if not error <= tolerance:
         raise InputError(f'{name}.tolerance', tolerance, 'above the rounding of the coefficients',
-                         f'with the knots rounded it is {error!r}')
+                         f'rounding alone makes it {error!r}: raise it, or lower viscous')
     return error
