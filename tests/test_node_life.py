@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from stickslip_sim.recording import Run, read_run
+from stickslip_sim.words import EventKind
 from tests.ros_nodes import client, executable, restore_interrupt, running, wait_for
 
 pytestmark = pytest.mark.ros
@@ -55,6 +56,20 @@ def start(*ros_args: str) -> tuple[int, str]:
     done = subprocess.run([executable('sim_node'), '--ros-args', *ros_args], capture_output=True, text=True, timeout=60,
                           check=False)
     return done.returncode, done.stderr
+
+
+def test_a_smooth_law_changes_while_the_axis_moves() -> None:
+    with running('-p', 'scene:=stribeck') as process, client() as axis:
+        axis.connect()
+        assert axis.values('friction.kinetic.tolerance')[0].double_value == 1e-4
+        answer = axis.set_parameters(friction__kinetic__tolerance=1e-9)
+        assert not answer.successful
+        assert 'fits' in answer.reason
+        assert not axis.set_parameters(friction__kinetic__law='exponential').successful
+        assert axis.set_parameters(friction__kinetic__initial=0.1, friction__kinetic__viscous=0.2).successful
+        stop = axis.next('mode_event', lambda event: event.kind == EventKind.STICK)
+        assert stop.friction_force == pytest.approx(0.1 * 3432.3275, rel=1e-12)
+        assert_clean(*process.end())
 
 
 class TestSignals:

@@ -17,7 +17,7 @@ ROOT = pathlib.Path(__file__).parent.parent
 
 def test_names_of_the_shipped_scenes() -> None:
     assert scene_names() == ['cutting_force', 'fast_feed', 'micro_feed', 'paper_fig4_constant', 'paper_fig4_falling',
-                             'paper_fig7', 'paper_fig8', 'positioning']
+                             'paper_fig7', 'paper_fig8', 'positioning', 'stribeck']
 
 
 @pytest.mark.parametrize('name', scene_names())

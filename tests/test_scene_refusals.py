@@ -11,6 +11,8 @@ from stickslip_sim.scene.load import SIZE_LIMIT
 from stickslip_sim.scene.ros_yaml import plain_value, read_yaml
 from tests.scene_files import refusal, write
 
+EXPONENTIAL = 'law: exponential, initial: 0.1, limit: 0.05, stribeck_velocity: 0.01'
+
 
 @pytest.mark.parametrize(('word', 'value'), [
     ('350', 350), ('350.', 350.0), ('.5', 0.5), ('6e5', 6e5), ('6.0e+05', 6e5), ('-1E-3', -1e-3), ('.inf', math.inf),
@@ -68,7 +70,23 @@ def test_yaml_that_ros_refuses_or_passes_over(text: str, hint: str) -> None:
     ('    friction: {static: {law: exponential, limit: 0.2, time_constant: 0.1, exponent: 2.0}}\n',
      'friction.static.exponent', 'kato'),
     ('    friction: {static: {law: kato, limit: 0.2, time_constant: 0.1}}\n', 'friction.static.exponent', 'add it'),
-    ('    friction: {kinetic: {law: stribeck}}\n', 'friction.kinetic.law', 'velocities, coefficients'),
+    ('    friction: {kinetic: {law: viscous}}\n', 'friction.kinetic.law', 'table, stribeck, exponential, hyperbolic'),
+    ('    friction: {kinetic: {law: stribeck}}\n', 'friction.kinetic.initial', 'add it'),
+    ('    friction: {kinetic: {law: stribeck, velocities: [0.0]}}\n', 'friction.kinetic.velocities', 'law: table'),
+    ('    friction: {kinetic: {initial: 0.1}}\n', 'friction.kinetic.initial', 'law: stribeck or exponential or hyp'),
+    (f'    friction: {{kinetic: {{{EXPONENTIAL}, exponent: 1.0}}}}\n', 'friction.kinetic.exponent', 'stribeck'),
+    (f'    friction: {{kinetic: {{{EXPONENTIAL}, tolerance: 0.0}}}}\n', 'friction.kinetic.tolerance', '> 0'),
+    (f'    friction: {{kinetic: {{{EXPONENTIAL}}}}}\n', 'friction.kinetic.initial', 'static.initial'),
+    (f'    friction: {{static: {{initial: 0.1}}, kinetic: {{{EXPONENTIAL}, tolerance: 1.0e-9}}}}\n',
+     'friction.kinetic.tolerance', 'fits'),
+    ('    friction: {excess: {law: cosine}}\n', 'friction.excess.law', 'acceleration_dependence: false'),
+    ('    friction: {acceleration_dependence: true, excess: {law: cosine}}\n', 'friction.excess', 'one knot only'),
+    ('    friction: {acceleration_dependence: true, excess: {law: power, limit_velocity: 0.1}}\n',
+     'friction.excess.exponent', 'add it'),
+    ('    friction: {acceleration_dependence: true, excess: {law: cosine, fractions: [1.0]}}\n',
+     'friction.excess.fractions', 'law: table'),
+    ('    friction: {acceleration_dependence: true, excess: {limit_velocity: 0.1}}\n',
+     'friction.excess.limit_velocity', 'cosine or power'),
     ('    friction: {excess: {velocities: [0.0, 1.0], fractions: [1.0, 0.0]}}\n', 'friction.excess.velocities',
      'acceleration_dependence: false'),
     ('    friction: {kinetic: {velocities: [0, 0.035]}}\n', 'friction.kinetic.velocities', 'one type'),

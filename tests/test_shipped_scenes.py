@@ -47,6 +47,16 @@ def test_paper_fig4_falling_passes_the_drive_and_v_gr() -> None:
     assert events[1].velocity > 0.035
 
 
+def test_stribeck_reaches_its_limit_cycle_below_the_speed_where_the_branches_meet() -> None:
+    events, _ = play('stribeck', 20.0)
+    assert last_cycle(events) == pytest.approx((0.8268, 0.002 * 0.8268), rel=1e-3)
+    assert max(event.velocity for event in of(events, EventKind.COAST)) < 0.0322
+    fine = load_scene('stribeck', {'friction.kinetic.tolerance': 1e-7})
+    simulator = Simulator(fine.axis, fine.initial, fine.drive, fine.force)
+    exact = last_cycle(simulator.advance(instant(20.0)))
+    assert last_cycle(events) == pytest.approx(exact, rel=1e-3)
+
+
 def test_positioning_starts_runs_stops_and_reverses() -> None:
     events, end = play('positioning', 4.0)
     starts = of(events, EventKind.BREAKAWAY)

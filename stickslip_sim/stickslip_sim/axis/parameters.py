@@ -40,7 +40,7 @@ class Friction:
     def __post_init__(self) -> None:
         at_rest = self.kinetic.coefficients[0]
         if at_rest > self.static.initial:
-            raise InputError('friction.kinetic.coefficients[0]', at_rest,
+            raise InputError('friction.kinetic.' + ('initial' if self.kinetic.law else 'coefficients[0]'), at_rest,
                              f'<= friction.static.initial ({self.static.initial!r})',
                              'kinetic friction at rest cannot exceed static friction: lower it or raise static.initial')
 

@@ -11,17 +11,24 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from ..errors import InputError
+from .smooth import SmoothExcess, SmoothKinetic
 
 MAX_KNOTS = 1000   # a table is walked at every break-away, within a step
 
 
 @dataclass(frozen=True, slots=True)
 class KineticTable:
-    """mu_k(|ẋ|): knots `velocities` in m/s and `coefficients`; `end_slope` in s/m beyond the last knot."""
+    """mu_k(|ẋ|): knots `velocities` in m/s and `coefficients`; `end_slope` in s/m beyond the last knot.
+
+    A table made by `tables.kinetic_table` carries the smooth `law` that it stands for, and its `error`, the largest
+    difference to that law at any speed.
+    """
 
     velocities: tuple[float, ...]
     coefficients: tuple[float, ...]
     end_slope: float = 0.0
+    law: SmoothKinetic | None = None
+    error: float = 0.0
 
     def __post_init__(self) -> None:
         name = 'friction.kinetic'
@@ -33,6 +40,11 @@ class KineticTable:
             raise InputError(f'{name}.end_slope', self.end_slope, 'finite and >= 0 s/m',
                              'a coefficient that fell for ever would become negative; add a knot instead')
 
+    @property
+    def limit_velocity(self) -> float:
+        """Where the falling branch ends, v_gr in m/s: the last knot, or what the smooth law says."""
+        return self.velocities[-1] if self.law is None else self.law.limit_velocity
+
     def coefficient(self, speed: float) -> float:
         """Return mu_k at a speed >= 0 m/s."""
         return _interpolate(self.velocities, self.coefficients, speed, self.end_slope)
@@ -40,10 +52,15 @@ class KineticTable:
 
 @dataclass(frozen=True, slots=True)
 class ExcessTable:
-    """psi(|ẋ|), the shape of the excess of the accelerating branch: 1 at rest, falling to 0 at the last knot."""
+    """psi(|ẋ|), the shape of the excess of the accelerating branch: 1 at rest, falling to 0 at the last knot.
+
+    A table made by `tables.excess_table` carries the smooth `law` that it stands for, and its `error`.
+    """
 
     velocities: tuple[float, ...]
     fractions: tuple[float, ...]
+    law: SmoothExcess | None = None
+    error: float = 0.0
 
     def __post_init__(self) -> None:
         name = 'friction.excess'
@@ -68,14 +85,14 @@ def merged_knots(kinetic: KineticTable, excess: ExcessTable | None) -> list[tupl
 
 
 def default_excess(kinetic: KineticTable) -> ExcessTable:
-    """Return the linear psi from 1 at standstill to 0 at the limit velocity (the last knot of mu_k).
+    """Return the linear psi from 1 at standstill to 0 at the limit velocity of mu_k.
 
-    Raises InputError when the kinetic table has one knot only, and so no limit velocity.
+    Raises InputError when a given table has one knot only, and so no limit velocity.
     """
-    if len(kinetic.velocities) < 2:
+    if kinetic.limit_velocity == 0.0:
         raise InputError('friction.excess', None, 'a table when friction.kinetic has one knot only',
                          'give friction.excess.velocities and fractions, or acceleration_dependence: false')
-    return ExcessTable((0.0, kinetic.velocities[-1]), (1.0, 0.0))
+    return ExcessTable((0.0, kinetic.limit_velocity), (1.0, 0.0))
 
 
 def _interpolate(xs: Sequence[float], ys: Sequence[float], x: float, end_slope: float) -> float:

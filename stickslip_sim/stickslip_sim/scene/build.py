@@ -8,12 +8,26 @@ from typing import Any
 from ..axis import Axis, CompliantContact, Friction, InitialState, RigidContact, check_start
 from ..courses import Course, constant, ramp, steps, table
 from ..errors import InputError
-from ..friction import ExcessTable, KineticTable, StaticLaw, StaticLawKind
+from ..friction import (
+    ExcessTable,
+    KineticTable,
+    SmoothExcess,
+    SmoothKinetic,
+    StaticLaw,
+    StaticLawKind,
+    excess_table,
+    kinetic_table,
+    smooth,
+)
 from ..friction.kinetic import default_excess
 from .model import CommandSettings, RecordSettings, Scene, SolverSettings, TimeSettings
 from .text import scene_text
 from .values import effective_values
 
+_KINETIC: dict[str, Callable[..., SmoothKinetic]] = {
+    'stribeck': smooth.stribeck, 'exponential': smooth.exponential, 'hyperbolic': smooth.hyperbolic,
+}
+_EXCESS: dict[str, Callable[..., SmoothExcess]] = {'cosine': smooth.cosine, 'power': smooth.power}
 _KNOTS: dict[str, Callable[..., Course]] = {'steps': steps, 'table': table}
 
 
@@ -58,14 +72,28 @@ def _friction(values: Mapping[str, Any]) -> Friction:
     static = _section(values, 'friction.static')
     law = StaticLawKind[static.pop('law').upper()]
     static.setdefault('limit', static['initial'])
-    kinetic = KineticTable(**_section(values, 'friction.kinetic'))
+    kinetic = _kinetic(_section(values, 'friction.kinetic'))
     return Friction(StaticLaw(law, **static), kinetic, _excess(values, kinetic))
+
+
+def _kinetic(given: dict[str, Any]) -> KineticTable:
+    law = given.pop('law')
+    if law == 'table':
+        return KineticTable(**given)
+    tolerance = given.pop('tolerance')
+    return kinetic_table(_KINETIC[law](**given), tolerance)
 
 
 def _excess(values: Mapping[str, Any], kinetic: KineticTable) -> ExcessTable | None:
     if not values['friction.acceleration_dependence']:
         return None
     excess = _section(values, 'friction.excess')
+    law = excess.pop('law')
+    if law != 'table':
+        tolerance = excess.pop('tolerance')
+        if 'limit_velocity' not in excess:
+            excess['limit_velocity'] = default_excess(kinetic).velocities[-1]
+        return excess_table(_EXCESS[law](**excess), tolerance)
     if len(excess) == 1:
         (given,) = excess
         raise InputError(f'friction.excess.{given}', excess[given], 'given with both velocities and fractions',

@@ -6,16 +6,23 @@ rigid contact, a drive that stands still, no force.  (A node without any file ru
 
 import math
 
+from ..friction.shapes import MAX_EXPONENT, MIN_EXPONENT
 from .parameter import Parameter, When
 
 _SOLVERS = ('exact',)
 _MODES = ('realtime',)
 _LAWS = ('constant', 'exponential', 'kato', 'hyperbolic', 'logarithmic')
+_KINETIC = ('table', 'stribeck', 'exponential', 'hyperbolic')
+_EXCESS = ('table', 'cosine', 'power')
 _COURSES = ('constant', 'ramp', 'steps', 'table')
 
 _GROWS = When('friction.static.law', _LAWS[1:])
 _COMPLIANT = When('contact.model', ('compliant',))
 _BRANCHES = When('friction.acceleration_dependence', (True,))
+_KNOTS = When('friction.kinetic.law', ('table',))
+_SMOOTH = When('friction.kinetic.law', _KINETIC[1:])
+_EXCESS_KNOTS = When('friction.excess.law', ('table',))
+_EXCESS_SMOOTH = When('friction.excess.law', _EXCESS[1:])
 
 
 def _number(name: str, default: float | None, unit: str, description: str, *, low: float = -math.inf,
@@ -33,8 +40,8 @@ def _numbers(name: str, default: tuple[float, ...] | None, unit: str, descriptio
                      (), live, when, required and default is None)
 
 
-def _choice(name: str, default: str, description: str, choices: tuple[str, ...]) -> Parameter:
-    return Parameter(name, 'string', default, '', description, choices=choices)
+def _choice(name: str, default: str, description: str, choices: tuple[str, ...], when: When | None = None) -> Parameter:
+    return Parameter(name, 'string', default, '', description, choices=choices, when=when)
 
 
 def _course(section: str, value: str, rate: str, values: str, unit: str, what: str) -> tuple[Parameter, ...]:
@@ -83,17 +90,42 @@ PARAMETERS: tuple[Parameter, ...] = (
             when=_GROWS),
     _number('friction.static.exponent', None, '', "n of Kato's law exp(-(t/tau)^n)", low=0.0, above=True, live=True,
             when=When('friction.static.law', ('kato',))),
+    _choice('friction.kinetic.law', 'table', 'kinetic coefficient mu_k over the speed: a table of knots, linear between'
+            ' them; or mu_c + (mu_0 - mu_c) g(speed/v_s) + k_v speed with g(z) = exp(-z^exponent) (stribeck), exp(-z)'
+            ' (exponential) or 1/(1 + z) (hyperbolic)', _KINETIC),
     _numbers('friction.kinetic.velocities', (0.0,), 'm/s', 'knots of the kinetic coefficient; the first is 0, each is'
-             ' higher, the last is v_gr', low=0.0, live=True),
-    _numbers('friction.kinetic.coefficients', (0.0,), '', 'mu_k at these speeds', low=0.0, live=True),
-    _number('friction.kinetic.end_slope', 0.0, 's/m', 'slope of mu_k beyond the last knot', low=0.0, live=True),
+             ' higher, the last is v_gr', low=0.0, live=True, when=_KNOTS),
+    _numbers('friction.kinetic.coefficients', (0.0,), '', 'mu_k at these speeds', low=0.0, live=True, when=_KNOTS),
+    _number('friction.kinetic.end_slope', 0.0, 's/m', 'slope of mu_k beyond the last knot', low=0.0, live=True,
+            when=_KNOTS),
+    _number('friction.kinetic.initial', None, '', 'mu_0, mu_k at rest; not above friction.static.initial', low=0.0,
+            live=True, when=_SMOOTH),
+    _number('friction.kinetic.limit', None, '', 'mu_c, what the falling part tends to at high speed', low=0.0,
+            live=True, when=_SMOOTH),
+    _number('friction.kinetic.stribeck_velocity', None, 'm/s', 'v_s, at which the falling part has dropped to 1/e'
+            ' (hyperbolic: to 1/2)', low=0.0, above=True, live=True, when=_SMOOTH),
+    _number('friction.kinetic.exponent', 2.0, '', 'of the law stribeck; 2: Gaussian', low=MIN_EXPONENT,
+            high=MAX_EXPONENT, live=True, when=When('friction.kinetic.law', ('stribeck',))),
+    _number('friction.kinetic.viscous', 0.0, 's/m', 'k_v, what mu_k rises by with the speed', low=0.0, live=True,
+            when=_SMOOTH),
+    _number('friction.kinetic.tolerance', 1e-4, '', 'largest difference, in mu, between the smooth law and the table'
+            ' that is computed with', low=0.0, above=True, live=True, when=_SMOOTH),
     Parameter('friction.acceleration_dependence', 'bool', False, '', 'whether the accelerating branch of mu_k lies'
               ' above the decelerating one (Fig. 6) instead of one curve for both (Fig. 3)'),
-    _numbers('friction.excess.velocities', None, 'm/s', 'knots of psi, the shape of the excess of the accelerating'
-             ' branch; left out: linear to 0 at the last knot of mu_k', low=0.0, live=True, when=_BRANCHES,
+    _choice('friction.excess.law', 'table', 'psi over the speed, the shape of the excess of the accelerating branch: a'
+            ' table of knots; or (1 + cos(pi z))/2 (cosine) or (1 - z)^exponent (power) with z = speed/limit_velocity,'
+            ' 0 beyond', _EXCESS, _BRANCHES),
+    _numbers('friction.excess.velocities', None, 'm/s', 'knots of psi; left out: linear to 0 at the last knot of'
+             ' mu_k (a smooth law: where its falling part has dropped to 1 %)', low=0.0, live=True, when=_EXCESS_KNOTS,
              required=False),
     _numbers('friction.excess.fractions', None, '', 'psi at these speeds: 1 at the first, 0 at the last', low=0.0,
-             live=True, when=_BRANCHES, required=False),
+             live=True, when=_EXCESS_KNOTS, required=False),
+    Parameter('friction.excess.limit_velocity', 'double', None, 'm/s', 'where psi ends; left out: as for a table', 0.0,
+              math.inf, True, True, (), True, _EXCESS_SMOOTH),
+    _number('friction.excess.exponent', None, '', 'n of the law power', low=1.0, high=MAX_EXPONENT, above=True,
+            live=True, when=When('friction.excess.law', ('power',))),
+    _number('friction.excess.tolerance', 1e-3, '', 'largest difference between the smooth psi and its table', low=0.0,
+            above=True, live=True, when=_EXCESS_SMOOTH),
 
     *_course('drive', 'velocity', 'acceleration', 'velocities', 'm/s', 'velocity of the drive end of the spring'),
     *_course('force', 'constant', 'rate', 'forces', 'N', 'external force on the slider, along +x'),

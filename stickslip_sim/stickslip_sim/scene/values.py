@@ -4,7 +4,7 @@ import difflib
 from collections.abc import Mapping
 
 from ..errors import InputError
-from .parameter import Parameter, yaml_word
+from .parameter import Parameter, When, yaml_word
 from .schema import BY_NAME, PARAMETERS
 
 
@@ -35,17 +35,26 @@ def overridden(base: Mapping[str, object], changes: Mapping[str, object]) -> dic
 
 def _outlived(name: str, changes: Mapping[str, object]) -> bool:
     entry = BY_NAME.get(name)
-    if entry is None or entry.when is None or entry.when.name not in changes:
+    if entry is None or entry.when is None:
         return False
+    if entry.when.name not in changes:
+        return _outlived(entry.when.name, changes)   # that choice may depend on another
     return changes[entry.when.name] not in entry.when.values
 
 
 def _given(entry: Parameter, value: object, values: Mapping[str, object]) -> object:
     checked = entry.checked(value)
     if entry.when is not None and not entry.when.holds(values):
-        choice = f'{entry.when.name}: {yaml_word(values.get(entry.when.name))}'
-        raise InputError(entry.name, value, f'left out with {choice}', f'drop it, or set {entry.when}')
+        when = _deciding(entry.when, values)
+        choice = f'{when.name}: {yaml_word(values.get(when.name))}'
+        raise InputError(entry.name, value, f'left out with {choice}', f'drop it, or set {when}')
     return checked
+
+
+def _deciding(when: When, values: Mapping[str, object]) -> When:
+    """Return the condition that fails: a choice that is not there itself depends on another."""
+    above = BY_NAME[when.name].when
+    return when if when.name in values or above is None else _deciding(above, values)
 
 
 def _leave_out(entry: Parameter, values: dict[str, object]) -> None:
