@@ -16,7 +16,7 @@ from mpmath import mp, mpf, sqrt
 from .inputs import Signal
 from .series import Series, combine, integral, value
 
-SPAN = 4  # a step is at most SPAN / ρ
+SPAN = 6  # a step is at most SPAN / ρ: longer ones need more terms, shorter ones are more
 _UNHEARD = 4  # digits of rounding in the amplitude of a ringing contact
 _ZERO, _ONE = mpf(0), mpf(1)
 
