@@ -56,7 +56,8 @@ def _check(run: Run, p: Mapping[str, Any], t: mpf) -> list[str]:
 
 def _near_change(run: Run, p: Mapping[str, Any], t: mpf) -> bool:
     jumps = [start for key in ('drive', 'force') for start, _, _ in _rows(p[key], t + 1)]
-    return any(abs(t - c) < 3 * _STEP for c in [*(e.time for e in run), *jumps]) or t + _STEP > run.pieces[-1].start + run.pieces[-1].length
+    changes = [*(e.time for e in run), *jumps, run.final.time]
+    return any(abs(t - c) < 3 * _STEP for c in changes)
 
 
 def _last_event(run: Run, t: mpf) -> Event | None:
