@@ -28,7 +28,7 @@ setup(
         'setuptools', 'numpy', 'numba', 'PyYAML', 'mcap', 'zstandard', 'lz4', 'rosbags',
         'matplotlib', 'click',
     ],
-    extras_require={'test': ['pytest']},
+    extras_require={'bench': ['mpmath'], 'test': ['pytest']},
     entry_points={
         'console_scripts': [
             'sim_node = stickslip_sim.ros.sim_node:main',

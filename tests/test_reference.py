@@ -18,7 +18,7 @@ from stickslip_sim.reference.automaton import Run  # noqa: E402
 from stickslip_sim.reference.roots import bernstein, first_root  # noqa: E402
 from tests.reference.inclusion import violations  # noqa: E402
 from tests.reference.objects import exact_run as simulate  # noqa: E402
-from tests.reference.scenes import Parameters, Scene, paper, random_scenes  # noqa: E402
+from tests.reference.scenes import Parameters, Scene, paper, random_scenes, shipped_scenes  # noqa: E402
 
 DATA = Path(__file__).parent / 'data' / 'reference_events.json'
 
@@ -290,6 +290,13 @@ def test_stored_data_is_not_stale() -> None:
     assert [e.kind for e in run] == events['kind']
     for column in ('time', 'position', 'velocity', 'drive_force'):
         assert [mpmath.nstr(getattr(e, column), 25) for e in run] == events[column]
+
+
+def test_stored_runs_are_of_the_shipped_scenes_as_they_are() -> None:
+    """Else: python -m tests.reference.make_data --only NAME."""
+    for scene in shipped_scenes():
+        assert stored()[scene.name]['duration'] == scene.duration
+        assert json.loads(json.dumps(scene.parameters)) == stored()[scene.name]['parameters'], scene.name
 
 
 def test_stored_data_holds_enough() -> None:

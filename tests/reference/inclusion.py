@@ -55,8 +55,9 @@ def _check(run: Run, p: Mapping[str, Any], t: mpf) -> list[str]:
 
 
 def _near_change(run: Run, p: Mapping[str, Any], t: mpf) -> bool:
-    changes = [e.time for e in run] + [mpf(row[0]) for key in ('drive', 'force') for row in p[key]]
-    return any(abs(t - c) < 3 * _STEP for c in changes) or t + _STEP > run.pieces[-1].start + run.pieces[-1].length
+    jumps = [start for key in ('drive', 'force') for start, _, _ in _rows(p[key], t + 1)]
+    changes = [*(e.time for e in run), *jumps, run.final.time]
+    return any(abs(t - c) < 3 * _STEP for c in changes)
 
 
 def _last_event(run: Run, t: mpf) -> Event | None:
@@ -112,13 +113,13 @@ def psi(friction: Mapping[str, Any], speed: mpf) -> mpf:
     return table(friction.get('excess', default), 'fractions', speed)
 
 
-def table(data: Mapping[str, Sequence[float]], values: str, speed: mpf) -> mpf:
-    """Interpolate linearly; constant beyond the last knot."""
+def table(data: Mapping[str, Any], values: str, speed: mpf) -> mpf:
+    """Interpolate linearly; the given slope (or none) beyond the last knot."""
     knots = [(mpf(v), mpf(y)) for v, y in zip(data['velocities'], data[values])]
     for (v0, y0), (v1, y1) in itertools.pairwise(knots):
         if speed <= v1:
             return y0 + (y1 - y0) * (speed - v0) / (v1 - v0)
-    return knots[-1][1]
+    return knots[-1][1] + mpf(data.get('end_slope', 0.0)) * (speed - knots[-1][0])
 
 
 def static_coefficient(law: Mapping[str, Any], age: mpf) -> mpf:
@@ -136,17 +137,35 @@ def static_coefficient(law: Mapping[str, Any], age: mpf) -> mpf:
     return first + (mpf(law['limit']) - first) * share
 
 
-def _input(rows: Sequence[Sequence[float]], t: mpf) -> mpf:
-    start, first, slope = [row for row in rows if row[0] <= t][-1]
-    return mpf(first) + mpf(slope) * (t - mpf(start))
+def _rows(course: Any, until: mpf) -> list[tuple[mpf, mpf, mpf]]:
+    """Return the pieces (start, value, slope) of a course up to a time, periods written out."""
+    given = course if isinstance(course, Mapping) else {'segments': course}
+    rows = [(mpf(a), mpf(b), mpf(c)) for a, b, c in given['segments']]
+    if 'period' not in given:
+        return rows
+    period = mpf(given['period'])
+    return [(n * period + a, b, c) for n in range(int(until / period) + 1) for a, b, c in rows]
 
 
-def _feed(rows: Sequence[Sequence[float]], t: mpf) -> mpf:
+def _waves(course: Any) -> Sequence[Sequence[float]]:
+    return course.get('waves', ()) if isinstance(course, Mapping) else ()
+
+
+def _input(course: Any, t: mpf) -> mpf:
+    start, first, slope = [row for row in _rows(course, t) if row[0] <= t][-1]
+    waves = sum(mpf(a) * mpmath.sin(2 * mpmath.pi * mpf(f) * t + mpf(phase)) for a, f, phase in _waves(course))
+    return first + slope * (t - start) + waves
+
+
+def _feed(course: Any, t: mpf) -> mpf:
     """Return ∫ v dt from 0 to t."""
     total = mpf(0)
-    ends = [mpf(row[0]) for row in rows[1:]] + [mpmath.inf]
-    for (start, first, slope), end in zip(rows, ends):
-        span = min(t, end) - mpf(start)
+    rows = _rows(course, t)
+    for (start, first, slope), end in zip(rows, [*(row[0] for row in rows[1:]), mpmath.inf]):
+        span = min(t, end) - start
         if span > 0:
-            total += mpf(first) * span + mpf(slope) * span * span / 2
+            total += first * span + slope * span * span / 2
+    for a, f, phase in _waves(course):
+        omega = 2 * mpmath.pi * mpf(f)
+        total += mpf(a) * (mpmath.cos(mpf(phase)) - mpmath.cos(omega * t + mpf(phase))) / omega
     return total

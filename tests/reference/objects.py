@@ -50,6 +50,39 @@ def course_of(given: Sequence[Sequence[float]] | Parameters) -> Course:
     return Course(starts, values, rates, given.get('period', float('inf')), waves)
 
 
+def parameters_of(axis: Axis, initial: InitialState, drive: Course, force: Course) -> dict[str, Any]:
+    """Return the dictionary of the objects of a simulator."""
+    numbers = ('mass', 'drive_stiffness', 'drive_damping', 'normal_force')
+    contact: dict[str, Any] = {'model': 'rigid'}
+    if isinstance(axis.contact, CompliantContact):
+        contact = {'model': 'compliant', 'stiffness': axis.contact.stiffness, 'damping': axis.contact.damping}
+    static, kinetic, excess = axis.friction.static, axis.friction.kinetic, axis.friction.excess
+    friction: dict[str, Any] = {
+        'static': {name: getattr(static, name) for name in ('initial', 'limit', 'time_constant', 'exponent')}
+        | {'law': static.kind.name.lower()},
+        'kinetic': {name: getattr(kinetic, name) for name in ('velocities', 'coefficients', 'end_slope')},
+        'acceleration_dependence': excess is not None,
+    }
+    if excess:
+        friction['excess'] = {'velocities': excess.velocities, 'fractions': excess.fractions}
+    return {
+        'axis': {name: getattr(axis, name) for name in numbers},
+        'contact': contact,
+        'friction': friction,
+        'drive': _segments(drive),
+        'force': _segments(force),
+        'initial': {name: getattr(initial, name) for name in ('position', 'velocity', 'rest_time')},
+    }
+
+
+def _segments(course: Course) -> dict[str, Any]:
+    return {
+        'segments': list(zip(course.starts, course.values, course.rates)),
+        'period': course.period,
+        'waves': course.waves,
+    }
+
+
 def inputs_of(values: Parameters) -> tuple[Axis, InitialState, Course, Course]:
     """Return what a simulator takes."""
     start = InitialState(**values['initial'])

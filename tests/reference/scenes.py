@@ -10,6 +10,10 @@ import math
 import random
 from typing import Any, NamedTuple
 
+from stickslip_sim.scene import load_scene, scene_names
+
+from .objects import parameters_of
+
 Parameters = dict[str, Any]
 Segments = list[tuple[float, float, float]]
 
@@ -66,6 +70,16 @@ def named_scenes() -> list[Scene]:
         Scene('B', paper(contact='compliant', velocity=0.001, tau=1.0), 60.0),
         Scene('C', paper(dependence=False, velocity=0.01, tau=1.0), 60.0),
         Scene('D', scene_d(5.0), 5.0),
+    ]
+
+
+def shipped_scenes() -> list[Scene]:
+    """Return every scene that the product ships, over ten seconds or a few events."""
+    return [
+        Scene(f'shipped_{name}', parameters_of(scene.axis, scene.initial, scene.drive, scene.force), duration)
+        for name in sorted(scene_names())
+        for duration in [40.0 if name == 'micro_feed' else 10.0]  # its first break-away is at 15 s
+        for scene in [load_scene(name)]
     ]
 
 

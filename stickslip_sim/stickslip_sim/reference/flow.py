@@ -16,7 +16,7 @@ from mpmath import mp, mpf, sqrt
 from .inputs import Signal
 from .series import Series, combine, integral, value
 
-SPAN = 4  # a step is at most SPAN / ρ
+SPAN = 6  # a step is at most SPAN / ρ: longer ones need more terms, shorter ones are more
 _UNHEARD = 4  # digits of rounding in the amplitude of a ringing contact
 _ZERO, _ONE = mpf(0), mpf(1)
 
@@ -71,15 +71,14 @@ class Flow:
 
     def expand(self, state: State, h: mpf) -> Expansion:
         """Return the power series from a state on, exact to the working precision on [0, h]."""
-        n = order((self.rate + state.rate) * h)
+        settled = self._settled(state)
+        rate = state.rate if settled else self.rate + state.rate
+        n = order(rate * h)
         drive, force = state.drive.series(n), state.force.series(n)
         travelled = integral(drive)
         if not self.free:
-            return Expansion([_ZERO, state.velocity], [state.velocity], travelled, drive, force)
-        share = 1 / self.mass
-        push = combine((self.stiffness * share, travelled), (self.damping * share, drive), (share, force))
-        push[0] += (self.stiffness * state.stretch - self.contact * state.deflection - self.constant) * share
-        travel, velocity = self._settled(state) or self._solve(state.velocity, push, n)
+            settled = [_ZERO, state.velocity], [state.velocity]
+        travel, velocity = settled or self._solve(state, travelled, drive, force, n)
         return Expansion(travel, velocity, travelled, drive, force)
 
     def _settled(self, state: State) -> tuple[Series, Series] | None:
@@ -100,8 +99,11 @@ class Flow:
             return None
         return [_ZERO, slope, bend], [slope, 2 * bend]
 
-    def _solve(self, velocity: mpf, push: Series, n: int) -> tuple[Series, Series]:
-        y, u = [_ZERO], [velocity]
+    def _solve(self, state: State, travelled: Series, drive: Series, force: Series, n: int) -> tuple[Series, Series]:
+        share = 1 / self.mass
+        push = combine((self.stiffness * share, travelled), (self.damping * share, drive), (share, force))
+        push[0] += (self.stiffness * state.stretch - self.contact * state.deflection - self.constant) * share
+        y, u = [_ZERO], [state.velocity]
         gamma, omega2, given = self.gamma, self.omega2, len(push)
         for k in range(n):
             change = -gamma * u[k] - omega2 * y[k]
