@@ -28,12 +28,20 @@ GAMMA, OMEGA2, NU, SLOW, FAST, JERK, SNAP = range(18, 25)
 NEXT, NEXT_KIND, SEARCHED = range(25, 28)
 ITERATIONS = 28                         # of all searches for events so far
 ORIGIN = 29                             # m, where the run began: POSITION and DRIVE count from there
-STATE_SIZE = 30
+# the account of energy, J, up to the anchor: whether it is kept (the rest is 0 without), what was stored at the start,
+# then a sum for each of the works, the exchanges and the throughput of `energy.EnergyBalance`, and what rounding lost
+ACCOUNTING, STORED_AT_START, SUMS = range(30, 33)
+CONTACT_EXCHANGE, PARAMETER_EXCHANGE, THROUGHPUT = range(5, 8)   # behind the five works
+SUM_COUNT = 8
+STATE_SIZE = SUMS + 2 * SUM_COUNT
 
 # a row of the event table; words.Event has the same order
 (EVENT_SECOND, EVENT_FRACTION, EVENT_KIND, EVENT_MODE, EVENT_DIRECTION, EVENT_POSITION, EVENT_VELOCITY, EVENT_DRIVE,
  EVENT_DRIVE_FORCE, EVENT_FRICTION, EVENT_STATIC, EVENT_REST) = range(12)
 EVENT_SIZE = 12
+
+# a row of energies; energy.EnergyBalance has the same order
+ENERGY_SIZE = 10
 
 # a row of samples; words.Sample has the same order
 SAMPLE_SIZE = 15
