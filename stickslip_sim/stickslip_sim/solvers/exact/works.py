@@ -28,7 +28,7 @@ _WEIGHTS = (0.10122853629037625915, 0.22238103445337447054, 0.313706645877887287
 _RADIANS = 1.5          # of a panel: the rule's error for a product of two waves is then below 1e-15
 _GROWTH = 0.4           # of a panel per time that has passed since a damped motion began: error below 1e-15
 _RINGING = 0.3          # ν/ω from which on a wave and its polynomial are far enough apart to be split
-_MOST_PANELS = 4096.0   # beyond that they get longer; a growing motion ends long before
+_MOST_PANELS = 4096.0   # of equal length; they get longer beyond, but a growing motion ends long before
 
 
 @compiled
@@ -49,7 +49,8 @@ def works(p, s, t):
 @compiled
 def _panels(p, s, t, length, growth):
     drive, external, friction, damper, contact = 0.0, 0.0, 0.0, 0.0, 0.0
-    length = max(length, t / _MOST_PANELS)
+    if growth == 0.0:
+        length = max(length, t / _MOST_PANELS)
     begin = 0.0
     while begin < t:
         end = begin + max(length, growth * begin)
