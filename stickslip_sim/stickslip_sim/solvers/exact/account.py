@@ -3,18 +3,9 @@
 Each sum carries what rounding has lost of it (Neumaier, ZAMM 54, 1974).
 """
 
-from ...axis.layout import (
-    ACCOUNTING, CONTACT_EXCHANGE, PARAMETER_EXCHANGE, STORED_AT_START, SUMS, SUM_COUNT, THROUGHPUT,
-)
+from ...axis.layout import CONTACT_EXCHANGE, PARAMETER_EXCHANGE, STORED_AT_START, SUMS, SUM_COUNT, THROUGHPUT
 from ...compiled import compiled
 from .works import contact_energy, stored_energy, works
-
-
-@compiled
-def open_account(p, s):
-    """Note what is stored at the start of a run."""
-    if s[ACCOUNTING] != 0.0:
-        s[STORED_AT_START] = stored_energy(p, s, 0.0)
 
 
 @compiled
@@ -47,11 +38,9 @@ def read_account(p, s, t, out):
     for item in range(SUM_COUNT):
         out[item] = s[SUMS + item] + s[SUMS + SUM_COUNT + item]
     throughput = out[THROUGHPUT]
-    item = 0
-    for work in works(p, s, t):
+    for item, work in enumerate(works(p, s, t)):
         out[item] += work
         throughput += abs(work)
-        item += 1
     out[7] = stored_energy(p, s, t)
     out[8] = s[STORED_AT_START]
     out[9] = throughput

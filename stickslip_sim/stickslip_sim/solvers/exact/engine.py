@@ -10,8 +10,9 @@ in place and return the number of rows in use; `advance` also tells how it ended
 import math
 
 from ...axis.layout import (
-    ACCOUNTING, COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DEFLECTION, DIRECTION, DRIVE, F, FRACTION, F_RATE, MODE,
-    NEXT, NEXT_KIND, NORMAL, ORIGIN, POSITION, REST, SEARCHED, SECOND, SPRING, STATE_SIZE, V, VELOCITY, V_RATE,
+    ACCOUNTING, COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DEFLECTION, DIRECTION, DRIVE, F, FRACTION, F_RATE, MASS,
+    MODE, NEXT, NEXT_KIND, NORMAL, ORIGIN, POSITION, REST, SEARCHED, SECOND, SPRING, STATE_SIZE, STORED_AT_START, V,
+    VELOCITY, V_RATE,
 )
 from ...axis.motion import (
     COASTING, STICK, begin_motion, drive_force, drive_travel, friction_force, friction_line, move_anchor, piece_above,
@@ -23,7 +24,7 @@ from ...axis.transitions import (
 )
 from ...compiled import compiled
 from .. import DONE, FULL, NO_PROGRESS
-from .account import book_contact, book_parameters, book_works, open_account, read_account
+from .account import book_contact, book_parameters, book_works, read_account
 from .search import find_event
 from .works import contact_energy, stored_energy
 
@@ -42,7 +43,7 @@ def start(p, s, position, velocity, rest, v, v_rate, f, f_rate, waves, events, r
     s[REST] = rest
     s[V], s[V_RATE], s[F], s[F_RATE] = v, v_rate, f, f_rate
     s[MODE] = STICK
-    open_account(p, s)
+    s[STORED_AT_START] = 0.5 * p[MASS] * velocity * velocity
     if velocity == 0.0:
         row = _apply(p, s, events, row)
     else:

@@ -12,8 +12,8 @@ Two ways, both integrals of the motion and neither of them the balance itself:
 import math
 
 from ...axis.layout import (
-    ACCELERATION, COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, DEFLECTION, DIRECTION, EXCESS, F, FAST, F_RATE,
-    GAMMA, MASS, MODE, NORMAL, NU, OMEGA2, PIECE, SLOW, SNAP, SPRING, STIFFNESS, V, VELOCITY, V_RATE,
+    ACCELERATION, COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, DEFLECTION, DIRECTION, EXCESS, F, FAST,
+    F_RATE, GAMMA, MASS, MODE, NORMAL, NU, OMEGA2, PIECE, SLOW, SNAP, SPRING, STIFFNESS, V, VELOCITY, V_RATE,
 )
 from ...axis.motion import (
     ACCELERATING, COASTING, STICK, drive_force, drive_travel, friction_force, friction_line, is_rigid_stick, travel,
@@ -72,8 +72,7 @@ def _panels(p, s, t, length, growth):
 @compiled
 def _powers(p, s, t):
     y, u, _ = travel(p, s, t)
-    v = s[V] + s[V_RATE] * t
-    force = s[F] + s[F_RATE] * t
+    v, force = _inputs(s, t)
     pull = drive_force(p, s[SPRING] + (drive_travel(s, t) - y), v, u)
     slack = v - u
     friction, contact = 0.0, 0.0
@@ -82,6 +81,11 @@ def _powers(p, s, t):
     else:
         friction = friction_force(p, s, 0.0, u, pull + force) * u
     return pull * v, force * u, friction, p[DAMPING] * slack * slack, contact
+
+
+@compiled
+def _inputs(s, t):
+    return s[V] + s[V_RATE] * t, s[F] + s[F_RATE] * t
 
 
 @compiled
