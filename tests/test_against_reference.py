@@ -23,7 +23,7 @@ RUNS: dict[str, Any] = json.loads((Path(__file__).parent / 'data' / 'reference_e
 ROUNDING = 2.220446049250313e-16
 
 
-def _axis(values: dict[str, Any]) -> Axis:
+def axis_of(values: dict[str, Any]) -> Axis:
     friction, contact = values['friction'], values['contact']
     static = friction['static']
     law = StaticLaw(StaticLawKind[static['law'].upper()], static['initial'], static.get('limit', static['initial']),
@@ -40,14 +40,14 @@ def _axis(values: dict[str, Any]) -> Axis:
     return Axis(**values['axis'], contact=model, friction=Friction(law, kinetic, excess))
 
 
-def _course(segments: list[list[float]]) -> Course:
+def course_of(segments: list[list[float]]) -> Course:
     starts, values, rates = zip(*segments, strict=True)
     return Course(starts, values, rates)
 
 
 def simulator_of(values: dict[str, Any]) -> Simulator:
-    return Simulator(_axis(values), InitialState(**values['initial']), _course(values['drive']),
-                     _course(values['force']))
+    return Simulator(axis_of(values), InitialState(**values['initial']), course_of(values['drive']),
+                     course_of(values['force']))
 
 
 @pytest.mark.parametrize('name', RUNS)

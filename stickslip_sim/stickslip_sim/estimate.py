@@ -1,8 +1,9 @@
 """How far a run may be off: an estimate from repeating it, with how it was obtained.
 
-The exact solver makes rounding errors only.  It runs again with every number of the scene off by one rounding unit, which
-also gives every operation of the run another rounding; how far the events move apart is what rounding does to this
-very run.  What the sums of time and position lose in every run alike is added.  Other solvers run again with half the step or a tenth of the tolerances.
+The exact solver makes rounding errors only.  It runs again with every number of the scene off by one rounding unit,
+which also gives every operation of the run another rounding; how far the events move apart is what rounding does to
+this very run.  What the sums of time and position lose in every run alike is added.  Other solvers run again with half
+the step or a tenth of the tolerances.
 """
 
 import dataclasses
@@ -52,8 +53,8 @@ def error_estimate(run: Trajectory) -> ErrorEstimate:
             f'{name} {value:g}' for name, value in finer.items())
     else:
         others = _perturbed_scenes(scene)
-        safety, how = _SAFETY, (f'the largest shift of an event in {len(others)} repeats with every number of the scene '
-                                'moved by 2^-52 of itself')
+        safety, how = _SAFETY, (f'the largest shift of an event in {len(others)} repeats with every number of the '
+                                'scene moved by 2^-52 of itself')
     shifts = [_repeat(run, other) for other in others]
     until = min((shift.until for shift in shifts), default=0.0)
     # times and positions are sums over the events; equal steps round alike, so that a repeat does not show what is lost
@@ -65,7 +66,7 @@ def error_estimate(run: Trajectory) -> ErrorEstimate:
         f'{safety:g} times {how}')
     if until >= run.duration:
         return estimate
-    return estimate._replace(how=f'{estimate.how}; the events differ from t = {until:.6g} s, nothing is known from there')
+    return estimate._replace(how=f'{estimate.how}; the events differ from t = {until:.6g} s: unknown from there')
 
 
 def _perturbed_scenes(scene: Scene) -> list[Scene]:

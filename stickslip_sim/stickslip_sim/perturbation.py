@@ -9,8 +9,7 @@ import math
 import random
 from typing import Any
 
-from .axis import Axis, InitialState
-from .courses import Course, Wave
+from .courses import Wave
 from .friction import ExcessTable
 from .scene import Scene
 
@@ -23,9 +22,8 @@ def perturbed(scene: Scene, seed: str) -> Scene:
     Raises InputError in the rare case that knots of a table or a course change places by that.
     """
     move = _Mover(seed)
-    axis, initial, drive, force = (move.moved(part) for part in (scene.axis, scene.initial, scene.drive, scene.force))
-    assert isinstance(axis, Axis) and isinstance(initial, InitialState)
-    return dataclasses.replace(scene, axis=axis, initial=initial, drive=drive, force=force)
+    return dataclasses.replace(scene, axis=move.moved(scene.axis), initial=move.moved(scene.initial),
+                               drive=move.moved(scene.drive), force=move.moved(scene.force))
 
 
 class _Mover:
@@ -36,6 +34,7 @@ class _Mover:
         self._factors: dict[float, float] = {0.0: 1.0, math.inf: 1.0}
 
     def moved(self, value: Any) -> Any:
+        """Return a value with all its numbers moved."""
         if isinstance(value, float):
             return value * self._factor(abs(value))
         if isinstance(value, ExcessTable):
