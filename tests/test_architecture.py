@@ -27,4 +27,4 @@ entries = exact.SOLVER[1:]
 print(sum(len(entry.stats.cache_misses) for entry in entries), sum(len(entry.stats.cache_hits) for entry in entries))
 '''
     in_a_process(program, compiled=True)
-    assert in_a_process(program, compiled=True).split() == ['0', '5']
+    assert in_a_process(program, compiled=True).split() == ['0', '6']

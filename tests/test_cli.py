@@ -118,6 +118,20 @@ def test_receipt_and_settings(tmp_path: Path) -> None:
     assert first['duration'] == 5.0
     assert first['scene_hash'] != second['scene_hash']
     assert first['results']['last']['peak_speed'] != second['results']['last']['peak_speed']
+    assert first['energy']['relative_residual'] <= 1e-14
+    assert 0.0 < first['error_estimate']['event_time_s'] <= 1e-12
+    assert first['error_estimate']['until_s'] == 5.0
+
+
+def test_the_receipt_in_the_documentation_is_that_of_its_command(tmp_path: Path) -> None:
+    text = (Path(__file__).parents[1] / 'docs' / 'receipt.md').read_text()
+    assert run(['simulate', 'paper_fig8', '--duration', '10', '--receipt', str(tmp_path / 'r.json')]) == 0
+    receipt = json.loads((tmp_path / 'r.json').read_text())
+    shown = json.loads('{' + text.split('```json')[1].split('```')[0] + '}')
+    assert shown['error_estimate']['how'] == receipt['error_estimate']['how']
+    assert shown['energy'].keys() == receipt['energy'].keys()
+    for name, value in shown['energy'].items():
+        assert value == pytest.approx(receipt['energy'][name], rel=1e-9, abs=1e-12), name
 
 
 def test_plot(tmp_path: Path) -> None:
@@ -240,6 +254,9 @@ def test_bag(tmp_path: Path) -> None:
     assert recorded.counts['/slider_state'] == 2001
     assert recorded.counts['/mode_event'] == len(run_offline(load_scene('paper_fig8'), 2.0).events)
     assert recorded.receipt['scene'] == 'paper_fig8'
+    assert recorded.receipt['sample_period'] == 0.001
+    assert recorded.receipt['energy']['drive_work'] > 0.0
+    assert recorded.receipt['error_estimate']['until_s'] == 2.0
     assert 'paper_fig8' in recorded.attachments['scene.yaml'].decode()
 
 

@@ -102,6 +102,7 @@ class TestSignals:
         assert run.receipt['timing']['steps'] == len(states['step'])
         assert run.columns('/timing')['steps'].sum() == len(states['step'])
         assert run.receipt['commands']['velocity'] == {'received': 1, 'refused': 0}
+        assert run.receipt['energy']['relative_residual'] <= 1e-13
         assert b'paper_fig8' in run.attachments['scene.yaml']
 
     @pytest.mark.parametrize('delay', [0.2, 0.5, 0.8])

@@ -7,6 +7,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+from stickslip_sim.energy import EnergyBalance
 from stickslip_sim.errors import InputError
 from stickslip_sim.offline import MAX_SAMPLES, Trajectory, check_times, run_offline
 from stickslip_sim.scene import load_scene
@@ -76,6 +77,16 @@ def test_receipt_says_what_ran_and_what_came_out(run: Trajectory) -> None:
     assert results['root_iterations'] > 0
     assert results['mean']['rest_time'] == 'inf'
     assert set(receipt['cost']) == {'cpu_time_s', 'cpu_time_per_simulated_second', 'wall_time_s'}
+
+
+def test_receipt_carries_the_energy_balance(run: Trajectory) -> None:
+    energy = run.receipt['energy']
+    assert set(energy) == {*EnergyBalance._fields, 'residual', 'relative_residual'}
+    assert energy['relative_residual'] <= 1e-14
+    assert energy['drive_work'] == pytest.approx(
+        energy['friction_loss'] + energy['drive_damper_loss'] + energy['contact_damper_loss'] + energy['stored']
+        - energy['contact_exchange'], rel=1e-14)
+    assert 0.0 < energy['stored'] < energy['friction_loss'] < energy['drive_work'] < energy['throughput']
 
 
 def test_smooth_sliding_gets_a_receipt_too() -> None:

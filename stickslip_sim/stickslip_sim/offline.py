@@ -71,7 +71,7 @@ def run_offline(scene: Scene, duration: float, sample_period: float | Fraction |
     cpu, wall = time.process_time() - cpu, time.perf_counter() - wall
     figures = summary(events, duration, start)
     receipt = receipt_of(scene, duration, float(sample_period) if sample_period else None, figures,
-                         simulator.root_iterations, simulator.sample(), cpu, wall)
+                         simulator.root_iterations, simulator.sample(), simulator.energy, cpu, wall)
     period = _decimal(sample_period) if sample_period else None
     return Trajectory(scene, duration, period, events, _columns(rows, period or Fraction(0)), figures, receipt)
 
@@ -98,9 +98,10 @@ def warm_up(scene: Scene) -> None:
 
 def _loaded_simulator(scene: Scene) -> Simulator:
     """Return a simulator at time 0 whose code was loaded, so that this does not count as the cost of a run."""
-    simulator = Simulator(scene.axis, scene.initial, scene.drive, scene.force)
+    simulator = Simulator(scene.axis, scene.initial, scene.drive, scene.force, accounting=True)
     simulator.advance(Instant(0.0, 0.0))
     simulator.command_velocity(simulator.sample().drive_velocity)
+    _ = simulator.energy
     simulator.reset()
     return simulator
 

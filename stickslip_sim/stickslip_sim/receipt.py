@@ -11,15 +11,17 @@ import numpy
 from . import __version__
 from .analysis import Summary
 from .compiled import IS_COMPILED
+from .energy import EnergyBalance
 from .scene import Scene
 from .words import Mode, Sample
 
 
 def receipt_of(scene: Scene, duration: float, sample_period: float | None, figures: Summary, root_iterations: int,
-               final: Sample, cpu_time: float, wall_time: float) -> dict[str, Any]:
+               final: Sample, energy: EnergyBalance | None, cpu_time: float, wall_time: float) -> dict[str, Any]:
     """Return the receipt of a run of `duration` s that took `cpu_time` and `wall_time` s.
 
-    `results` is the same on every machine; `versions` and `cost` are not.  An infinite number is the text 'inf'.
+    `results` and `energy` (J; None when the solver keeps no account) are the same on every machine; `versions` and
+    `cost` are not.  An infinite number is the text 'inf'.
     """
     receipt = {
         'scene': scene.name,
@@ -29,6 +31,8 @@ def receipt_of(scene: Scene, duration: float, sample_period: float | None, figur
         'sample_period': sample_period,
         'versions': versions(),
         'results': {**figures._asdict(), 'root_iterations': root_iterations, 'final_state': final},
+        'energy': energy and {**energy._asdict(), 'residual': energy.residual,
+                              'relative_residual': energy.relative_residual},
         'cost': {'cpu_time_s': cpu_time, 'cpu_time_per_simulated_second': cpu_time / duration,
                  'wall_time_s': wall_time},
     }

@@ -5,9 +5,10 @@ from collections.abc import Iterator
 from typing import Any
 
 from .axis import Axis, InitialState, check_start, pack
-from .axis.layout import EVENT_SIZE, ITERATIONS, SAMPLE_SIZE, STATE_SIZE
+from .axis.layout import ACCOUNTING, ENERGY_SIZE, EVENT_SIZE, ITERATIONS, SAMPLE_SIZE, STATE_SIZE
 from .compiled import IS_COMPILED
 from .courses import Course, constant
+from .energy import EnergyBalance
 from .errors import SolverError
 from .solvers import DONE, FULL, Solver, exact
 from .words import Event, EventKind, Instant, Mode, Sample
@@ -21,11 +22,12 @@ class Simulator:
     """The state of one axis, brought from time to time.
 
     `drive` (m/s) and `force` (N) are courses over simulation time; a command replaces a course by a constant from the
-    present time on.  Events come back from the call in which they fall, in the order of time.
+    present time on.  Events come back from the call in which they fall, in the order of time.  With `accounting` the
+    solver keeps the account of energy, if it can; the motion is the same to the last bit.
     """
 
     def __init__(self, axis: Axis, initial: InitialState, drive: Course, force: Course,
-                 solver: Solver = exact.SOLVER) -> None:
+                 solver: Solver = exact.SOLVER, accounting: bool = False) -> None:
         check_start(axis, initial)
         self._solver = solver
         self._initial = initial
@@ -33,7 +35,9 @@ class Simulator:
         self._axis = axis
         self._parameters = _numbers(pack(axis))
         self._state = _numbers([0.0] * STATE_SIZE)
+        self._state[ACCOUNTING] = float(accounting and solver.energy is not None)
         self._row = _numbers([0.0] * SAMPLE_SIZE)
+        self._energies = _numbers([0.0] * ENERGY_SIZE)
         self._table = _table(_ROWS, EVENT_SIZE)
         self.reset()
 
@@ -70,6 +74,14 @@ class Simulator:
     def event_counts(self) -> dict[EventKind, int]:
         """Events so far, by kind."""
         return dict(self._counts)
+
+    @property
+    def energy(self) -> EnergyBalance | None:
+        """The energies from the start up to the present time; None without an account."""
+        if self._solver.energy is None or not self._state[ACCOUNTING]:
+            return None
+        self._solver.energy(self._parameters, self._state, *self._time, self._energies)
+        return EnergyBalance(*map(float, self._energies))
 
     def advance(self, to: Instant) -> list[Event]:
         """Bring the state to a time that is not before the present one; return the events up to then.

@@ -33,12 +33,20 @@ AT, AT_G, AT_RATE, AT_FIRST, AT_SECOND = range(30, 35)
 LAST = 35                               # how long each mode lasted last time: a first guess for the next time
 # the same four at the instant GRID after an anchor, for the oscillator with these two: what ticks of one length share
 GRID, GRID_GAMMA, GRID_OMEGA2, GRID_G, GRID_RATE, GRID_FIRST, GRID_SECOND = range(39, 46)
-STATE_SIZE = 46
+# the account of energy, J, up to the anchor: whether it is kept (the rest is 0 without), what was stored at the start,
+# then a sum for each of the works, the exchanges and the throughput of `energy.EnergyBalance`, and what rounding lost
+ACCOUNTING, STORED_AT_START, SUMS = range(46, 49)
+CONTACT_EXCHANGE, PARAMETER_EXCHANGE, THROUGHPUT = range(5, 8)   # behind the five works
+SUM_COUNT = 8
+STATE_SIZE = SUMS + 2 * SUM_COUNT
 
 # a row of the event table; words.Event has the same order
 (EVENT_SECOND, EVENT_FRACTION, EVENT_KIND, EVENT_MODE, EVENT_DIRECTION, EVENT_POSITION, EVENT_VELOCITY, EVENT_DRIVE,
  EVENT_DRIVE_FORCE, EVENT_FRICTION, EVENT_STATIC, EVENT_REST) = range(12)
 EVENT_SIZE = 12
+
+# a row of energies; energy.EnergyBalance has the same order
+ENERGY_SIZE = 10
 
 # a row of samples; words.Sample has the same order
 SAMPLE_SIZE = 15

@@ -2,6 +2,7 @@
 
 import json
 import shutil
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -39,7 +40,7 @@ class _Wishes(NamedTuple):
 @click.option('--samples', metavar='FILE.csv', help='Write the state over time ("-": to standard output).')
 @click.option('--sample-period', type=float, metavar='S', help="Time between samples [default: a step of the scene].")
 @click.option('--bag', metavar='FOLDER', help='Record the run as a ROS 2 bag, one state a step.')
-@click.option('--receipt', metavar='FILE.json', help='Write versions, figures and cost.')
+@click.option('--receipt', metavar='FILE.json', help='Write versions, figures, energy, error and cost.')
 @click.option('--plot', metavar='FILE.png', help='Draw position, velocity, forces and mode (.png or .svg).')
 def simulate(scene: str, changes: tuple[str, ...], **options: object) -> None:
     """Simulate SCENE, the name of a shipped scene or a file.
@@ -57,6 +58,8 @@ def simulate(scene: str, changes: tuple[str, ...], **options: object) -> None:
     period = _sample_period(wishes, loaded)
     with progress_bar('simulating') as progress:
         run = run_offline(loaded, wishes.duration, period, progress)
+    if wishes.receipt or wishes.bag:
+        run = _with_estimate(run)
     _write(wishes, run)
 
 
@@ -93,6 +96,13 @@ def _sample_period(wishes: _Wishes, scene: 'Scene') -> Fraction | float | None:
 
 def _step(scene: 'Scene') -> Fraction:
     return 1 / Fraction(repr(scene.time.rate))
+
+
+def _with_estimate(run: 'Trajectory') -> 'Trajectory':
+    """Return the run with an estimate of its error in the receipt; that takes a few more runs."""
+    from ..estimate import error_estimate
+
+    return replace(run, receipt={**run.receipt, 'error_estimate': error_estimate(run)._asdict()})
 
 
 def _write(wishes: _Wishes, run: 'Trajectory') -> None:
@@ -142,14 +152,21 @@ def _sampled(run: 'Trajectory', period: Fraction) -> 'Trajectory':
     """Return the same run with other samples."""
     from ..offline import run_offline
 
-    return run if run.sample_period == period else run_offline(run.scene, run.duration, period)
+    if run.sample_period == period:
+        return run
+    again = run_offline(run.scene, run.duration, period)
+    return replace(again, receipt={**run.receipt, **again.receipt})
 
 
 def _tell(run: 'Trajectory') -> None:
     from .format import quantity, summary_lines
 
-    cost = run.receipt['cost']
+    cost, energy = run.receipt['cost'], run.receipt['energy']
     print(f'{run.scene.name}: {run.duration:g} s with the {run.scene.solver.name} solver')
     print('\n'.join(summary_lines(run.summary)))
+    if energy is not None:
+        print(f'{"energy":22} {quantity(energy["drive_work"], "J")} from the drive, '
+              f'{quantity(energy["friction_loss"], "J")} to friction; '
+              f'the balance closes to {energy["relative_residual"]:.1g} of the throughput')
     print(f'{"cost":22} {quantity(cost["cpu_time_s"], "s")} CPU, '
           f'{quantity(cost["cpu_time_per_simulated_second"], "s")} per simulated second')

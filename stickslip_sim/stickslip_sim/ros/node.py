@@ -48,7 +48,7 @@ class FeedAxis(SceneNode):
                        CommandSlot('force', 'N', scene.command.max_force))
         self._outlet = Outlet(self)
         self._recordings = Recordings(self.get_namespace())
-        self._simulator = Simulator(scene.axis, scene.initial, scene.drive, scene.force)
+        self._simulator = Simulator(scene.axis, scene.initial, scene.drive, scene.force, accounting=True)
         self.loop = StepLoop(self._simulator, self._grid, self._pacer, self._slots, self._outlet)
         self._reporter = reports.Reporter(self.loop, self._pacer.account, self._slots)
         self._told = ''          # the failure of the solver that was logged

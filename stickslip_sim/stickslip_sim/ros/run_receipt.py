@@ -20,7 +20,8 @@ def run_receipt(scene: Scene, simulator: Simulator, outlet: Outlet, account: Acc
     duration = max(simulator.time.seconds, period)
     events = list(outlet.events)
     figures = summary(events, duration, outlet.first_mode)
-    receipt = receipt_of(scene, duration, period, figures, simulator.root_iterations, simulator.sample(), *cost)
+    receipt = receipt_of(scene, duration, period, figures, simulator.root_iterations, simulator.sample(),
+                         simulator.energy, *cost)
     timing = asdict(account)
     timing['skipped'] = timing['skipped'] * 1e-9
     return {**receipt, 'timing': timing, 'dropped_messages': dropped,

@@ -20,6 +20,9 @@ class Solver(NamedTuple):
     | set_inputs     | p, s, second, fraction, v, v_rate, f, f_rate, waves, events, row                       |
     | set_parameters | p, new p, s, second, fraction, events, row                                             |
     | sample         | p, s, second, fraction, out                                                            |
+    | energy         | p, s, second, fraction, out; a row of `energy.EnergyBalance`                           |
+
+    A solver with `energy` keeps the account while s[ACCOUNTING], which `start` leaves as it is, is not 0.
     """
 
     name: str
@@ -28,3 +31,4 @@ class Solver(NamedTuple):
     set_inputs: Callable[..., Any]
     set_parameters: Callable[..., Any]
     sample: Callable[..., Any]
+    energy: Callable[..., Any] | None = None

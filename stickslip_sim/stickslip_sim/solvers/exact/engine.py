@@ -10,8 +10,9 @@ in place and return the number of rows in use; `advance` also tells how it ended
 import math
 
 from ...axis.layout import (
-    AT, COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DEFLECTION, DIRECTION, DRIVE, F, FRACTION, F_RATE, LAST, MODE,
-    NEXT, NEXT_KIND, NORMAL, ORIGIN, POSITION, REST, SEARCHED, SECOND, SPRING, STATE_SIZE, V, VELOCITY, V_RATE,
+    ACCOUNTING, AT, COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DEFLECTION, DIRECTION, DRIVE, F, FRACTION, F_RATE,
+    LAST, MASS, MODE, NEXT, NEXT_KIND, NORMAL, ORIGIN, POSITION, REST, SEARCHED, SECOND, SPRING, STATE_SIZE,
+    STORED_AT_START, V, VELOCITY, V_RATE,
 )
 from ...axis.motion import (
     COASTING, STICK, begin_motion, drive_force, drive_travel, friction_force, friction_line, move_anchor, piece_above,
@@ -23,7 +24,9 @@ from ...axis.transitions import (
 )
 from ...compiled import compiled
 from .. import DONE, FULL, NO_PROGRESS
+from .account import book_contact, book_parameters, book_works, read_account
 from .search import find_event
+from .works import contact_energy, stored_energy
 
 _SAME_INSTANT = 64   # events without progress in time; a sound model needs three
 
@@ -31,13 +34,16 @@ _SAME_INSTANT = 64   # events without progress in time; a sound model needs thre
 @compiled
 def start(p, s, position, velocity, rest, v, v_rate, f, f_rate, waves, events, row):
     """Set the state at time 0: the spring unstretched, at rest (it may break away at once) or sliding."""
+    accounting = s[ACCOUNTING]
     for i in range(STATE_SIZE):
         s[i] = 0.0
+    s[ACCOUNTING] = accounting
     s[ORIGIN] = position
     s[VELOCITY] = velocity
     s[REST] = rest
     s[V], s[V_RATE], s[F], s[F_RATE] = v, v_rate, f, f_rate
     s[MODE] = STICK
+    s[STORED_AT_START] = 0.5 * p[MASS] * velocity * velocity
     if velocity == 0.0:
         row = _apply(p, s, events, row)
     else:
@@ -69,14 +75,25 @@ def advance(p, s, second, fraction, events, row):
         same_instant = same_instant + 1 if due == 0.0 else 0
         if same_instant > _SAME_INSTANT:
             return row, NO_PROGRESS
-        later = s[FRACTION] + due
-        whole = math.floor(later)
-        mode = int(s[MODE])
-        move_anchor(p, s, s[SECOND] + whole, later - whole, due)
-        s[LAST + mode] = due if s[NEXT_KIND] != COAST else 0.0
-        _transition(p, s, events, row)
+        _pass_event(p, s, due, events, row)
         row += 1
         _begin(p, s)
+
+
+@compiled
+def _pass_event(p, s, due, events, row):
+    later = s[FRACTION] + due
+    whole = math.floor(later)
+    mode = int(s[MODE])
+    accounting = s[ACCOUNTING] != 0.0
+    if accounting:
+        book_works(p, s, due)
+    move_anchor(p, s, s[SECOND] + whole, later - whole, due)
+    s[LAST + mode] = due if s[NEXT_KIND] != COAST else 0.0
+    contact = contact_energy(p, s, 0.0) if accounting else 0.0
+    _transition(p, s, events, row)
+    if accounting:
+        book_contact(p, s, contact)
 
 
 @compiled
@@ -95,12 +112,15 @@ def set_inputs(p, s, second, fraction, v, v_rate, f, f_rate, waves, events, row)
 def set_parameters(p, new, s, second, fraction, events, row):
     """Let the axis have other parameters from a time on, up to which the state was advanced with the old ones."""
     _anchor_at(p, s, second, fraction)
+    stored = stored_energy(p, s, 0.0)
     if s[MODE] == STICK and new[COMPLIANT] != 0.0:
         force = friction_force(p, s, s[DEFLECTION], s[VELOCITY], applied_force(p, s))
         s[DEFLECTION] = (force - new[CONTACT_DAMPING] * s[VELOCITY]) / new[CONTACT_STIFFNESS]
     if s[MODE] == STICK and new[COMPLIANT] == 0.0:
         s[VELOCITY] = 0.0
         s[DEFLECTION] = 0.0
+    if s[ACCOUNTING] != 0.0:
+        book_parameters(new, s, stored)
     row = _apply(new, s, events, row)
     _begin(new, s)
     return row
@@ -136,6 +156,13 @@ def sample(p, s, second, fraction, out):
 
 
 @compiled
+def energy(p, s, second, fraction, out):
+    """Fill a row with the energies up to a time between the anchor and the next event (`energy.EnergyBalance`)."""
+    t = (second - s[SECOND]) + (fraction - s[FRACTION])
+    read_account(p, s, t, out)
+
+
+@compiled
 def _begin(p, s):
     begin_motion(p, s)
     s[SEARCHED] = -1.0
@@ -145,12 +172,19 @@ def _begin(p, s):
 
 @compiled
 def _apply(p, s, events, row):
-    return row + 1 if apply_inputs(p, s, events, row) else row
+    contact = contact_energy(p, s, 0.0)
+    if apply_inputs(p, s, events, row):
+        row += 1
+    if s[ACCOUNTING] != 0.0:
+        book_contact(p, s, contact)
+    return row
 
 
 @compiled
 def _anchor_at(p, s, second, fraction):
     t = (second - s[SECOND]) + (fraction - s[FRACTION])
+    if s[ACCOUNTING] != 0.0:
+        book_works(p, s, t)
     move_anchor(p, s, second, fraction, t)
 
 

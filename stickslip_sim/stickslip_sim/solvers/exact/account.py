@@ -1,0 +1,60 @@
+"""Keep the account of energy in the state: add up works and exchanges so that a run of any length loses nothing.
+
+Each sum carries what rounding has lost of it (Neumaier, ZAMM 54, 1974).
+"""
+
+from ...axis.layout import CONTACT_EXCHANGE, PARAMETER_EXCHANGE, STORED_AT_START, SUMS, SUM_COUNT, THROUGHPUT
+from ...compiled import compiled
+from .works import contact_energy, stored_energy, works
+
+
+@compiled
+def book_works(p, s, t):
+    """Add the works from the anchor up to t, where the anchor is about to move."""
+    item = SUMS
+    throughput = 0.0
+    for work in works(p, s, t):
+        _add(s, item, work)
+        throughput += abs(work)
+        item += 1
+    _add(s, SUMS + THROUGHPUT, throughput)
+
+
+@compiled
+def book_contact(p, s, before):
+    """Add the contact energy that a transition made appear or vanish; it was `before`, J."""
+    _book(s, SUMS + CONTACT_EXCHANGE, contact_energy(p, s, 0.0) - before)
+
+
+@compiled
+def book_parameters(p, s, before):
+    """Add what a change of parameters did to the stored energy; it was `before`, J."""
+    _book(s, SUMS + PARAMETER_EXCHANGE, stored_energy(p, s, 0.0) - before)
+
+
+@compiled
+def read_account(p, s, t, out):
+    """Fill a row of `energy.EnergyBalance`: the sums, and what came up to t after the anchor."""
+    for item in range(SUM_COUNT):
+        out[item] = s[SUMS + item] + s[SUMS + SUM_COUNT + item]
+    throughput = out[THROUGHPUT]
+    for item, work in enumerate(works(p, s, t)):
+        out[item] += work
+        throughput += abs(work)
+    out[7] = stored_energy(p, s, t)
+    out[8] = s[STORED_AT_START]
+    out[9] = throughput
+
+
+@compiled
+def _book(s, item, amount):
+    _add(s, item, amount)
+    _add(s, SUMS + THROUGHPUT, abs(amount))
+
+
+@compiled
+def _add(s, item, amount):
+    before = s[item]
+    after = before + amount
+    s[item] = after
+    s[item + SUM_COUNT] += (before - after) + amount if abs(before) >= abs(amount) else (amount - after) + before
