@@ -9,7 +9,7 @@ import hashlib
 import os
 import pathlib
 from collections.abc import Callable
-from typing import TypeVar
+from typing import Any, TypeVar
 
 _Function = TypeVar('_Function', bound=Callable[..., object])
 _ROOMS = ('compiled.py', 'friction', 'axis', 'linear', 'solvers')
@@ -26,7 +26,7 @@ def _cache_folder() -> pathlib.Path:
     return pathlib.Path(base) / 'stickslip' / digest.hexdigest()[:16]
 
 
-def _load_numba() -> Callable[[_Function], _Function] | None:
+def _load_numba() -> Any:
     if os.environ.get('STICKSLIP_COMPILED', '1') == '0':
         return None
     os.environ.setdefault('NUMBA_CACHE_DIR', str(_cache_folder()))
@@ -34,14 +34,19 @@ def _load_numba() -> Callable[[_Function], _Function] | None:
         import numba
     except ImportError:
         return None
-    decorate: Callable[[_Function], _Function] = numba.njit(cache=True, error_model='numpy', _nrt=False)
-    return decorate
+    return numba
 
 
-_decorate = _load_numba()
-IS_COMPILED = _decorate is not None
+_numba = _load_numba()
+IS_COMPILED = _numba is not None
+_OPTIONS = {'cache': True, 'error_model': 'numpy', '_nrt': False}   # no array is made, so that none needs counting
 
 
 def compiled(function: _Function) -> _Function:
     """Compile a scalar function of the hot path, or leave it as it is."""
-    return function if _decorate is None else _decorate(function)
+    return _numba.njit(**_OPTIONS)(function) if IS_COMPILED else function
+
+
+def compiled_without_lock(function: _Function) -> _Function:
+    """Compile a function that works for long, while other threads may run Python; or leave it as it is."""
+    return _numba.njit(nogil=True, **_OPTIONS)(function) if IS_COMPILED else function

@@ -1,0 +1,173 @@
+"""Thousands of axes at once: arrays of parameters in, arrays of cycle figures out.
+
+    figures = run_batch(axis, 10.0, drive_velocity=np.geomspace(1e-4, 1e-2, 10_000))
+    figures.period[figures.cycles > 1]
+
+Every axis runs by itself from event to event, the same to the last bit as in a `Simulator`, whatever the number of
+threads.
+"""
+
+import os
+from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .analysis import SETTLED
+from .axis import Axis, InitialState, check_start, pack
+from .axis.layout import (
+    COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, EVENT_SIZE, MASS, NORMAL, STATE_SIZE, STATIC_EXPONENT,
+    STATIC_INITIAL, STATIC_LIMIT, STATIC_TAU, STIFFNESS, TABLE,
+)
+from .errors import InputError
+from .solvers.exact import cycles
+
+Numbers = NDArray[np.float64]
+
+_ROWS = 64          # of the event table
+_AT_A_TIME = 250    # axes that a thread takes
+
+
+@dataclass(frozen=True, slots=True)
+class _Column:
+    """A number of an axis that may differ from axis to axis: where it stands, its least value and its unit."""
+
+    at: int
+    low: float
+    above: bool
+    unit: str
+
+    def check(self, name: str, values: Numbers) -> None:
+        bad = ~(np.isfinite(values) & ((values > self.low) if self.above else (values >= self.low)))
+        if bad.any():
+            raise InputError(name, float(values[bad][0]), f'finite and {">" if self.above else ">="} {self.low:g}'
+                             f' {self.unit}'.rstrip(), f'look at index {int(np.flatnonzero(bad)[0])} of the array')
+
+
+COLUMNS: Mapping[str, _Column] = {
+    'mass': _Column(MASS, 0.0, True, 'kg'),
+    'drive_stiffness': _Column(STIFFNESS, 0.0, False, 'N/m'),
+    'drive_damping': _Column(DAMPING, 0.0, False, 'N s/m'),
+    'normal_force': _Column(NORMAL, 0.0, False, 'N'),
+    'contact_stiffness': _Column(CONTACT_STIFFNESS, 0.0, True, 'N/m'),
+    'contact_damping': _Column(CONTACT_DAMPING, 0.0, False, 'N s/m'),
+    'static_initial': _Column(STATIC_INITIAL, 0.0, False, ''),
+    'static_limit': _Column(STATIC_LIMIT, 0.0, False, ''),
+    'static_time_constant': _Column(STATIC_TAU, 0.0, True, 's'),
+    'static_exponent': _Column(STATIC_EXPONENT, 0.0, True, ''),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class BatchFigures:
+    """Arrays with one entry an axis; those from `direction` on are of the last complete cycle, NaN without one.
+
+    Units and meaning are those of `analysis.Cycle` and `analysis.Summary`.
+    """
+
+    events: Numbers
+    cycles: Numbers              # complete ones
+    complete: NDArray[np.bool_]  # False: the solver gave up before the end
+    final_mode: Numbers          # `words.Mode`
+    first_break_away: Numbers    # s
+    stick_share: Numbers
+    settled: NDArray[np.bool_]   # the last two periods differ by less than `analysis.SETTLED`
+    direction: Numbers
+    rest_time: Numbers           # s
+    slip_time: Numbers           # s
+    stick_time: Numbers          # s
+    period: Numbers              # s
+    slip_travel: Numbers         # m
+    jump: Numbers                # m
+    peak_speed: Numbers          # m/s
+    break_away_force: Numbers    # N
+    static_coefficient: Numbers
+
+
+def run_batch(axis: Axis, duration: float, *, drive_velocity: ArrayLike, external_force: ArrayLike = 0.0,
+              initial: InitialState | None = None, threads: int | None = None, **changes: ArrayLike) -> BatchFigures:
+    """Run an axis for `duration` s under every `drive_velocity` (m/s) and `external_force` (N), with `changes` to it.
+
+    `changes` are arrays (or numbers) by the names in `COLUMNS`; all arrays have one length n, or 1.  `threads` is the
+    number of cores to use (default: all).  Raises InputError on unknown names, lengths that do not match, and values
+    without a meaning; nothing runs then.
+    """
+    initial = initial or InitialState()
+    check_start(axis, initial)
+    if not 0.0 < duration < np.inf:
+        raise InputError('duration', duration, 'finite and > 0 s', 'give the seconds to simulate')
+    velocity, force = _finite('drive_velocity', drive_velocity), _finite('external_force', external_force)
+    arrays = {name: np.atleast_1d(np.asarray(values, dtype=np.float64)) for name, values in changes.items()}
+    count = _common_length({'drive_velocity': velocity, 'external_force': force, **arrays})
+    parameters = np.tile(np.array(pack(axis)), (count, 1))
+    for name, values in arrays.items():
+        _column(name, axis).check(name, values)
+        parameters[:, COLUMNS[name].at] = values
+    _check_friction(parameters)
+    inputs = np.stack([np.broadcast_to(velocity, count), np.broadcast_to(force, count)], axis=1)
+    starts = np.tile([initial.position, initial.velocity, initial.rest_time], (count, 1))
+    return _figures(_run(parameters, inputs, starts, float(duration), threads or os.cpu_count() or 1))
+
+
+def _run(parameters: Numbers, inputs: Numbers, starts: Numbers, duration: float, threads: int) -> Numbers:
+    count = len(parameters)
+    out = np.empty((count, cycles.ROW_SIZE))
+
+    def work(first: int) -> None:
+        cycles.run_axes(parameters, inputs, starts, duration, first, min(first + _AT_A_TIME, count),
+                        np.zeros(STATE_SIZE), np.empty((_ROWS, EVENT_SIZE)), np.empty(0), out)
+
+    with ThreadPoolExecutor(threads) as pool:
+        list(pool.map(work, range(0, count, _AT_A_TIME)))
+    return out
+
+
+def _figures(out: Numbers) -> BatchFigures:
+    columns: dict[str, Any] = {name: out[:, getattr(cycles, name.upper())].copy() for name in BatchFigures.__slots__
+                               if name != 'settled'}
+    before = out[:, cycles.PERIOD_BEFORE]
+    columns['settled'] = np.abs(columns['period'] - before) < SETTLED * columns['period']
+    columns['complete'] = columns['complete'] == 1.0
+    return BatchFigures(**columns)
+
+
+def _finite(name: str, values: ArrayLike) -> Numbers:
+    numbers = np.atleast_1d(np.asarray(values, dtype=np.float64))
+    if not np.isfinite(numbers).all():
+        raise InputError(name, float(numbers[~np.isfinite(numbers)][0]), 'finite', 'drop it')
+    return numbers
+
+
+def _common_length(arrays: Mapping[str, Numbers]) -> int:
+    for name, values in arrays.items():
+        if values.ndim != 1 or len(values) == 0:
+            raise InputError(name, f'shape {values.shape}', 'a number or an array of one dimension', 'flatten it')
+    count = max(map(len, arrays.values()))
+    for name, values in arrays.items():
+        if len(values) not in (1, count):
+            raise InputError(name, f'{len(values)} values', f'1 or {count}, as many as the longest array',
+                             'arrays belong together index by index')
+    return count
+
+
+def _column(name: str, axis: Axis) -> _Column:
+    if name not in COLUMNS:
+        raise InputError(name, 'given', 'one of drive_velocity, external_force, ' + ', '.join(COLUMNS),
+                         'rename it, or leave it out')
+    if name.startswith('contact_') and not pack(axis)[COMPLIANT]:
+        raise InputError(name, 'given', 'left out with a rigid contact', 'give the axis a compliant contact')
+    return COLUMNS[name]
+
+
+def _check_friction(parameters: Numbers) -> None:
+    initial, limit = parameters[:, STATIC_INITIAL], parameters[:, STATIC_LIMIT]
+    at_rest = parameters[:, TABLE + 1]
+    for bad, name, allowed in ((at_rest > initial, 'static_initial', '>= the kinetic coefficient at rest'),
+                               (limit < initial, 'static_limit', '>= static_initial')):
+        if bad.any():
+            index = int(np.flatnonzero(bad)[0])
+            value = float((initial if name == 'static_initial' else limit)[index])
+            raise InputError(name, value, allowed, f'look at index {index} of the array')
