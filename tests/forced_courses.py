@@ -18,7 +18,8 @@ def random_courses(rng: random.Random, axis: Axis) -> tuple[Course, Course]:
     omega = math.sqrt(axis.drive_stiffness / axis.mass)
     frequencies = [rng.choice((omega / (2.0 * math.pi), rng.uniform(0.01, 2.0), 10 ** rng.uniform(-1, 2)))
                    for _ in range(3)]
-    drive = rng.choice((constant(speed), constant(0.0), ramp(0.0, speed, 2.0), steps('drive', [0.0, 1.0], [speed, -speed]),
+    drive = rng.choice((constant(speed), constant(0.0), ramp(0.0, speed, 2.0),
+                        steps('drive', [0.0, 1.0], [speed, -speed]),
                         table('drive', [0.0, 0.5, 1.5], [0.0, speed, -speed], 2.0)))
     force = rng.choice((constant(0.0), ramp(0.0, axis.normal_force * 0.1, 1.0),
                         steps('force', [0.0, 0.7, 0.9], [0.0, rng.uniform(-0.5, 0.5) * axis.normal_force, 0.0])))

@@ -11,7 +11,7 @@ from stickslip_sim.axis import CompliantContact
 from stickslip_sim.courses import Course, constant, steps
 from stickslip_sim.grazing import FREQUENCIES, PHASES, grazing_drive
 from stickslip_sim.words import EventKind, Instant, Mode
-from tests.axes import COMPLIANT, RIGID, instant, make, of_kind, paper_axis, random_axis, run
+from tests.axes import COMPLIANT, RIGID, instant, make, paper_axis, random_axis, run
 from tests.conftest import Program
 from tests.forced_courses import random_courses, with_waves
 

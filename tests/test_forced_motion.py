@@ -1,4 +1,4 @@
-"""Runs under sines, piece by piece against an integrator: the motion, every guard on the way, and the event at its end."""
+"""Runs under sines, piece by piece against an integrator: the motion, every guard on the way, the event at its end."""
 
 import math
 import random
@@ -19,7 +19,8 @@ from tests.forced_courses import random_courses, with_waves
 class Piece:
     """The motion from one event to the next as the model states it."""
 
-    def __init__(self, axis: Axis, drive: Course, force: Course, event: Event, excess: float, deflection: float) -> None:
+    def __init__(self, axis: Axis, drive: Course, force: Course, event: Event, excess: float,
+                 deflection: float) -> None:
         self.axis, self.drive, self.force, self.event, self.excess = axis, drive, force, event, excess
         self.deflection = deflection
         self.compliant = axis.contact if isinstance(axis.contact, CompliantContact) else None
@@ -61,8 +62,8 @@ class Piece:
                   for course in (self.drive, self.force) for c in course.starts for k in range(4)]
         y, parts = [0.0, u0, s0], []
         for a, b in pairwise(sorted({start, end, *(t for t in breaks if start < t < end)})):
-            part = solve_ivp(rates, (a, np.nextafter(b, 0.0)), y, method='DOP853', rtol=1e-12, atol=1e-15, max_step=0.01,
-                             dense_output=True)
+            part = solve_ivp(rates, (a, np.nextafter(b, 0.0)), y, method='DOP853', rtol=1e-12, atol=1e-15,
+                             max_step=0.01, dense_output=True)
             y = part.y[:, -1]
             parts.append(part)
         return parts
@@ -97,7 +98,8 @@ def follow(axis: Axis, drive: Course, force: Course, duration: float) -> int:
         if event.kind in (EventKind.BREAKAWAY, EventKind.REVERSE):
             table_ = axis.friction.excess
             psi = float(np.interp(abs(event.velocity), table_.velocities, table_.fractions)) if table_ else 0.0
-            mu = float(np.interp(abs(event.velocity), axis.friction.kinetic.velocities, axis.friction.kinetic.coefficients))
+            kinetic = axis.friction.kinetic
+            mu = float(np.interp(abs(event.velocity), kinetic.velocities, kinetic.coefficients))
             excess = max(event.static_coefficient - mu, 0.0) / psi if psi > 0.0 else 0.0
         if event.mode is Mode.STICK:
             at_rest = axis.friction.kinetic.coefficients[0] * axis.normal_force * event.direction

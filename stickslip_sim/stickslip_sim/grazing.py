@@ -1,7 +1,7 @@
 """A slow sine on the drive whose force grazes the static limit: the hardest break-away to see (and not to invent).
 
-From rest, the drive swings by A/w (cos θ − cos(wt + θ)).  A force that reaches the stuck slider through the steady answer
-of its contact peaks at mean + amplitude, both proportional to A; so A follows from the overshoot in closed form.
+From rest, the drive swings by A/w (cos θ − cos(wt + θ)).  The force that reaches the contact of the stuck slider peaks
+at mean + amplitude of its steady answer, both proportional to A; so A follows from the overshoot in closed form.
 """
 
 import math
@@ -37,4 +37,5 @@ def _force_peak(axis: Axis, w: float, phase: float) -> float:
         return (axis.drive_stiffness * math.cos(phase) + abs(pull)) / w
     contact = complex(axis.contact.stiffness, w * axis.contact.damping)
     share = axis.contact.stiffness / (axis.drive_stiffness + axis.contact.stiffness)
-    return (axis.drive_stiffness * math.cos(phase) * share + abs(pull * contact / (pull + contact - axis.mass * w * w))) / w
+    swing = abs(pull * contact / (pull + contact - axis.mass * w * w))
+    return (axis.drive_stiffness * math.cos(phase) * share + swing) / w

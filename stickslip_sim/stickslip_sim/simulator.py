@@ -149,7 +149,7 @@ def _waves(drive: Course, force: Course) -> Any:
     of_drive = [(wave.frequency, wave.phase, wave.amplitude, 0.0) for wave in drive.waves]
     of_force = [(wave.frequency, wave.phase, 0.0, wave.amplitude) for wave in force.waves]
     return _numbers([number for frequency, phase, v, f in of_drive + of_force
-                     if v != 0.0 or f != 0.0 for number in (frequency, 0.5 * phase / math.pi, v, f)])
+                     if v != 0.0 or f != 0.0 for number in (frequency, math.fmod(0.5 * phase / math.pi, 1.0), v, f)])
 
 
 def _numbers(values: Any) -> Any:

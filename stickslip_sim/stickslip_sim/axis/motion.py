@@ -9,8 +9,8 @@ Every mode is m y″ + (h + …) y′ + (c + …) y = polynomial of the time, y 
 | slip             | h + N b        | c             | c w₀ + h v + F_e − N (mu − b ẋ₀)      |
 | coasting         | y′ constant    |               |                                       |
 
-with w = s − x, and b the slope of the friction branch on the present piece of the table.  Sines in v and F_e add their
-own answer, see `waves`.
+with w = s − x, and b the slope of the friction branch on the present piece of the table.  Sines in v and F_e add
+their own answer, see `waves`.
 """
 
 from ..compiled import compiled
@@ -18,10 +18,10 @@ from ..friction.static import static_coefficient
 from ..linear.oscillator import integrals, oscillator
 from ..words import Mode
 from .layout import (
-    ACCELERATION, BASE_V, BRANCHES, COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, DEFLECTION, DIRECTION, DRIVE,
-    END_SLOPE, EXCESS, F, FAST, FRACTION, F_RATE, GAMMA, JERK, KNOTS, KNOT_SIZE, MASS, MODE, NORMAL, NU, OMEGA2, PIECE,
-    POSITION, REST, SECOND, SLOW, SNAP, SPRING, STATIC_EXPONENT, STATIC_INITIAL, STATIC_LAW, STATIC_LIMIT, STATIC_TAU,
-    STIFFNESS, TABLE, V, VELOCITY, V_RATE, WAVES,
+    ACCELERATION, BASE_V, BRANCHES, COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, DEFLECTION, DIRECTION,
+    DRIVE, END_SLOPE, EXCESS, F, FAST, FRACTION, F_RATE, GAMMA, JERK, KNOTS, KNOT_SIZE, MASS, MODE, NORMAL, NU, OMEGA2,
+    PIECE, POSITION, REST, SECOND, SLOW, SNAP, SPRING, STATIC_EXPONENT, STATIC_INITIAL, STATIC_LAW, STATIC_LIMIT,
+    STATIC_TAU, STIFFNESS, TABLE, V, VELOCITY, V_RATE, WAVES,
 )
 from .waves import begin_waves, move_waves, wave_drive_travel, wave_travel
 

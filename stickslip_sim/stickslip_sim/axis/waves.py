@@ -5,8 +5,8 @@ BASE_V and BASE_F are what is left of them without the waves.  With α = h A_v +
 
     c ∫ v dt + h v + F_e,   whose rate is   c A_v sin φ + α w cos φ = Im[(c A_v + i w α) e^{iφ}];
 
-that complex amplitude at the anchor is the wave's pull, N/s.  Phases are taken from the absolute time, so that they do not
-depend on how a run is split.
+that complex amplitude at the anchor is the wave's pull, N/s.  Phases are taken from the absolute time, so that they do
+not depend on how a run is split.
 """
 
 import math

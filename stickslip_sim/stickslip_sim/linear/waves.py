@@ -4,8 +4,8 @@ For a forcing Im[B e^{iwt}] of the velocity u = y′ from rest on, u = Im[B I], 
 
     I(t) = ∫₀ᵗ g(t − s) e^{iws} ds,    K = ∫ I,    I′ = i w I + g,    I″ = g′ + i w I′,
 
-g the impulse response (see `oscillator`).  I is the divided difference of exp(t ·) at the eigenvalues and i w (Opitz; de
-Boor, Divided Differences, 2005), and so is its recursion, with λ₂ the eigenvalue farther from i w:
+g the impulse response (see `oscillator`).  I is the divided difference of exp(t ·) at the eigenvalues and i w (de Boor,
+Divided Differences, 2005); its recursion is, with λ₂ the eigenvalue farther from i w,
 
     I = (φ − g)/(i w − λ₂),    φ = (e^{iwt} − e^{λ₁t})/(i w − λ₁) = e^{λ₁t} expm1((i w − λ₁) t)/(i w − λ₁).
 

@@ -1,27 +1,27 @@
 """The first event of any mode under sines.
 
-Every guard says that a signal f (see `signals`) stays between a floor and a top: ∓N mu_s(t⁻) in stick, 0 and the band while
-coasting, 0 and nothing in a slip.  The search marches in safe steps, and no root can be missed:
+Every guard says that a signal f (see `signals`) stays between a floor and a top: ∓N mu_s(t⁻) in stick, 0 and the band
+while coasting, 0 and nothing in a slip.  The search marches in safe steps, and no root can be missed:
 
-1. At t the signal gives f, f′ and a bound M on |f″| over its reach.  The gap to a limit, G = top − f or f − floor, is at least
-   G + G′ d − (M + N |mu_s″|) d²/2 for every d within reach, so that a step to the positive root of that never passes a
-   root of G.  With ε the size of rounding, the march is that of G + 2ε: it never comes to rest at a gap that only touches
-   0, and passes over nothing deeper than 2ε.
+1. At t the signal gives f, f′ and a bound M on |f″| over its reach.  The gap to a limit, G = top − f or f − floor, is
+   at least G + G′ d − (M + N |mu_s″|) d²/2 for every d within reach, so that a step to the positive root of that never
+   passes a root of G.  With ε the size of rounding, the march is that of G + 2ε: it does not come to rest at a gap that
+   only touches 0, and passes over nothing deeper than 2ε.
 2. An event is declared only where the gap is below −ε in fact, or where the same bound with the other sign proves that
    it falls through −2ε: a wave whose peak stays below its limit, or on it, holds.  Either gives a bracket with a sign
    change, in which Newton's step finds the root to rounding.
 3. In a slip the speed is monotone up to the first root of the acceleration, so its value at the end of each step tells
    whether a knot, or standstill, was passed.
-4. As long as mean + amplitudes + what is left of the free motion is below the limit, nothing can happen: the search leaps to
-   the end of that, which under a constant mean is never.
+4. As long as mean + amplitudes + what is left of the free motion is below the limit, nothing can happen: the search
+   leaps to the end of that, which under a constant mean is never.
 
-The steps depend on the anchor alone, and the search rests at the last of them (PROGRESS): splits of a run change no bit.
+The steps depend on the anchor alone, and the search rests at the last one (PROGRESS): splits of a run change no bit.
 """
 
 import math
 
 from ...axis.layout import (
-    COMPLIANT, DIRECTION, ITERATIONS, KNOTS, MASS, MODE, NEXT, NEXT_KIND, NORMAL, PIECE, PROGRESS, REST, SEARCHED,
+    ITERATIONS, KNOTS, MASS, MODE, NEXT, NEXT_KIND, NORMAL, PIECE, PROGRESS, REST, SEARCHED,
     STATIC_LAW, VELOCITY,
 )
 from ...axis.motion import ACCELERATING, COASTING, STICK, friction_line, knot_speed, oscillator_of, static_limit
@@ -63,7 +63,8 @@ def forced_event(p, s, due):
             return
         top, top_rate, bow, floor, floor_rate = _limits(p, s, t)
         if not slips:
-            leap = _leap(p, s, signal, t, top, floor, size, decay, max(noise, rounding), max(due, 2.0 * s[SEARCHED]) - t)
+            horizon = max(due, 2.0 * s[SEARCHED]) - t
+            leap = _leap(p, s, signal, t, top, floor, size, decay, max(noise, rounding), horizon)
             if leap == math.inf:
                 return
             if leap > 0.0:
@@ -84,10 +85,8 @@ def forced_event(p, s, due):
         high = _root_at_last(p, s, value, fall, swing, noise, t)
         if high <= t + reach and high < math.inf:
             low = before if value <= 0.0 else t
-            if value <= 0.0 and value_before <= 0.0:
-                root = before
-            else:
-                root = _root(p, s, osc, signal, side, low, high)
+            hovered = value <= 0.0 and value_before <= 0.0
+            root = before if hovered else _root(p, s, osc, signal, side, low, high)
             _conclude(p, s, osc, signal, slips, side, gap, low, root)
             return
         s[PROGRESS] = t
@@ -182,7 +181,7 @@ def _envelope_root(p, s, t, room, force, rate, bend, size, decay, horizon):
 
 @compiled
 def _nearer(up, up_rate, down, down_rate, swing, noise):
-    """Return the side (1: top) whose limit may be reached first, its gap, the gap's rate, and a safe step for gap + 2ε."""
+    """Return the side (1: top) whose limit may come first, its gap, the gap's rate, and a safe step for gap + 2ε."""
     below = safe_step(max(down + 2.0 * noise, 0.5 * noise), down_rate, swing)
     if up == math.inf:
         return -1.0, down, down_rate, below

@@ -1,25 +1,25 @@
 """What the guards watch under sines: the force on a still slider, the contact force, or the acceleration of a slip.
 
-Each is a polynomial, a free motion and the answer to the waves: a *signal* f with f(t), f′(t), and a bound on |f″| over the
-next stretch, its reach.
+Each is a polynomial, a free motion and the answer to the waves: a *signal* f with f(t), f′(t), and a bound on |f″| over
+the next stretch, its reach.
 
 * The force on a still or coasting slider has no free motion: |f″| is at most the sum of its amplitudes times w².
 * Otherwise z = f″ obeys the oscillator's equation with the waves as forcing.  A wave off resonance leaves its steady
   amplitude, and the free motion that is left has the bound of `oscillator`; a wave near resonance is bounded by
-  ∫|z forcing| |g|, which grows with the time and needs no division by what vanishes there.
+  ∫|forcing of z| |g|, which grows with the time and needs no division by what vanishes there.
 
 A signal is a tuple (sense, f₀, rate, bend, y₀, free u, mean, S, free, free rate, z, z rate, M, resonant, w):
-f₀ + rate t + bend t²/2 its polynomial, y₀ and free u the free motion of a contact (but for the waves); mean and S the mean
-and the amplitude of the steady answer, `free` how it begins off that; z and z rate the free part of f″, M the bound of its
-steady part, `resonant` the forcing of the rest; w the highest angular frequency.
+f₀ + rate t + bend t²/2 its polynomial, y₀ and free u the free motion of a contact (but for the waves); mean and S the
+mean and the amplitude of the steady answer, `free` how it begins off that; z and z rate the free part of f″, M the
+bound of its steady part, `resonant` the forcing of the rest; w the highest angular frequency.
 """
 
 import math
 
 from ...axis.layout import (
-    ACCELERATION, BASE_V, COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, DEFLECTION, DIRECTION, F_RATE, JERK, MASS,
-    MODE, RESIDUAL, SNAP, STATE_SIZE, STIFFNESS, VELOCITY, V_RATE, WAVES, WAVE_FREQUENCY, WAVE_PULL_IM, WAVE_PULL_RE,
-    WAVE_SIZE,
+    ACCELERATION, BASE_V, COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, DEFLECTION, DIRECTION, F_RATE, JERK,
+    MASS, MODE, RESIDUAL, SNAP, STATE_SIZE, STIFFNESS, VELOCITY, V_RATE, WAVES, WAVE_FREQUENCY, WAVE_PULL_IM,
+    WAVE_PULL_RE, WAVE_SIZE,
 )
 from ...axis.motion import ACCELERATING, COASTING, STICK
 from ...axis.transitions import applied_force
@@ -64,8 +64,8 @@ def _force_signal(p, s):
         fastest = max(fastest, w)
     rate = sense * (p[STIFFNESS] * (s[BASE_V] - s[VELOCITY]) + p[DAMPING] * s[V_RATE] + s[F_RATE])
     bend = sense * p[STIFFNESS] * s[V_RATE]
-    return (sense, start, rate, bend, 0.0, 0.0, start + sense * mean, swing, 0.0, 0.0, 0.0, 0.0, abs(bend) + curvature, 0.0,
-            fastest)
+    return (sense, start, rate, bend, 0.0, 0.0, start + sense * mean, swing, 0.0, 0.0, 0.0, 0.0, abs(bend) + curvature,
+            0.0, fastest)
 
 
 @compiled
@@ -76,7 +76,8 @@ def _contact_signal(p, s, osc):
     y2 = s[SNAP] / omega2
     y1 = u + (s[JERK] - 2.0 * gamma * y2) / omega2
     y0 = (a + 2.0 * gamma * (u - y1) - y2) / omega2
-    start, rate, bend = stiffness * (s[DEFLECTION] + y0) + damping * y1, stiffness * y1 + damping * y2, stiffness * y2
+    start = stiffness * (s[DEFLECTION] + y0) + damping * y1
+    rate, bend = stiffness * y1 + damping * y2, stiffness * y2
     a1, a2, _ = _acceleration_rates(p, s, osc)
     swing, free, free_rate, curvature, z, z_rate, resonant, fastest, lag = _steady(p, s, osc, damping, stiffness)
     mean = start + stiffness * lag / omega2
@@ -84,8 +85,8 @@ def _contact_signal(p, s, osc):
     free_rate += stiffness * u + damping * a - rate
     z += stiffness * a + damping * a1 - bend
     z_rate += stiffness * a1 + damping * a2
-    return (1.0, start, rate, bend, y0, u - y1, mean, swing, free, free_rate, z, z_rate, abs(bend) + curvature, resonant,
-            fastest)
+    return (1.0, start, rate, bend, y0, u - y1, mean, swing, free, free_rate, z, z_rate, abs(bend) + curvature,
+            resonant, fastest)
 
 
 @compiled
@@ -115,8 +116,8 @@ def _acceleration_rates(p, s, osc):
 def _steady(p, s, osc, damping, stiffness):
     """Return the sums over the waves of the steady answer X = B W/(ω² − w² + 2iγw) and its rates.
 
-    W = damping − i stiffness/w for a contact; the acceleration of a slip (stiffness −1, no damping) has W = i w.  They are
-    |X|, −Im X, −(Im X)′; off resonance w²|X|, −(Im X)″, −(Im X)‴, else the forcing w²|B W|; the highest w; Re B/w.
+    W = damping − i stiffness/w for a contact; the acceleration of a slip (stiffness −1, no damping) has W = i w.  They
+    are |X|, −Im X, −(Im X)′; off resonance w²|X|, −(Im X)″, −(Im X)‴, else the forcing w²|B W|; the highest w; Re B/w.
     """
     gamma, omega2 = osc[0], osc[1]
     swing, free, free_rate, curvature, z, z_rate = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
@@ -150,7 +151,7 @@ def _steady(p, s, osc, damping, stiffness):
 
 @compiled
 def read_signal(p, s, osc, signal, t):
-    """Return (f, f′, bound on |f″|, its reach, size and decay of the free motion, size of rounding, speed gained) at t."""
+    """Return at t (f, f′, bound on |f″|, its reach, size and decay of the free motion, rounding, speed gained)."""
     if is_still(p, s):
         return _read_force(p, s, signal, t)
     if s[MODE] == STICK:
@@ -209,7 +210,7 @@ def _free_motion(osc, z, rate, g, slope):
 @compiled
 def _curvature(osc, signal, t, g, slope):
     """Return (reach, bound): |f″| from t to t + reach stays below the bound."""
-    gamma, _, nu, slow, fast = osc
+    gamma, _, nu, slow, _ = osc
     z, rate = _free_motion(osc, signal[10], signal[11], g, slope)
     growth = max(-gamma if nu > 0.0 else slow, 0.0)
     reach = max(t, 2.0 / signal[14])
