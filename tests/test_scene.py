@@ -184,10 +184,11 @@ def test_courses() -> None:
 
 
 def test_sines_alone_and_on_top_of_any_course() -> None:
-    scene = scene_from_values({'drive.course': 'sine', 'drive.velocity': 0.5, 'drive.amplitude': 2.0,
-                               'drive.frequency': 3.0, 'drive.phase': 0.25, 'drive.amplitudes': [1.0], 'drive.frequencies': [5.0],
-                               'force.course': 'ramp', 'force.rate': 4.0, 'force.amplitudes': [10.0, -7.0],
-                               'force.frequencies': [1.0, 20.0], 'force.phases': [0.0, 1.0]})
+    scene = scene_from_values({
+        'drive.course': 'sine', 'drive.velocity': 0.5, 'drive.amplitude': 2.0, 'drive.frequency': 3.0,
+        'drive.phase': 0.25, 'drive.amplitudes': [1.0], 'drive.frequencies': [5.0],
+        'force.course': 'ramp', 'force.rate': 4.0,
+        'force.amplitudes': [10.0, -7.0], 'force.frequencies': [1.0, 20.0], 'force.phases': [0.0, 1.0]})
     for t in (0.0, 0.1, 0.77):
         assert scene.drive.value_at(t) == pytest.approx(
             0.5 + 2.0 * math.sin(6.0 * math.pi * t + 0.25) + math.sin(10.0 * math.pi * t))

@@ -37,7 +37,7 @@ from .static_guards import GAVE_UP, concave_root, is_concave, law, steep_start
 _EPSILON = 2.220446049250313e-16
 _STEPS = 10_000_000
 _ITERATIONS = 200
-_WORTH_A_LEAP = 0.01   # room between envelope and limit, as a part of what lies between the limits
+_WORTH_A_LEAP = 1e-6   # room between envelope and limit, as a part of what lies between the limits
 
 
 @compiled
@@ -62,6 +62,9 @@ def forced_event(p, s, due):
             _set_event(s, _knot_root(p, s, osc, signal, gap, before, t), _passed_kind(s))
             return
         top, top_rate, bow, floor, floor_rate = _limits(p, s, t)
+        if top == floor and top_rate == 0.0 and bow == 0.0 and s[MODE] == STICK:   # nothing holds
+            _set_event(s, t, BREAKAWAY)
+            return
         if not slips:
             horizon = max(due, 2.0 * s[SEARCHED]) - t
             leap = _leap(p, s, signal, t, top, floor, size, decay, max(noise, rounding), horizon)
