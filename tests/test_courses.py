@@ -5,7 +5,7 @@ import random
 
 import pytest
 
-from stickslip_sim.courses import constant, ramp, steps, table
+from stickslip_sim.courses import Course, Wave, constant, ramp, steps, table
 from stickslip_sim.errors import InputError
 
 
@@ -37,3 +37,13 @@ def test_bad_knots_are_refused(times: list[float], values: list[float], period: 
     for make in (steps, table):
         with pytest.raises(InputError, match=word):
             make('drive', times, values, period)
+
+
+@pytest.mark.parametrize(('wave', 'word'), [
+    (Wave(math.nan, 1.0, 0.0), 'finite'), (Wave(1.0, 0.0, 0.0), 'Hz'), (Wave(1.0, 1e7, 0.0), 'Hz'),
+    (Wave(1.0, 1.0, math.inf), 'finite')])
+def test_bad_waves_are_refused(wave: Wave, word: str) -> None:
+    with pytest.raises(InputError, match=word):
+        Course((0.0,), (0.0,), (0.0,), waves=(wave,))
+    with pytest.raises(InputError, match='at most 100'):
+        Course((0.0,), (0.0,), (0.0,), waves=(Wave(1.0, 1.0, 0.0),) * 101)

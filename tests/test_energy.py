@@ -8,7 +8,7 @@ from itertools import pairwise
 import pytest
 
 from stickslip_sim.axis import Axis, CompliantContact, Friction, InitialState
-from stickslip_sim.courses import Course, constant, ramp, steps
+from stickslip_sim.courses import Course, Wave, constant, ramp, steps
 from stickslip_sim.energy import EnergyBalance
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
 from stickslip_sim.scene import load_scene
@@ -235,3 +235,15 @@ simulator = Simulator(paper_axis(COMPLIANT), InitialState(), constant(0.002), co
 print(simulator.advance(Instant(4.0, 0.0)), simulator.sample(), simulator.energy)
 '''
     assert in_a_process(program, compiled=True) == in_a_process(program, compiled=False)
+
+
+@pytest.mark.parametrize('contact', [RIGID, COMPLIANT, UNDAMPED])
+@pytest.mark.parametrize('base', [0.002, 0.0])
+def test_the_balance_closes_under_sines(contact: CompliantContact, base: float) -> None:
+    drive = Course((0.0,), (base,), (0.0,), waves=(Wave(0.5 * base + 1e-4, 3.0, 0.3),))
+    force = Course((0.0,), (0.0,), (0.0,), waves=(Wave(60.0, 20.0, 0.0),))
+    simulator = accounted(paper_axis(contact), drive, force)
+    simulator.advance(Instant(60.0, 0.0))
+    energy = energy_of(simulator)
+    assert energy.throughput > 1e-3
+    assert energy.relative_residual <= 1e-12

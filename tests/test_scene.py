@@ -181,3 +181,20 @@ def test_courses() -> None:
     steps = scene_from_values({'force.course': 'steps', 'force.times': [0.0, 1.0], 'force.forces': [1, 2],
                                'force.period': 2})
     assert [steps.force.value_at(time) for time in (0.5, 1.5, 2.5)] == [1.0, 2.0, 1.0]
+
+
+def test_sines_alone_and_on_top_of_any_course() -> None:
+    scene = scene_from_values({
+        'drive.course': 'sine', 'drive.velocity': 0.5, 'drive.amplitude': 2.0, 'drive.frequency': 3.0,
+        'drive.phase': 0.25, 'drive.amplitudes': [1.0], 'drive.frequencies': [5.0],
+        'force.course': 'ramp', 'force.rate': 4.0,
+        'force.amplitudes': [10.0, -7.0], 'force.frequencies': [1.0, 20.0], 'force.phases': [0.0, 1.0]})
+    for t in (0.0, 0.1, 0.77):
+        assert scene.drive.value_at(t) == pytest.approx(
+            0.5 + 2.0 * math.sin(6.0 * math.pi * t + 0.25) + math.sin(10.0 * math.pi * t))
+        assert scene.force.value_at(t) == pytest.approx(
+            4.0 * t + 10.0 * math.sin(2.0 * math.pi * t) - 7.0 * math.sin(40.0 * math.pi * t + 1.0))
+    again = scene_from_values(scene.values)
+    assert (again.drive, again.force, again.hash) == (scene.drive, scene.force, scene.hash)
+    plain = scene_from_values({**scene.values, 'drive.frequency': 2.0})
+    assert plain.hash != scene.hash

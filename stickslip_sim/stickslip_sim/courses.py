@@ -1,4 +1,4 @@
-"""Input courses v(t) and F(t): piecewise linear, with jumps, held after the last piece or repeated with a period."""
+"""Input courses v(t) and F(t): piecewise linear, with jumps, held after the last piece or repeated, plus sines."""
 
 import math
 from bisect import bisect_right
@@ -8,6 +8,9 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from .errors import InputError
+
+MAX_WAVES = 100
+FREQUENCIES = 1e-9, 1e6   # Hz
 
 
 class Piece(NamedTuple):
@@ -35,7 +38,8 @@ class Wave(NamedTuple):
 class Course:
     """A course as pieces: `starts` (s, the first is 0), `values` there, `rates` (per s) from there; and `waves` on top.
 
-    With a finite `period` the pieces start anew every `period` seconds; the waves go on.
+    With a finite `period` the pieces start anew every `period` seconds; the waves go on.  Raises InputError on waves
+    out of range.
     """
 
     starts: tuple[float, ...]
@@ -43,6 +47,15 @@ class Course:
     rates: tuple[float, ...]
     period: float = math.inf
     waves: tuple[Wave, ...] = ()
+
+    def __post_init__(self) -> None:
+        if len(self.waves) > MAX_WAVES:
+            raise InputError('waves', len(self.waves), f'at most {MAX_WAVES} in a course', 'leave the weakest out')
+        for wave in self.waves:
+            if not all(map(math.isfinite, wave)):
+                raise InputError('waves', wave, 'of finite amplitude, frequency and phase', 'give numbers')
+            if not FREQUENCIES[0] <= wave.frequency <= FREQUENCIES[1]:
+                raise InputError('waves', wave, 'of {:g} to {:g} Hz'.format(*FREQUENCIES), 'use pieces for a constant')
 
     def piece_at(self, time: float) -> Piece:
         """Return the piece that holds from `time` >= 0 s on (at a border: the one that begins)."""
@@ -89,6 +102,22 @@ def table(name: str, times: Sequence[float], values: Sequence[float], period: fl
     rates = [(b - a) / (t1 - t0) for (t0, t1), (a, b) in zip(pairwise(times), pairwise(values), strict=True)]
     rates.append((values[0] - values[-1]) / (period - times[-1]) if period < math.inf else 0.0)
     return Course(tuple(times), tuple(values), tuple(rates), period)
+
+
+def waves(name: str, amplitudes: Sequence[float], frequencies: Sequence[float],
+          phases: Sequence[float] | None = None) -> tuple[Wave, ...]:
+    """Return amplitudes[i] sin(2π frequencies[i] t + phases[i]), phases 0 when left out.
+
+    Raises InputError on lengths that differ and on too many.
+    """
+    phases = [0.0] * len(amplitudes) if phases is None else phases
+    for what, given in (('frequencies', frequencies), ('phases', phases)):
+        if len(given) != len(amplitudes):
+            raise InputError(f'{name}.{what}', list(given), f'as many as there are amplitudes ({len(amplitudes)})',
+                             'give one for every wave')
+    if len(amplitudes) > MAX_WAVES:
+        raise InputError(f'{name}.amplitudes', len(amplitudes), f'at most {MAX_WAVES} waves', 'leave the weakest out')
+    return tuple(map(Wave, amplitudes, frequencies, phases))
 
 
 def _check_times(name: str, times: Sequence[float], values: Sequence[float], period: float) -> None:

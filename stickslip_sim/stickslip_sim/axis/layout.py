@@ -33,12 +33,20 @@ AT, AT_G, AT_RATE, AT_FIRST, AT_SECOND = range(30, 35)
 LAST = 35                               # how long each mode lasted last time: a first guess for the next time
 # the same four at the instant GRID after an anchor, for the oscillator with these two: what ticks of one length share
 GRID, GRID_GAMMA, GRID_OMEGA2, GRID_G, GRID_RATE, GRID_FIRST, GRID_SECOND = range(39, 46)
+# waves: how many, the inputs at the anchor without them, and up to where a search for an event has come
+WAVES, BASE_V, BASE_F, PROGRESS = range(46, 50)
 # the account of energy, J, up to the anchor: whether it is kept (the rest is 0 without), what was stored at the start,
 # then a sum for each of the works, the exchanges and the throughput of `energy.EnergyBalance`, and what rounding lost
-ACCOUNTING, STORED_AT_START, SUMS = range(46, 49)
+ACCOUNTING, STORED_AT_START, SUMS = range(50, 53)
 CONTACT_EXCHANGE, PARAMETER_EXCHANGE, THROUGHPUT = range(5, 8)   # behind the five works
 SUM_COUNT = 8
 STATE_SIZE = SUMS + 2 * SUM_COUNT
+
+# then a record for each wave, the first numbers as they are given: frequency Hz, phase turns, amplitudes m/s and N; at
+# the anchor its phase in turns, sine and cosine of that, and its pull in N/s (see `waves`)
+WAVE_FREQUENCY, WAVE_PHASE, WAVE_V, WAVE_F, WAVE_TURNS, WAVE_SINE, WAVE_COSINE, WAVE_PULL_RE, WAVE_PULL_IM = range(9)
+WAVE_INPUTS = 4
+WAVE_SIZE = 9
 
 # a row of the event table; words.Event has the same order
 (EVENT_SECOND, EVENT_FRACTION, EVENT_KIND, EVENT_MODE, EVENT_DIRECTION, EVENT_POSITION, EVENT_VELOCITY, EVENT_DRIVE,

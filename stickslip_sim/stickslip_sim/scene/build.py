@@ -3,10 +3,11 @@
 import hashlib
 import math
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any
 
 from ..axis import Axis, CompliantContact, Friction, InitialState, RigidContact, check_start
-from ..courses import Course, constant, ramp, steps, table
+from ..courses import Course, Wave, constant, ramp, steps, table, waves
 from ..errors import InputError
 from ..friction import (
     ExcessTable,
@@ -103,8 +104,13 @@ def _excess(values: Mapping[str, Any], kinetic: KineticTable) -> ExcessTable | N
 
 def _course(values: Mapping[str, Any], section: str, value: str, rate: str, knots: str) -> Course:
     given = _section(values, section)
+    course = _pieces(given, section, value, rate, knots)
+    return replace(course, waves=_waves(given, section))
+
+
+def _pieces(given: Mapping[str, Any], section: str, value: str, rate: str, knots: str) -> Course:
     form = given['course']
-    if form == 'constant':
+    if form in ('constant', 'sine'):
         return constant(given[value])
     if form == 'ramp':
         course = ramp(given[value], given[rate], given['duration'])
@@ -117,6 +123,17 @@ def _course(values: Mapping[str, Any], section: str, value: str, rate: str, knot
             raise InputError(name, given[name.rpartition('.')[2]], 'a course of finite values and rates',
                              'make it smaller or the times longer')
     return course
+
+
+def _waves(given: Mapping[str, Any], section: str) -> tuple[Wave, ...]:
+    sine = (Wave(given['amplitude'], given['frequency'], given['phase']),) if given['course'] == 'sine' else ()
+    if 'amplitudes' in given and 'frequencies' in given:
+        return sine + waves(section, given['amplitudes'], given['frequencies'], given.get('phases'))
+    for name in ('amplitudes', 'frequencies', 'phases'):
+        if name in given:
+            raise InputError(f'{section}.{name}', given[name], 'given with both amplitudes and frequencies',
+                             'add the other, or leave all of them out')
+    return sine
 
 
 def _summary(values: Mapping[str, Any]) -> str:

@@ -6,6 +6,7 @@ rigid contact, a drive that stands still, no force.  (A node without any file ru
 
 import math
 
+from ..courses import FREQUENCIES, MAX_WAVES
 from ..friction.shapes import MAX_EXPONENT, MIN_EXPONENT
 from .parameter import Parameter, When
 
@@ -14,7 +15,7 @@ _MODES = ('realtime',)
 _LAWS = ('constant', 'exponential', 'kato', 'hyperbolic', 'logarithmic')
 _KINETIC = ('table', 'stribeck', 'exponential', 'hyperbolic')
 _EXCESS = ('table', 'cosine', 'power')
-_COURSES = ('constant', 'ramp', 'steps', 'table')
+_COURSES = ('constant', 'ramp', 'steps', 'sine', 'table')
 
 _GROWS = When('friction.static.law', _LAWS[1:])
 _COMPLIANT = When('contact.model', ('compliant',))
@@ -34,9 +35,9 @@ def _number(name: str, default: float | None, unit: str, description: str, *, lo
 
 
 def _numbers(name: str, default: tuple[float, ...] | None, unit: str, description: str, *, low: float = -math.inf,
-             live: bool = False, when: When | None = None, required: bool = True) -> Parameter:
+             high: float = math.inf, live: bool = False, when: When | None = None, required: bool = True) -> Parameter:
     """Return a list of finite doubles."""
-    return Parameter(name, 'double_array', default, unit, description, low, math.inf, low == -math.inf, True,
+    return Parameter(name, 'double_array', default, unit, description, low, high, low == -math.inf, high == math.inf,
                      (), live, when, required and default is None)
 
 
@@ -48,12 +49,14 @@ def _course(section: str, value: str, rate: str, values: str, unit: str, what: s
     """Return the parameters of an input course of `what`, which is a `unit`."""
     ramp = When(f'{section}.course', ('ramp',))
     knots = When(f'{section}.course', ('steps', 'table'))
+    sine = When(f'{section}.course', ('sine',))
+    slowest, fastest = FREQUENCIES
     return (
         _choice(f'{section}.course', 'constant',
                 f'how the {what} goes on offline, and in the node until a command arrives: constant; ramp (to a'
-                ' constant); steps (jumps); table (linear between knots)', _COURSES),
-        _number(f'{section}.{value}', 0.0, unit, f'{what}; of a ramp the one at its start',
-                when=When(f'{section}.course', ('constant', 'ramp'))),
+                ' constant); steps (jumps); sine; table (linear between knots); sines may come on top', _COURSES),
+        _number(f'{section}.{value}', 0.0, unit, f'{what}; of a ramp the one at its start, of a sine its mean',
+                when=When(f'{section}.course', ('constant', 'ramp', 'sine'))),
         _number(f'{section}.{rate}', None, f'{unit}/s' if unit == 'N' else 'm/s²', f'change of the {what}, of a ramp',
                 when=ramp),
         _number(f'{section}.duration', math.inf, 's', 'of a ramp; then its last value holds', low=0.0, above=True,
@@ -63,6 +66,14 @@ def _course(section: str, value: str, rate: str, values: str, unit: str, what: s
         _numbers(f'{section}.{values}', None, unit, f'{what} at these times; the last one holds', when=knots),
         _number(f'{section}.period', math.inf, 's', 'after which steps or a table begin again (.inf: never); a table is'
                 ' linear from its last knot back to the first', low=1e-6, infinite=True, when=knots),
+        _number(f'{section}.amplitude', None, unit, 'of a sine: amplitude sin(2π frequency t + phase), t since the'
+                ' start of the run', when=sine),
+        _number(f'{section}.frequency', None, 'Hz', 'of a sine', low=slowest, high=fastest, when=sine),
+        _number(f'{section}.phase', 0.0, 'rad', 'of a sine', when=sine),
+        _numbers(f'{section}.amplitudes', None, unit, f'of sines on top of any course, at most {MAX_WAVES}',
+                 required=False),
+        _numbers(f'{section}.frequencies', None, 'Hz', 'of these sines', low=slowest, high=fastest, required=False),
+        _numbers(f'{section}.phases', None, 'rad', 'of these sines; left out: 0', required=False),
     )
 
 

@@ -18,8 +18,8 @@ from .engine import advance, start
 # a row of figures; `batch.BatchFigures` names the same
 (EVENTS, CYCLES, COMPLETE, FINAL_MODE, FIRST_BREAK_AWAY, STICK_SHARE, PERIOD_BEFORE, DIRECTION, REST_TIME, SLIP_TIME,
  STICK_TIME, PERIOD, SLIP_TRAVEL, JUMP, PEAK_SPEED, BREAK_AWAY_FORCE, STATIC_COEFFICIENT) = range(17)
-# behind it what is not told: the mode and since when; the slip that goes on or was the last, whether it goes on, whether
-# it ended at standstill, where it began and ended, and its figures so far
+# behind it what is not told: since when the mode holds; the slip that goes on or was the last, whether it goes on,
+# whether it ended at standstill, where it began and ended, and its figures so far
 (SINCE_SECOND, SINCE_FRACTION, SLIPS, IS_OVER, BEGIN_SECOND, BEGIN_FRACTION, BEGIN_POSITION, STOP_SECOND, STOP_FRACTION,
  STOP_POSITION, PEAK, FORCE, REST, STATIC, WAY) = range(17, 32)
 FIGURES = 17
@@ -72,8 +72,9 @@ def _book(row, e):
         row[PEAK] = max(row[PEAK], abs(e[EVENT_VELOCITY]))
         if begins or mode == STICK:
             row[SLIPS] = 0.0
-            row[IS_OVER] = 1.0 if kind == ARREST or kind == REVERSE else 0.0
-            row[STOP_SECOND], row[STOP_FRACTION], row[STOP_POSITION] = e[EVENT_SECOND], e[EVENT_FRACTION], e[EVENT_POSITION]
+            row[IS_OVER] = float(kind in (ARREST, REVERSE))
+            row[STOP_SECOND], row[STOP_FRACTION] = e[EVENT_SECOND], e[EVENT_FRACTION]
+            row[STOP_POSITION] = e[EVENT_POSITION]
     if begins:
         if row[IS_OVER] != 0.0:
             _end_cycle(row, e)

@@ -13,11 +13,13 @@ import math
 
 from ...axis.layout import (
     ACCELERATION, COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, DEFLECTION, DIRECTION, EXCESS, F, FAST,
-    F_RATE, GAMMA, MASS, MODE, NORMAL, NU, OMEGA2, PIECE, SLOW, SNAP, SPRING, STIFFNESS, V, VELOCITY, V_RATE,
+    F_RATE, GAMMA, MASS, MODE, NORMAL, NU, OMEGA2, PIECE, SLOW, SNAP, SPRING, STIFFNESS, V, VELOCITY, V_RATE, WAVES,
+    SECOND, FRACTION,
 )
 from ...axis.motion import (
     ACCELERATING, COASTING, STICK, drive_force, drive_travel, friction_force, friction_line, is_rigid_stick, travel,
 )
+from ...axis.waves import fastest_wave, inputs_at
 from ...compiled import compiled
 from ...linear.moments import over_rate, wave_moments, wave_square
 
@@ -44,10 +46,12 @@ def works(p, s, t):
     rate, growth = 0.0, 0.0
     if s[MODE] != COASTING and not is_rigid_stick(p, s):
         omega = math.sqrt(s[OMEGA2])
-        if omega * t > _RADIANS and s[NU] > _RINGING * omega:
+        if omega * t > _RADIANS and s[NU] > _RINGING * omega and s[WAVES] == 0.0:
             return _ringing(p, s, t)
         rate = max(abs(s[SLOW]), abs(s[FAST]), omega)
         growth = _GROWTH if s[GAMMA] > 0.0 else 0.0
+    if s[WAVES] != 0.0:
+        rate, growth = max(rate, fastest_wave(s)), 0.0
     return _panels(p, s, t, rate, growth)
 
 
@@ -56,7 +60,7 @@ def _panels(p, s, t, rate, growth):
     first, last = (0, 8) if rate * t > _FEW_RADIANS else (8, 12)
     length = _RADIANS / rate if rate * t > _RADIANS else t
     drive, external, friction, damper, contact = 0.0, 0.0, 0.0, 0.0, 0.0
-    if growth == 0.0:
+    if growth == 0.0 and s[WAVES] == 0.0:
         length = max(length, t / _MOST_PANELS)
     begin = 0.0
     while begin < t:
@@ -92,6 +96,8 @@ def _powers(p, s, t):
 
 @compiled
 def _inputs(s, t):
+    if s[WAVES] != 0.0:
+        return inputs_at(s, s[SECOND], s[FRACTION] + t, t)
     return s[V] + s[V_RATE] * t, s[F] + s[F_RATE] * t
 
 
