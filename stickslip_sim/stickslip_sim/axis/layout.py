@@ -28,7 +28,12 @@ GAMMA, OMEGA2, NU, SLOW, FAST, JERK, SNAP = range(18, 25)
 NEXT, NEXT_KIND, SEARCHED = range(25, 28)
 ITERATIONS = 28                         # of all searches for events so far
 ORIGIN = 29                             # m, where the run began: POSITION and DRIVE count from there
-STATE_SIZE = 30
+# for solvers that step: the inputs as they were given, from a time on; V, F and their rates are then those at the state
+INPUT_SECOND, INPUT_FRACTION, INPUT_V, INPUT_V_RATE, INPUT_F, INPUT_F_RATE, INPUT_WAVES = range(30, 37)
+# and the grid of fixed steps: its last point, in ticks within its second; a step and a second in ticks; time beyond it
+METHOD, GRID_SECOND, GRID_TICKS, STEP_TICKS, SECOND_TICKS, LEAD = range(37, 43)
+STATE_SIZE = 43
+WAVE_SIZE = 4                           # numbers for each wave, after the state
 
 # a row of the event table; words.Event has the same order
 (EVENT_SECOND, EVENT_FRACTION, EVENT_KIND, EVENT_MODE, EVENT_DIRECTION, EVENT_POSITION, EVENT_VELOCITY, EVENT_DRIVE,

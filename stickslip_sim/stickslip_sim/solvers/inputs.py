@@ -1,0 +1,68 @@
+"""The inputs of solvers that step: v(t) and F_e(t) at any time, from what `set_inputs` gave them.
+
+Waves stand after the state, four numbers each.  Their phase loses digits as frequency times seconds grows: it is good
+to 1e-16 of all turns so far.
+"""
+
+import math
+
+from ..axis.layout import (
+    F, FRACTION, F_RATE, INPUT_F, INPUT_FRACTION, INPUT_F_RATE, INPUT_SECOND, INPUT_V, INPUT_V_RATE, INPUT_WAVES,
+    SECOND, STATE_SIZE, V, V_RATE, WAVE_SIZE,
+)
+from ..compiled import compiled
+
+_TURN = 2.0 * math.pi
+
+
+@compiled
+def hold_inputs(s, second, fraction, v, v_rate, f, f_rate, waves):
+    """Let the inputs be v + v_rate t, f + f_rate t and the waves from a time on."""
+    s[INPUT_SECOND], s[INPUT_FRACTION] = second, fraction
+    s[INPUT_V], s[INPUT_V_RATE], s[INPUT_F], s[INPUT_F_RATE] = v, v_rate, f, f_rate
+    s[INPUT_WAVES] = float(len(waves))
+    for i in range(len(waves)):
+        s[STATE_SIZE + i] = waves[i]
+
+
+@compiled
+def same_inputs(s, v, v_rate, f, f_rate, waves):
+    """Whether the inputs hold already and do not change but for the same waves."""
+    if (s[INPUT_V] != v or s[INPUT_F] != f or s[INPUT_V_RATE] != 0.0 or s[INPUT_F_RATE] != 0.0 or v_rate != 0.0
+            or f_rate != 0.0 or s[INPUT_WAVES] != len(waves)):
+        return False
+    for i in range(len(waves)):
+        if s[STATE_SIZE + i] != waves[i]:
+            return False
+    return True
+
+
+@compiled
+def inputs_at(s, second, fraction):
+    """Return v and F_e at a time."""
+    t = (second - s[INPUT_SECOND]) + (fraction - s[INPUT_FRACTION])
+    v = s[INPUT_V] + s[INPUT_V_RATE] * t
+    f = s[INPUT_F] + s[INPUT_F_RATE] * t
+    for at in range(STATE_SIZE, STATE_SIZE + int(s[INPUT_WAVES]), WAVE_SIZE):
+        wave = math.sin(_TURN * turns(s, at, second, fraction))
+        v += s[at + 2] * wave
+        f += s[at + 3] * wave
+    return v, f
+
+
+@compiled
+def refresh_inputs(s):
+    """Set V, F and their rates to those at the time of the state."""
+    s[V], s[F] = inputs_at(s, s[SECOND], s[FRACTION])
+    s[V_RATE], s[F_RATE] = s[INPUT_V_RATE], s[INPUT_F_RATE]
+    for at in range(STATE_SIZE, STATE_SIZE + int(s[INPUT_WAVES]), WAVE_SIZE):
+        slope = _TURN * s[at] * math.cos(_TURN * turns(s, at, s[SECOND], s[FRACTION]))
+        s[V_RATE] += s[at + 2] * slope
+        s[F_RATE] += s[at + 3] * slope
+
+
+@compiled
+def turns(s, at, second, fraction):
+    """Return the phase of the wave that stands at `at`, in turns, whole ones mostly left out."""
+    before = s[at] * second
+    return (before - math.floor(before)) + s[at] * fraction + s[at + 1]
