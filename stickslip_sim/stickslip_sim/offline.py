@@ -98,7 +98,7 @@ def warm_up(scene: Scene) -> None:
 
 def _loaded_simulator(scene: Scene) -> Simulator:
     """Return a simulator at time 0 whose code was loaded, so that this does not count as the cost of a run."""
-    simulator = Simulator(scene.axis, scene.initial, scene.drive, scene.force)
+    simulator = Simulator(scene.axis, scene.initial, scene.drive, scene.force, scene.solver.make())
     simulator.advance(Instant(0.0, 0.0))
     simulator.command_velocity(simulator.sample().drive_velocity)
     simulator.reset()

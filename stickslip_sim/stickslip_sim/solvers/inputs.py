@@ -31,10 +31,10 @@ def same_inputs(s, v, v_rate, f, f_rate, waves):
     if (s[INPUT_V] != v or s[INPUT_F] != f or s[INPUT_V_RATE] != 0.0 or s[INPUT_F_RATE] != 0.0 or v_rate != 0.0
             or f_rate != 0.0 or s[INPUT_WAVES] != len(waves)):
         return False
+    changed = 0
     for i in range(len(waves)):
-        if s[STATE_SIZE + i] != waves[i]:
-            return False
-    return True
+        changed += s[STATE_SIZE + i] != waves[i]
+    return changed == 0
 
 
 @compiled

@@ -1,9 +1,9 @@
 """Fixed steps: the loop that most engineers would write, told honestly.
 
-| method | a step                                                    | order in a mode | across transitions | evaluations |
-|--------|-----------------------------------------------------------|-----------------|--------------------|-------------|
-| euler  | semi-implicit (symplectic) Euler: the new velocity moves  | 1               | 1                  | 1           |
-| rk4    | classical Runge-Kutta                                     | 4               | 1                  | 4           |
+| method | a step                                           | order in a mode | across transitions | evaluations |
+|--------|--------------------------------------------------|-----------------|--------------------|-------------|
+| euler  | semi-implicit Euler: the new velocity moves      | 1               | 1                  | 1           |
+| rk4    | classical Runge-Kutta                            | 4               | 1                  | 4           |
 
 Transitions are noted at the end of the step in which they are seen, hence order 1 across them whatever the method;
 what begins and ends within a step is missed.  Knots of the friction tables are not looked for.  A slip ends where the
@@ -24,6 +24,7 @@ from typing import Any
 from ...errors import InputError
 from .. import Solver
 from .loop import advance, sample, set_inputs, set_parameters, start
+from .stability import check_step
 from .steps import EULER, RK4
 
 METHODS = {'euler': EULER, 'rk4': RK4}
@@ -39,15 +40,14 @@ def solver(method: str = 'euler', step: float = 1e-3) -> Solver:
                          'euler is the usual one')
     if not (math.isfinite(step) and MIN_STEP <= step <= MAX_STEP):
         raise InputError('solver.step', step, f'>= {MIN_STEP:g} and <= {MAX_STEP:g} s', 'give the length of a step')
-    kind = METHODS[method]
     ticks = Fraction(repr(float(step))).limit_denominator(_LARGEST)
-    grid = (float(ticks.numerator), float(ticks.denominator))
+    settings = (METHODS[method], float(ticks.numerator), float(ticks.denominator))
 
     def begin(*state_and_inputs: Any) -> Any:
-        return start(*state_and_inputs, kind, *grid)
+        return start(*(*state_and_inputs, *settings))
 
     return Solver('fixed_step', begin, advance, set_inputs, set_parameters, sample,
                   f'try a step shorter than solver.step = {step:g} s, or check the scene')
 
 
-__all__ = ['MAX_STEP', 'METHODS', 'MIN_STEP', 'solver']
+__all__ = ['MAX_STEP', 'METHODS', 'MIN_STEP', 'check_step', 'solver']

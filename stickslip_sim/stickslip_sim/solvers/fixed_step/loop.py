@@ -9,9 +9,8 @@ often it is asked for.
 import math
 
 from ...axis.layout import (
-    ACCELERATION, COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DEFLECTION, DIRECTION, DRIVE, EVENT_MODE, EXCESS,
-    FRACTION, GRID_SECOND, GRID_TICKS, LEAD, MASS, METHOD, MODE, NORMAL, ORIGIN, PIECE, POSITION, REST, SECOND,
-    SECOND_TICKS, SPRING, STATE_SIZE, STEP_TICKS, VELOCITY,
+    ACCELERATION, DEFLECTION, DIRECTION, DRIVE, EVENT_MODE, EXCESS, FRACTION, GRID_SECOND, GRID_TICKS, LEAD, MASS,
+    METHOD, MODE, NORMAL, PIECE, POSITION, REST, SECOND, SECOND_TICKS, SPRING, STEP_TICKS, VELOCITY,
 )
 from ...axis.motion import (
     ACCELERATING, COASTING, DECELERATING, STICK, contact_force, drive_force, friction_line, is_rigid_stick,
@@ -24,6 +23,7 @@ from ...compiled import compiled
 from .. import DONE, FULL, OUT_OF_RANGE
 from ..inputs import hold_inputs, inputs_at, refresh_inputs, same_inputs
 from ..sampling import write_sample
+from ..state import begin_state, change_contact
 from .steps import friction_at, piece_near, step
 
 _BAND = 0.5   # of a step of the deceleration by N mu_s(0): stops are noted, on the average, when they happen
@@ -32,18 +32,12 @@ _BAND = 0.5   # of a step of the deceleration by N mu_s(0): stops are noted, on 
 @compiled
 def start(p, s, position, velocity, rest, v, v_rate, f, f_rate, waves, events, row, method, step_ticks, second_ticks):
     """Set the state at time 0, as the exact engine does; a step lasts step_ticks / second_ticks seconds."""
-    for i in range(STATE_SIZE):
-        s[i] = 0.0
+    begin_state(s, position, velocity, rest)
     s[METHOD], s[STEP_TICKS], s[SECOND_TICKS] = method, step_ticks, second_ticks
-    s[ORIGIN], s[VELOCITY], s[REST] = position, velocity, rest
     hold_inputs(s, 0.0, 0.0, v, v_rate, f, f_rate, waves)
     refresh_inputs(s)
     if velocity == 0.0:
-        s[MODE] = STICK
         return _look(p, s, events, row)
-    s[REST] = 0.0
-    s[DIRECTION] = 1.0 if velocity > 0.0 else -1.0
-    s[MODE] = DECELERATING
     residual, _, tolerance = _residual(p, s)
     s[MODE] = _sub_mode(s[MODE], residual, 0.0, tolerance)
     return row
@@ -84,12 +78,7 @@ def set_inputs(p, s, second, fraction, v, v_rate, f, f_rate, waves, events, row)
 def set_parameters(p, new, s, second, fraction, events, row):
     """Let the axis have other parameters from a time on, up to which the state was advanced with the old ones."""
     _catch_up(p, s, second, fraction)
-    if s[MODE] == STICK and new[COMPLIANT] != 0.0:
-        force = friction_at(p, s, applied_force(p, s), s[VELOCITY], s[DEFLECTION])
-        s[DEFLECTION] = (force - new[CONTACT_DAMPING] * s[VELOCITY]) / new[CONTACT_STIFFNESS]
-    if s[MODE] == STICK and new[COMPLIANT] == 0.0:
-        s[VELOCITY] = 0.0
-        s[DEFLECTION] = 0.0
+    change_contact(new, s, friction_at(p, s, applied_force(p, s), s[VELOCITY], s[DEFLECTION]))
     s[PIECE] = 0.0
     return _look(new, s, events, row)
 
