@@ -7,8 +7,9 @@
 
 Transitions are noted at the end of the step in which they are seen, hence order 1 across them whatever the method;
 what begins and ends within a step is missed.  Knots of the friction tables are not looked for.  A slip ends where the
-velocity has changed its sign, or, after Karnopp, where it falls within the band |ẋ| < ½ step N mu_s(0)/m while a force
-up to N mu_s(0) acts: half of what friction takes from it in a step.  A feed below that band is not resolved.
+velocity has changed its sign, or, after Karnopp, where it falls within the band |ẋ| < ½ step N mu_s(0)/m and N mu_s(0)
+could hold the slider at rest.  The band is half of what friction takes from the velocity in a step; a slow feed may be
+stopped in it that would go on.
 
 When to use it: to compare with other programs, or as a rough and quick loop.  The cost is that of its steps, whatever
 happens; the exact engine pays for events, and is cheaper nearly always.

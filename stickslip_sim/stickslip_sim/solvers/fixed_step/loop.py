@@ -6,11 +6,9 @@ between two points is a step of its own from the last one, which changes nothing
 often it is asked for.
 """
 
-import math
-
 from ...axis.layout import (
-    ACCELERATION, DEFLECTION, DIRECTION, DRIVE, EVENT_MODE, EXCESS, FRACTION, GRID_SECOND, GRID_TICKS, LEAD, MASS,
-    METHOD, MODE, NORMAL, PIECE, POSITION, REST, SECOND, SECOND_TICKS, SPRING, STEP_TICKS, VELOCITY,
+    ACCELERATION, DEFLECTION, DIRECTION, DRIVE, EVENT_MODE, EXCESS, F, FRACTION, GRID_SECOND, GRID_TICKS, LEAD, MASS,
+    METHOD, MODE, NORMAL, PIECE, POSITION, REST, SECOND, SECOND_TICKS, SPRING, STEP_TICKS, V, VELOCITY,
 )
 from ...axis.motion import (
     ACCELERATING, COASTING, DECELERATING, STICK, contact_force, drive_force, friction_line, is_rigid_stick,
@@ -27,6 +25,8 @@ from ..state import begin_state, change_contact
 from .steps import friction_at, piece_near, step
 
 _BAND = 0.5   # of a step of the deceleration by N mu_s(0): stops are noted, on the average, when they happen
+
+_FAR = 1e100   # m, m/s: so far that forces overflow soon
 
 
 @compiled
@@ -100,7 +100,7 @@ def sample(p, s, second, fraction, out):
 def _move(p, s, second, fraction, h):
     """Bring the state to a time, h later; return False, and leave it, where the numbers end."""
     y, u, drive = step(p, s, h)
-    if not math.isfinite(y + u + drive):
+    if not abs(y) + abs(u) + abs(drive) < _FAR:   # nor where it is no number
         return False
     if s[MODE] == STICK:
         s[REST] += h
@@ -166,13 +166,14 @@ def _residual(p, s):
 
 @compiled
 def _has_stopped(p, s, residual):
-    """Whether a slip ends: it was reversed, or it slows down in Karnopp's band with a force that friction can hold."""
+    """Whether a slip ends: it was reversed, or it slows down in Karnopp's band and friction could hold it at rest."""
     speed = s[DIRECTION] * s[VELOCITY]
     if speed < 0.0:
         return True
     holds = p[NORMAL] * static_limit(p, 0.0)
     band = _BAND * s[STEP_TICKS] / s[SECOND_TICKS] * holds / p[MASS]
-    return residual < 0.0 and speed < band and abs(applied_force(p, s)) <= holds
+    at_rest = drive_force(p, s[SPRING], s[V], 0.0) + s[F]
+    return residual < 0.0 and speed < band and abs(at_rest) <= holds
 
 
 @compiled
