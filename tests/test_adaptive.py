@@ -1,7 +1,8 @@
-"""The adaptive solver: near the exact engine within its tolerance, with smooth laws and waves too, and it always ends."""
+"""The adaptive solver: near the exact engine within its tolerance, with smooth laws and waves, and it always ends."""
 
 import math
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import pytest
 
@@ -14,6 +15,7 @@ from stickslip_sim.scene import load_scene
 from stickslip_sim.solvers import adaptive
 from stickslip_sim.words import Event, EventKind, Mode
 from tests.axes import COMPLIANT, RIGID, instant, of_kind, paper_axis
+from tests.conftest import Program
 from tests.solver_runs import EXACT, firm, make, of_scene, simulate
 
 TIGHT = adaptive.solver('DOP853', 1e-11, 1e-13)
@@ -56,7 +58,7 @@ class TestAgainstTheExactEngine:
         for rtol in (1e-5, 1e-7, 1e-9, 1e-11):
             found = of_scene(adaptive.solver('RK45', rtol, rtol * 1e-2), scene, 3.0)[0]
             errors.append(max(abs(a.time - b.time) for a, b in zip(found, expected, strict=True)))
-        assert all(after < 0.1 * before for before, after in zip(errors, errors[1:]))   # noqa: RUF007
+        assert all(after < 0.1 * before for before, after in pairwise(errors))
         assert errors[-1] < 1e-9
 
     @pytest.mark.parametrize('contact', [RIGID, COMPLIANT])
@@ -132,7 +134,7 @@ class TestSmoothLaws:
             speeds = tuple(0.08 * i / count for i in range(count + 1))
             kinetic = KineticTable(speeds, tuple(map(law.coefficient, speeds)), 0.2)
             excess = default_excess(KineticTable((0.0, 0.05), (0.1, 0.1))) if branches else None
-            friction = Friction(StaticLaw(StaticLawKind.EXPONENTIAL, 0.12, 0.24, 0.2), kinetic, excess)
+            friction = Friction(StaticLaw(StaticLawKind.EXPONENTIAL, 0.125, 0.24, 0.2), kinetic, excess)
             axis = replace(paper_axis(COMPLIANT if contact is COMPLIANT else RIGID), friction=friction)
             smooth = firm(simulate(adaptive.solver('DOP853', 1e-10, 1e-13, law), axis, 0.002, 1.8)[0])
             tabled = firm(simulate(EXACT, axis, 0.002, 1.8)[0])
@@ -151,18 +153,16 @@ class TestWaves:
         final = simulate(TIGHT, free, drive, 1.3, force, InitialState(velocity=5.0))[1]
         omega = 4.0 * math.pi
         assert final.velocity == pytest.approx(
-            5.0 + 0.01 * 1.3 + 2.0 / omega * (math.cos(0.4) - math.cos(omega * 1.3 + 0.4)), rel=1e-12)
+            5.0 + 0.01 * 1.3 + 2.0 / omega * (math.cos(0.4) - math.cos(omega * 1.3 + 0.4)), rel=1e-11)
         omega = 3.0 * math.pi
         assert final.drive_position == pytest.approx(
             0.2 * 1.3 + 0.3 / omega * (math.cos(-0.2) - math.cos(omega * 1.3 - 0.2)), rel=1e-12)
 
     def test_no_wave_of_a_stuck_axis_is_passed_over(self) -> None:
         """At rest nothing bounds the step but the wave itself; its first crest beyond the limit breaks the contact."""
-        force = Course((0.0,), (0.0,), (0.0,), waves=(Wave(900.0, 0.5, -0.5 * math.pi),))
+        force = Course((0.0,), (0.0,), (0.0,), waves=(Wave(900.0, 0.5, 0.0),))
         event = simulate(TIGHT, paper_axis(RIGID), 0.0, 3.0, force)[0][0]
-        limit = 0.24 * 350 * 9.80665
-        assert event.time == pytest.approx((math.acos(limit / 900.0) * -1.0 + math.pi) / math.pi, rel=1e-9) or \
-            event.time == pytest.approx(math.acos(limit / 900.0) / math.pi, rel=1e-9)
+        assert event.time == pytest.approx(math.asin(0.24 * 350 * 9.80665 / 900.0) / math.pi, rel=1e-12)
 
 
 class TestItEnds:
@@ -194,7 +194,7 @@ class TestItEnds:
             simulator.advance(instant(1.0))
 
     def test_a_year_at_rest(self) -> None:
-        simulator = make(adaptive.solver(), paper_axis(COMPLIANT), 0.0, 100.0)
+        simulator = make(adaptive.solver('Radau'), paper_axis(COMPLIANT), 0.0, 100.0)
         assert simulator.advance(instant(3.15e7)) == []
         assert simulator.sample().contact_deflection == pytest.approx(100.0 / 5.6e6, rel=1e-6)
 
@@ -210,7 +210,6 @@ def test_bad_settings_are_refused(settings: dict[str, object], name: str) -> Non
     assert caught.value.name == name
 
 
-def test_scipy_is_loaded_only_by_those_who_use_it(in_a_process: object) -> None:
-    assert callable(in_a_process)
+def test_scipy_is_loaded_only_by_those_who_use_it(in_a_process: Program) -> None:
     program = 'import sys\nimport stickslip_sim.offline\nprint("scipy" in sys.modules)'
     assert in_a_process(program, compiled=False).split() == ['False']
