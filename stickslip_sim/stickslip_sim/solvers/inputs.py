@@ -38,6 +38,12 @@ def same_inputs(s, v, v_rate, f, f_rate, waves):
 
 
 @compiled
+def inputs_vary(s):
+    """Whether the inputs change by themselves."""
+    return s[INPUT_V_RATE] != 0.0 or s[INPUT_F_RATE] != 0.0 or s[INPUT_WAVES] != 0.0
+
+
+@compiled
 def inputs_at(s, second, fraction):
     """Return v and F_e at a time."""
     t = (second - s[INPUT_SECOND]) + (fraction - s[INPUT_FRACTION])

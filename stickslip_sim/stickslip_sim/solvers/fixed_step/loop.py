@@ -19,7 +19,7 @@ from ...axis.transitions import (
 )
 from ...compiled import compiled
 from .. import DONE, FULL, OUT_OF_RANGE
-from ..inputs import hold_inputs, inputs_at, refresh_inputs, same_inputs
+from ..inputs import hold_inputs, inputs_at, inputs_vary, refresh_inputs, same_inputs
 from ..sampling import write_sample
 from ..state import begin_state, change_contact
 from .steps import friction_at, piece_near, step
@@ -110,7 +110,8 @@ def _move(p, s, second, fraction, h):
     s[SPRING] += drive - y
     s[VELOCITY] = u
     s[SECOND], s[FRACTION] = second, fraction
-    refresh_inputs(s)
+    if inputs_vary(s):
+        refresh_inputs(s)
     return True
 
 
@@ -146,7 +147,8 @@ def _look_at_stick(p, s, events, row):
     applied = applied_force(p, s)
     force = applied if is_rigid_stick(p, s) else contact_force(p, s[DEFLECTION], s[VELOCITY])
     limit = static_limit(p, s[REST])
-    if abs(force) - p[NORMAL] * limit <= force_rounding(p, s, limit):
+    margin = abs(force) - p[NORMAL] * limit
+    if margin <= 0.0 or margin <= force_rounding(p, s, limit):
         return row
     s[ACCELERATION] = (applied - force) / p[MASS]
     release(p, s, events, row)
