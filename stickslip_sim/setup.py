@@ -25,7 +25,7 @@ setup(
     zip_safe=False,
     python_requires='>=3.10',
     install_requires=[
-        'setuptools', 'numpy', 'numba', 'PyYAML', 'mcap', 'zstandard', 'lz4', 'rosbags',
+        'setuptools', 'numpy', 'scipy', 'numba', 'PyYAML', 'mcap', 'zstandard', 'lz4', 'rosbags',
         'matplotlib', 'click',
     ],
     extras_require={'bench': ['mpmath'], 'test': ['pytest']},

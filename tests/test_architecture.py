@@ -23,7 +23,7 @@ from stickslip_sim.offline import warm_up
 from stickslip_sim.scene import load_scene
 from stickslip_sim.solvers import exact
 warm_up(load_scene('paper_fig8'))
-entries = exact.SOLVER[1:]
+entries = exact.SOLVER[1:7]
 print(sum(len(entry.stats.cache_misses) for entry in entries), sum(len(entry.stats.cache_hits) for entry in entries))
 '''
     in_a_process(program, compiled=True)

@@ -45,6 +45,7 @@ class TestRefusedStart:
         (['-p', 'scene:=paper_fig9'], ['paper_fig9', 'paper_fig8']),
         (['--nonsense'], ['--nonsense']),
         (['-p', 'record.enabled:=true', '-p', 'axis.mass:=-1.0'], ['axis.mass = -1.0']),
+        (['-p', 'solver.name:=adaptive'], ['solver.name', 'exact or fixed_step in the node']),
     ])
     def test_arguments(self, arguments: list[str], told: list[str]) -> None:
         code, errors = start(*arguments)

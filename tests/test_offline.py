@@ -65,11 +65,19 @@ def test_same_run_twice_is_bit_identical(run: Trajectory) -> None:
     assert again.receipt['results'] == run.receipt['results']
 
 
+def test_a_receipt_tells_the_settings_of_the_solver() -> None:
+    for solver, settings in (('fixed_step', {'method': 'euler', 'step': 1e-3}),
+                             ('adaptive', {'method': 'DOP853', 'rtol': 1e-8, 'atol': 1e-10})):
+        receipt = run_offline(load_scene('paper_fig7', {'solver.name': solver}), 0.7).receipt
+        assert (receipt['solver'], receipt['solver_settings']) == (solver, settings)
+        assert receipt['results']['events']['breakaway'] == 1
+
+
 def test_receipt_says_what_ran_and_what_came_out(run: Trajectory) -> None:
     receipt = json.loads(json.dumps(run.receipt, allow_nan=False))
     assert receipt['scene'] == 'paper_fig8'
     assert receipt['scene_hash'] == run.scene.hash
-    assert receipt['solver'] == 'exact'
+    assert (receipt['solver'], receipt['solver_settings']) == ('exact', {})
     assert set(receipt['versions']) == {'stickslip', 'python', 'numpy', 'hot_path'}
     results = receipt['results']
     assert results['events']['breakaway'] == sum(event.kind == EventKind.BREAKAWAY for event in run.events)

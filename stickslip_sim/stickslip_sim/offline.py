@@ -98,7 +98,8 @@ def warm_up(scene: Scene) -> None:
 
 def _loaded_simulator(scene: Scene) -> Simulator:
     """Return a simulator at time 0 whose code was loaded, so that this does not count as the cost of a run."""
-    simulator = Simulator(scene.axis, scene.initial, scene.drive, scene.force, accounting=True)
+    simulator = Simulator(scene.axis, scene.initial, scene.drive, scene.force, scene.solver.make(scene.axis),
+                          accounting=True)
     simulator.advance(Instant(0.0, 0.0))
     simulator.command_velocity(simulator.sample().drive_velocity)
     _ = simulator.energy

@@ -27,6 +27,7 @@ def receipt_of(scene: Scene, duration: float, sample_period: float | None, figur
         'scene': scene.name,
         'scene_hash': scene.hash,
         'solver': scene.solver.name,
+        'solver_settings': scene.solver.settings,
         'duration': duration,
         'sample_period': sample_period,
         'versions': versions(),

@@ -5,12 +5,14 @@ from collections.abc import Iterator
 from typing import Any
 
 from .axis import Axis, InitialState, check_start, pack
-from .axis.layout import ACCOUNTING, ENERGY_SIZE, EVENT_SIZE, ITERATIONS, SAMPLE_SIZE, STATE_SIZE, WAVE_SIZE
+from .axis.layout import (
+    ACCOUNTING, ENERGY_SIZE, EVENT_SIZE, FRACTION, ITERATIONS, SAMPLE_SIZE, SECOND, STATE_SIZE, WAVE_SIZE,
+)
 from .compiled import IS_COMPILED
 from .courses import Course, constant
 from .energy import EnergyBalance
 from .errors import SolverError
-from .solvers import DONE, FULL, Solver, exact
+from .solvers import DONE, FULL, OUT_OF_RANGE, Solver, exact
 from .words import Event, EventKind, Instant, Mode, Sample
 
 _KINDS, _MODES = tuple(EventKind), tuple(Mode)
@@ -123,7 +125,7 @@ class Simulator:
         second, fraction, mode, direction, *rest = row.tolist() if IS_COMPILED else row
         if not all(map(math.isfinite, rest[:8])):
             raise SolverError(f'the state leaves the range of numbers at t = {second + fraction!r} s; '
-                              'a parameter or an input is too extreme for this axis: check the scene')
+                              f'{self._solver.advice}')
         return Sample(second, fraction, _MODES[int(mode)], int(direction), *rest)
 
     def _advance(self, to: Instant, events: list[Event]) -> None:
@@ -135,7 +137,10 @@ class Simulator:
             if end == DONE:
                 self._time = to
                 return
-            self._time = events[-1].instant if events else self._time
+            self._time = max(self._time, Instant(float(self._state[SECOND]), float(self._state[FRACTION])))
+            if end == OUT_OF_RANGE:
+                raise SolverError(f'the state leaves the range of numbers after t = {self._time.seconds!r} s; '
+                                  f'{self._solver.advice}')
             if end != FULL or taken > MAX_EVENTS_PER_ADVANCE:
                 raise SolverError(f'{taken} events up to t = {self._time.seconds!r} s and time hardly goes on; '
                                   'friction or inputs are too extreme for this axis: check the scene')

@@ -31,8 +31,8 @@ ORIGIN = 29                             # m, where the run began: POSITION and D
 # g, g′, G₁ and G₂ at AT after the anchor, near the next event or where the search ended; AT < 0: not there
 AT, AT_G, AT_RATE, AT_FIRST, AT_SECOND = range(30, 35)
 LAST = 35                               # how long each mode lasted last time: a first guess for the next time
-# the same four at the instant GRID after an anchor, for the oscillator with these two: what ticks of one length share
-GRID, GRID_GAMMA, GRID_OMEGA2, GRID_G, GRID_RATE, GRID_FIRST, GRID_SECOND = range(39, 46)
+# the same four at the instant NEAR after an anchor, for the oscillator with these two: what ticks of one length share
+NEAR, NEAR_GAMMA, NEAR_OMEGA2, NEAR_G, NEAR_RATE, NEAR_FIRST, NEAR_SECOND = range(39, 46)
 # waves: how many, the inputs at the anchor without them, and up to where a search for an event has come
 WAVES, BASE_V, BASE_F, PROGRESS = range(46, 50)
 # the account of energy, J, up to the anchor: whether it is kept (the rest is 0 without), what was stored at the start,
@@ -40,7 +40,11 @@ WAVES, BASE_V, BASE_F, PROGRESS = range(46, 50)
 ACCOUNTING, STORED_AT_START, SUMS = range(50, 53)
 CONTACT_EXCHANGE, PARAMETER_EXCHANGE, THROUGHPUT = range(5, 8)   # behind the five works
 SUM_COUNT = 8
-STATE_SIZE = SUMS + 2 * SUM_COUNT
+# for solvers that step: the inputs as they were given, from a time on; V, F and their rates are then those at the state
+INPUT_SECOND, INPUT_FRACTION, INPUT_V, INPUT_V_RATE, INPUT_F, INPUT_F_RATE, INPUT_WAVES = range(69, 76)
+# and the grid of fixed steps: its last point, in ticks within its second; a step and a second in ticks; time beyond it
+METHOD, GRID_SECOND, GRID_TICKS, STEP_TICKS, SECOND_TICKS, LEAD = range(76, 82)
+STATE_SIZE = 82
 
 # then a record for each wave, the first numbers as they are given: frequency Hz, phase turns, amplitudes m/s and N; at
 # the anchor its phase in turns, sine and cosine of that, and its pull in N/s (see `waves`)

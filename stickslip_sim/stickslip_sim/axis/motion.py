@@ -19,8 +19,8 @@ from ..linear.oscillator import integrals, oscillator, short_integrals
 from ..words import Mode
 from .layout import (
     ACCELERATION, AT, AT_FIRST, AT_G, AT_RATE, AT_SECOND, BASE_V, BRANCHES, COMPLIANT, CONTACT_DAMPING,
-    CONTACT_STIFFNESS, DAMPING, DEFLECTION, DIRECTION, DRIVE, END_SLOPE, EXCESS, F, FAST, FRACTION, F_RATE, GAMMA, GRID,
-    GRID_FIRST, GRID_G, GRID_GAMMA, GRID_OMEGA2, GRID_RATE, GRID_SECOND, JERK, KNOTS, KNOT_SIZE, MASS, MODE, NEXT,
+    CONTACT_STIFFNESS, DAMPING, DEFLECTION, DIRECTION, DRIVE, END_SLOPE, EXCESS, F, FAST, FRACTION, F_RATE, GAMMA, NEAR,
+    NEAR_FIRST, NEAR_G, NEAR_GAMMA, NEAR_OMEGA2, NEAR_RATE, NEAR_SECOND, JERK, KNOTS, KNOT_SIZE, MASS, MODE, NEXT,
     NORMAL, NU, OMEGA2, PIECE, POSITION, REST, SECOND, SLOW, SNAP, SPRING, STATIC_EXPONENT, STATIC_INITIAL, STATIC_LAW,
     STATIC_LIMIT, STATIC_TAU, STIFFNESS, TABLE, V, VELOCITY, V_RATE, WAVES,
 )
@@ -137,14 +137,14 @@ def tick_integrals(s, t):
         return short_integrals(oscillator_of(s), t)
     near = (t + _SHIFTER) - _SHIFTER
     gamma, omega2 = s[GAMMA], s[OMEGA2]
-    if near != s[GRID] or gamma != s[GRID_GAMMA] or omega2 != s[GRID_OMEGA2]:
-        s[GRID], s[GRID_GAMMA], s[GRID_OMEGA2] = near, gamma, omega2
-        s[GRID_G], s[GRID_RATE], s[GRID_FIRST], s[GRID_SECOND] = short_integrals(oscillator_of(s), near)
+    if near != s[NEAR] or gamma != s[NEAR_GAMMA] or omega2 != s[NEAR_OMEGA2]:
+        s[NEAR], s[NEAR_GAMMA], s[NEAR_OMEGA2] = near, gamma, omega2
+        s[NEAR_G], s[NEAR_RATE], s[NEAR_FIRST], s[NEAR_SECOND] = short_integrals(oscillator_of(s), near)
     d = t - near
-    g, rate, first = s[GRID_G], s[GRID_RATE], s[GRID_FIRST]
+    g, rate, first = s[NEAR_G], s[NEAR_RATE], s[NEAR_FIRST]
     bend = -2.0 * gamma * rate - omega2 * g
     return (g + (rate + 0.5 * bend * d) * d, rate + bend * d, first + (g + 0.5 * rate * d) * d,
-            s[GRID_SECOND] + (first + 0.5 * g * d) * d)
+            s[NEAR_SECOND] + (first + 0.5 * g * d) * d)
 
 
 @compiled

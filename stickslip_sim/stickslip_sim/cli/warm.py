@@ -13,3 +13,4 @@ def warm() -> None:
         scene = load_scene(name)
         warm_up(scene)
         run_offline(scene, 1.0, 0.01)
+    warm_up(load_scene('paper_fig8', {'solver.name': 'fixed_step'}))

@@ -10,7 +10,7 @@ from rclpy.parameter import Parameter
 from rclpy.serialization import serialize_message
 from std_srvs.srv import SetBool, Trigger
 
-from ..errors import RecordingError, SolverError
+from ..errors import InputError, RecordingError, SolverError
 from ..offline import warm_up
 from ..pacing import Grid, Pacer
 from ..recording import RECORDED, RunFacts, messages
@@ -35,12 +35,15 @@ class FeedAxis(SceneNode):
     """Publishes the motion of one axis in real time; callbacks run in an executor, the steps in the loop's thread.
 
     `from_file`: the parameters come from a file, which then is a whole scene.
-    Raises InputError when the parameters are no scene.
+    Raises InputError when the parameters are no scene, or one for offline use only.
     """
 
     def __init__(self, from_file: bool) -> None:
         super().__init__(NAME, from_file)
         scene = self.scene
+        if scene.solver.name == 'adaptive':
+            raise InputError('solver.name', 'adaptive', 'exact or fixed_step in the node',
+                             'the steps of adaptive take any time, and no real-time loop can wait for them')
         warm_up(scene)
         self._grid = Grid(scene.time.rate)
         self._pacer = Pacer(self._grid, scene.time.factor)
@@ -48,7 +51,8 @@ class FeedAxis(SceneNode):
                        CommandSlot('force', 'N', scene.command.max_force))
         self._outlet = Outlet(self)
         self._recordings = Recordings(self.get_namespace())
-        self._simulator = Simulator(scene.axis, scene.initial, scene.drive, scene.force, accounting=True)
+        self._simulator = Simulator(scene.axis, scene.initial, scene.drive, scene.force, scene.solver.make(scene.axis),
+                                    accounting=True)
         self.loop = StepLoop(self._simulator, self._grid, self._pacer, self._slots, self._outlet)
         self._reporter = reports.Reporter(self.loop, self._pacer.account, self._slots)
         self._told = ''          # the failure of the solver that was logged

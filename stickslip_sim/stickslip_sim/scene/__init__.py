@@ -1,9 +1,10 @@
 """Scenes: everything that decides a run, as a ROS 2 parameter file that is read without ROS.  The only YAML door."""
 
 from .load import load_scene, parse_override, scene_from_values, scene_names
-from .model import CommandSettings, RecordSettings, Scene, SolverSettings, TimeSettings
+from .model import CommandSettings, RecordSettings, Scene, TimeSettings
 from .parameter import Parameter, When
 from .schema import PARAMETERS
+from .solver import SolverSettings
 
 __all__ = [
     'PARAMETERS', 'CommandSettings', 'Parameter', 'RecordSettings', 'Scene', 'SolverSettings', 'TimeSettings', 'When',

@@ -21,7 +21,8 @@ from ..friction import (
     smooth,
 )
 from ..friction.kinetic import default_excess
-from .model import CommandSettings, RecordSettings, Scene, SolverSettings, TimeSettings
+from .model import CommandSettings, RecordSettings, Scene, TimeSettings
+from .solver import SolverSettings, method_of
 from .text import scene_text
 from .values import effective_values
 
@@ -38,6 +39,10 @@ def build_scene(given: Mapping[str, object], summary: str = '') -> Scene:
     axis = _axis(values)
     initial = InitialState(**_section(values, 'initial'))
     check_start(axis, initial)
+    if 'solver.method' not in values and (method := method_of(values)):
+        values['solver.method'] = method
+    solver = SolverSettings(**_section(values, 'solver'))
+    solver.check(axis)
     text = scene_text(values)
     return Scene(
         name=values['scene'],
@@ -46,7 +51,7 @@ def build_scene(given: Mapping[str, object], summary: str = '') -> Scene:
         initial=initial,
         drive=_course(values, 'drive', 'velocity', 'acceleration', 'velocities'),
         force=_course(values, 'force', 'constant', 'rate', 'forces'),
-        solver=SolverSettings(**_section(values, 'solver')),
+        solver=solver,
         time=TimeSettings(**_section(values, 'time')),
         command=CommandSettings(**_section(values, 'command')),
         record=RecordSettings(**_section(values, 'record')),

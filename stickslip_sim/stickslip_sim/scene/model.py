@@ -4,13 +4,7 @@ from dataclasses import dataclass, field
 
 from ..axis import Axis, InitialState
 from ..courses import Course
-
-
-@dataclass(frozen=True, slots=True)
-class SolverSettings:
-    """How the motion is computed."""
-
-    name: str
+from .solver import SolverSettings
 
 
 @dataclass(frozen=True, slots=True)

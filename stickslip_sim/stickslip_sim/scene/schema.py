@@ -10,7 +10,8 @@ from ..courses import FREQUENCIES, MAX_WAVES
 from ..friction.shapes import MAX_EXPONENT, MIN_EXPONENT
 from .parameter import Parameter, When
 
-_SOLVERS = ('exact',)
+_SOLVERS = ('exact', 'fixed_step', 'adaptive')
+_METHODS = ('euler', 'rk4', 'RK45', 'DOP853', 'Radau', 'BDF', 'LSODA')
 _MODES = ('realtime',)
 _LAWS = ('constant', 'exponential', 'kato', 'hyperbolic', 'logarithmic')
 _KINETIC = ('table', 'stribeck', 'exponential', 'hyperbolic')
@@ -19,6 +20,8 @@ _COURSES = ('constant', 'ramp', 'steps', 'sine', 'table')
 
 _GROWS = When('friction.static.law', _LAWS[1:])
 _COMPLIANT = When('contact.model', ('compliant',))
+_FIXED_STEP = When('solver.name', ('fixed_step',))
+_ADAPTIVE = When('solver.name', ('adaptive',))
 _BRANCHES = When('friction.acceleration_dependence', (True,))
 _KNOTS = When('friction.kinetic.law', ('table',))
 _SMOOTH = When('friction.kinetic.law', _KINETIC[1:])
@@ -145,7 +148,15 @@ PARAMETERS: tuple[Parameter, ...] = (
     _number('initial.velocity', 0.0, 'm/s', 'slider at the start'),
     _number('initial.rest_time', math.inf, 's', 'rest before the start (.inf: prolonged rest)', low=0.0, infinite=True),
 
-    _choice('solver.name', 'exact', 'exact: closed form, from event to event', _SOLVERS),
+    _choice('solver.name', 'exact', 'exact: closed form, from event to event; fixed_step: the usual loop, to compare'
+            ' with; adaptive: steps of a stated tolerance, offline only (docs/solvers.md)', _SOLVERS),
+    Parameter('solver.method', 'string', None, '', 'with fixed_step euler or rk4, left out: euler; with adaptive one of'
+              ' the others, left out: DOP853', choices=_METHODS, when=When('solver.name', _SOLVERS[1:])),
+    _number('solver.step', 1e-3, 's', 'length of a step', low=1e-9, high=1.0, when=_FIXED_STEP),
+    _number('solver.rtol', 1e-8, '', 'error of a step relative to travel and velocity', low=2.3e-14, high=1e-2,
+            when=_ADAPTIVE),
+    _number('solver.atol', 1e-10, 'm, m/s', 'error of a step in travel and velocity', low=1e-300, high=1.0,
+            when=_ADAPTIVE),
 
     _choice('time.mode', 'realtime', 'realtime: simulation time follows the clock of the machine', _MODES),
     _number('time.rate', 1000.0, 'Hz', 'steps per second of simulation time', low=1.0, high=20_000.0),

@@ -3,7 +3,8 @@
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-DONE, FULL, NO_PROGRESS = 0, 1, 2   # how `advance` ended: at its time, with a full event table, or stuck
+# how `advance` ended: at its time, with a full event table, stuck, or before a state beyond the range of numbers
+DONE, FULL, NO_PROGRESS, OUT_OF_RANGE = 0, 1, 2, 3
 
 
 class Solver(NamedTuple):
@@ -11,7 +12,7 @@ class Solver(NamedTuple):
 
     `waves` is a flat array of four numbers a wave: frequency in Hz, phase in turns, amplitude of the drive velocity in
     m/s and of the external force in N.  Functions with `events, row` write rows into the table and return the rows in
-    use.
+    use.  `advice` says what to try when the solver gives up.
 
     | function       | arguments                                                                              |
     |----------------|----------------------------------------------------------------------------------------|
@@ -32,3 +33,4 @@ class Solver(NamedTuple):
     set_parameters: Callable[..., Any]
     sample: Callable[..., Any]
     energy: Callable[..., Any] | None = None
+    advice: str = 'a parameter or an input is too extreme for this axis: check the scene'

@@ -11,7 +11,7 @@ import math
 
 from ...axis.layout import (
     ACCOUNTING, AT, COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DEFLECTION, DIRECTION, DRIVE, F, FRACTION, F_RATE,
-    GRID, LAST, MASS, MODE, NEXT, NEXT_KIND, NORMAL, ORIGIN, POSITION, PROGRESS, REST, SEARCHED, SECOND, SPRING,
+    NEAR, LAST, MASS, MODE, NEXT, NEXT_KIND, NORMAL, ORIGIN, POSITION, PROGRESS, REST, SEARCHED, SECOND, SPRING,
     STATE_SIZE, STORED_AT_START, V, VELOCITY, V_RATE, WAVES,
 )
 from ...axis.motion import (
@@ -39,7 +39,7 @@ def start(p, s, position, velocity, rest, v, v_rate, f, f_rate, waves, events, r
     for i in range(STATE_SIZE):
         s[i] = 0.0
     s[ACCOUNTING] = accounting
-    s[GRID] = -1.0
+    s[NEAR] = -1.0
     s[ORIGIN] = position
     s[VELOCITY] = velocity
     s[REST] = rest

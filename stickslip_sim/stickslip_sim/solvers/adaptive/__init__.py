@@ -1,0 +1,52 @@
+"""Adaptive steps: scipy's `solve_ivp` with its events, mode by mode; for smooth laws too.
+
+| method | order | for                                                                 |
+|--------|-------|---------------------------------------------------------------------|
+| RK45   | 5     | loose tolerances                                                    |
+| DOP853 | 8     | tight tolerances: the one to begin with                             |
+| Radau  | 5     | stiff contacts                                                      |
+| BDF    | 1-5   | stiff contacts, loose tolerances                                    |
+| LSODA  | 1-12  | motions that are stiff at times                                     |
+
+An event is where a guard changes its sign over a step, found to rounding on the interpolant of that step: what comes
+and goes within one step is missed, and a guard that is within the tolerance of zero may fire early, late or once too
+often.  Steps are at most an eighth of the period of the fastest wave.  Every call restarts the integration, so that
+a motion depends on how often it is asked for, within the tolerance.
+
+When to use it: to check the exact engine by other means, and for a smooth law of kinetic friction itself in place of
+its table (`kinetic`).  The cost is milliseconds for every event and every call: thousands of times that of the exact
+engine.
+
+Sources: P. Virtanen et al., SciPy 1.0, Nature Methods 17 (2020), doi:10.1038/s41592-019-0686-2; E. Hairer, S. Nørsett,
+G. Wanner, Solving Ordinary Differential Equations I, II.5 and II.6.
+"""
+
+from typing import Any
+
+from ...errors import InputError
+from .. import Solver
+from .engine import Engine
+
+METHODS = ('RK45', 'DOP853', 'Radau', 'BDF', 'LSODA')
+MIN_RTOL = 2.3e-14   # scipy takes none below 100 roundings
+
+
+def solver(method: str = 'DOP853', rtol: float = 1e-8, atol: float = 1e-10, kinetic: Any = None) -> Solver:
+    """Return the solver with the tolerances of a step: `rtol` relative, `atol` in m and m/s.
+
+    `kinetic` is a smooth law with coefficient(speed) that replaces the table of mu_k.  Raises InputError on an unknown
+    method and on tolerances out of range.
+    """
+    if method not in METHODS:
+        raise InputError('solver.method', method, 'one of ' + ', '.join(METHODS) + ' with solver.name: adaptive',
+                         'DOP853 is the one to begin with')
+    if not MIN_RTOL <= rtol <= 1e-2:
+        raise InputError('solver.rtol', rtol, f'>= {MIN_RTOL:g} and <= 0.01', '1e-8 is the default')
+    if not 1e-300 <= atol <= 1.0:
+        raise InputError('solver.atol', atol, '>= 1e-300 and <= 1 m, m/s', '1e-10 is the default')
+    engine = Engine(method, rtol, atol, kinetic)
+    return Solver('adaptive', engine.start, engine.advance, engine.set_inputs, engine.set_parameters, engine.sample,
+                  advice='try another solver.method or other tolerances, or check the scene')
+
+
+__all__ = ['METHODS', 'MIN_RTOL', 'solver']

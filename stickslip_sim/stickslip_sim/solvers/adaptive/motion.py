@@ -1,0 +1,169 @@
+"""The motion of one mode as an initial value problem, with its guards, written as in docs/model.md.
+
+Everything counts from the state: t its time, y the slider's travel since.  The unknowns are (y, ẏ); the drive's travel
+has a closed form.  A guard is positive until its event, where it falls through zero.  One that is below zero by
+rounding at once is lifted to zero: it fires if it falls, and never if it rises.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from ...axis.layout import (
+    CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, DEFLECTION, DIRECTION, EXCESS, F, FRACTION, INPUT_F_RATE, INPUT_V_RATE,
+    INPUT_WAVES, KNOTS, MASS, MODE, NORMAL, PIECE, RESIDUAL, REST, SECOND, SPRING, STATE_SIZE, STIFFNESS, V, VELOCITY,
+    WAVE_INPUTS,
+)
+from ...axis.motion import (
+    ACCELERATING, COASTING, STICK, friction_line, is_rigid_stick, knot_speed, piece_above, static_limit,
+)
+from ...axis.transitions import ACCELERATE, ARREST, BREAKAWAY, COAST, DECELERATE, KNOT
+from ...linear.waves import TURN, phase_at
+
+_STEPS_PER_WAVE = 8.0
+
+
+class Inputs:
+    """v(t), F_e(t) and the drive's travel from the time of a state on."""
+
+    def __init__(self, s: Any) -> None:
+        self._waves = []
+        v, f = float(s[V]), float(s[F])
+        for at in range(STATE_SIZE, STATE_SIZE + int(s[INPUT_WAVES]), WAVE_INPUTS):
+            phase = TURN * float(phase_at(s[at], s[at + 1], s[SECOND], s[FRACTION]))
+            self._waves.append((TURN * float(s[at]), phase, float(s[at + 2]), float(s[at + 3])))
+            v -= float(s[at + 2]) * math.sin(phase)
+            f -= float(s[at + 3]) * math.sin(phase)
+        self._v, self._v_rate, self._f, self._f_rate = v, float(s[INPUT_V_RATE]), f, float(s[INPUT_F_RATE])
+
+    @property
+    def longest_step(self) -> float:
+        """The longest step that does not pass over a wave, s."""
+        fastest = max((omega for omega, _, _, _ in self._waves), default=0.0)
+        return 2.0 * math.pi / fastest / _STEPS_PER_WAVE if fastest > 0.0 else math.inf
+
+    def at(self, t: float) -> tuple[float, float]:
+        """Return v and F_e."""
+        v, f = self._v + self._v_rate * t, self._f + self._f_rate * t
+        for omega, phase, of_drive, of_force in self._waves:
+            wave = math.sin(omega * t + phase)
+            v += of_drive * wave
+            f += of_force * wave
+        return v, f
+
+    def travel(self, t: float) -> float:
+        """Return the drive's travel: of a wave it is A t sin(φ + ω t/2) times sin(ω t/2)/(ω t/2)."""
+        travel = (self._v + 0.5 * self._v_rate * t) * t
+        for omega, phase, of_drive, _ in self._waves:
+            half = 0.5 * omega * t
+            travel += of_drive * t * math.sin(phase + half) * (math.sin(half) / half if half != 0.0 else 1.0)
+        return travel
+
+
+class Motion:
+    """One mode from a state on; `law` is a smooth mu_k, or None for the piece of the table that the state is on."""
+
+    def __init__(self, p: Any, s: Any, law: Any) -> None:
+        self._p, self._law = p, law
+        self.inputs = Inputs(s)
+        self._mass, self._normal = float(p[MASS]), float(p[NORMAL])
+        self._stiffness, self._damping = float(p[STIFFNESS]), float(p[DAMPING])
+        self._contact = (float(p[CONTACT_STIFFNESS]), float(p[CONTACT_DAMPING]))
+        self._spring, self._u, self._deflection = float(s[SPRING]), float(s[VELOCITY]), float(s[DEFLECTION])
+        self._mode, self._direction, self._rest = float(s[MODE]), float(s[DIRECTION]), float(s[REST])
+        self._excess, self._residual, self._piece = float(s[EXCESS]), float(s[RESIDUAL]), int(s[PIECE])
+        self._stands = bool(is_rigid_stick(p, s))
+        mu, slope, psi, psi_slope = friction_line(p, self._piece, 0.0)
+        self._line = (float(mu), float(slope), float(psi), float(psi_slope))
+
+    def rates(self, t: float, state: Sequence[float]) -> tuple[float, float]:
+        """Return ẏ and ÿ."""
+        y, u = state
+        if self._stands:
+            return 0.0, 0.0
+        if self._mode == COASTING:
+            return self._u, 0.0
+        if self._mode == STICK:
+            return u, (self._applied(t, y, u) - self._contact_force(y, u)) / self._mass
+        residual = self._residual_of(t, y, u) - (self._band(u) if self._mode == ACCELERATING else 0.0)
+        return u, self._direction * residual / self._mass
+
+    def friction(self, t: float, state: Sequence[float]) -> float:
+        """Return the friction force, N."""
+        applied = self._applied(t, *state)
+        return applied - self._mass * self.rates(t, state)[1]
+
+    def coasting_residual(self, t: float, state: Sequence[float]) -> float:
+        """Return R while it coasts, N."""
+        moved = self._applied(t, *state) - self._applied(0.0, 0.0, self._u)
+        return self._residual + self._direction * moved
+
+    def guards(self) -> list[tuple[float, Callable[..., float]]]:
+        """Return the kind of each event that can end the mode, with its guard, as `solve_ivp` wants them."""
+        found: list[tuple[float, Callable[..., float]]]
+        if self._mode == STICK:
+            found = [(BREAKAWAY, self._hold)]
+        elif self._mode == COASTING:
+            found = [(ACCELERATE, self._below_upper), (DECELERATE, self.coasting_residual)]
+        elif self._mode == ACCELERATING:
+            found = [(COAST, self._pull)]
+            if self._law is None and self._piece + 1 < self._p[KNOTS]:
+                found.append((KNOT, self._below_knot))
+        else:
+            found = [(COAST, self._brake)]
+            found.append((ARREST if self._law is not None or self._piece == 0 else KNOT, self._above_knot))
+        return [(kind, _falling(guard, (0.0, self._u))) for kind, guard in found]
+
+    def _applied(self, t: float, y: float, u: float) -> float:
+        v, f = self.inputs.at(t)
+        return self._stiffness * (self._spring + self.inputs.travel(t) - y) + self._damping * (v - u) + f
+
+    def _contact_force(self, y: float, u: float) -> float:
+        return self._contact[0] * (self._deflection + y) + self._contact[1] * u
+
+    def _residual_of(self, t: float, y: float, u: float) -> float:
+        return self._direction * self._applied(t, y, u) - self._normal * self._coefficient(self._direction * u)
+
+    def _coefficient(self, speed: float) -> float:
+        if self._law is None:
+            return self._line[0] + self._line[1] * speed
+        if speed < 0.0:   # within a step that passes standstill: continued smoothly
+            return 2.0 * self._law.coefficient(0.0) - self._law.coefficient(-speed)
+        return self._law.coefficient(speed)
+
+    def _band(self, u: float) -> float:
+        speed = self._direction * u
+        psi = self._line[2] + self._line[3] * speed
+        if self._law is not None:
+            psi = float(friction_line(self._p, piece_above(self._p, speed), speed)[2])
+        return self._normal * self._excess * psi
+
+    def _hold(self, t: float, state: Sequence[float]) -> float:
+        force = self._applied(t, *state) if self._stands else self._contact_force(*state)
+        return self._normal * float(static_limit(self._p, self._rest + t)) - abs(force)
+
+    def _below_upper(self, t: float, state: Sequence[float]) -> float:
+        return self._band(self._u) - self.coasting_residual(t, state)
+
+    def _pull(self, t: float, state: Sequence[float]) -> float:
+        return self._residual_of(t, *state) - self._band(state[1])
+
+    def _brake(self, t: float, state: Sequence[float]) -> float:
+        return -self._residual_of(t, *state)
+
+    def _below_knot(self, _: float, state: Sequence[float]) -> float:
+        return float(knot_speed(self._p, self._piece + 1)) - self._direction * state[1]
+
+    def _above_knot(self, _: float, state: Sequence[float]) -> float:
+        return self._direction * state[1] - (float(knot_speed(self._p, self._piece)) if self._law is None else 0.0)
+
+
+def _falling(guard: Callable[..., float], start: tuple[float, float]) -> Callable[..., float]:
+    lift = min(guard(0.0, start), 0.0)
+
+    def lifted(t: float, state: Sequence[float]) -> float:
+        return guard(t, state) - lift
+
+    lifted.terminal = True    # type: ignore[attr-defined]
+    lifted.direction = -1.0   # type: ignore[attr-defined]
+    return lifted

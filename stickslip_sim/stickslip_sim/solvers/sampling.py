@@ -1,0 +1,26 @@
+"""The row of a sample, for solvers that step."""
+
+from ..axis.layout import COMPLIANT, DEFLECTION, DIRECTION, DRIVE, MODE, NORMAL, ORIGIN, POSITION, REST, SPRING
+from ..axis.motion import STICK, drive_force
+from ..compiled import compiled
+
+
+@compiled
+def write_sample(p, s, second, fraction, t, y, u, a, drive, v, force, friction, out):
+    """Fill a row (`words.Sample` names the columns): t, travel y and drive travel since the state s, the rest at t."""
+    stuck = s[MODE] == STICK
+    out[0] = second
+    out[1] = fraction
+    out[2] = s[MODE]
+    out[3] = s[DIRECTION]
+    out[4] = s[ORIGIN] + (s[POSITION] + y)
+    out[5] = u
+    out[6] = a
+    out[7] = s[ORIGIN] + (s[DRIVE] + drive)
+    out[8] = v
+    out[9] = drive_force(p, s[SPRING] + (drive - y), v, u)
+    out[10] = force
+    out[11] = friction
+    out[12] = abs(friction) / p[NORMAL] if p[NORMAL] > 0.0 else 0.0
+    out[13] = s[DEFLECTION] + y if stuck and p[COMPLIANT] != 0.0 else 0.0
+    out[14] = s[REST] + t if stuck else 0.0
