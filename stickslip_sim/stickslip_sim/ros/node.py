@@ -18,7 +18,7 @@ from ..recording import topics as names
 from ..scene.model import Scene
 from ..simulator import Simulator
 from . import conversion, reports
-from .commands import CommandSlot
+from ..commands import CommandSlot
 from .loop import StepLoop
 from .outlet import Outlet
 from .parameters import SceneNode

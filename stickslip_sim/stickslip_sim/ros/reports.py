@@ -10,7 +10,7 @@ from stickslip_msgs.msg import StepTiming
 
 from ..pacing import Account
 from ..words import Event, EventKind
-from .commands import CommandSlot
+from ..commands import CommandSlot
 from .conversion import set_stamp
 from .loop import StepLoop
 from .recordings import Recordings

@@ -9,7 +9,7 @@ from ..pacing import Account
 from ..receipt import receipt_of
 from ..scene.model import Scene
 from ..simulator import Simulator
-from .commands import CommandSlot
+from ..commands import CommandSlot
 from .outlet import Outlet
 
 
