@@ -43,6 +43,11 @@ class LinearMode:
             one, two = (_integrated(rate, order, mpf(t)) for rate in self._rates)
             return ((one - two) / (self._rates[0] - self._rates[1])).real
 
+    def growth(self, t: Number) -> Number:
+        """Return by how much the size of a free motion has grown or shrunk at t."""
+        with workdps(DIGITS):
+            return exp(max(rate.real for rate in self._rates) * t)
+
     def response(self, jumps: Iterable[Jump], t: Number) -> tuple[Number, Number]:
         """Return x and x′ at t, from rest at 0."""
         with workdps(DIGITS):

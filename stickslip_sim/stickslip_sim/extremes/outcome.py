@@ -30,7 +30,7 @@ class Setup(NamedTuple):
 
 
 class Finding(NamedTuple):
-    """What was measured: `figure` says it in words; `first_miss` how to see the first case that went wrong."""
+    """What was measured: `figure` says it in words; `examples` hold the first miss of each kind."""
 
     figure: str
     passed: bool
@@ -38,7 +38,7 @@ class Finding(NamedTuple):
     worst: float
     limit: float
     misses: int
-    first_miss: str = ''
+    examples: tuple[str, ...] = ()
 
 
 class Extreme(NamedTuple):
@@ -73,7 +73,7 @@ class Tally:
     def __init__(self, limit: float, unit: str = '') -> None:
         self.limit, self.unit = limit, unit
         self.cases, self.misses, self.worst = 0, 0, 0.0
-        self.first_miss = ''
+        self._examples: dict[str, str] = {}
 
     def judge(self, case: Callable[..., float], *given: object) -> None:
         """Run a case, which returns its error or raises; whatever it raises is a miss."""
@@ -86,10 +86,10 @@ class Tally:
             self.worst = max(self.worst, error)
         except Exception as reason:
             self.misses += 1
-            if not self.first_miss:
+            if case.__name__ not in self._examples:
                 shown = ', '.join(repr(value) for value in given if not isinstance(value, Solver))
-                text = f'{case.__name__}({shown}): {type(reason).__name__}: {reason}'
-                self.first_miss = text if len(text) <= _SHOWN else text[:_SHOWN] + '…'
+                text = f'{case.__name__.strip("_")}: {_told(reason)}; with {shown}'
+                self._examples[case.__name__] = text if len(text) <= _SHOWN else text[:_SHOWN] + '…'
 
     def finding(self, what: str = 'wrong', extra: str = '', *, kept: bool = True) -> Finding:
         """Return the figures; `kept` is a further mark that `extra` speaks of."""
@@ -99,11 +99,16 @@ class Tally:
         if extra:
             parts.append(extra)
         passed = self.cases > 0 and self.misses == 0 and kept
-        return Finding('; '.join(parts), passed, self.cases, self.worst, self.limit, self.misses, self.first_miss)
+        return Finding('; '.join(parts), passed, self.cases, self.worst, self.limit, self.misses,
+                       tuple(self._examples.values()))
 
     @property
     def _unit(self) -> str:
         return f' {self.unit}' if self.unit else ''
+
+
+def _told(reason: Exception) -> str:
+    return str(reason) if isinstance(reason, Missed) else f'{type(reason).__name__}: {reason}'
 
 
 def check(condition: object, what: str) -> None:
