@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from .axis import Axis, InitialState, check_start, pack
-from .axis.layout import EVENT_SIZE, ITERATIONS, SAMPLE_SIZE, STATE_SIZE
+from .axis.layout import EVENT_SIZE, ITERATIONS, SAMPLE_SIZE, STATE_SIZE, WAVE_SIZE
 from .compiled import IS_COMPILED
 from .courses import Course, constant
 from .errors import SolverError
@@ -32,7 +32,7 @@ class Simulator:
         self._courses = (drive, force)
         self._axis = axis
         self._parameters = _numbers(pack(axis))
-        self._state = _numbers([0.0] * STATE_SIZE)
+        self._state = _numbers([0.0] * (STATE_SIZE + WAVE_SIZE * (len(drive.waves) + len(force.waves))))
         self._row = _numbers([0.0] * SAMPLE_SIZE)
         self._table = _table(_ROWS, EVENT_SIZE)
         self.reset()
@@ -145,11 +145,11 @@ class Simulator:
 
 
 def _waves(drive: Course, force: Course) -> Any:
-    """Return the waves of both courses as `solvers.Solver` wants them."""
+    """Return the waves of both courses as `solvers.Solver` wants them, without those that are nothing."""
     of_drive = [(wave.frequency, wave.phase, wave.amplitude, 0.0) for wave in drive.waves]
     of_force = [(wave.frequency, wave.phase, 0.0, wave.amplitude) for wave in force.waves]
     return _numbers([number for frequency, phase, v, f in of_drive + of_force
-                     for number in (frequency, 0.5 * phase / math.pi, v, f)])
+                     if v != 0.0 or f != 0.0 for number in (frequency, 0.5 * phase / math.pi, v, f)])
 
 
 def _numbers(values: Any) -> Any:

@@ -28,7 +28,15 @@ GAMMA, OMEGA2, NU, SLOW, FAST, JERK, SNAP = range(18, 25)
 NEXT, NEXT_KIND, SEARCHED = range(25, 28)
 ITERATIONS = 28                         # of all searches for events so far
 ORIGIN = 29                             # m, where the run began: POSITION and DRIVE count from there
-STATE_SIZE = 30
+# waves: how many, the inputs at the anchor without them, and up to where a search for an event has come
+WAVES, BASE_V, BASE_F, PROGRESS = range(30, 34)
+STATE_SIZE = 34
+
+# then a record for each wave, the first numbers as they are given: frequency Hz, phase turns, amplitudes m/s and N; at
+# the anchor its phase in turns, sine and cosine of that, and its pull in N/s (see `waves`)
+WAVE_FREQUENCY, WAVE_PHASE, WAVE_V, WAVE_F, WAVE_TURNS, WAVE_SINE, WAVE_COSINE, WAVE_PULL_RE, WAVE_PULL_IM = range(9)
+WAVE_INPUTS = 4
+WAVE_SIZE = 9
 
 # a row of the event table; words.Event has the same order
 (EVENT_SECOND, EVENT_FRACTION, EVENT_KIND, EVENT_MODE, EVENT_DIRECTION, EVENT_POSITION, EVENT_VELOCITY, EVENT_DRIVE,

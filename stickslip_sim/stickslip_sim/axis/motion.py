@@ -9,7 +9,8 @@ Every mode is m y″ + (h + …) y′ + (c + …) y = polynomial of the time, y 
 | slip             | h + N b        | c             | c w₀ + h v + F_e − N (mu − b ẋ₀)      |
 | coasting         | y′ constant    |               |                                       |
 
-with w = s − x, and b the slope of the friction branch on the present piece of the table.
+with w = s − x, and b the slope of the friction branch on the present piece of the table.  Sines in v and F_e add their
+own answer, see `waves`.
 """
 
 from ..compiled import compiled
@@ -17,11 +18,12 @@ from ..friction.static import static_coefficient
 from ..linear.oscillator import integrals, oscillator
 from ..words import Mode
 from .layout import (
-    ACCELERATION, BRANCHES, COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, DEFLECTION, DIRECTION, DRIVE,
+    ACCELERATION, BASE_V, BRANCHES, COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, DEFLECTION, DIRECTION, DRIVE,
     END_SLOPE, EXCESS, F, FAST, FRACTION, F_RATE, GAMMA, JERK, KNOTS, KNOT_SIZE, MASS, MODE, NORMAL, NU, OMEGA2, PIECE,
     POSITION, REST, SECOND, SLOW, SNAP, SPRING, STATIC_EXPONENT, STATIC_INITIAL, STATIC_LAW, STATIC_LIMIT, STATIC_TAU,
-    STIFFNESS, TABLE, V, VELOCITY, V_RATE,
+    STIFFNESS, TABLE, V, VELOCITY, V_RATE, WAVES,
 )
+from .waves import begin_waves, move_waves, wave_drive_travel, wave_travel
 
 # floats: numba would compile a function anew for every integer constant that it is called with
 STICK = float(Mode.STICK)
@@ -89,6 +91,10 @@ def kinetic_at_rest(p):
 @compiled
 def begin_motion(p, s):
     """Set the closed form of the motion from the anchor on."""
+    v = s[V]
+    if s[WAVES] != 0.0:
+        begin_waves(p, s)
+        v = s[BASE_V]
     mode = s[MODE]
     damping, stiffness, contact = p[DAMPING], p[STIFFNESS], 0.0
     if mode == COASTING or is_rigid_stick(p, s):
@@ -103,7 +109,7 @@ def begin_motion(p, s):
         damping += p[NORMAL] * slope
     osc = oscillator(0.5 * damping / p[MASS], (stiffness + contact) / p[MASS])
     s[GAMMA], s[OMEGA2], s[NU], s[SLOW], s[FAST] = osc
-    pull = stiffness * (s[V] - s[VELOCITY]) + p[DAMPING] * s[V_RATE] + s[F_RATE]
+    pull = stiffness * (v - s[VELOCITY]) + p[DAMPING] * s[V_RATE] + s[F_RATE]
     s[JERK] = (pull - contact * s[VELOCITY]) / p[MASS]
     s[SNAP] = stiffness * s[V_RATE] / p[MASS]
 
@@ -122,15 +128,22 @@ def travel(p, s, t):
     if is_rigid_stick(p, s):
         return 0.0, 0.0, 0.0
     u, a, jerk, snap = s[VELOCITY], s[ACCELERATION], s[JERK], s[SNAP]
-    g, rate, first, second, third = integrals(oscillator_of(s), t)
-    return (u * t + a * first + jerk * second + snap * third,
-            u + a * g + jerk * first + snap * second,
-            a * rate + jerk * g + snap * first)
+    osc = oscillator_of(s)
+    g, rate, first, second, third = integrals(osc, t)
+    y = u * t + a * first + jerk * second + snap * third
+    velocity = u + a * g + jerk * first + snap * second
+    acceleration = a * rate + jerk * g + snap * first
+    if s[WAVES] != 0.0:
+        more = wave_travel(p, s, osc, t, g, rate, first)
+        return y + more[0], velocity + more[1], acceleration + more[2]
+    return y, velocity, acceleration
 
 
 @compiled
 def drive_travel(s, t):
     """Return how far the drive moves within t after the anchor."""
+    if s[WAVES] != 0.0:
+        return (s[BASE_V] + 0.5 * s[V_RATE] * t) * t + wave_drive_travel(s, t)
     return (s[V] + 0.5 * s[V_RATE] * t) * t
 
 
@@ -151,6 +164,8 @@ def move_anchor(p, s, second, fraction, t):
     s[F] += s[F_RATE] * t
     s[SECOND] = second
     s[FRACTION] = fraction
+    if s[WAVES] != 0.0:
+        move_waves(s, t)
 
 
 @compiled

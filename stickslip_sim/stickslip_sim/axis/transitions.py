@@ -11,11 +11,13 @@ from .layout import (
     EVENT_DRIVE, EVENT_DRIVE_FORCE, EVENT_FRACTION, EVENT_FRICTION, EVENT_KIND, EVENT_MODE, EVENT_POSITION, EVENT_REST,
     EVENT_SECOND, EVENT_STATIC, EVENT_VELOCITY, EXCESS, F, FRACTION, F_RATE, MASS, MODE, NORMAL, ORIGIN, PIECE,
     POSITION, RESIDUAL, REST, SECOND, SPRING, STIFFNESS, V, VELOCITY, V_RATE,
+    WAVES,
 )
 from .motion import (
     ACCELERATING, COASTING, DECELERATING, STICK, contact_force, drive_force, friction_force, friction_line,
     has_branches, is_rigid_stick, kinetic_at_rest, knot_speed, piece_above, piece_below, static_limit,
 )
+from .waves import forced_rate
 
 BREAKAWAY = float(EventKind.BREAKAWAY)
 COAST = float(EventKind.COAST)
@@ -62,6 +64,8 @@ def write_event(p, s, events, row, kind, direction, friction):
 @compiled
 def force_rate(p, s):
     """Return the rate of F_d + F_e at constant velocity, and the rate's rate; within rounding of 0 the first is 0."""
+    if s[WAVES] != 0.0:
+        return forced_rate(p, s)
     pushed = p[DAMPING] * s[V_RATE] + s[F_RATE]
     rate = p[STIFFNESS] * (s[V] - s[VELOCITY]) + pushed
     if abs(rate) <= _ROUNDING * (p[STIFFNESS] * (abs(s[V]) + abs(s[VELOCITY])) + abs(pushed)):

@@ -11,7 +11,8 @@ import math
 
 from ...axis.layout import (
     COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DEFLECTION, DIRECTION, DRIVE, F, FRACTION, F_RATE, MODE, NEXT,
-    NEXT_KIND, NORMAL, ORIGIN, POSITION, REST, SEARCHED, SECOND, SPRING, STATE_SIZE, V, VELOCITY, V_RATE,
+    NEXT_KIND, NORMAL, ORIGIN, POSITION, PROGRESS, REST, SEARCHED, SECOND, SPRING, STATE_SIZE, V, VELOCITY, V_RATE,
+    WAVES,
 )
 from ...axis.motion import (
     COASTING, STICK, begin_motion, drive_force, drive_travel, friction_force, friction_line, move_anchor, piece_above,
@@ -21,6 +22,7 @@ from ...axis.transitions import (
     ARREST, BREAKAWAY, KNOT, applied_force, apply_inputs, arrest, choose_slip, cross_knot, force_rounding, leave_coast,
     release, turn,
 )
+from ...axis.waves import inputs_at, load_waves, same_waves
 from ...compiled import compiled
 from .. import DONE, FULL, NO_PROGRESS
 from .search import find_event
@@ -37,6 +39,7 @@ def start(p, s, position, velocity, rest, v, v_rate, f, f_rate, waves, events, r
     s[VELOCITY] = velocity
     s[REST] = rest
     s[V], s[V_RATE], s[F], s[F_RATE] = v, v_rate, f, f_rate
+    load_waves(s, waves)
     s[MODE] = STICK
     if velocity == 0.0:
         row = _apply(p, s, events, row)
@@ -58,7 +61,7 @@ def advance(p, s, second, fraction, events, row):
     while True:
         t = (second - s[SECOND]) + (fraction - s[FRACTION])
         if s[SEARCHED] < t:
-            find_event(p, s, max(t, 2.0 * s[SEARCHED]))
+            find_event(p, s, t)
         due = s[NEXT]
         if due > t:
             return row, DONE
@@ -79,11 +82,16 @@ def advance(p, s, second, fraction, events, row):
 
 @compiled
 def set_inputs(p, s, second, fraction, v, v_rate, f, f_rate, waves, events, row):
-    """Let the inputs be v + v_rate t and f + f_rate t from a time on, up to which the state was advanced."""
-    if (s[V] == v and s[F] == f and s[V_RATE] == 0.0 and s[F_RATE] == 0.0 and v_rate == 0.0 and f_rate == 0.0):
+    """Let the inputs be v + v_rate t, f + f_rate t and waves from a time on, up to which the state was advanced."""
+    steady = s[V_RATE] == 0.0 and s[F_RATE] == 0.0 and v_rate == 0.0 and f_rate == 0.0
+    if s[WAVES] == 0.0 and len(waves) == 0:
+        if steady and s[V] == v and s[F] == f:
+            return row
+    elif steady and same_waves(s, v, f, waves):
         return row
     _anchor_at(p, s, second, fraction)
     s[V], s[V_RATE], s[F], s[F_RATE] = v, v_rate, f, f_rate
+    load_waves(s, waves)
     row = _apply(p, s, events, row)
     _begin(p, s)
     return row
@@ -112,6 +120,8 @@ def sample(p, s, second, fraction, out):
     drive = drive_travel(s, t)
     v = s[V] + s[V_RATE] * t
     force = s[F] + s[F_RATE] * t
+    if s[WAVES] != 0.0:
+        v, force = inputs_at(s, second, fraction, t)
     pull = drive_force(p, s[SPRING] + (drive - y), v, u)
     stuck = s[MODE] == STICK
     deflection = s[DEFLECTION] + y if stuck else 0.0
@@ -137,6 +147,7 @@ def sample(p, s, second, fraction, out):
 def _begin(p, s):
     begin_motion(p, s)
     s[SEARCHED] = -1.0
+    s[PROGRESS] = 0.0
     s[NEXT] = math.inf
 
 

@@ -6,25 +6,32 @@ No guard is scanned; `linear.roots` gives the arguments why none of its roots ca
   sign of (speed − knot) at that time decides whether the knot, or standstill, is reached before.
 * Coasting: the residual force is a polynomial of the time.
 * Stick: `static_guards` for a rigid contact, `compliant_stick` for a compliant one.
+* Any mode under sines: `forced`.
 """
 
 import math
 
 from ...axis.layout import (
     ACCELERATION, COMPLIANT, DIRECTION, JERK, KNOTS, MODE, NEXT, NEXT_KIND, PIECE, RESIDUAL, SEARCHED, SNAP, VELOCITY,
+    WAVES,
 )
 from ...axis.motion import ACCELERATING, COASTING, STICK, knot_speed, oscillator_of
 from ...axis.transitions import ACCELERATE, ARREST, BREAKAWAY, COAST, DECELERATE, KNOT, band_of, force_rate
 from ...compiled import compiled
 from ...linear.roots import first_crossing, first_passage
 from .compliant_stick import compliant_stick
+from .forced import forced_event
 from .static_guards import rigid_stick
 
 
 @compiled
-def find_event(p, s, horizon):
-    """Set the next event of the mode at the anchor, searched up to `horizon` (s after the anchor) at least."""
+def find_event(p, s, due):
+    """Set the next event of the mode at the anchor, searched up to `due` (s after the anchor) at least."""
+    if s[WAVES] != 0.0:
+        forced_event(p, s, due)
+        return
     mode = s[MODE]
+    horizon = max(due, 2.0 * s[SEARCHED])
     s[SEARCHED] = horizon
     if mode == COASTING:
         _coasting(p, s)
