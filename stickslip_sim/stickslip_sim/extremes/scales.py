@@ -26,8 +26,9 @@ def late_far_slow_fast(setup: Setup) -> Finding:
             tally.judge(_late_and_far, setup.solver, contact, feed)
             if contact == RIGID:
                 tally.judge(_first_break_away, setup.solver, feed)
-        for feed in setup.choose((1e-9, 1e-7, 1e-5, 1e-3, 0.1), (1e-9,)):
-            tally.judge(_slow_against_the_reference, setup.solver, contact, feed)
+        for feed in setup.choose((1e-9, 1e-7, 1e-5, 1e-3, 0.1, 1.0), (1e-9, 1e-3)):
+            if contact == RIGID or feed >= 1e-3:   # the reference goes through every swing of a contact that rings
+                tally.judge(_slow_against_the_reference, setup.solver, contact, feed)
     for seed in range(setup.count(100, 5)):
         tally.judge(_late_and_far_in_parts, setup.solver, seed)
     return tally.finding()
@@ -52,8 +53,9 @@ def _late_and_far(solver: Solver, contact: Contact, feed: float) -> float:
 
 def _events(solver: Solver, contact: Contact, drive: Course, place: float, begin: float, length: float) -> list[Event]:
     simulator = make(paper_axis(contact), drive, initial=InitialState(position=place), solver=solver)
-    check(simulator.advance(Instant(begin, 0.0)) == [], 'an event during the hold')
-    return simulator.advance(Instant(begin + length, 0.0))
+    events = simulator.advance(Instant(begin, 0.0))
+    check(all(event.instant == (begin, 0.0) for event in events), 'an event during the hold')
+    return events + simulator.advance(Instant(begin + length, 0.0))
 
 
 def _first_break_away(solver: Solver, feed: float) -> float:
