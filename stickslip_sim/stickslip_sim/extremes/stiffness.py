@@ -9,10 +9,12 @@ from ..courses import constant
 from ..solvers import Solver
 from ..words import Event
 from .against import error_of_run
+from .chain import error_of_chain
 from .outcome import Finding, Setup, Tally
 from .runs import instant, make, paper_axis
 
 _STIFFENED = (1.0, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9)
+_FEED = 0.004   # m/s
 _COST = 3.0   # times the ordinary cost of an event
 
 
@@ -23,6 +25,8 @@ def stiff_contacts(setup: Setup) -> Finding:
              for damper in setup.choose((0.0, 1.0, 1e6), (0.0, 1e6))]
     cases += [_axis(1.0, 1.0, mass) for mass in (1e-3, 1e6)]
     for axis in cases:
+        tally.judge(_equals_closed_forms, setup.solver, axis)
+    for axis in (_axis(1.0, 0.0, 350.0), _axis(1.0, 1.0, 1e6), *setup.choose((_axis(1e3, 1.0, 350.0),), ())):
         tally.judge(_equals_the_reference, setup.solver, axis)
     if not setup.full:   # a figure of time belongs to a quiet machine
         return tally.finding()
@@ -37,15 +41,21 @@ def _axis(stiffer: float, damper: float, mass: float) -> Axis:
     return replace(paper_axis(contact), mass=mass)
 
 
+def _equals_closed_forms(solver: Solver, axis: Axis) -> float:
+    duration = 20.0 if axis.mass > 1e5 else 1.5
+    events = make(axis, _FEED, solver=solver).advance(instant(duration))
+    return error_of_chain(axis, _FEED, events, duration)
+
+
 def _equals_the_reference(solver: Solver, axis: Axis) -> float:
-    return error_of_run(axis, InitialState(), constant(0.004), constant(0.0), 1.5, solver)
+    return error_of_run(axis, InitialState(), constant(_FEED), constant(0.0), 1.5, solver)
 
 
 def _cost(solver: Solver, axis: Axis) -> float:
     """Return the CPU seconds of an event, the median of several runs."""
     costs = []
     for _ in range(7):
-        simulator = make(axis, 0.004, solver=solver)
+        simulator = make(axis, _FEED, solver=solver)
         begin, events = time.process_time(), list[Event]()
         while len(events) < 400 and simulator.time.seconds < 1e4:
             events += simulator.advance(instant(simulator.time.seconds + 50.0))
