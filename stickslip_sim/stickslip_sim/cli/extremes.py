@@ -9,7 +9,7 @@ import click
 from .files import check_file, write_text
 
 if TYPE_CHECKING:
-    from ..extremes.outcome import Outcome
+    pass
 
 _FORMATS = ('.json', '.md')
 
@@ -25,7 +25,7 @@ def extremes(only: str | None, quick: bool, out: str | None) -> None:
     from ..errors import VerdictError
     from ..extremes.outcome import Setup
     from ..extremes.suite import chosen, judged
-    from ..extremes.tables import headline, json_text, markdown_lines, row
+    from ..extremes.tables import headline, json_text, markdown_text, row
 
     selected = chosen([number.strip().upper() for number in only.split(',')] if only is not None else [])
     print(headline())
@@ -38,7 +38,7 @@ def extremes(only: str | None, quick: bool, out: str | None) -> None:
         print('\n'.join(row(outcome)), flush=True)
         outcomes.append(outcome)
     if out is not None:
-        text = json_text(outcomes, quick) if out.endswith('.json') else '\n'.join(markdown_lines(outcomes, quick)) + '\n'
+        text = json_text(outcomes, quick) if out.endswith('.json') else markdown_text(outcomes, quick)
         write_text(out, [text])
     missed = [outcome.number for outcome in outcomes if not outcome.passed]
     if missed:

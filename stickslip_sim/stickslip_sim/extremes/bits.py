@@ -31,10 +31,11 @@ def mirrored_and_scaled(setup: Setup) -> Finding:
 def _mirrored(solver: Solver, seed: int) -> float:
     rng = random.Random(seed)
     axis, (drive, force) = random_axis(rng), random_courses(rng)
+    events = run(axis, drive, 3.0, force, solver=solver)
     images = run(axis, scaled(drive, -1.0), 3.0, scaled(force, -1.0), solver=solver)
     _check_equal(images, (e._replace(
         direction=-e.direction, position=-e.position, velocity=-e.velocity, drive_position=-e.drive_position,
-        drive_force=-e.drive_force, friction_force=-e.friction_force) for e in run(axis, drive, 3.0, force, solver=solver)))
+        drive_force=-e.drive_force, friction_force=-e.friction_force) for e in events))
     return 0.0
 
 

@@ -15,7 +15,7 @@ from .runs import CONTACTS, Contact, instant, make, of_kind, paper_axis, run, wi
 
 
 def coasting(setup: Setup) -> Finding:
-    """X4: the peak speed stays below v_gr, where the branches are apart; the run is the reference's, however stepped."""
+    """X4: the peak speed stays below v_gr, where the branches are apart; the run is the reference's."""
     tally = Tally(1e-12)
     for contact in CONTACTS:
         for speed in setup.choose((0.0005, 0.001, 0.002, 0.003, 0.005), (0.002,)):

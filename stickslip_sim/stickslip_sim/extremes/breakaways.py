@@ -49,7 +49,7 @@ def _distance(event: Event, force: object, limit: Number, low: float, high: floa
 
 
 def at_the_limit(setup: Setup) -> Finding:
-    """X18: the applied force at the first break-away over N mu_s, less one; every law, random axes, ramps, both contacts."""
+    """X18: the force at the first break-away over N mu_s, less one; every law, random axes, both contacts."""
     tally = Tally(1e-12)
     for seed in range(setup.count(2000, 60)):
         for kind in StaticLawKind:
@@ -68,7 +68,7 @@ def _first_break(solver: Solver, kind: StaticLawKind, seed: int) -> float:
     initial = axis.friction.static.initial
     axis = with_static(axis, StaticLaw(kind, initial, initial + rng.uniform(0.01, 0.2), tau, exponent))
     rest, speed, rate = 10 ** rng.uniform(-3, 1), 10 ** rng.uniform(-4, -2), 10 ** rng.uniform(-5, -2)
-    if axis.drive_damping * speed > 0.5 * axis.normal_force * initial:   # no break-away by the start of the drive itself
+    if axis.drive_damping * speed > 0.5 * axis.normal_force * initial:   # its start alone must not break it away
         axis = replace(axis, drive_damping=0.5 * axis.normal_force * initial / speed)
     drive = ramp(speed, rate, float('inf'))
     duration = 1.0
@@ -95,15 +95,15 @@ def _excess_of_force(axis: Axis, event: Event, rest: float, speed: float, rate: 
 
 
 def _held_at_the_limit(solver: Solver, contact: Contact, side: float) -> float:
-    """A force within the limit, and one exactly on it, hold for ever; a relative 1e-12 more does not."""
+    """See that a force within the limit, and one on it, hold for ever; a relative 1e-12 more does not."""
     axis = paper_axis(contact)
     limit = side * 0.24 * axis.normal_force
     if isinstance(contact, CompliantContact):   # a step would ring over it: bring it there slowly
         limit *= 1.0 + axis.drive_stiffness / contact.stiffness   # the drive spring takes its part
         reach = 1e7
         for share, holds in ((1.0 - 1e-9, True), (1.0 + 1e-9, False)):
-            force = Course((0.0, reach), (0.0, share * limit), (share * limit / reach, 0.0))
-            check((run(axis, 0.0, 2e7, force, solver=solver) == []) == holds, f'wrong at {share!r} of the limit')
+            slow = Course((0.0, reach), (0.0, share * limit), (share * limit / reach, 0.0))
+            check((run(axis, 0.0, 2e7, slow, solver=solver) == []) == holds, f'wrong at {share!r} of the limit')
         return 0.0
     for force, holds in ((limit * (1.0 - 1e-15), True), (limit, True), (limit * (1.0 + 1e-12), False)):
         events = run(axis, 0.0, 10.0, force, solver=solver)

@@ -1,7 +1,8 @@
-"""A run judged event by event in 50 digits: from the state that one event reports, is the next where and when it says?
+"""A run judged event by event in 50 digits: each from the state that the one before reports.
 
 For contacts so stiff, or sliders so light, that the reference would go through billions of swings.  Under a constant
-drive without force.  Times: the guard of the event over its rate; positions: the closed form of the mode.
+drive without force, with the exponential static law.  Times: the guard of
+the event over its rate; positions: the closed form of the mode.
 """
 
 import math
@@ -160,7 +161,7 @@ def _check_no_peak_before(axis: Axis, drive: float, point: _Point, end: float) -
     t = np.arange(max(0.0, end - _PEAKS * step), end - 5.0 * step, step)
     start = float(_motion(axis, drive, point, mpf(0)).acceleration)
     # y″ is a free motion: y = steady + creep t + (free part), all from y″(0) and y″′(0)
-    jerk = (axis.drive_stiffness * drive - 2.0 * gamma * axis.mass * start - stiffness * float(point.velocity)) / axis.mass
+    jerk = (axis.drive_stiffness * drive - stiffness * float(point.velocity)) / axis.mass - 2.0 * gamma * start
     decay, sine, cosine = np.exp(-gamma * t), np.sin(nu * t), np.cos(nu * t)
     acceleration = decay * (start * cosine + (jerk + gamma * start) / nu * sine)
     slope = decay * (jerk * cosine - (gamma * jerk + (frequency + gamma * gamma) * start) / nu * sine)
@@ -169,8 +170,7 @@ def _check_no_peak_before(axis: Axis, drive: float, point: _Point, end: float) -
     load = axis.drive_stiffness * (float(point.stretch) + drive * t) + axis.drive_damping * drive
     shared = contact.stiffness / stiffness
     travel = (load - axis.mass * acceleration - 2.0 * gamma * axis.mass * velocity) / stiffness
-    held = contact.stiffness * float(point.deflection) * (1.0 - shared) + contact.stiffness * travel + contact.damping * velocity
+    held = (contact.stiffness * (float(point.deflection) * (1.0 - shared) + travel) + contact.damping * velocity)
     law = axis.friction.static
-    rest = [float(point.rest) + x for x in (t[:: max(1, len(t) // 1000)] if math.isfinite(float(point.rest)) else [math.inf])]
-    limits = np.interp(t, t[:: max(1, len(t) // 1000)], [law.coefficient(x) for x in rest]) if len(rest) > 1 else law.limit
+    limits = law.limit - (law.limit - law.initial) * np.exp(-(float(point.rest) + t) / law.time_constant)
     check(np.all(np.abs(held) <= axis.normal_force * limits * (1.0 + _BESIDE)), 'the limit was reached before')

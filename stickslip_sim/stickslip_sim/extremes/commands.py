@@ -65,7 +65,7 @@ def _check_refused(act: Callable[[], object], name: str) -> None:
 
 
 def _refused_time(solver: Solver, contact: Contact, bad: float) -> float:
-    """A time that is none is refused; the guard comes first, as a solver could search for ever."""
+    """See that a time that is none is refused; the guard comes first, as a solver could search for ever."""
     simulator = make(paper_axis(contact), 0.002, solver=solver)
     simulator.advance(instant(0.5))
     before = simulator.sample()
@@ -85,7 +85,7 @@ def _refused_past(solver: Solver, contact: Contact) -> float:
 
 
 def _burst(solver: Solver, contact: Contact, seed: int) -> float:
-    """A burst with duplicates and NaN within a step is as good as its last good command alone, taken at the step."""
+    """See that a burst with duplicates and NaN within a step is as good as its last good command alone."""
     rng = random.Random(seed)
     busy, quiet = (make(paper_axis(contact), 0.002, solver=solver) for _ in range(2))
     slot = CommandSlot('velocity', 'm/s', 0.1)
@@ -110,7 +110,7 @@ def _burst(solver: Solver, contact: Contact, seed: int) -> float:
 
 
 def _huge(solver: Solver, contact: Contact, huge: float) -> float:
-    """A command beyond all sense is refused, or simulated, or given up by name; afterwards a reset works."""
+    """See that a command beyond all sense is refused, simulated or given up by name, and that a reset works after."""
     simulator = make(paper_axis(contact), 0.002, solver=solver)
     simulator.advance(instant(0.5))
     for command in (simulator.command_velocity, simulator.command_force):
@@ -141,7 +141,7 @@ def _refused_by_the_slot(bad: float) -> float:
 
 
 def _refused_courses(bad: float) -> float:
-    """A course or an axis made in Python is as strict as a scene."""
+    """See that a course or an axis made in Python is as strict as a scene."""
     for make_course in (lambda: steps('drive', [0.0, bad], [0.0, 0.0]), lambda: table('drive', [0.0, bad], [0.0, 0.0])):
         _check_refused(make_course, 'drive')
     friction = paper_axis(RIGID).friction

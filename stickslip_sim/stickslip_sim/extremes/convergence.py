@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 from ..axis import InitialState
 from ..simulator import Simulator
-from ..solvers import Solver, fixed_step
+from ..solvers import Solver
 from ..words import Mode
 from .outcome import Finding, Setup, Tally, check
 from .runs import CONTACTS, RIGID, Contact, instant, make, paper_axis
@@ -66,7 +66,7 @@ def _order_across(method: str, declared: int, contact: Contact, halvings: int, m
 
 def _error(begin: _Make, method: str, step: float, end: float) -> float:
     """Return the error of the position at the end, m, against the exact solver."""
-    from ..solvers import exact
+    from ..solvers import exact, fixed_step
 
     stepped, wanted = begin(fixed_step.solver(method, step)), begin(exact.SOLVER)
     for simulator in (stepped, wanted):

@@ -8,7 +8,6 @@ events all terms are smooth, and Gauss and Legendre's rule of 12 points over a f
 
 import math
 import random
-from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -17,9 +16,9 @@ from ..axis import Axis, CompliantContact
 from ..courses import Course, constant, ramp
 from ..simulator import Simulator
 from ..solvers import Solver
-from ..words import Event, Instant, Mode, Sample
+from ..words import Instant, Mode, Sample
 from .outcome import Finding, Setup, Tally, check
-from .runs import CONTACTS, Contact, instant, make, paper_axis, random_axis
+from .runs import CONTACTS, instant, make, paper_axis, random_axis
 
 _NODES, _WEIGHTS = (tuple(map(float, part)) for part in np.polynomial.legendre.leggauss(12))
 _PANEL = 1.2   # rad of the fastest motion
@@ -35,7 +34,8 @@ def energy_balance(setup: Setup) -> Finding:
     for seed in range(setup.count(100, 5)):
         rng = random.Random(seed)
         speed = 10 ** rng.uniform(-3, -1.5)
-        tally.judge(_balances, setup.solver, random_axis(rng), rng.choice((constant(speed), ramp(0.0, speed, 2.0))), 3.0)
+        drive = rng.choice((constant(speed), ramp(0.0, speed, 2.0)))
+        tally.judge(_balances, setup.solver, random_axis(rng), drive, 3.0)
     return tally.finding('wrong')
 
 

@@ -42,7 +42,7 @@ def _grows_on_the_falling_branch(solver: Solver, step: float) -> float:
         worst = 0.0
         for k in range(1, round(0.5 / step) + 1):
             events = simulator.advance(instant(k * step))
-            check(all(event.mode != Mode.STICK and event.kind != EventKind.KNOT for event in events), 'it slips no more')
+            check(all(event.mode != Mode.STICK and event.kind != EventKind.KNOT for event in events), 'it stops')
             if k % max(1, round(0.02 / step)) == 0:
                 t = exact(*simulator.time)
                 swing = push * mode.integral(0, t) + pull * mode.integral(1, t)
@@ -120,7 +120,8 @@ def _slides_freely(solver: Solver, kind: str, seed: int) -> float:
         with workdps(DIGITS):
             mode = LinearMode(mass, mpf(damping) + mpf(normal) * mpf(slope), stiffness)
             at_rest = mpf(friction.kinetic.coefficients[0])
-            push = (mpf(damping) * (mpf(drive) - 1) + mpf(normal) * at_rest - mpf(normal) * (at_rest + mpf(slope))) / mass
+            held = mpf(normal) * (at_rest + mpf(slope))
+            push = (mpf(damping) * (mpf(drive) - 1) + mpf(normal) * at_rest - held) / mass
             pull = mpf(stiffness) * (mpf(drive) - 1) / mass
             t = mpf(to.fraction)
             terms = [[t, push * mode.integral(1, t), pull * mode.integral(2, t)],

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import NamedTuple, TypeVar
 
 from ..solvers import Solver, exact
@@ -10,11 +11,12 @@ _T = TypeVar('_T')
 _SHOWN = 300   # characters of a missed case
 
 
-class Missed(Exception):  # noqa: N818: it is a finding of the judge, not an error of the product
-    """A case went wrong, and how."""
+class Missed(Exception):  # noqa: N818
+    """A case went wrong, and how: a finding of the judge, no error of the product."""
 
 
-class Setup(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Setup:
     """How an extreme is judged: in full or in a reduced size, and which solver is on trial."""
 
     full: bool = True

@@ -58,7 +58,7 @@ def _held_by_force(solver: Solver, contact: Contact, share: float, drift: list[f
 
 
 def _held_by_drive(solver: Solver, contact: Contact, share: float, drift: list[float]) -> float:
-    """The drive pulls up to the share and stands for a year; then it goes on.  Error as above."""
+    """Let the drive pull up to the share, stand for a year and go on; error as above."""
     axis = paper_axis(contact)
     c, h, v = axis.drive_stiffness, axis.drive_damping, 1e-6 if share > 0.0 else -1e-6
     reach = float(round(share * 0.24 * axis.normal_force / (c * v)))
@@ -94,7 +94,7 @@ def _hold(simulator: Simulator, drift: list[float], reach: float) -> None:
 
 
 def _ageing(solver: Solver, contact: Contact) -> float:
-    """A contact that ages without bound holds, after a year, what the logarithmic law says; relative error of mu_s."""
+    """Return the relative error of mu_s after a year under a law that rises without bound."""
     law = StaticLaw(StaticLawKind.LOGARITHMIC, 0.12, 0.13, 0.2)
     axis = with_static(paper_axis(contact), law)
     force = Course((0.0, YEAR), (0.0, 0.0), (0.0, _RAMP))

@@ -59,7 +59,7 @@ def _events(solver: Solver, contact: Contact, drive: Course, place: float, begin
 
 
 def _first_break_away(solver: Solver, feed: float) -> float:
-    """Return the error of the first break-away of a rigid contact, at (N mu_s − h v)/(c v), s; 1e-15 of it is allowed."""
+    """Return the error of the first break-away, at (N mu_s − h v)/(c v) if rigid, s; 1e-15 of it is allowed."""
     axis = paper_axis(RIGID)
     with workdps(DIGITS):
         at = (mpf(axis.normal_force) * mpf(0.24) / mpf(feed) - axis.drive_damping) / axis.drive_stiffness

@@ -80,14 +80,14 @@ def events_inside_a_tick(setup: Setup) -> Finding:
 
 
 def _swings_in_a_tick(solver: Solver, mass: float, crowds: list[int]) -> float:
-    """A light slider without friction reverses at every half swing of its spring."""
+    """Let a light slider without friction reverse at every half swing of its spring."""
     free = Friction(StaticLaw(StaticLawKind.CONSTANT, 0.0, 0.0), KineticTable((0.0,), (0.0,)), None)
     axis = Axis(mass, 6e5, 0.0, 0.0, RIGID, free)
     return _crowded_tick(make(axis, 0.0, initial=InitialState(velocity=0.1), solver=solver), crowds, 0.1)
 
 
 def _sticks_in_a_tick(solver: Solver, contact: Contact, factor: float, crowds: list[int]) -> float:
-    """The paper's axis with all masses, loads and dampers so small that it sticks and slips within microseconds."""
+    """Make mass, load and dampers of the paper's axis so small that it sticks and slips within microseconds."""
     axis = paper_axis(contact, tau=1e-9)
     if isinstance(contact, CompliantContact):
         contact = replace(COMPLIANT, damping=COMPLIANT.damping * factor ** 0.5)

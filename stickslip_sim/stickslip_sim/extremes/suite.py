@@ -7,11 +7,11 @@ from ..errors import InputError
 from .bits import mirrored_and_scaled, run_twice
 from .branches import coasting, ringing
 from .breakaways import at_the_limit, blows
+from .commands import bad_commands
 from .convergence import orders
 from .energy import energy_balance
 from .grazing_peaks import grazing
 from .modes import edges_of_the_modes, unstable_slip
-from .commands import bad_commands
 from .outcome import Extreme, Outcome, Setup
 from .rest import rest_times, year_long_hold
 from .scales import late_far_slow_fast
@@ -53,8 +53,8 @@ EXTREMES = (
             'independent of order and ticks', meeting_events),
     Extreme('X13', 'one call, a million calls, random splits', 'results depend on the split',
             'the same events to the bit; positions within 1e-13 m', splits),
-    Extreme('X14', 'ten thousand events inside one tick', 'stops or spins', 'bounded time, a named refusal, a valid state',
-            events_inside_a_tick),
+    Extreme('X14', 'ten thousand events inside one tick', 'stops or spins',
+            'bounded time, a named refusal, a valid state', events_inside_a_tick),
     Extreme('X15', 'fixed-step solvers across events', 'order lost', 'the measured order is the declared one', orders),
     Extreme('X16', 'energy: drive work = stored + dissipated, of each cycle and over an hour', 'not reported',
             'balance <= 1e-12 of the throughput; friction never gives', energy_balance),

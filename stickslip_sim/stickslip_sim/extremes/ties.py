@@ -4,7 +4,7 @@ import math
 import random
 from collections.abc import Callable
 from dataclasses import replace
-from itertools import groupby, permutations
+from itertools import groupby, pairwise, permutations
 
 from ..axis import Axis, InitialState
 from ..courses import Course, constant, steps
@@ -42,7 +42,7 @@ def _arrives_on_the_limit(solver: Solver, seed: int) -> float:
     events = run(axis, rng.choice((-1, 1)) * 10 ** rng.uniform(-3, -1.5), 5.0, solver=solver)
     check(events, 'no event at all')
     _check_progress(events)
-    for event, after in zip(events, events[1:]):
+    for event, after in pairwise(events):
         if event.kind == EventKind.STICK:
             check(after.instant > event.instant, f'it breaks away at the instant of its arrest, t = {event.time!r} s')
     return 0.0
@@ -87,7 +87,7 @@ def meeting_events(setup: Setup) -> Finding:
 
 
 def _ticks_on_events(solver: Solver, axis: Axis) -> float:
-    """A tick on every event, one ULP before, one after: each event comes once, in the first call that reaches it."""
+    """Tick on every event, one ULP before, one after: each comes once, in the first call that reaches it."""
     events = run(axis, 0.004, 3.0, solver=solver)
     check(events, 'no events')
     for offset in (-1, 0, 1):
@@ -113,7 +113,7 @@ def _beside(at: Instant, offset: int) -> Instant:
 
 
 def _jumps_on_events(solver: Solver, axis: Axis) -> float:
-    """The force jumps at the instant of an event, or one ULP beside it: the ticks still change no bit."""
+    """Let the force jump at the instant of an event, or one ULP beside it: the ticks still change no bit."""
     for event in run(axis, 0.004, 1.5, solver=solver)[:6]:
         if event.second:
             continue
