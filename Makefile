@@ -8,7 +8,7 @@ SHELL := /bin/bash
 HERE := ros2_ws/on_this_machine
 TOOLS := ros2_ws/.venv/bin
 
-.PHONY: help build run test check bench clean
+.PHONY: help build run test check extremes bench clean
 
 help:  ## list the targets
 	@sed -nE 's/^([a-z]+):.*## (.*)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 14
@@ -26,6 +26,9 @@ check: tools  ## style, types, architecture
 	@$(TOOLS)/ruff check .
 	@$(TOOLS)/mypy
 	@PYTHONPATH=stickslip_sim $(TOOLS)/lint-imports
+
+extremes: build  ## what breaks other simulators, measured beside its mark (minutes); fails when one is missed
+	@$(HERE) python3 -m stickslip_sim extremes
 
 bench: build  ## measure the loop of the node; writes docs/loop.md (six minutes)
 	@$(HERE) --own-domain python3 benchmarks/loop.py

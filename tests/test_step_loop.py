@@ -6,9 +6,9 @@ from typing import Any
 
 import pytest
 
+from stickslip_sim.commands import CommandSlot
 from stickslip_sim.errors import SolverError
 from stickslip_sim.pacing import Grid, Pacer
-from stickslip_sim.ros.commands import CommandSlot
 from stickslip_sim.ros.loop import StepLoop
 from stickslip_sim.simulator import Simulator
 from stickslip_sim.words import Event, Instant, Sample

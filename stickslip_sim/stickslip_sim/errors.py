@@ -3,7 +3,8 @@
     StickslipError
     ├── InputError       a scene, parameter, command, file or flag is wrong
     ├── RecordingError   a run cannot be written or read
-    └── SolverError      the solver gave up
+    ├── SolverError      the solver gave up
+    └── VerdictError     what was judged did not pass
 
 Each carries one line of text for people and the exit code of the tool.
 """
@@ -38,6 +39,12 @@ class SolverError(StickslipError):
     """The solver cannot go on; the last state it reached is still valid."""
 
     exit_code = 4
+
+
+class VerdictError(StickslipError):
+    """The work was done, and its verdict is "failed" or "differs"."""
+
+    exit_code = 3
 
 
 def _short(value: object, limit: int = 80) -> str:

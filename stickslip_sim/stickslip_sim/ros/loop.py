@@ -10,11 +10,11 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from typing import NamedTuple, Protocol
 
+from ..commands import Command, CommandSlot
 from ..errors import SolverError
 from ..pacing import Grid, Pacer, wake_precisely
 from ..simulator import Simulator
 from ..words import Event, Sample
-from .commands import Command, CommandSlot
 from .timing import Window
 
 _IDLE = 0.01            # s between two looks at the requests while time stands still

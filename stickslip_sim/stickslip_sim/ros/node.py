@@ -10,6 +10,7 @@ from rclpy.parameter import Parameter
 from rclpy.serialization import serialize_message
 from std_srvs.srv import SetBool, Trigger
 
+from ..commands import CommandSlot
 from ..errors import InputError, RecordingError, SolverError
 from ..offline import warm_up
 from ..pacing import Grid, Pacer
@@ -18,7 +19,6 @@ from ..recording import topics as names
 from ..scene.model import Scene
 from ..simulator import Simulator
 from . import conversion, reports
-from .commands import CommandSlot
 from .loop import StepLoop
 from .outlet import Outlet
 from .parameters import SceneNode

@@ -8,9 +8,9 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
 from stickslip_msgs.msg import StepTiming
 
+from ..commands import CommandSlot
 from ..pacing import Account
 from ..words import Event, EventKind
-from .commands import CommandSlot
 from .conversion import set_stamp
 from .loop import StepLoop
 from .recordings import Recordings

@@ -5,11 +5,11 @@ from dataclasses import asdict
 from typing import Any
 
 from ..analysis import summary
+from ..commands import CommandSlot
 from ..pacing import Account
 from ..receipt import receipt_of
 from ..scene.model import Scene
 from ..simulator import Simulator
-from .commands import CommandSlot
 from .outlet import Outlet
 
 

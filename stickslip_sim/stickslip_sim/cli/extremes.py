@@ -1,0 +1,58 @@
+"""`stickslip extremes`: judge the engine by what breaks other simulators, and print the figures beside their marks."""
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from .files import check_file, write_text
+
+if TYPE_CHECKING:
+    pass
+
+_FORMATS = ('.json', '.md')
+
+
+@click.command()
+@click.option('--only', metavar='X1,X7', help='Judge only these.')
+@click.option('--quick', is_flag=True, help='In a reduced size, as the tests do.')
+@click.option('--out', metavar='FILE.json|FILE.md', help='Write the table to a file, too.')
+def extremes(only: str | None, quick: bool, out: str | None) -> None:
+    """Judge the engine by the twenty extremes; exit with 3 when a mark is missed."""
+    if out is not None:
+        _check_out(out)
+    from ..errors import VerdictError
+    from ..extremes.outcome import Setup
+    from ..extremes.suite import chosen, judged
+    from ..extremes.tables import headline, json_text, markdown_text, row
+
+    selected = chosen([number.strip().upper() for number in only.split(',')] if only is not None else [])
+    print(headline())
+    outcomes = []
+    coming = iter(judged(selected, Setup(full=not quick)))
+    for extreme in selected:
+        _tell(f'{extreme.number} …')
+        outcome = next(coming)
+        _tell('')
+        print('\n'.join(row(outcome)), flush=True)
+        outcomes.append(outcome)
+    if out is not None:
+        text = json_text(outcomes, quick) if out.endswith('.json') else markdown_text(outcomes, quick)
+        write_text(out, [text])
+    missed = [outcome.number for outcome in outcomes if not outcome.passed]
+    if missed:
+        raise VerdictError(f'{len(missed)} of {len(outcomes)} extremes missed: {", ".join(missed)}')
+
+
+def _check_out(out: str) -> None:
+    from ..errors import InputError
+    if Path(out).suffix not in _FORMATS:
+        raise InputError('--out', out, 'a file ending in .json or .md', 'name it so')
+    check_file('--out', out)
+
+
+def _tell(text: str) -> None:
+    """Say on a terminal what is going on; an empty text takes it away."""
+    if sys.stderr.isatty():
+        print(f'\r\x1b[K{text}', end='', file=sys.stderr, flush=True)

@@ -1,0 +1,154 @@
+"""X17: commands that no axis can follow, and those that come late, twice or in a burst."""
+
+import math
+import random
+from collections.abc import Callable
+
+from ..axis import Axis, InitialState
+from ..commands import CommandSlot
+from ..courses import ramp, steps, table
+from ..errors import InputError, StickslipError
+from ..friction import KineticTable, StaticLaw, StaticLawKind
+from ..scene import load_scene
+from ..simulator import Simulator
+from ..solvers import Solver
+from ..words import Event, Instant
+from .outcome import Finding, Setup, Tally, check
+from .runs import CONTACTS, RIGID, Contact, instant, make, paper_axis
+
+_BAD = (math.nan, math.inf, -math.inf)
+_PARAMETERS = (
+    'axis.mass', 'axis.drive_stiffness', 'axis.drive_damping', 'axis.normal_force', 'contact.stiffness',
+    'contact.damping', 'friction.static.initial', 'friction.static.limit', 'friction.static.time_constant',
+    'drive.velocity', 'force.constant', 'initial.position', 'initial.velocity', 'time.rate')
+
+
+def bad_commands(setup: Setup) -> Finding:
+    """X17: refused by name at every door, the state untouched; the latest good command wins."""
+    tally = Tally(0.0)
+    for contact in CONTACTS:
+        for bad in _BAD:
+            for given in ('velocity', 'force'):
+                tally.judge(_refused_by_the_simulator, setup.solver, contact, given, bad)
+            tally.judge(_refused_time, setup.solver, contact, bad)
+        tally.judge(_refused_past, setup.solver, contact)
+        for seed in range(setup.count(200, 10)):
+            tally.judge(_burst, setup.solver, contact, seed)
+        for huge in (1e100, -1e300, 1.7976931348623157e308):
+            tally.judge(_huge, setup.solver, contact, huge)
+    for bad in _BAD:
+        for name in _PARAMETERS:
+            tally.judge(_refused_by_the_scene, name, bad)
+        tally.judge(_refused_by_the_slot, bad)
+        tally.judge(_refused_courses, bad)
+    return tally.finding('accepted, or not by name, or with a changed state')
+
+
+def _refused_by_the_simulator(solver: Solver, contact: Contact, given: str, bad: float) -> float:
+    simulator, twin = (make(paper_axis(contact), 0.002, solver=solver) for _ in range(2))
+    simulator.advance(instant(0.5))
+    twin.advance(instant(0.5))
+    command = simulator.command_velocity if given == 'velocity' else simulator.command_force
+    _check_refused(lambda: command(bad), given)
+    check(simulator.sample() == twin.sample(), 'the state is another one')
+    check(simulator.advance(instant(2.0)) == twin.advance(instant(2.0)), 'the events are other ones')
+    return 0.0
+
+
+def _check_refused(act: Callable[[], object], name: str) -> None:
+    try:
+        act()
+    except InputError as error:
+        check(name in error.name and str(error.value) in str(error), f'the refusal does not name {name}: {error}')
+        return
+    check(False, f'{name} is accepted')
+
+
+def _refused_time(solver: Solver, contact: Contact, bad: float) -> float:
+    """See that a time that is none is refused; the guard comes first, as a solver could search for ever."""
+    simulator = make(paper_axis(contact), 0.002, solver=solver)
+    simulator.advance(instant(0.5))
+    before = simulator.sample()
+    _check_refused(lambda: simulator.advance(Instant(bad, 0.0)), 'time')
+    check(simulator.sample() == before, 'the state is another one')
+    return 0.0
+
+
+def _refused_past(solver: Solver, contact: Contact) -> float:
+    """Time does not go back, whatever came late."""
+    simulator = make(paper_axis(contact), 0.002, solver=solver)
+    simulator.advance(instant(1.0))
+    before = simulator.sample()
+    _check_refused(lambda: simulator.advance(instant(0.2)), 'time')
+    check(simulator.sample() == before, 'the state is another one')
+    return 0.0
+
+
+def _burst(solver: Solver, contact: Contact, seed: int) -> float:
+    """See that a burst with duplicates and NaN within a step is as good as its last good command alone."""
+    rng = random.Random(seed)
+    busy, quiet = (make(paper_axis(contact), 0.002, solver=solver) for _ in range(2))
+    slot = CommandSlot('velocity', 'm/s', 0.1)
+    seen, wanted = list[Event](), list[Event]()
+    for step in range(1, 61):
+        seen += busy.advance(instant(step / 20))
+        wanted += quiet.advance(instant(step / 20))
+        for _ in range(rng.choice((0, 1, 50))):
+            value = rng.choice((rng.uniform(-0.05, 0.05), math.nan, 1e9))
+            refusal = slot.offer(value, step)
+            check(('velocity' in refusal) == (not abs(value) <= 0.1), 'not refused by name')
+            if rng.random() < 0.3:
+                slot.offer(value, step)   # twice
+        if slot.latest is not None:
+            if rng.random() < 0.5:        # a duplicate of the command in force changes nothing
+                busy.command_velocity(slot.latest.value)
+            busy.command_velocity(slot.latest.value)
+            quiet.command_velocity(slot.latest.value)
+        check(busy.sample() == quiet.sample(), f'another state at step {step}')
+    check(seen == wanted, f'{len(seen)} events instead of {len(wanted)}, or other bits')
+    return 0.0
+
+
+def _huge(solver: Solver, contact: Contact, huge: float) -> float:
+    """See that a command beyond all sense is refused, simulated or given up by name, and that a reset works after."""
+    simulator = make(paper_axis(contact), 0.002, solver=solver)
+    simulator.advance(instant(0.5))
+    for command in (simulator.command_velocity, simulator.command_force):
+        try:
+            command(huge)
+            simulator.advance(Instant(simulator.time.second + 1.0, 0.0))
+            simulator.sample()
+        except StickslipError as error:
+            check(len(str(error)) > 20, 'no reason is given')
+    simulator.reset()
+    check(simulator.advance(instant(1.0)) == make(paper_axis(contact), 0.002, solver=solver).advance(instant(1.0)),
+          'a reset does not begin anew')
+    return 0.0
+
+
+def _refused_by_the_scene(name: str, bad: float) -> float:
+    _check_refused(lambda: load_scene('paper_fig8', {name: bad}), name)
+    return 0.0
+
+
+def _refused_by_the_slot(bad: float) -> float:
+    slot = CommandSlot('drive_velocity', 'm/s', 10.0)
+    slot.offer(0.003, 1)
+    for value in (bad, 10.000001, -1e300):
+        check('drive_velocity' in slot.offer(value, 2), 'not refused by name')
+    check(slot.latest == (0.003, 1) and slot.refused == 3, 'the good command before is lost')
+    return 0.0
+
+
+def _refused_courses(bad: float) -> float:
+    """See that a course or an axis made in Python is as strict as a scene."""
+    for make_course in (lambda: steps('drive', [0.0, bad], [0.0, 0.0]), lambda: table('drive', [0.0, bad], [0.0, 0.0])):
+        _check_refused(make_course, 'drive')
+    friction = paper_axis(RIGID).friction
+    _check_refused(lambda: Axis(bad, 1.0, 1.0, 1.0, RIGID, friction), 'mass')
+    _check_refused(lambda: InitialState(position=bad), 'position')
+    _check_refused(lambda: KineticTable((0.0,), (bad,)), 'coefficients')
+    _check_refused(lambda: StaticLaw(StaticLawKind.CONSTANT, bad, 1.0), 'initial')
+    for course in (lambda: ramp(0.0, bad, 1.0), lambda: steps('drive', [0.0], [bad])):
+        _check_refused(lambda course=course: Simulator(paper_axis(RIGID), InitialState(), course(), course()), 'drive')  # type: ignore[misc]
+    return 0.0

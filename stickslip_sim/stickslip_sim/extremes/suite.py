@@ -1,0 +1,87 @@
+"""The extremes in their order, and how they are judged one after another."""
+
+import time
+from collections.abc import Collection, Iterator
+
+from ..errors import InputError
+from .bits import mirrored_and_scaled, run_twice
+from .branches import coasting, ringing
+from .breakaways import at_the_limit, blows
+from .commands import bad_commands
+from .convergence import orders
+from .energy import energy_balance
+from .grazing_peaks import grazing
+from .modes import edges_of_the_modes, unstable_slip
+from .outcome import Extreme, Outcome, Setup
+from .rest import rest_times, year_long_hold
+from .scales import late_far_slow_fast
+from .splits import events_inside_a_tick, splits
+from .stiffness import stiff_contacts
+from .ties import guards_at_their_limit, meeting_events
+
+EXTREMES = (
+    Extreme('X1', 'grazing break-away: a slow sine whose force peak passes the limit by 1e-4, 1e-6, 1e-12, or fails to',
+            'adaptive solvers step over it: CVODE 55 of 60, DOP853 (1e-9) 52 of 60, Drake 60 of 60 missed at 1e-6',
+            'none missed, none invented', grazing),
+    Extreme('X2', 'a blow of 2 ms and 33 kN on a stuck axis at a random instant',
+            'RK45 51, DOP853 45, CVODE 60 of 60 missed', 'none missed, instants within 1e-12 s', blows),
+    Extreme('X3', 'a guard exactly at its limit on entry: mu_s(0) = mu_k(0)',
+            'scipy fires the same event until its cap; a crossing that starts at zero is an open issue of '
+            'DifferentialEquations.jl and SUNDIALS', 'progress at every event', guards_at_their_limit),
+    Extreme('X4', 'peak speed below v_gr, the two branches apart',
+            'naive switching chatters: events grow as 1/dt, and it converges to another trajectory',
+            'the coasting closure; independent of any step, <= 1e-12', coasting),
+    Extreme('X5', 'break-away while the contact still rings (5 to 20 mm/s)',
+            'every scipy setting returned the same wrong number of events', 'the events of the reference, <= 1e-12',
+            ringing),
+    Extreme('X6', 'the unstable slip mode, net damping −2867 and −14639 N s/m, under fixed steps',
+            'implicit Euler: stick-slip vanishes above 4.8 ms; explicit Euler grows 20 % too fast at 1 ms',
+            'error of the growth <= 1e-12 at any step', unstable_slip),
+    Extreme('X7', 'a year at 10, 50, 90, 99 % of the static limit',
+            'MuJoCo creeps 0.25 to 2.4 mm/s by default; friction in Drake needs slip',
+            'no drift; the next break-away within 1e-12', year_long_hold),
+    Extreme('X8', 'contact stiffness x 1e3 to 1e9, contact damping 0 and x 1e6, mass 1 g and 1e6 kg',
+            'explicit steps shrink as 1/sqrt(c_c)', 'accuracy <= 1e-12; the same cost of an event (at most x 3)',
+            stiff_contacts),
+    Extreme('X9', 'critical damping to 1e-15, no spring, no damper, over-damped, negative damping',
+            'cancellation, NaN', '<= 1e-12', edges_of_the_modes),
+    Extreme('X10', 'rest-time constants 1e-12 to 1e12 s, rest 1e-9 to 1e9 s', 'cancellation in 1 − exp(−t/tau)',
+            '<= 1e-14 in mu_s', rest_times),
+    Extreme('X11', 'feed 1 nm/s to 1 m/s; clock at 1e9 s; position at 1e6 m',
+            'absolute time and position eat the digits', 'times between events within 1e-11 s', late_far_slow_fast),
+    Extreme('X12', 'two events at one instant; an event one ULP from a tick', 'order-dependent results, double firing',
+            'independent of order and ticks', meeting_events),
+    Extreme('X13', 'one call, a million calls, random splits', 'results depend on the split',
+            'the same events to the bit; positions within 1e-13 m', splits),
+    Extreme('X14', 'ten thousand events inside one tick', 'stops or spins',
+            'bounded time, a named refusal, a valid state', events_inside_a_tick),
+    Extreme('X15', 'fixed-step solvers across events', 'order lost', 'the measured order is the declared one', orders),
+    Extreme('X16', 'energy: drive work = stored + dissipated, of each cycle and over an hour', 'not reported',
+            'balance <= 1e-12 of the throughput; friction never gives', energy_balance),
+    Extreme('X17', 'NaN, infinite, late, duplicate, burst commands', 'the solver loops for ever',
+            'a named refusal, the state untouched', bad_commands),
+    Extreme('X18', 'break-away exactly at the limit', 'Modelica breaks away 0.1 % late by construction', '<= 1e-12',
+            at_the_limit),
+    Extreme('X19', 'mirror image; units scaled by powers of two', 'not tested', 'the same bits', mirrored_and_scaled),
+    Extreme('X20', 'the same scene twice, in two processes; recorded commands again', 'not promised', 'the same bits',
+            run_twice),
+)
+
+
+def chosen(numbers: Collection[str] = ()) -> tuple[Extreme, ...]:
+    """Return the extremes with these numbers, in their order; all without any.  Raises InputError on unknown ones."""
+    known = {extreme.number for extreme in EXTREMES}
+    for number in numbers:
+        if number not in known:
+            raise InputError('--only', number, f'numbers from {EXTREMES[0].number} to {EXTREMES[-1].number}',
+                             'separate them by commas: X1,X7')
+    return tuple(extreme for extreme in EXTREMES if not numbers or extreme.number in numbers)
+
+
+def judged(extremes: Collection[Extreme], setup: Setup) -> Iterator[Outcome]:
+    """Yield the outcome of each, as soon as it is there."""
+    for extreme in extremes:
+        begin = time.perf_counter()
+        finding = extreme.measure(setup)
+        yield Outcome(extreme.number, extreme.name, extreme.elsewhere, extreme.mark, finding,
+                      time.perf_counter() - begin)
