@@ -57,6 +57,12 @@ class Course:
             if not FREQUENCIES[0] <= wave.frequency <= FREQUENCIES[1]:
                 raise InputError('waves', wave, 'of {:g} to {:g} Hz'.format(*FREQUENCIES), 'use pieces for a constant')
 
+    def check(self, name: str) -> None:
+        """Raise InputError when a number of the course called `name` is not finite."""
+        for number in (*self.starts, *self.values, *self.rates):
+            if not math.isfinite(number):
+                raise InputError(name, number, 'a course of finite times, values and rates', 'give numbers')
+
     def piece_at(self, time: float) -> Piece:
         """Return the piece that holds from `time` >= 0 s on (at a border: the one that begins)."""
         turns = 0.0

@@ -11,7 +11,7 @@ from .axis.layout import (
 from .compiled import IS_COMPILED
 from .courses import Course, constant
 from .energy import EnergyBalance
-from .errors import SolverError
+from .errors import InputError, SolverError
 from .solvers import DONE, FULL, OUT_OF_RANGE, Solver, exact
 from .words import Event, EventKind, Instant, Mode, Sample
 
@@ -31,6 +31,8 @@ class Simulator:
     def __init__(self, axis: Axis, initial: InitialState, drive: Course, force: Course,
                  solver: Solver = exact.SOLVER, accounting: bool = False) -> None:
         check_start(axis, initial)
+        drive.check('drive')
+        force.check('force')
         self._solver = solver
         self._initial = initial
         self._courses = (drive, force)
@@ -47,6 +49,7 @@ class Simulator:
         """Begin anew at time 0 with the initial state and the original courses; return the events at time 0."""
         self._drive, self._force = self._courses
         self._time = Instant(0.0, 0.0)
+        self._commanded = False
         self._waves = _waves(self._drive, self._force)
         v, f = self._drive.piece_at(0.0), self._force.piece_at(0.0)
         self._until = min(v.end, f.end)
@@ -88,8 +91,13 @@ class Simulator:
     def advance(self, to: Instant) -> list[Event]:
         """Bring the state to a time that is not before the present one; return the events up to then.
 
-        Raises SolverError when the events do not let time go on; the state is then that of the last event.
+        Raises InputError when it is before or no time, SolverError when the events do not let time go on; the state is
+        then that of the last event.
         """
+        if not (self._time <= to and math.isfinite(to.second) and 0.0 <= to.fraction < 1.0):
+            raise InputError('time', tuple(to), f'finite and not before {self._time.seconds!r} s',
+                             'time does not go back: reset to begin anew')
+        self._obey()
         events, self._waiting = self._waiting, []
         while self._until <= to.seconds:
             self._advance(Instant(math.floor(self._until), self._until - math.floor(self._until)), events)
@@ -101,18 +109,17 @@ class Simulator:
 
     def command_velocity(self, velocity: float) -> None:
         """Let the drive move at a constant velocity (m/s) from now on; events that this causes come with `advance`."""
-        self._drive = constant(velocity)
-        self._waves = _waves(self._drive, self._force)
-        self._enter_pieces(self._waiting)
+        self._drive = _command('velocity', velocity, 'm/s')
+        self._commanded = True
 
     def command_force(self, force: float) -> None:
         """Let a constant external force (N) act from now on; events that this causes come with `advance`."""
-        self._force = constant(force)
-        self._waves = _waves(self._drive, self._force)
-        self._enter_pieces(self._waiting)
+        self._force = _command('force', force, 'N')
+        self._commanded = True
 
     def change_axis(self, axis: Axis) -> None:
         """Go on with other parameters from now on; position, velocity and the spring stay continuous."""
+        self._obey()
         new = _numbers(pack(axis))
         rows = self._solver.set_parameters(self._parameters, new, self._state, *self._time, self._table, 0)
         self._parameters, self._axis = new, axis
@@ -120,6 +127,7 @@ class Simulator:
 
     def sample(self) -> Sample:
         """Return the state at the present time; raises SolverError when it is not finite."""
+        self._obey()
         row = self._row
         self._solver.sample(self._parameters, self._state, *self._time, row)
         second, fraction, mode, direction, *rest = row.tolist() if IS_COMPILED else row
@@ -127,6 +135,13 @@ class Simulator:
             raise SolverError(f'the state leaves the range of numbers at t = {second + fraction!r} s; '
                               f'{self._solver.advice}')
         return Sample(second, fraction, _MODES[int(mode)], int(direction), *rest)
+
+    def _obey(self) -> None:
+        """Let the commands of this instant take effect, all at once: their order does not matter."""
+        if self._commanded:
+            self._commanded = False
+            self._waves = _waves(self._drive, self._force)
+            self._enter_pieces(self._waiting)
 
     def _advance(self, to: Instant, events: list[Event]) -> None:
         taken = 0
@@ -159,6 +174,12 @@ class Simulator:
             row = self._table[i]
             second, fraction, kind, mode, direction, *rest = row.tolist() if IS_COMPILED else row
             yield Event(second, fraction, _KINDS[int(kind)], _MODES[int(mode)], int(direction), *rest)
+
+
+def _command(name: str, value: float, unit: str) -> Course:
+    if not math.isfinite(value):
+        raise InputError(name, value, f'finite, in {unit}', 'the command before it stays in force')
+    return constant(value)
 
 
 def _waves(drive: Course, force: Course) -> Any:

@@ -32,8 +32,8 @@ ACCELERATING = float(Mode.ACCELERATING)
 COASTING = float(Mode.COASTING)
 DECELERATING = float(Mode.DECELERATING)
 
-TICK = 0.1                    # s; longer steps gain nothing from what is kept
-_SHIFTER = 1.5 * 2.0 ** 8      # adding it rounds to multiples of 2⁻⁴⁴
+TICK = 0.1             # s; a search no longer than that begins with a bound, which mostly ends it
+_SPLIT = 131073.0      # splits off the upper 36 bits of a number (Dekker 1971)
 
 
 @compiled
@@ -127,15 +127,13 @@ def oscillator_of(s):
 
 @compiled
 def tick_integrals(s, t):
-    """Return `short_integrals` at t, from those at the nearest multiple of 2⁻⁴⁴ s.
+    """Return `short_integrals` at t, from those at the nearest number of 36 bits.
 
-    Ticks of one length differ by the rounding of their times.  The nearest multiple is the same for them, and what was
-    computed for it is kept; the way from there is less than 3e-14 s.  The result depends on t alone, not on what is
-    kept.
+    Ticks of one length differ by the rounding of their times.  That number is the same for them, and what was computed
+    for it is kept; the way from there is less than 1e-11 of t.  The result depends on t alone, not on what is kept.
     """
-    if t >= TICK:
-        return short_integrals(oscillator_of(s), t)
-    near = (t + _SHIFTER) - _SHIFTER
+    big = _SPLIT * t
+    near = big - (big - t)
     gamma, omega2 = s[GAMMA], s[OMEGA2]
     if near != s[NEAR] or gamma != s[NEAR_GAMMA] or omega2 != s[NEAR_OMEGA2]:
         s[NEAR], s[NEAR_GAMMA], s[NEAR_OMEGA2] = near, gamma, omega2
@@ -155,14 +153,14 @@ def travel(p, s, t):
     if is_rigid_stick(p, s):
         return 0.0, 0.0, 0.0
     u, a, jerk, snap = s[VELOCITY], s[ACCELERATION], s[JERK], s[SNAP]
-    third = 0.0
     if snap == 0.0:
         g, rate, first, second = tick_integrals(s, t)
+        y, velocity, acceleration = _response(p, s, t, g, rate, first, second)
     else:
         g, rate, first, second, third = integrals(oscillator_of(s), t)
-    y = u * t + a * first + jerk * second + snap * third
-    velocity = u + a * g + jerk * first + snap * second
-    acceleration = a * rate + jerk * g + snap * first
+        y = u * t + a * first + jerk * second + snap * third
+        velocity = u + a * g + jerk * first + snap * second
+        acceleration = a * rate + jerk * g + snap * first
     if s[WAVES] != 0.0:
         more = wave_travel(p, s, oscillator_of(s), t, g, rate, first)
         return y + more[0], velocity + more[1], acceleration + more[2]
@@ -170,12 +168,28 @@ def travel(p, s, t):
 
 
 @compiled
-def travel_at(s):
-    """Return `travel` for the time AT of the last evaluation."""
+def _response(p, s, t, g, rate, first, second):
+    """Return travel, velocity and acceleration without ramp and waves, from `short_integrals` at t.
+
+    Once a radian of the motion, or a time constant, is over, they are read off the velocity that it settles at: a
+    contact that is held for a year does not creep, and its ring-down loses no digits.
+    """
     u, a, jerk = s[VELOCITY], s[ACCELERATION], s[JERK]
-    return (u * s[AT] + a * s[AT_FIRST] + jerk * s[AT_SECOND],
-            u + a * s[AT_G] + jerk * s[AT_FIRST],
-            a * s[AT_RATE] + jerk * s[AT_G])
+    acceleration = a * rate + jerk * g
+    if not (s[OMEGA2] * t * t >= 1.0 if s[NU] > 0.0 else s[SLOW] * t <= -1.0):
+        return u * t + a * first + jerk * second, u + a * g + jerk * first, acceleration
+    stiffness = p[STIFFNESS] + (p[CONTACT_STIFFNESS] if s[MODE] == STICK else 0.0)
+    v = s[BASE_V] if s[WAVES] != 0.0 else s[V]
+    settled = (p[STIFFNESS] * v + p[DAMPING] * s[V_RATE] + s[F_RATE]) / stiffness
+    free, damping = u - settled, 2.0 * s[GAMMA]
+    return (settled * t + (free * (g + damping * first) + a * first),
+            settled + (free * (rate + damping * g) + a * g), acceleration)
+
+
+@compiled
+def travel_at(p, s):
+    """Return `travel` for the time AT of the last evaluation."""
+    return _response(p, s, s[AT], s[AT_G], s[AT_RATE], s[AT_FIRST], s[AT_SECOND])
 
 
 @compiled
@@ -183,7 +197,7 @@ def travel_to_event(p, s, t):
     """Return `travel` for the time of the next event, or where its search ended: from the last evaluation there."""
     if s[AT] < 0.0:
         return travel(p, s, t)
-    y, v, acceleration = travel_at(s)
+    y, v, acceleration = travel_at(p, s)
     d = t - s[AT]
     if d == 0.0:
         return y, v, acceleration

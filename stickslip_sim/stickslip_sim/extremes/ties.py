@@ -89,7 +89,6 @@ def meeting_events(setup: Setup) -> Finding:
 def _ticks_on_events(solver: Solver, axis: Axis) -> float:
     """Tick on every event, one ULP before, one after: each comes once, in the first call that reaches it."""
     events = run(axis, 0.004, 3.0, solver=solver)
-    check(events, 'no events')
     for offset in (-1, 0, 1):
         simulator, seen = make(axis, 0.004, solver=solver), list[Event]()
         for event in events:

@@ -19,7 +19,7 @@ from ...axis.layout import (
     ACCELERATION, AT, AT_FIRST, AT_G, AT_RATE, AT_SECOND, CONTACT_DAMPING, CONTACT_STIFFNESS, DEFLECTION, ITERATIONS,
     JERK, LAST, NORMAL, REST, SNAP, STATIC_INITIAL, STATIC_TAU, VELOCITY,
 )
-from ...axis.motion import TICK, oscillator_of, static_limit, travel_at
+from ...axis.motion import TICK, oscillator_of, static_limit, travel, travel_at
 from ...axis.transitions import force_rounding
 from ...compiled import compiled
 from ...linear.oscillator import amplitude, bound, impulse, short_integrals
@@ -58,7 +58,7 @@ def compliant_stick(p, s, horizon):
         if t <= horizon:
             step, found, side = _step(p, s, osc, contact, motion[4], t, rounding)
             if found == _IN_BRACKET:
-                return _bracketed_root(p, s, osc, motion, side, t, t + step)
+                return _bracketed_root(p, s, osc, side, t, t + step)
             t += step
             if found == _IS_ROOT:
                 return t
@@ -156,11 +156,17 @@ def _direct_root(p, s, osc, motion, contact, begin):
 
 @compiled
 def _guard_at(p, s, osc, t, side):
-    """Return N mu_s − side F_c at t, its rate and a bound on its bend; note the evaluation for who has to go there."""
-    g, slope, first, second = short_integrals(osc, t)
-    s[AT], s[AT_G], s[AT_RATE], s[AT_FIRST], s[AT_SECOND] = t, g, slope, first, second
-    y, u, a = travel_at(s)
-    jerk = s[JERK] + osc[1] * (s[VELOCITY] - u) - 2.0 * osc[0] * a
+    """Return N mu_s − side F_c at t, its rate and its bend (with the bound of a law that is not concave).
+
+    It is taken from the travel, not from P + H, which may cancel.
+    """
+    if s[SNAP] == 0.0:
+        s[AT] = t
+        s[AT_G], s[AT_RATE], s[AT_FIRST], s[AT_SECOND] = short_integrals(osc, t)
+        y, u, a = travel_at(p, s)
+    else:
+        y, u, a = travel(p, s, t)
+    jerk = s[JERK] + s[SNAP] * t + osc[1] * (s[VELOCITY] - u) - 2.0 * osc[0] * a
     stiffness, damping = p[CONTACT_STIFFNESS], p[CONTACT_DAMPING]
     limit, growth, curvature = law(p, s[REST] + t)
     return (p[NORMAL] * limit - side * (stiffness * (s[DEFLECTION] + y) + damping * u),
@@ -210,7 +216,7 @@ def _step(p, s, osc, contact, sag_bend, t, rounding):
 
 
 @compiled
-def _bracketed_root(p, s, osc, motion, side, low, high):
+def _bracketed_root(p, s, osc, side, low, high):
     """Return the root of the falling guard between low and high: Halley's step inside a shrinking bracket.
 
     Its error after a step d is about d (d (f″/f′ + frequency))²; the last step is the one that makes it rounding.
@@ -219,15 +225,11 @@ def _bracketed_root(p, s, osc, motion, side, low, high):
     t, before = low, high - low
     for _ in range(STEPS):
         s[ITERATIONS] += 1.0
-        sag, sag_rate, free, free_rate, wave, _ = _contact_at(p, osc, motion, t)
-        limit, growth, curvature = law(p, s[REST] + t)
-        value = p[NORMAL] * limit - side * (sag + free)
+        value, fall, bow = _guard_at(p, s, osc, t, side)
         if value > 0.0:
             low = t
         else:
             high = t
-        fall = p[NORMAL] * growth - side * (sag_rate + free_rate)
-        bow = -p[NORMAL] * curvature - side * (motion[4] + wave)
         newton = value / fall if fall < 0.0 else math.inf
         size = newton / max(1.0 - 0.5 * newton * bow / fall, 0.5) if fall < 0.0 else math.inf
         guess = t - size

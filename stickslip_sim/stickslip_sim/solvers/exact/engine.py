@@ -29,6 +29,7 @@ from .account import book_contact, book_parameters, book_works, read_account
 from .search import find_event
 from .works import contact_energy, stored_energy
 
+_STAMP = 2.0 ** -51    # s, more than the time of an event is rounded by
 _SAME_INSTANT = 64   # events without progress in time; a sound model needs three
 
 
@@ -66,32 +67,35 @@ def advance(p, s, second, fraction, events, row):
     same_instant = 0
     while True:
         t = (second - s[SECOND]) + (fraction - s[FRACTION])
-        if s[SEARCHED] < t:
-            find_event(p, s, t)
+        reach = t + _STAMP
+        if s[SEARCHED] < reach:
+            find_event(p, s, reach)
         due = s[NEXT]
-        if due > t:
+        if due > reach:
             return row, DONE
         if due < 0.0:
             return row, NO_PROGRESS
+        later = s[FRACTION] + due
+        whole = math.floor(later)
+        if (s[SECOND] + whole - second) + ((later - whole) - fraction) > 0.0:
+            return row, DONE   # its time, as it is written down, is still to come
         if row >= len(events):
             return row, FULL
         same_instant = same_instant + 1 if due == 0.0 else 0
         if same_instant > _SAME_INSTANT:
             return row, NO_PROGRESS
-        _pass_event(p, s, due, events, row)
+        _pass_event(p, s, due, s[SECOND] + whole, later - whole, events, row)
         row += 1
         _begin(p, s)
 
 
 @compiled
-def _pass_event(p, s, due, events, row):
-    later = s[FRACTION] + due
-    whole = math.floor(later)
+def _pass_event(p, s, due, second, fraction, events, row):
     mode = int(s[MODE])
     accounting = s[ACCOUNTING] != 0.0
     if accounting:
         book_works(p, s, due)
-    move_anchor(p, s, s[SECOND] + whole, later - whole, due)
+    move_anchor(p, s, second, fraction, due)
     s[LAST + mode] = due if s[NEXT_KIND] != COAST else 0.0
     contact = contact_energy(p, s, 0.0) if accounting else 0.0
     _transition(p, s, events, row)

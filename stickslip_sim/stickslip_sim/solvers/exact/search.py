@@ -66,7 +66,7 @@ def _slipping(p, s, horizon):
     else:
         gap = speed - knot_speed(p, piece)
         sign = -s[DIRECTION]
-    if horizon < TICK and _keeps_on(s, sign, gap, horizon):
+    if horizon < TICK and _keeps_on(p, s, sign, gap, horizon):
         s[NEXT] = math.inf
         return
     t, passed, s[AT], s[AT_G], s[AT_RATE], s[AT_FIRST], s[AT_SECOND] = first_passage(
@@ -80,7 +80,7 @@ def _slipping(p, s, horizon):
 
 
 @compiled
-def _keeps_on(s, sign, gap, t):
+def _keeps_on(p, s, sign, gap, t):
     """Whether a short slip surely lasts up to t: the acceleration has kept its sign, and the knot is not reached.
 
     See argument 2 of `linear.roots`.  What was evaluated is noted for who goes to t.
@@ -90,7 +90,7 @@ def _keeps_on(s, sign, gap, t):
         return False
     s[AT_G], s[AT_RATE], s[AT_FIRST], s[AT_SECOND] = tick_integrals(s, t)
     s[AT] = t
-    _, u, a = travel_at(s)
+    _, u, a = travel_at(p, s)
     if sign * a > 0.0 and sign * (u - s[VELOCITY]) < gap:
         return True
     s[AT] = -1.0
