@@ -29,11 +29,11 @@ def markdown_text(outcomes: Sequence[Outcome], quick: bool) -> str:
     told = ', '.join(f'{name} {version}' for name, version in versions().items())
     lines = ['# The extremes', '',
              'What breaks other simulators, what this one is asked for, and what was measured.  Written by',
-             f'`stickslip extremes{size} --out docs/extremes.md`; `make extremes` measures again and fails when a mark is',
-             'missed.',
+             f'`stickslip extremes{size} --out docs/extremes.md`; `make extremes` measures again and fails when a mark',
+             'is missed.',
              '', f'{met} of {len(outcomes)} marks met; {told}.', '',
-             'The column "elsewhere" was measured on the paper\'s data with scipy 1.17, SUNDIALS CVODE (scikit-sundae 1.2),',
-             'MuJoCo 4.0 and Drake 1.51, or is taken from their documentation and issues.', '',
+             'The column "elsewhere" was measured on the paper\'s data with scipy 1.17, SUNDIALS CVODE (scikit-sundae',
+             '1.2), MuJoCo 4.0 and Drake 1.51, or is taken from their documentation and issues.', '',
              '| # | extreme | elsewhere | mark | measured | met |', '|---|---|---|---|---|---|']
     for outcome in outcomes:
         cells = (outcome.number, outcome.name, outcome.elsewhere, outcome.mark, outcome.finding.figure,
