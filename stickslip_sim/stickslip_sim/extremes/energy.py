@@ -50,7 +50,7 @@ class _Account:
         self.terms += terms
 
     def balance(self, before: float, stored: float) -> float:
-        """Return | given − taken − stored | over the sum of all magnitudes, or over what is stored where that is more."""
+        """Return | given − taken − stored | over the sum of magnitudes, or over what is stored where that is more."""
         size = max(math.fsum(map(abs, self.terms)), before, before + stored)
         return abs(math.fsum(self.terms) - stored) / size if size > 0.0 else 0.0
 
