@@ -1,4 +1,4 @@
-"""Properties of the exact engine that hold for every axis: symmetry, splits, continuity, ties, extremes."""
+"""Properties of the exact engine that hold for every axis; the suite of extremes judges the harder ones."""
 
 import math
 import random
@@ -8,73 +8,12 @@ from itertools import pairwise
 import pytest
 
 from stickslip_sim.axis import CompliantContact, InitialState
-from stickslip_sim.courses import Course, constant, ramp, steps, table
+from stickslip_sim.courses import Course, ramp, steps, table
 from stickslip_sim.errors import SolverError
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
 from stickslip_sim.words import Event, EventKind, Instant, Mode
-from tests.axes import COMPLIANT, RIGID, instant, make, of_kind, paper_axis, random_axis, run
+from tests.axes import COMPLIANT, RIGID, instant, make, of_kind, paper_axis, run
 from tests.conftest import Program
-
-
-def _courses(rng: random.Random) -> tuple[Course, Course]:
-    speed = rng.choice((-1, 1)) * 10 ** rng.uniform(-3, -1.3)
-    drive = rng.choice((constant(speed), ramp(0.0, speed, 2.0), steps('drive', [0.0, 1.0, 2.0], [speed, -speed, 0.0]),
-                        table('drive', [0.0, 0.5, 1.5], [0.0, speed, -speed], 2.0)))
-    force = rng.choice((constant(0.0), constant(rng.uniform(-100, 100)),
-                        steps('force', [0.0, 0.7, 0.9], [0.0, rng.uniform(-3e3, 3e3), 0.0])))
-    return drive, force
-
-
-def _mirrored(course: Course) -> Course:
-    return Course(course.starts, tuple(-x for x in course.values), tuple(-x for x in course.rates), course.period)
-
-
-def _scaled(course: Course, factor: float) -> Course:
-    return Course(course.starts, tuple(factor * x for x in course.values), tuple(factor * x for x in course.rates),
-                  course.period)
-
-
-@pytest.mark.parametrize('seed', range(40))
-def test_mirror_image_is_bit_identical(seed: int) -> None:
-    rng = random.Random(seed)
-    axis, (drive, force) = random_axis(rng), _courses(rng)
-    events = run(axis, drive, 3.0, force)
-    mirrored = run(axis, _mirrored(drive), 3.0, _mirrored(force))
-    assert len(events) == len(mirrored)
-    for e, image in zip(events, mirrored):
-        assert image == e._replace(direction=-e.direction, position=-e.position, velocity=-e.velocity,
-                                   drive_position=-e.drive_position, drive_force=-e.drive_force,
-                                   friction_force=-e.friction_force)
-
-
-@pytest.mark.parametrize('seed', range(20))
-def test_units_scaled_by_a_power_of_two_are_bit_identical(seed: int) -> None:
-    """Twice the mass unit: forces, stiffness, damping, mass halve; times, lengths and speeds stay."""
-    rng = random.Random(seed)
-    axis, (drive, force) = random_axis(rng), _courses(rng)
-    contact = axis.contact
-    if isinstance(contact, CompliantContact):
-        contact = CompliantContact(contact.stiffness * 0.5, contact.damping * 0.5)
-    half = replace(axis, mass=axis.mass * 0.5, drive_stiffness=axis.drive_stiffness * 0.5, contact=contact,
-                   drive_damping=axis.drive_damping * 0.5, normal_force=axis.normal_force * 0.5)
-    for e, other in zip(run(axis, drive, 3.0, force), run(half, drive, 3.0, _scaled(force, 0.5)), strict=True):
-        assert other == e._replace(drive_force=0.5 * e.drive_force, friction_force=0.5 * e.friction_force)
-
-
-@pytest.mark.parametrize('seed', range(12))
-def test_one_call_or_many_give_the_same_bits(seed: int) -> None:
-    rng = random.Random(seed)
-    axis, (drive, force) = random_axis(rng), _courses(rng)
-    whole = make(axis, drive, force)
-    expected = whole.advance(instant(4.0))
-    for ticks in (True, False):
-        parts, events, t, k = make(axis, drive, force), [], 0.0, 0
-        while t < 4.0:
-            k += 1
-            t = k / 1000 if ticks else min(t + rng.choice((1e-9, 1e-6, 1e-3, 0.3)) * rng.random(), 4.0)
-            events += parts.advance(instant(t))
-        assert events == expected
-        assert parts.sample() == whole.sample()
 
 
 def test_smooth_sliding_ends_in_steady_coasting() -> None:
@@ -129,49 +68,6 @@ def test_reverses_at_once_where_a_rigid_contact_cannot_hold() -> None:
     assert events[-1].kind == EventKind.STICK
     amplitudes = [abs(e.position) for e in of_kind(events, EventKind.REVERSE)]
     assert all(b < a for a, b in pairwise(amplitudes))
-
-
-def test_break_away_is_exact_at_the_limit_and_a_force_at_the_limit_holds() -> None:
-    axis = paper_axis(RIGID)
-    limit = 0.24 * 350 * 9.80665
-    assert run(axis, 0.0, 10.0, math.nextafter(limit, 0.0)) == []
-    assert run(axis, 0.0, 10.0, limit) == []
-    beyond = run(axis, 0.0, 10.0, limit * (1.0 + 1e-12))
-    assert (beyond[0].kind, beyond[0].time) == (EventKind.BREAKAWAY, 0.0)
-
-
-def test_a_blow_shorter_than_any_step_is_not_missed() -> None:
-    rng = random.Random(3)
-    for contact in (RIGID, COMPLIANT):
-        for _ in range(50):
-            t = rng.uniform(0.0, 5.0)
-            events = run(paper_axis(contact), 0.0, 6.0, steps('force', [0.0, t, t + 0.002], [0.0, 33e3, 0.0]))
-            assert events[0].kind == EventKind.BREAKAWAY
-            assert t <= events[0].time <= t + 0.002
-
-
-def test_late_clock_and_far_position_keep_their_digits() -> None:
-    axis = paper_axis(RIGID)
-    near = run(axis, 0.002, 30.0)
-    far = run(axis, 0.002, 30.0, initial=InitialState(position=1e6))
-    for a, b in zip(near, far, strict=True):
-        assert (a.time, a.kind) == (b.time, b.kind)
-        assert b.position - 1e6 == pytest.approx(a.position, abs=2e-10)
-    late = make(axis, steps('drive', [0.0, 1e9], [0.0, 0.002]))
-    assert late.advance(Instant(1e9, 0.0)) == []
-    for a, b in zip(near, late.advance(Instant(1e9 + 30.0, 0.0)), strict=True):
-        assert (b.second - 1e9) + b.fraction == pytest.approx(a.time, abs=1e-11)
-
-
-def test_a_year_at_99_percent_of_the_limit_does_not_creep() -> None:
-    year = 365.25 * 86400.0
-    for contact in (RIGID, COMPLIANT):
-        simulator = make(paper_axis(contact), 0.0, steps('force', [0.0, year], [0.99 * 823.7586, 0.99 * 823.7586]))
-        simulator.advance(Instant(10.0, 0.0))
-        position = simulator.sample().position
-        assert simulator.advance(instant(year)) == []
-        assert simulator.sample().position == pytest.approx(position, abs=1e-18)
-        assert simulator.sample().mode == Mode.STICK
 
 
 def test_compiled_and_plain_python_agree_bit_by_bit(in_a_process: Program) -> None:

@@ -22,6 +22,7 @@ def extremes(only: str | None, quick: bool, out: str | None) -> None:
     """Judge the engine by the twenty extremes; exit with 3 when a mark is missed."""
     if out is not None:
         _check_out(out)
+    _check_mpmath()
     from ..errors import VerdictError
     from ..extremes.outcome import Setup
     from ..extremes.suite import chosen, judged
@@ -50,6 +51,14 @@ def _check_out(out: str) -> None:
     if Path(out).suffix not in _FORMATS:
         raise InputError('--out', out, 'a file ending in .json or .md', 'name it so')
     check_file('--out', out)
+
+
+def _check_mpmath() -> None:
+    from importlib.util import find_spec
+
+    from ..errors import InputError
+    if find_spec('mpmath') is None:
+        raise InputError('mpmath', None, 'installed: the figures are judged in its arithmetic', 'pip install mpmath')
 
 
 def _tell(text: str) -> None:

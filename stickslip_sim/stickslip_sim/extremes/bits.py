@@ -134,7 +134,7 @@ def _recorded_commands(solver: Solver, seed: int) -> float:
     for tick in range(1, 2001):
         seen += first.advance(instant(tick / 1000))
         states.append(first.sample())
-        if rng.random() < 0.01:
+        if rng.random() < 0.01 and tick < 2000:
             record.append((tick, rng.uniform(-0.02, 0.02), rng.uniform(-300.0, 300.0)))
             _command(first, *record[-1][1:])
     again, repeated = make(axis, drive, force, solver=solver), list[Event]()

@@ -18,7 +18,7 @@ def coasting(setup: Setup) -> Finding:
     """X4: the peak speed stays below v_gr, where the branches are apart; the run is the reference's."""
     tally = Tally(1e-12)
     for contact in CONTACTS:
-        for speed in setup.choose((0.0005, 0.001, 0.002, 0.003, 0.005), (0.002,)):
+        for speed in setup.choose((0.001, 0.0015, 0.002, 0.003, 0.005), (0.002,)):
             tally.judge(_below_the_limit_velocity, setup.solver, contact, speed)
     for seed in range(setup.count(60, 4)):
         tally.judge(_random_branches, setup.solver, seed)

@@ -40,7 +40,6 @@ def _arrives_on_the_limit(solver: Solver, seed: int) -> float:
     kinetic = KineticTable(friction.kinetic.velocities, (at_rest, *friction.kinetic.coefficients[1:]))
     axis = replace(axis, friction=replace(friction, kinetic=kinetic))
     events = run(axis, rng.choice((-1, 1)) * 10 ** rng.uniform(-3, -1.5), 5.0, solver=solver)
-    check(events, 'no event at all')
     _check_progress(events)
     for event, after in pairwise(events):
         if event.kind == EventKind.STICK:
