@@ -12,7 +12,7 @@ from collections.abc import Callable
 from typing import TypeVar
 
 _Function = TypeVar('_Function', bound=Callable[..., object])
-_ROOMS = ('compiled.py', 'friction', 'axis', 'linear', 'solvers')
+_ROOMS = ('compiled.py', 'friction', 'axis', 'linear', 'solvers', 'bench/peers')
 
 
 def _cache_folder() -> pathlib.Path:
@@ -27,8 +27,6 @@ def _cache_folder() -> pathlib.Path:
 
 
 def _load_numba() -> Callable[[_Function], _Function] | None:
-    if os.environ.get('STICKSLIP_COMPILED', '1') == '0':
-        return None
     os.environ.setdefault('NUMBA_CACHE_DIR', str(_cache_folder()))
     try:
         import numba
@@ -38,10 +36,20 @@ def _load_numba() -> Callable[[_Function], _Function] | None:
     return decorate
 
 
-_decorate = _load_numba()
+def _is_switched_off() -> bool:
+    return os.environ.get('STICKSLIP_COMPILED', '1') == '0'
+
+
+_decorate = None if _is_switched_off() else _load_numba()
 IS_COMPILED = _decorate is not None
 
 
 def compiled(function: _Function) -> _Function:
     """Compile a scalar function of the hot path, or leave it as it is."""
     return function if _decorate is None else _decorate(function)
+
+
+def always_compiled(function: _Function) -> _Function:
+    """Compile whatever the switch says: a rival of the benchmark is never held back by it."""
+    decorate = _decorate or _load_numba()
+    return function if decorate is None else decorate(function)
