@@ -1,4 +1,4 @@
-"""The engine against an independent automaton at 40 digits (tests/reference), event by event.
+"""The engine against an independent automaton at 40 digits (stickslip_sim.reference), event by event.
 
 `time_sensitivity` of an event is what the reference measured: seconds of shift per relative unit of rounding in the
 data; a chaotic or nearly grazing run has a large one, and there no double-precision result can do better.
@@ -12,48 +12,18 @@ from typing import Any
 
 import pytest
 
-from stickslip_sim.axis import Axis, CompliantContact, Friction, InitialState, RigidContact
-from stickslip_sim.courses import Course
-from stickslip_sim.friction import ExcessTable, KineticTable, StaticLaw, StaticLawKind
-from stickslip_sim.friction.kinetic import default_excess
 from stickslip_sim.simulator import Simulator
 from tests.axes import instant
+from tests.reference.objects import inputs_of
 
 RUNS: dict[str, Any] = json.loads((Path(__file__).parent / 'data' / 'reference_events.json').read_text())
 ROUNDING = 2.220446049250313e-16
 
 
-def _axis(values: dict[str, Any]) -> Axis:
-    friction, contact = values['friction'], values['contact']
-    static = friction['static']
-    law = StaticLaw(StaticLawKind[static['law'].upper()], static['initial'], static.get('limit', static['initial']),
-                    static.get('time_constant', 1.0), static.get('exponent', 1.0))
-    kinetic = KineticTable(tuple(friction['kinetic']['velocities']), tuple(friction['kinetic']['coefficients']))
-    excess = None
-    if friction['acceleration_dependence']:
-        shape = friction.get('excess')
-        excess = default_excess(kinetic)
-        if shape:
-            excess = ExcessTable(tuple(shape['velocities']), tuple(shape['fractions']))
-    model = RigidContact() if contact['model'] == 'rigid' else CompliantContact(contact['stiffness'],
-                                                                                contact['damping'])
-    return Axis(**values['axis'], contact=model, friction=Friction(law, kinetic, excess))
-
-
-def _course(segments: list[list[float]]) -> Course:
-    starts, values, rates = zip(*segments, strict=True)
-    return Course(starts, values, rates)
-
-
-def simulator_of(values: dict[str, Any]) -> Simulator:
-    return Simulator(_axis(values), InitialState(**values['initial']), _course(values['drive']),
-                     _course(values['force']))
-
-
 @pytest.mark.parametrize('name', RUNS)
 def test_events_equal_the_reference(name: str) -> None:
     run = RUNS[name]
-    events, want = simulator_of(run['parameters']).advance(instant(run['duration'])), run['events']
+    events, want = Simulator(*inputs_of(run['parameters'])).advance(instant(run['duration'])), run['events']
     assert [(e.kind.name.lower(), e.direction) for e in events] == list(zip(want['kind'], want['direction']))
     travel = max([abs(float(x) - run['parameters']['initial']['position']) for x in want['position']] or [0.0])
     size = max(travel, abs(run['parameters']['initial']['position']))
@@ -77,7 +47,7 @@ def test_events_equal_the_reference(name: str) -> None:
 @pytest.mark.parametrize('name', RUNS)
 def test_states_between_events_equal_the_reference(name: str) -> None:
     run = RUNS[name]
-    simulator, want = simulator_of(run['parameters']), run['samples']
+    simulator, want = Simulator(*inputs_of(run['parameters'])), run['samples']
     slack = max([1.0, *(16.0 * s * ROUNDING / (1e-12 * run['duration']) for s in run['events']['time_sensitivity'])])
     force = max([1e-300, *(abs(float(x)) for x in [*want['drive_force'], *want['friction_force']])])
     length = max(abs(float(x)) for x in want['position']) or 1.0

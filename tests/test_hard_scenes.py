@@ -4,9 +4,9 @@ from typing import Any
 
 import pytest
 
+from stickslip_sim.simulator import Simulator
 from tests.axes import instant
-from tests.reference import simulate
-from tests.test_against_reference import simulator_of
+from tests.reference.objects import exact_run, inputs_of
 
 OVERDAMPED_SLIP: dict[str, Any] = {
     'axis': {'mass': 16.446948494982106, 'drive_stiffness': 175885.98157369555, 'drive_damping': 170081.97082383372,
@@ -44,7 +44,7 @@ KATO_THAT_DOES_NOT_RISE: dict[str, Any] = {
 @pytest.mark.parametrize(('scene', 'duration'), [
     (OVERDAMPED_SLIP, 0.1), (KATO_IN_AN_OVERDAMPED_CONTACT, 0.05), (KATO_THAT_DOES_NOT_RISE, 0.3)])
 def test_events_equal_the_reference(scene: dict[str, Any], duration: float) -> None:
-    events, want = simulator_of(scene).advance(instant(duration)), simulate(scene, duration)
+    events, want = Simulator(*inputs_of(scene)).advance(instant(duration)), exact_run(scene, duration)
     assert [(e.kind.name.lower(), e.direction) for e in events] == [(e.kind, e.direction) for e in want]
     travel = max(abs(float(e.position)) for e in want)
     for event, exact in zip(events, want):

@@ -17,7 +17,7 @@ from typing import Any
 import mpmath
 from mpmath import mpf
 
-from .automaton import Event, Run, Sample
+from stickslip_sim.reference.automaton import Event, Run, Sample
 
 _STEP = mpf(10) ** -15
 _SMALL = mpf(10) ** -12
@@ -35,27 +35,27 @@ def _check(run: Run, p: Mapping[str, Any], t: mpf) -> list[str]:
     before, here, after = run.state_at([t - _STEP, t, t + _STEP])
     acceleration = (after.velocity - before.velocity) / (2 * _STEP)
     speed_error = (after.position - before.position) / (2 * _STEP) - here.velocity
-    axis = p["axis"]
-    drive = mpf(axis["drive_stiffness"]) * (_feed(p["drive"], t) - (here.position - mpf(p["initial"]["position"])))
-    drive += mpf(axis["drive_damping"]) * (_input(p["drive"], t) - here.velocity)
-    force = _input(p["force"], t)
-    scale = abs(drive) + abs(force) + abs(here.friction_force) + axis["normal_force"]
-    residual = mpf(axis["mass"]) * acceleration - (drive + force - here.friction_force)
+    axis = p['axis']
+    drive = mpf(axis['drive_stiffness']) * (_feed(p['drive'], t) - (here.position - mpf(p['initial']['position'])))
+    drive += mpf(axis['drive_damping']) * (_input(p['drive'], t) - here.velocity)
+    force = _input(p['force'], t)
+    scale = abs(drive) + abs(force) + abs(here.friction_force) + axis['normal_force']
+    residual = mpf(axis['mass']) * acceleration - (drive + force - here.friction_force)
     last = _last_event(run, t)
     broken = {
-        "velocity": abs(speed_error) > _SMALL * (1 + abs(here.velocity)),
-        "drive force": abs(drive - here.drive_force) > _SMALL * scale,
-        "motion": abs(residual) > _SMALL * scale,
+        'velocity': abs(speed_error) > _SMALL * (1 + abs(here.velocity)),
+        'drive force': abs(drive - here.drive_force) > _SMALL * scale,
+        'motion': abs(residual) > _SMALL * scale,
     }
     if _resting(p, last):
-        broken["rest"] = not _rest_law(p, last, here, scale)
+        broken['rest'] = not _rest_law(p, last, here, scale)
     else:
-        broken["slip"] = not _slip_law(run, p, here, acceleration, scale)
-    return [f"{name} at t = {mpmath.nstr(t, 12)}" for name, bad in broken.items() if bad]
+        broken['slip'] = not _slip_law(run, p, here, acceleration, scale)
+    return [f'{name} at t = {mpmath.nstr(t, 12)}' for name, bad in broken.items() if bad]
 
 
 def _near_change(run: Run, p: Mapping[str, Any], t: mpf) -> bool:
-    changes = [e.time for e in run] + [mpf(row[0]) for key in ("drive", "force") for row in p[key]]
+    changes = [e.time for e in run] + [mpf(row[0]) for key in ('drive', 'force') for row in p[key]]
     return any(abs(t - c) < 3 * _STEP for c in changes) or t + _STEP > run.pieces[-1].start + run.pieces[-1].length
 
 
@@ -65,30 +65,30 @@ def _last_event(run: Run, t: mpf) -> Event | None:
 
 
 def _resting(p: Mapping[str, Any], last: Event | None) -> bool:
-    return p["initial"]["velocity"] == 0 if last is None else last.kind == "stick"
+    return p['initial']['velocity'] == 0 if last is None else last.kind == 'stick'
 
 
 def _rest_law(p: Mapping[str, Any], last: Event | None, here: Sample, scale: mpf) -> bool:
-    normal, initial = mpf(p["axis"]["normal_force"]), p["initial"]
-    age = here.time - last.time if last else mpf(initial["rest_time"]) + here.time
-    inside = abs(here.friction_force) <= normal * static_coefficient(p["friction"]["static"], age) + _SMALL * scale
-    if p["contact"]["model"] == "rigid":
+    normal, initial = mpf(p['axis']['normal_force']), p['initial']
+    age = here.time - last.time if last else mpf(initial['rest_time']) + here.time
+    inside = abs(here.friction_force) <= normal * static_coefficient(p['friction']['static'], age) + _SMALL * scale
+    if p['contact']['model'] == 'rigid':
         return bool(inside and here.velocity == 0)
-    start = last.position if last else mpf(initial["position"])
-    preload = last.direction * normal * mpf(p["friction"]["kinetic"]["coefficients"][0]) if last else mpf(0)
-    contact = preload + mpf(p["contact"]["stiffness"]) * (here.position - start)
-    contact += mpf(p["contact"]["damping"]) * here.velocity
+    start = last.position if last else mpf(initial['position'])
+    preload = last.direction * normal * mpf(p['friction']['kinetic']['coefficients'][0]) if last else mpf(0)
+    contact = preload + mpf(p['contact']['stiffness']) * (here.position - start)
+    contact += mpf(p['contact']['damping']) * here.velocity
     return bool(inside and abs(contact - here.friction_force) <= _SMALL * scale)
 
 
 def _slip_law(run: Run, p: Mapping[str, Any], here: Sample, acceleration: mpf, scale: mpf) -> bool:
-    normal, friction = mpf(p["axis"]["normal_force"]), p["friction"]
+    normal, friction = mpf(p['axis']['normal_force']), p['friction']
     sigma = 1 if here.velocity > 0 else -1
     speed, force = abs(here.velocity), sigma * here.friction_force
-    low = normal * table(friction["kinetic"], "coefficients", speed)
+    low = normal * table(friction['kinetic'], 'coefficients', speed)
     high = low + normal * _excess(run, p, here.time) * psi(friction, speed)
     slack = _SMALL * scale
-    pull = sigma * acceleration * mpf(p["axis"]["mass"])
+    pull = sigma * acceleration * mpf(p['axis']['mass'])
     if pull > slack and abs(force - high) > slack:
         return False
     if pull < -slack and abs(force - low) > slack:
@@ -98,23 +98,23 @@ def _slip_law(run: Run, p: Mapping[str, Any], here: Sample, acceleration: mpf, s
 
 def _excess(run: Run, p: Mapping[str, Any], t: mpf) -> mpf:
     """Return E of the slip under way: (mu_b - mu_k(w_b)) / psi(w_b)."""
-    starts = [e for e in run if e.kind in ("breakaway", "reverse") and e.time <= t]
-    if not starts or not p["friction"].get("acceleration_dependence"):
+    starts = [e for e in run if e.kind in ('breakaway', 'reverse') and e.time <= t]
+    if not starts or not p['friction'].get('acceleration_dependence'):
         return mpf(0)
-    speed, share = abs(starts[-1].velocity), psi(p["friction"], abs(starts[-1].velocity))
-    over = starts[-1].static_coefficient - table(p["friction"]["kinetic"], "coefficients", speed)
+    speed, share = abs(starts[-1].velocity), psi(p['friction'], abs(starts[-1].velocity))
+    over = starts[-1].static_coefficient - table(p['friction']['kinetic'], 'coefficients', speed)
     return over / share if share else mpf(0)
 
 
 def psi(friction: Mapping[str, Any], speed: mpf) -> mpf:
     """Return the excess share at a speed."""
-    default = {"velocities": [0.0, friction["kinetic"]["velocities"][-1]], "fractions": [1.0, 0.0]}
-    return table(friction.get("excess", default), "fractions", speed)
+    default = {'velocities': [0.0, friction['kinetic']['velocities'][-1]], 'fractions': [1.0, 0.0]}
+    return table(friction.get('excess', default), 'fractions', speed)
 
 
 def table(data: Mapping[str, Sequence[float]], values: str, speed: mpf) -> mpf:
     """Interpolate linearly; constant beyond the last knot."""
-    knots = [(mpf(v), mpf(y)) for v, y in zip(data["velocities"], data[values])]
+    knots = [(mpf(v), mpf(y)) for v, y in zip(data['velocities'], data[values])]
     for (v0, y0), (v1, y1) in itertools.pairwise(knots):
         if speed <= v1:
             return y0 + (y1 - y0) * (speed - v0) / (v1 - v0)
@@ -123,17 +123,17 @@ def table(data: Mapping[str, Sequence[float]], values: str, speed: mpf) -> mpf:
 
 def static_coefficient(law: Mapping[str, Any], age: mpf) -> mpf:
     """Return mu_s(age)."""
-    first = mpf(law["initial"])
-    if law["law"] == "constant":
+    first = mpf(law['initial'])
+    if law['law'] == 'constant':
         return first
-    z = age / mpf(law["time_constant"])
+    z = age / mpf(law['time_constant'])
     share = {
-        "exponential": lambda: 1 - mpmath.exp(-z),
-        "kato": lambda: 1 - mpmath.exp(-(z ** mpf(law["exponent"]))),
-        "hyperbolic": lambda: 1 - 1 / (1 + z),
-        "logarithmic": lambda: mpmath.log(1 + z),
-    }[law["law"]]()
-    return first + (mpf(law["limit"]) - first) * share
+        'exponential': lambda: 1 - mpmath.exp(-z),
+        'kato': lambda: 1 - mpmath.exp(-(z ** mpf(law['exponent']))),
+        'hyperbolic': lambda: 1 - 1 / (1 + z),
+        'logarithmic': lambda: mpmath.log(1 + z),
+    }[law['law']]()
+    return first + (mpf(law['limit']) - first) * share
 
 
 def _input(rows: Sequence[Sequence[float]], t: mpf) -> mpf:

@@ -13,16 +13,21 @@ import json
 import sys
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import mpmath
 from mpmath import mpf
 
-from .automaton import Run, simulate
+from stickslip_sim.reference import automaton
+from stickslip_sim.reference.automaton import Run
+from stickslip_sim.reference.problem import problem
+
+from .objects import exact_run, inputs_of
 from .scenes import Scene, named_scenes, random_scenes
 
-FILE = Path(__file__).parents[1] / "data" / "reference_events.json"
+FILE = Path(__file__).parents[1] / 'data' / 'reference_events.json'
 SEED = 2026
 RANDOM_SCENES = 56
 FEWEST, MOST = 5, 40
@@ -30,13 +35,13 @@ DIGITS = 25
 SAMPLES = 12
 EPSILON = mpf(10) ** -20
 NUMBERS = (
-    "time",
-    "position",
-    "velocity",
-    "drive_force",
-    "friction_force",
-    "static_coefficient",
-    "rest_time",
+    'time',
+    'position',
+    'velocity',
+    'drive_force',
+    'friction_force',
+    'static_coefficient',
+    'rest_time',
 )
 
 
@@ -47,29 +52,29 @@ def chosen_scenes() -> list[Scene]:
 
 def record(scene: Scene) -> dict[str, Any] | None:
     """Simulate a scene (random ones up to MOST events) and return what is stored; None if unsuitable."""
-    run = simulate(scene.parameters, scene.duration)
-    if scene.name.startswith("random") and len(run) > MOST:
+    run = exact_run(scene.parameters, scene.duration)
+    if scene.name.startswith('random') and len(run) > MOST:
         end = float((run[MOST - 1].time + run[MOST].time) / 2)
-        scene = scene._replace(duration=float(f"{end:.6g}"))
-        run = simulate(scene.parameters, scene.duration)
-    if run.disputed or not FEWEST <= len(run) <= (MOST if scene.name.startswith("random") else 10**6):
+        scene = scene._replace(duration=float(f'{end:.6g}'))
+        run = exact_run(scene.parameters, scene.duration)
+    if run.disputed or not FEWEST <= len(run) <= (MOST if scene.name.startswith('random') else 10**6):
         return None
     sensitivity = _sensitivity(scene, run)
     if sensitivity is None:
         return None
     return {
-        "duration": scene.duration,
-        "parameters": scene.parameters,
-        "events": events_table(run) | {"time_sensitivity": sensitivity},
-        "samples": samples_table(run, scene.duration),
+        'duration': scene.duration,
+        'parameters': scene.parameters,
+        'events': events_table(run) | {'time_sensitivity': sensitivity},
+        'samples': samples_table(run, scene.duration),
     }
 
 
 def events_table(run: Run) -> dict[str, list[Any]]:
     """Return the events column by column, numbers as strings."""
     columns: dict[str, list[Any]] = {
-        "kind": [e.kind for e in run],
-        "direction": [e.direction for e in run],
+        'kind': [e.kind for e in run],
+        'direction': [e.direction for e in run],
     }
     for name in NUMBERS:
         columns[name] = [mpmath.nstr(getattr(e, name), DIGITS) for e in run]
@@ -78,10 +83,10 @@ def events_table(run: Run) -> dict[str, list[Any]]:
 
 def samples_table(run: Run, duration: float) -> dict[str, list[Any]]:
     """Return the state at instants spread over the run."""
-    times = [float(f"{duration * (k + 0.37) / SAMPLES:.6g}") for k in range(SAMPLES)]
+    times = [float(f'{duration * (k + 0.37) / SAMPLES:.6g}') for k in range(SAMPLES)]
     samples = run.state_at(times)
-    columns: dict[str, list[Any]] = {"time": times}
-    for name in ("position", "velocity", "drive_force", "friction_force"):
+    columns: dict[str, list[Any]] = {'time': times}
+    for name in ('position', 'velocity', 'drive_force', 'friction_force'):
         columns[name] = [mpmath.nstr(getattr(s, name), DIGITS) for s in samples]
     return columns
 
@@ -89,14 +94,17 @@ def samples_table(run: Run, duration: float) -> dict[str, list[Any]]:
 def _sensitivity(scene: Scene, run: Run) -> list[float] | None:
     """Return |Δt|/ε of every event, or None when the order of events depends on the last digits."""
     with mpmath.workdps(60):
-        axis = {k: mpf(v) for k, v in scene.parameters["axis"].items()}
-        axis["mass"] *= 1 + EPSILON
-        axis["drive_stiffness"] *= 1 - EPSILON
-        axis["normal_force"] *= 1 + EPSILON
-    other = simulate({**scene.parameters, "axis": axis}, scene.duration)
+        exact = problem(*inputs_of(scene.parameters))
+        shifted = replace(
+            exact,
+            mass=exact.mass * (1 + EPSILON),
+            stiffness=exact.stiffness * (1 - EPSILON),
+            normal=exact.normal * (1 + EPSILON),
+        )
+    other = automaton.run(shifted, scene.duration, 40)
     if [(e.kind, e.direction) for e in other] != [(e.kind, e.direction) for e in run]:
         return None
-    return [float(f"{float(abs(a.time - b.time) / EPSILON):.2g}") for a, b in zip(run, other)]
+    return [float(f'{float(abs(a.time - b.time) / EPSILON):.2g}') for a, b in zip(run, other)]
 
 
 def records(only: str | None) -> Iterator[tuple[str, dict[str, Any]]]:
@@ -105,38 +113,38 @@ def records(only: str | None) -> Iterator[tuple[str, dict[str, Any]]]:
         if only is None or scene.name == only:
             begin = time.process_time()
             data = record(scene)
-            count = len(data["events"]["kind"]) if data else "left out"
-            sys.stderr.write(f"{scene.name:22} events {count}  {time.process_time() - begin:.1f} s\n")
+            count = len(data['events']['kind']) if data else 'left out'
+            sys.stderr.write(f'{scene.name:22} events {count}  {time.process_time() - begin:.1f} s\n')
             if data:
                 yield scene.name, data
 
 
 def text(scenes: dict[str, dict[str, Any]]) -> str:
     """Return JSON with one column to a line."""
-    return "{\n" + ",\n".join(f"{json.dumps(n)}: {_block(d)}" for n, d in scenes.items()) + "\n}\n"
+    return '{\n' + ',\n'.join(f'{json.dumps(n)}: {_block(d)}' for n, d in scenes.items()) + '\n}\n'
 
 
 def _block(data: dict[str, Any]) -> str:
     parts = []
     for key, content in data.items():
         if isinstance(content, dict):
-            rows = ",\n".join(f"  {json.dumps(k)}: {json.dumps(v, separators=(',', ':'))}" for k, v in content.items())
-            parts.append(f" {json.dumps(key)}: {{\n{rows}\n }}")
+            rows = ',\n'.join(f'  {json.dumps(k)}: {json.dumps(v, separators=(",", ":"))}' for k, v in content.items())
+            parts.append(f' {json.dumps(key)}: {{\n{rows}\n }}')
         else:
-            parts.append(f" {json.dumps(key)}: {json.dumps(content)}")
-    return "{\n" + ",\n".join(parts) + "\n}"
+            parts.append(f' {json.dumps(key)}: {json.dumps(content)}')
+    return '{\n' + ',\n'.join(parts) + '\n}'
 
 
 def main() -> None:
     """Simulate and write."""
-    parser = argparse.ArgumentParser(description="write the stored reference events")
-    parser.add_argument("--only", help="one scene, shown and not written")
+    parser = argparse.ArgumentParser(description='write the stored reference events')
+    parser.add_argument('--only', help='one scene, shown and not written')
     only = parser.parse_args().only
     scenes = dict(records(only))
     if only is None:
         FILE.parent.mkdir(exist_ok=True)
-        FILE.write_text(text(scenes), encoding="utf-8")
+        FILE.write_text(text(scenes), encoding='utf-8')
 
 
-if __name__ == "__main__":
+if __name__ == '__main__':
     main()

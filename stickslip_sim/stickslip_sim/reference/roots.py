@@ -4,6 +4,9 @@ A guard is a function g(τ) = Σ c_k τ^k on [0, h], positive while the mode las
 Bernstein basis of [0, h], the number of sign changes of its coefficients bounds its number of roots
 (Descartes): none proves there is no root, one proves there is exactly one; otherwise the interval is
 halved, left half first.  No crossing and no grazing minimum can be stepped over.
+
+On the unit interval everything is in fixed point: whole numbers in units of 2^-bits of the largest
+coefficient, with as many bits more than the working precision as the sums can lose.
 """
 
 from __future__ import annotations
@@ -11,48 +14,12 @@ from __future__ import annotations
 import itertools
 from collections.abc import Sequence
 
-from mpmath import mp, mpf
+from mpmath import ldexp, mp, mpf
 
-Series = list[mpf]
+from .series import reach, scaled
 
-_HALF = mpf(0.5)
-
-
-def value(coefficients: Sequence[mpf], tau: mpf) -> mpf:
-    """Return Σ c_k τ^k (Horner)."""
-    total = mpf(0)
-    for c in reversed(coefficients):
-        total = total * tau + c
-    return total
-
-
-def derivative(coefficients: Sequence[mpf]) -> Series:
-    """Return the coefficients of d/dτ Σ c_k τ^k."""
-    return [k * c for k, c in enumerate(coefficients)][1:]
-
-
-def combine(*terms: tuple[mpf, Sequence[mpf]]) -> Series:
-    """Return the coefficients of Σ a_i p_i(τ) for pairs (a_i, p_i)."""
-    total = [mpf(0)] * max(len(p) for _, p in terms)
-    for factor, series in terms:
-        if factor:
-            for k, c in enumerate(series):
-                total[k] += factor * c
-    return total
-
-
-def scaled(coefficients: Sequence[mpf], h: mpf) -> Series:
-    """Return the coefficients c_k h^k of the same function on the unit interval."""
-    out, power = [], mpf(1)
-    for c in coefficients:
-        out.append(c * power)
-        power *= h
-    return out
-
-
-def reach(unit: Sequence[mpf]) -> mpf:
-    """Return Σ_{k>=1} |d_k|, a bound of |p(s) - p(0)| on the unit interval."""
-    return sum((abs(d) for d in unit[1:]), mpf(0))
+_SPARE = 24  # bits, against the rounding of some thousand sums
+_NEWTON = 400  # steps; bisection alone needs as many as there are bits
 
 
 def first_root(guard: Sequence[mpf], h: mpf, scale: mpf, time_scale: mpf) -> mpf | None:
@@ -66,10 +33,10 @@ def first_root(guard: Sequence[mpf], h: mpf, scale: mpf, time_scale: mpf) -> mpf
         return None
     if guard[lead] < 0:
         return mpf(0)
-    unit = _trimmed(scaled(guard[lead:], h))
+    unit = scaled(guard[lead:], h)
     if unit[0] > reach(unit):
         return None
-    s = _isolate(unit)
+    s = first_unit_root(unit)
     return None if s is None else s * h
 
 
@@ -83,16 +50,19 @@ def _leading(guard: Sequence[mpf], scale: mpf, time_scale: mpf) -> int:
     return len(guard)
 
 
-def _trimmed(unit: Series) -> Series:
-    """Drop trailing terms that cannot be seen at the working precision."""
-    floor = max(abs(d) for d in unit) * mpf(10) ** (-mp.dps - 5)
-    n = len(unit)
-    while n > 1 and abs(unit[n - 1]) <= floor:
-        n -= 1
-    return unit[:n]
+def first_unit_root(unit: Sequence[mpf]) -> mpf | None:
+    """Return the first root in (0, 1] of Σ d_k s^k with d_0 > 0."""
+    bits = mp.prec + _SPARE + len(unit)  # a sum of n + 1 terms in Bernstein form grows by 2^n at the most
+    top = max(abs(d) for d in unit)
+    shift = bits - int(mp.frexp(top)[1])
+    whole = [int(ldexp(d, shift)) for d in unit]
+    while len(whole) > 1 and not whole[-1]:
+        whole.pop()
+    root = _isolate(whole, bits)
+    return None if root is None else ldexp(mpf(root), -bits)
 
 
-def bernstein(unit: Sequence[mpf]) -> Series:
+def bernstein(unit: Sequence[int]) -> list[int]:
     """Return Bernstein coefficients b_j = Σ_{k<=j} C(j,k)/C(n,k) d_k of Σ d_k s^k on [0, 1].
 
     Δ^k b_0 = d_k / C(n,k), so the b_j follow from a table of differences by additions alone.
@@ -100,7 +70,7 @@ def bernstein(unit: Sequence[mpf]) -> Series:
     n = len(unit) - 1
     diffs, binomial = [], 1
     for k, d in enumerate(unit):
-        diffs.append(d / binomial)
+        diffs.append(d // binomial)
         binomial = binomial * (n - k) // (k + 1)
     out = []
     while diffs:
@@ -110,36 +80,36 @@ def bernstein(unit: Sequence[mpf]) -> Series:
     return out
 
 
-def _halve(b: Series) -> tuple[Series, Series]:
+def _halve(b: list[int]) -> tuple[list[int], list[int]]:
     """Split at the middle (de Casteljau)."""
     left, right, row = [b[0]], [b[-1]], b
     while len(row) > 1:
-        row = [(p + q) * _HALF for p, q in itertools.pairwise(row)]
+        row = [(p + q) >> 1 for p, q in itertools.pairwise(row)]
         left.append(row[0])
         right.append(row[-1])
     return left, right[::-1]
 
 
-def _sign_changes(b: Series) -> int:
+def _sign_changes(b: list[int]) -> int:
     signs = [c > 0 for c in b if c]
     return sum(p != q for p, q in itertools.pairwise(signs))
 
 
-def _isolate(unit: Series) -> mpf | None:
-    """Return the first root in (0, 1] of Σ d_k s^k with d_0 > 0."""
-    stack = [(bernstein(unit), mpf(0), mpf(1))]
-    slope = derivative(unit)
+def _isolate(unit: list[int], bits: int) -> int | None:
+    """Return the first root in (0, 1], in units of 2^-bits."""
+    stack = [(bernstein(unit), 0, 1 << bits)]
+    finest = 1 << (bits - mp.prec // 2)
     while stack:
         b, low, width = stack.pop()
-        changes = _sign_changes(b)
         if b[0] <= 0:
             return low
+        changes = _sign_changes(b)
         if changes == 0:
             continue
         if changes == 1:
-            return _refine(unit, slope, low, low + width)
-        width *= _HALF
-        if width < mpf(10) ** (-mp.dps // 2):
+            return _refine(unit, low, low + width, bits)
+        width >>= 1
+        if width < finest:
             return low + width  # a double root to working precision: the guard is reached
         left, right = _halve(b)
         stack.append((right, low + width, width))
@@ -147,24 +117,31 @@ def _isolate(unit: Series) -> mpf | None:
     return None
 
 
-def _refine(p: Series, slope: Series, low: mpf, high: mpf) -> mpf:
+def _refine(p: list[int], low: int, high: int, bits: int) -> int:
     """Return the only root in [low, high] (p falls): Newton kept inside the bracket."""
-    tiny = mpf(10) ** (4 - mp.dps)
-    x = (low + high) * _HALF
-    for _ in range(400):
-        y = value(p, x)
+    slope = [k * c for k, c in enumerate(p)][1:]
+    tiny = 1 << (bits - mp.prec)
+    x = (low + high) >> 1
+    for _ in range(_NEWTON):
+        y = _horner(p, x, bits)
         if y > 0:
             low = x
         elif y < 0:
             high = x
         else:
             return x
-        rate = value(slope, x)
-        step = y / rate if rate else mpf(0)
-        guess = x - step
-        if abs(step) <= tiny and low <= guess <= high:
+        rate = _horner(slope, x, bits)
+        guess = x - (y << bits) // rate if rate else low
+        if rate and abs(guess - x) <= tiny and low <= guess <= high:
             return guess
-        if high - low <= tiny * high:
+        if high - low <= tiny:
             return high
-        x = guess if rate and low < guess < high else (low + high) * _HALF
-    raise ArithmeticError("the root was bracketed but not refined")
+        x = guess if rate and low < guess < high else (low + high) >> 1
+    raise ArithmeticError('the root was bracketed but not refined')
+
+
+def _horner(p: list[int], x: int, bits: int) -> int:
+    total = 0
+    for c in reversed(p):
+        total = (total * x >> bits) + c
+    return total

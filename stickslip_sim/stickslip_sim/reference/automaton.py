@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import Any
 
 import mpmath
 from mpmath import mpf
 
-from .linear import A, D, F, Flow, G, U, V, X
-from .modes import ACCELERATE, COAST, DECELERATE, Mode, Physics, Slip, Stick
-from .parameters import Axis, parse
+from .. import words
+from ..errors import SolverError
+from .flow import Flow, State, after
+from .inputs import Input, Signal
+from .modes import ACCELERATE, COAST, DECELERATE, Mode, Slip, Stick, word
+from .physics import Physics
+from .problem import Problem
 from .search import LIMIT, SPEED_DOWN, SPEED_UP, SURPLUS_UP, Step, slip_step, stick_step
-from .series import value
 
 GUARD_DIGITS = 12
 UNSEEN_COAST = mpf(10) ** -15  # |R - B| against N mu_b after a compliant break-away
@@ -24,13 +26,19 @@ _ZERO = mpf(0)
 
 @dataclass(frozen=True)
 class Event:
-    """One transition.  Values are those just after it, except ``friction_force`` (see ``simulate``)."""
+    """One transition, with `mode` after it.
+
+    The state is continuous.  `friction_force` is the limit σ N mu_s at a break-away, that of the slip which ends at a
+    stick or reversal, and that of the new sub-mode otherwise (different from the old one only where an input jumps).
+    """
 
     time: mpf
     kind: str
+    mode: words.Mode
     direction: int
     position: mpf
     velocity: mpf
+    drive_position: mpf
     drive_force: mpf
     friction_force: mpf
     static_coefficient: mpf
@@ -42,8 +50,10 @@ class Sample:
     """State at a given time (after the transition when there is one at that time)."""
 
     time: mpf
+    mode: words.Mode
     position: mpf
     velocity: mpf
+    drive_position: mpf
     drive_force: mpf
     friction_force: mpf
 
@@ -54,7 +64,7 @@ class Piece:
 
     start: mpf
     length: mpf
-    state: list[mpf]
+    state: State
     flow: Flow
     mode: Mode
 
@@ -62,7 +72,8 @@ class Piece:
 class Run(list[Event]):
     """The events of a simulation, with its motion in closed form.
 
-    ``disputed`` counts compliant break-aways on which the model is silent: force and motion of opposite
+    `final` is the state at its end.
+    `disputed` counts compliant break-aways on which the model is silent: force and motion of opposite
     signs, or kinetic friction at the break-away speed above the static limit (E is then kept at 0).
     """
 
@@ -72,6 +83,7 @@ class Run(list[Event]):
         self.digits = digits
         self.pieces: list[Piece] = []
         self.disputed = 0
+        self.final: Sample
 
     def state_at(self, times: Iterable[float | mpf]) -> list[Sample]:
         """Return position, velocity, drive force and friction force at the given times."""
@@ -81,54 +93,70 @@ class Run(list[Event]):
     def _sample(self, t: mpf) -> Sample:
         index = bisect_right(self.pieces, t, key=lambda p: p.start) - 1
         if index < 0 or t > self.pieces[-1].start + self.pieces[-1].length:
-            raise ValueError("the time lies outside the simulated interval")
+            raise ValueError('the time lies outside the simulated interval')
         piece = self.pieces[index]
-        series = piece.flow.series(piece.state, piece.length)
-        state = [value(c, t - piece.start) for c in series]
-        return Sample(t, state[X], state[U], self.physics.drive_force(state), self.physics.friction(piece.mode, state))
+        drive, force = self._inputs(t)
+        place = after(piece.state, piece.flow, piece.flow.expand(piece.state, piece.length), t - piece.start)
+        return sample(self.physics, piece.mode, t, State(*place, drive, force))
+
+    def _inputs(self, t: mpf) -> tuple[Signal, Signal]:
+        drive, force = Input(self.physics.axis.drive), Input(self.physics.axis.force)
+        drive.enter(t)
+        force.enter(t)
+        return drive.at(t), force.at(t)
 
 
-def simulate(parameters: Mapping[str, Any], duration: float, dps: int = 40) -> Run:
-    """Simulate from t = 0 and return the list of events up to ``duration``, with ``state_at``.
+def sample(physics: Physics, mode: Mode, t: mpf, state: State) -> Sample:
+    """Return a state of a mode with its forces."""
+    return Sample(
+        t,
+        word(mode),
+        state.position,
+        state.velocity,
+        state.position + state.stretch,
+        physics.drive_force(state),
+        physics.friction(mode, state),
+    )
 
-    ``friction_force`` of an event is the limit σ N mu_s at a break-away or reversal, the slip value
-    σ N mu_k(0) at a stick, and the (mostly continuous) friction of the new sub-mode otherwise.
-    """
-    digits = dps + GUARD_DIGITS
-    with mpmath.workdps(digits):
-        return _Automaton(parse(parameters), mpf(duration), digits).run()
+
+def run(problem: Problem, duration: float, digits: int) -> Run:
+    """Return the events from t = 0 up to `duration`; raises SolverError when they do not end."""
+    working = digits + GUARD_DIGITS
+    with mpmath.workdps(working):
+        return _Automaton(problem, mpf(duration), working).run()
 
 
 class _Automaton:
-    """State of a running simulation: time, y = [w, u, d, x, v, a, F, G, 1], mode."""
+    """A running simulation: time, state, mode."""
 
-    def __init__(self, axis: Axis, duration: mpf, digits: int) -> None:
+    def __init__(self, axis: Problem, duration: mpf, digits: int) -> None:
         self.axis, self.physics, self.duration = axis, Physics(axis), duration
+        self.drive, self.force = Input(axis.drive), Input(axis.force)
         self.result = Run(self.physics, digits)
-        self.t = mpf(0)
-        zero = mpf(0)
-        self.state = [zero, axis.velocity, zero, axis.position, zero, zero, zero, zero, mpf(1)]
+        zero = self.t = mpf(0)
+        self.state = State(zero, axis.velocity, zero, axis.position, self.drive.at(zero), self.force.at(zero))
         self.mode: Mode = Stick(zero, axis.rest_time)
         self.flow: Flow
 
     def run(self) -> Run:
-        self._load_inputs()
+        """Follow the modes and the pieces of the inputs to the end."""
         if self.axis.velocity:
             self._enter_slip(1 if self.axis.velocity > 0 else -1, mpf(0))
         self.flow = self.physics.flow(self.mode)
-        for stop in [b for b in self.axis.breakpoints() if b < self.duration]:
+        while (stop := min(self.drive.until, self.force.until)) <= self.duration:
             self._advance_to(stop)
             self._change_inputs()
         self._advance_to(self.duration)
+        self.result.final = sample(self.physics, self.mode, self.t, self.state)
         return self.result
 
     def _advance_to(self, stop: mpf) -> None:
         while self.t < stop:
             left = stop - self.t
-            step = self._step(self.flow.longest_step(left))
+            step = self._step(self.flow.longest_step(self.state, left))
             self.result.pieces.append(Piece(self.t, step.length, self.state, self.flow, self.mode))
-            self.state = list(step.state)
             self.t = stop if step.length == left else self.t + step.length
+            self.state = State(*step.place, self.drive.at(self.t), self.force.at(self.t))
             if step.guard:
                 self._transition(step)
                 self.flow = self.physics.flow(self.mode)
@@ -138,16 +166,11 @@ class _Automaton:
             return slip_step(self.physics, self.mode, self.flow, self.state, h)
         return stick_step(self.physics, self.mode, self.flow, self.state, self.t, h)
 
-    # ---- inputs -------------------------------------------------------------------------------
-
-    def _load_inputs(self) -> None:
-        drive, force = self.axis.drive.segment(self.t), self.axis.force.segment(self.t)
-        self.state[V], self.state[A] = drive.at(self.t), drive.slope
-        self.state[F], self.state[G] = force.at(self.t), force.slope
-
     def _change_inputs(self) -> None:
-        """Load the new input laws and re-classify a slip; a rest leaves by its own guard, at once if need be."""
-        self._load_inputs()
+        """Load the new inputs and re-classify a slip; a rest leaves by its own guard, at once if need be."""
+        self.drive.enter(self.t)
+        self.force.enter(self.t)
+        self.state = self.state._replace(drive=self.drive.at(self.t), force=self.force.at(self.t))
         if isinstance(self.mode, Slip):
             phase = self.physics.phase(self.mode.direction, self.mode.excess, self.state)
             if phase != self.mode.phase:
@@ -177,13 +200,13 @@ class _Automaton:
         slip = self._slip()
         if slip.phase == COAST:
             return ACCELERATE if upward else DECELERATE
-        if self.physics.band(slip.excess, abs(self.state[U])) > self.physics.tiny(self.state):
+        if self.physics.band(slip.excess, abs(self.state.velocity)) > self.physics.tiny(self.state):
             return COAST
         return ACCELERATE if upward else DECELERATE
 
     def _change_phase(self, phase: str) -> None:
         old = self._slip()
-        piece = self.physics.locate(abs(self.state[U]), phase == ACCELERATE)
+        piece = self.physics.locate(abs(self.state.velocity), phase == ACCELERATE)
         self.mode = replace(old, phase=phase, piece=piece, silent=False)
         if not (old.silent and phase == ACCELERATE):
             self._emit(phase, old.direction, self.physics.friction(self.mode, self.state))
@@ -192,14 +215,14 @@ class _Automaton:
         slip = self._slip()
         knot = self.physics.upper_knot(slip.piece) if way > 0 else self.physics.lower_knot(slip.piece)
         assert knot is not None
-        self.state[U] = slip.direction * knot
+        self.state = self.state._replace(velocity=slip.direction * knot)
         self.mode = replace(slip, piece=slip.piece + way)
-        self._emit("knot", slip.direction, self.physics.friction(self.mode, self.state))
+        self._emit('knot', slip.direction, self.physics.friction(self.mode, self.state))
 
     def _enter_slip(self, direction: int, excess: mpf) -> None:
         phase = self.physics.phase(direction, excess, self.state)
-        piece = self.physics.locate(abs(self.state[U]), phase == ACCELERATE)
-        self.state[D] = mpf(0)
+        piece = self.physics.locate(abs(self.state.velocity), phase == ACCELERATE)
+        self.state = self.state._replace(deflection=mpf(0))
         self.mode = Slip(direction, phase, excess, piece)
 
     def _break_away(self, sign: int) -> None:
@@ -208,16 +231,16 @@ class _Automaton:
         age = self.mode.rest_time(self.t)
         static = self.axis.static.value(age)
         direction = self._direction(sign)
-        speed = abs(self.state[U])
+        speed = abs(self.state.velocity)
         above = self.physics.kinetic_line(self.physics.locate(speed, True)).at(speed) > static
         self.result.disputed += direction != sign or bool(above)
         self._enter_slip(direction, self.physics.excess_at(static, speed))
         self._hide_short_coast(static)
-        self._emit("breakaway", direction, sign * self.axis.normal * static, static, age)
+        self._emit('breakaway', direction, sign * self.axis.normal * static, age)
 
     def _direction(self, sign: int) -> int:
         """σ = sign(ẋ); at rest the sign of the force."""
-        u = self.state[U]
+        u = self.state.velocity
         if abs(u) * self.flow.rate * self.axis.mass <= self.physics.tiny(self.state):
             return sign
         return 1 if u > 0 else -1
@@ -225,9 +248,11 @@ class _Automaton:
     def _hide_short_coast(self, static: mpf) -> None:
         """Mark a coast that exists only by 1e-15 of the force and ends by accelerating."""
         slip = self._slip()
-        if slip.phase != COAST or self.axis.contact != "compliant":
+        if slip.phase != COAST or self.axis.contact != 'compliant':
             return
-        gap = self.physics.surplus(slip.direction, self.state) - self.physics.band(slip.excess, abs(self.state[U]))
+        gap = self.physics.surplus(slip.direction, self.state) - self.physics.band(
+            slip.excess, abs(self.state.velocity)
+        )
         if (
             abs(gap) <= UNSEEN_COAST * self.axis.normal * static
             and self.physics.surplus_rate(slip.direction, self.state) > 0
@@ -237,35 +262,37 @@ class _Automaton:
     def _arrest(self) -> None:
         """End a slip at ẋ = 0: reverse at once (rigid contact, |F| > N mu_s(0)) or stick."""
         sigma = self._slip().direction
-        self.state[U] = mpf(0)
+        self.state = self.state._replace(velocity=mpf(0))
         static = self.axis.static.value(mpf(0))
-        if self.axis.contact == "rigid" and self._pulled_back(sigma, static):
-            self._enter_slip(-sigma, self.physics.excess_at(static, mpf(0)))
-            self._emit("reverse", -sigma, -sigma * self.axis.normal * static, static)
-            return
         friction = sigma * self.axis.normal * self.axis.kinetic.values[0]
-        if self.axis.contact == "compliant":
-            self.state[D] = friction / self.axis.contact_stiffness
+        if self.axis.contact == 'rigid' and self._pulled_back(sigma, static):
+            self._enter_slip(-sigma, self.physics.excess_at(static, mpf(0)))
+            self._emit('reverse', -sigma, friction)
+            return
+        if self.axis.contact == 'compliant':
+            self.state = self.state._replace(deflection=friction / self.axis.contact_stiffness)
         self.mode = Stick(self.t, mpf(0))
-        self._emit("stick", sigma, friction)
+        self._emit('stick', sigma, friction)
 
     def _pulled_back(self, sigma: int, static: mpf) -> bool:
         excess = -sigma * self.physics.net_force(self.state) - self.axis.normal * static
         return bool(excess > self.physics.tiny(self.state))
 
-    def _emit(self, kind: str, direction: int, friction: mpf, static: mpf = _ZERO, rest: mpf = _ZERO) -> None:
+    def _emit(self, kind: str, direction: int, friction: mpf, rest: mpf = _ZERO) -> None:
         if len(self.result) >= MOST_EVENTS:
-            raise ArithmeticError("too many events")
+            raise SolverError(f'{MOST_EVENTS} events up to t = {mpmath.nstr(self.t, 17)} s: check the scene')
         self.result.append(
             Event(
                 self.t,
                 kind,
+                word(self.mode),
                 direction,
-                self.state[X],
-                self.state[U],
+                self.state.position,
+                self.state.velocity,
+                self.state.position + self.state.stretch,
                 self.physics.drive_force(self.state),
                 friction,
-                static,
+                self.axis.static.value(rest),
                 rest,
             )
         )

@@ -15,7 +15,7 @@ from mpmath import exp, inf, isinf, mp, mpf
 
 from .series import Series
 
-LAWS = ("constant", "exponential", "kato", "hyperbolic", "logarithmic")
+LAWS = ('constant', 'exponential', 'kato', 'hyperbolic', 'logarithmic')
 _ORDER = 70
 
 
@@ -31,40 +31,40 @@ class StaticLaw:
 
     def value(self, age: mpf) -> mpf:
         """Return mu_s at a rest time (which may be infinite)."""
-        if self.law == "constant":
+        if self.law == 'constant':
             return self.initial
         if isinf(age):
-            if self.law == "logarithmic":
-                raise ValueError("the logarithmic law has no limit: give a finite rest time")
+            if self.law == 'logarithmic':
+                raise ValueError('the logarithmic law has no limit: give a finite rest time')
             return self.limit
         return self.initial + (self.limit - self.initial) * self._rise(age)
 
     def _rise(self, age: mpf) -> mpf:
         z = age / self.time_constant
-        if self.law == "exponential":
+        if self.law == 'exponential':
             return -mp.expm1(-z)
-        if self.law == "kato":
+        if self.law == 'kato':
             return -mp.expm1(-(z**self.exponent))
-        if self.law == "hyperbolic":
+        if self.law == 'hyperbolic':
             return z / (1 + z)
         return mp.log1p(z)
 
     def span(self, age: mpf) -> mpf:
         """Return the longest time over which ``series`` is exact to the working precision."""
-        if self.law == "constant" or isinf(age) or self._settled(age):
+        if self.law == 'constant' or isinf(age) or self._settled(age):
             return inf
-        if self.law == "exponential":
+        if self.law == 'exponential':
             return 4 * self.time_constant
-        if self.law == "kato":
+        if self.law == 'kato':
             z = (age / self.time_constant) ** self.exponent
             return min(age / 16, age / (self.exponent * z)) if age else mpf(0)
         return (age + self.time_constant) / 16
 
     def _settled(self, age: mpf) -> bool:
         """Tell whether an exponential rise is over to well below the working precision."""
-        if self.law == "exponential":
+        if self.law == 'exponential':
             z = age / self.time_constant
-        elif self.law == "kato":
+        elif self.law == 'kato':
             z = (age / self.time_constant) ** self.exponent
         else:
             return False
@@ -75,10 +75,10 @@ class StaticLaw:
         if isinf(self.span(age)):
             return [self.value(age)]
         rise = {
-            "exponential": self._exponential,
-            "kato": self._kato,
-            "hyperbolic": self._hyperbolic,
-            "logarithmic": self._logarithmic,
+            'exponential': self._exponential,
+            'kato': self._kato,
+            'hyperbolic': self._hyperbolic,
+            'logarithmic': self._logarithmic,
         }[self.law](age)
         change = self.limit - self.initial
         return [self.value(age), *(change * c for c in rise)]

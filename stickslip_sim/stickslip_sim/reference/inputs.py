@@ -1,0 +1,115 @@
+"""An input course in multiple precision: its pieces one after the other, periods included, with its waves on top."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from mpmath import cos, inf, mpf, pi, sin
+
+from ..courses import Course
+from .series import Series
+
+
+class Segment(NamedTuple):
+    """A straight piece from one instant on: value + slope (t - start)."""
+
+    start: mpf
+    value: mpf
+    slope: mpf
+
+
+class Turn(NamedTuple):
+    """A wave seen from an instant: amplitude sin(φ + ω τ), kept as sine and cosine of φ."""
+
+    amplitude: mpf
+    omega: mpf
+    sine: mpf
+    cosine: mpf
+
+    def add_to(self, series: Series) -> None:
+        """Add the terms of the wave to a power series in τ, as many as it has."""
+        size = self.amplitude
+        cycle = (self.sine, self.cosine, -self.sine, -self.cosine)
+        for k in range(len(series)):
+            series[k] += size * cycle[k % 4]
+            size = size * self.omega / (k + 1)
+
+
+class Signal(NamedTuple):
+    """An input from an instant on, until the next piece begins."""
+
+    value: mpf
+    offset: mpf
+    slope: mpf
+    turns: tuple[Turn, ...]
+
+    def series(self, order: int) -> Series:
+        """Return its power series in the time since that instant: two terms, and up to `order` with waves."""
+        series = [self.offset, self.slope]
+        if self.turns:
+            series += [mpf(0)] * max(order - 1, 0)
+            for turn in self.turns:
+                turn.add_to(series)
+        return series
+
+    @property
+    def rate(self) -> mpf:
+        """Return the highest circular frequency in it."""
+        return max((turn.omega for turn in self.turns), default=mpf(0))
+
+    @property
+    def reach(self) -> mpf:
+        """Return a size that its value does not exceed now, whatever the phases."""
+        return abs(self.offset) + sum((abs(turn.amplitude) for turn in self.turns), mpf(0))
+
+
+class Input:
+    """A course v(t) or F(t), followed in time; right-continuous.
+
+    `until` is the instant at which the next piece begins (infinite behind the last).
+    """
+
+    def __init__(self, course: Course) -> None:
+        self._waves = course.waves
+        self._segments = _segments(course)
+        self._here = next(self._segments)
+        self._next = next(self._segments, None)
+
+    @property
+    def until(self) -> mpf:
+        """Return the end of the piece that holds."""
+        return self._next.start if self._next else inf
+
+    def enter(self, t: mpf) -> None:
+        """Let the piece hold that begins at or before `t`; t never goes back."""
+        while self._next and self._next.start <= t:
+            self._here, self._next = self._next, next(self._segments, None)
+
+    def at(self, t: mpf) -> Signal:
+        """Return the input from an instant of the present piece on; waves run over absolute time."""
+        here = self._here
+        offset = here.value + here.slope * (t - here.start)
+        turns = tuple(_turn(t, *map(mpf, wave)) for wave in self._waves)
+        value = offset + sum((turn.amplitude * turn.sine for turn in turns), mpf(0))
+        return Signal(value, offset, here.slope, turns)
+
+
+def _turn(t: mpf, amplitude: mpf, frequency: mpf, phase: mpf) -> Turn:
+    omega = 2 * pi * frequency
+    angle = omega * t + phase
+    return Turn(amplitude, omega, sin(angle), cos(angle))
+
+
+def _segments(course: Course) -> Iterator[Segment]:
+    """Yield the pieces in the order of time, without end when the course is periodic."""
+    turn = 0
+    pieces = [Segment(*map(mpf, piece)) for piece in zip(course.starts, course.values, course.rates)]
+    while True:
+        begin = turn * mpf(course.period) if turn else mpf(0)
+        for piece in pieces:
+            yield piece._replace(start=begin + piece.start)
+        if math.isinf(course.period):
+            return
+        turn += 1

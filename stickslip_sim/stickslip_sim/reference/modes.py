@@ -1,0 +1,45 @@
+"""The modes of the automaton."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from mpmath import mpf
+
+from .. import words
+
+ACCELERATE, COAST, DECELERATE = 'accelerate', 'coast', 'decelerate'
+
+
+@dataclass(frozen=True)
+class Stick:
+    """Rest since an instant, entered with an age of the contact (0 after a slip)."""
+
+    since: mpf
+    age: mpf
+
+    def rest_time(self, t: mpf) -> mpf:
+        """Return the age of the contact at an instant."""
+        return self.age + (t - self.since)
+
+
+@dataclass(frozen=True)
+class Slip:
+    """Motion in a direction: sub-mode, excess E of this slip, table piece; ``silent``: an unlisted coast."""
+
+    direction: int
+    phase: str
+    excess: mpf
+    piece: int
+    silent: bool = False
+
+
+Mode = Stick | Slip
+_WORDS = {ACCELERATE: words.Mode.ACCELERATING, COAST: words.Mode.COASTING, DECELERATE: words.Mode.DECELERATING}
+
+
+def word(mode: Mode) -> words.Mode:
+    """Return the product's name of a mode."""
+    if isinstance(mode, Stick):
+        return words.Mode.STICK
+    return words.Mode.ACCELERATING if mode.silent else _WORDS[mode.phase]

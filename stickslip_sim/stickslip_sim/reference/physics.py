@@ -1,0 +1,200 @@
+"""Forces of the axis, and the sub-mode that they call for.
+
+F_d = c w + h (v - u)                 drive force
+R   = σ (F_d + F_e) - N mu_k(|u|)     driving surplus over the lower branch
+B   = N E psi(|u|)                    height of the upper branch over the lower one
+m σ u' = R - B (accelerating),  0 (coasting),  R (decelerating)
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+from mpmath import mp, mpf, sqrt
+
+from .flow import Expansion, Flow, State
+from .modes import ACCELERATE, COAST, DECELERATE, Mode, Slip, Stick
+from .problem import Line, Problem
+from .series import Series, combine, integral
+
+_ONE = mpf(1)
+_TIE_ORDER = 6  # derivatives that may decide a tie under waves
+
+
+@dataclass
+class Physics:
+    """The equations of one axis."""
+
+    axis: Problem
+    knots: list[mpf] = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.knots = self.axis.knots()
+
+    # ---- forces -------------------------------------------------------------------------------
+
+    def drive_force(self, state: State) -> mpf:
+        """F_d = c w + h (v - u)."""
+        return self.axis.stiffness * state.stretch + self.axis.damping * (state.drive.value - state.velocity)
+
+    def net_force(self, state: State) -> mpf:
+        """F_d + F_e."""
+        return self.drive_force(state) + state.force.value
+
+    def net_series(self, state: State, series: Expansion) -> Series:
+        """F_d + F_e as a power series."""
+        c, h = self.axis.stiffness, self.axis.damping
+        net = combine(
+            (c, series.drive_travel),
+            (-c, series.travel),
+            (h, series.drive),
+            (-h, series.velocity),
+            (_ONE, series.force),
+        )
+        net[0] += c * state.stretch
+        return net
+
+    def stick_force_series(self, state: State, series: Expansion) -> Series:
+        """Contact force as a power series: c_c d + h_c u, or F_d + F_e when the contact is rigid."""
+        a = self.axis
+        if a.contact == 'rigid':
+            return self.net_series(state, series)
+        force = combine((a.contact_stiffness, series.travel), (a.contact_damping, series.velocity))
+        force[0] += a.contact_stiffness * state.deflection
+        return force
+
+    def friction(self, mode: Mode, state: State) -> mpf:
+        """Friction (slip) or contact force (stick), positive when it opposes positive motion."""
+        if isinstance(mode, Stick) and self.axis.contact == 'compliant':
+            return self.axis.contact_stiffness * state.deflection + self.axis.contact_damping * state.velocity
+        if isinstance(mode, Stick) or mode.phase == COAST:
+            return self.net_force(state)
+        line = self.branch(mode)
+        return mode.direction * self.axis.normal * line.at(mode.direction * state.velocity)
+
+    def force_scale(self, state: State) -> mpf:
+        """Return a force against which rounding is judged."""
+        a = self.axis
+        top = max(max(a.kinetic.values), a.static.initial, a.static.limit)
+        inputs = state.force.reach + a.damping * state.drive.reach
+        return a.normal * top + abs(a.stiffness * state.stretch) + inputs
+
+    # ---- friction pieces ----------------------------------------------------------------------
+
+    def lower_knot(self, piece: int) -> mpf:
+        """Return the speed at which a piece begins."""
+        return self.knots[piece - 1] if piece else mpf(0)
+
+    def upper_knot(self, piece: int) -> mpf | None:
+        """Return the speed at which a piece ends; None for the last one."""
+        return self.knots[piece] if piece < len(self.knots) else None
+
+    def locate(self, speed: mpf, rising: bool) -> int:
+        """Return the piece of a speed; on a knot the sign of the acceleration decides."""
+        tiny = mpf(10) ** (18 - mp.dps)
+        side = tiny if rising else -tiny
+        return sum(1 for k in self.knots if speed >= k * (1 - side))
+
+    def kinetic_line(self, piece: int) -> Line:
+        """Return mu_k(w) on a piece."""
+        return self.axis.kinetic.piece_above(self.lower_knot(piece))
+
+    def psi_line(self, piece: int) -> Line:
+        """Return psi(w) on a piece."""
+        if self.axis.excess is None:
+            return Line(mpf(0), mpf(0))
+        return self.axis.excess.piece_above(self.lower_knot(piece))
+
+    def branch(self, slip: Slip) -> Line:
+        """mu(w) of the accelerating or decelerating branch on the slip's piece."""
+        kinetic = self.kinetic_line(slip.piece)
+        if slip.phase != ACCELERATE or not slip.excess:
+            return kinetic
+        psi = self.psi_line(slip.piece)
+        return Line(kinetic.offset + slip.excess * psi.offset, kinetic.slope + slip.excess * psi.slope)
+
+    def surplus(self, direction: int, state: State) -> mpf:
+        """R = σ (F_d + F_e) - N mu_k(|u|)."""
+        w = abs(state.velocity)
+        mu = self.kinetic_line(self.locate(w, True)).at(w)
+        return direction * self.net_force(state) - self.axis.normal * mu
+
+    def band(self, excess: mpf, speed: mpf) -> mpf:
+        """B = N E psi(w)."""
+        return self.axis.normal * excess * self.psi_line(self.locate(speed, True)).at(speed)
+
+    def excess_at(self, static: mpf, speed: mpf) -> mpf:
+        """E with mu_k(w) + E psi(w) = mu_b; 0 where psi = 0; never negative."""
+        piece = self.locate(speed, True)
+        psi = self.psi_line(piece).at(speed)
+        if not psi > 0:
+            return mpf(0)
+        return max(mpf(0), (static - self.kinetic_line(piece).at(speed)) / psi)
+
+    # ---- classification -----------------------------------------------------------------------
+
+    def surplus_rate(self, direction: int, state: State) -> mpf:
+        """First non-vanishing coefficient of R in time at constant speed; 0 when all vanish.
+
+        R' = σ (c (v - u) + h v' + F'), and so on: with waves the higher ones matter too.
+        """
+        a, time = self.axis, self.time_scale(state)
+        drive = state.drive.series(_TIE_ORDER)
+        slip = [drive[0] - state.velocity, *drive[1:]]
+        rates = combine((a.stiffness, integral(slip)), (a.damping, drive), (_ONE, state.force.series(_TIE_ORDER)))
+        limit = self.tiny(state)
+        for rate in rates[1:]:
+            limit = limit / time
+            if abs(rate) > limit:
+                return direction * rate
+        return mpf(0)
+
+    def time_scale(self, state: State) -> mpf:
+        """Return a time in which forces change."""
+        rate = state.rate
+        if self.axis.stiffness:
+            rate = max(rate, sqrt(self.axis.stiffness / self.axis.mass))
+        return 1 / rate if rate else mpf(1)
+
+    def tiny(self, state: State) -> mpf:
+        """Return the rounding of a force at the working precision."""
+        return self.force_scale(state) * mpf(10) ** (18 - mp.dps)
+
+    def phase(self, direction: int, excess: mpf, state: State) -> str:
+        """Return the sub-mode of a slip; on a border the way R moves decides."""
+        surplus, tiny = self.surplus(direction, state), self.tiny(state)
+        band = self.band(excess, abs(state.velocity))
+        if surplus > band + tiny:
+            return ACCELERATE
+        if surplus < -tiny:
+            return DECELERATE
+        rate = self.surplus_rate(direction, state)
+        if rate > 0 and surplus >= band - tiny:
+            return ACCELERATE
+        if rate < 0 and surplus <= tiny:
+            return DECELERATE
+        return COAST
+
+    # ---- motion -------------------------------------------------------------------------------
+
+    def flow(self, mode: Mode) -> Flow:
+        """Return the linear dynamics of a mode."""
+        if isinstance(mode, Slip):
+            return Flow() if mode.phase == COAST else self._slip_flow(mode)
+        return Flow() if self.axis.contact == 'rigid' else self._ringing_flow()
+
+    def _slip_flow(self, slip: Slip) -> Flow:
+        """Return the flow of m u' = F_d + F_e - σ N (α + β σ u)."""
+        a, line = self.axis, self.branch(slip)
+        return self._free(a.damping + a.normal * line.slope, a.stiffness, slip.direction * a.normal * line.offset)
+
+    def _ringing_flow(self) -> Flow:
+        """Return the flow of m u' = F_d + F_e - c_c (d + y) - h_c u; the constant c_c d comes with the state."""
+        a = self.axis
+        flow = self._free(a.damping + a.contact_damping, a.stiffness + a.contact_stiffness, mpf(0))
+        return replace(flow, contact=a.contact_stiffness)
+
+    def _free(self, damping: mpf, stiffness: mpf, constant: mpf) -> Flow:
+        a = self.axis
+        gamma, omega2 = damping / a.mass, stiffness / a.mass
+        return Flow(sqrt(omega2) + abs(gamma), a.mass, a.stiffness, a.damping, gamma, omega2, constant, free=True)

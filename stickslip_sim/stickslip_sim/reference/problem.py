@@ -1,0 +1,112 @@
+"""One axis, its start and its inputs in multiple precision.
+
+Every number is taken as the binary double it is: mpf(float).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from mpmath import mpf
+
+from .. import courses
+from ..axis import parameters as product
+from ..friction import ExcessTable, KineticTable
+from .statics import StaticLaw
+
+
+@dataclass(frozen=True)
+class Line:
+    """One straight piece of a table: offset + slope * w."""
+
+    offset: mpf
+    slope: mpf
+
+    def at(self, w: mpf) -> mpf:
+        """Return the value at a speed."""
+        return self.offset + self.slope * w
+
+
+@dataclass(frozen=True)
+class Table:
+    """Piecewise-linear function of speed; `end_slope` beyond the last knot."""
+
+    speeds: tuple[mpf, ...]
+    values: tuple[mpf, ...]
+    end_slope: mpf
+
+    def piece_above(self, w: mpf) -> Line:
+        """Return the straight piece that starts at, or contains, the speed w."""
+        i = sum(1 for k in self.speeds if k <= w) - 1
+        slope = self.end_slope
+        if i + 1 < len(self.speeds):
+            slope = (self.values[i + 1] - self.values[i]) / (self.speeds[i + 1] - self.speeds[i])
+        return Line(self.values[i] - slope * self.speeds[i], slope)
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Everything the automaton needs; names as in docs/model.md."""
+
+    mass: mpf
+    stiffness: mpf
+    damping: mpf
+    normal: mpf
+    contact: str
+    contact_stiffness: mpf
+    contact_damping: mpf
+    static: StaticLaw
+    kinetic: Table
+    excess: Table | None
+    drive: courses.Course
+    force: courses.Course
+    position: mpf
+    velocity: mpf
+    rest_time: mpf
+
+    def knots(self) -> list[mpf]:
+        """Return the speeds above zero at which a friction table bends."""
+        speeds = set(self.kinetic.speeds) | set(self.excess.speeds if self.excess else ())
+        return sorted(k for k in speeds if k > 0)
+
+
+def problem(axis: product.Axis, initial: product.InitialState, drive: courses.Course, force: courses.Course) -> Problem:
+    """Return the problem in multiple precision; raises InputError when the start has no finite static friction."""
+    product.check_start(axis, initial)
+    contact = axis.contact if isinstance(axis.contact, product.CompliantContact) else None
+    static = axis.friction.static
+    return Problem(
+        mass=mpf(axis.mass),
+        stiffness=mpf(axis.drive_stiffness),
+        damping=mpf(axis.drive_damping),
+        normal=mpf(axis.normal_force),
+        contact='compliant' if contact else 'rigid',
+        contact_stiffness=mpf(contact.stiffness if contact else 0.0),
+        contact_damping=mpf(contact.damping if contact else 0.0),
+        static=StaticLaw(
+            static.kind.name.lower(),
+            mpf(static.initial),
+            mpf(static.limit),
+            mpf(static.time_constant),
+            mpf(static.exponent),
+        ),
+        kinetic=_kinetic(axis.friction.kinetic),
+        excess=_excess(axis.friction.excess),
+        drive=drive,
+        force=force,
+        position=mpf(initial.position),
+        velocity=mpf(initial.velocity),
+        rest_time=mpf(initial.rest_time),
+    )
+
+
+def _kinetic(table: KineticTable) -> Table:
+    return Table(_exact(table.velocities), _exact(table.coefficients), mpf(table.end_slope))
+
+
+def _excess(table: ExcessTable | None) -> Table | None:
+    return Table(_exact(table.velocities), _exact(table.fractions), mpf(0)) if table else None
+
+
+def _exact(numbers: tuple[float, ...]) -> tuple[mpf, ...]:
+    return tuple(mpf(number) for number in numbers)

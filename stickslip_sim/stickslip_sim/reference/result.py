@@ -1,0 +1,30 @@
+"""What a run of the reference returns: the words of the product, floats, each the one nearest to the exact value."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from ..words import Event, Mode
+
+if TYPE_CHECKING:
+    from .automaton import Run
+
+
+class Final(NamedTuple):
+    """The state at the end of a run."""
+
+    position: float  # m
+    velocity: float  # m/s
+    drive_position: float  # m
+    mode: Mode
+
+
+class ReferenceRun(NamedTuple):
+    """`events` and `final` state, correctly rounded; `exact` keeps the values in multiple precision.
+
+    `exact` is the list of events as `automaton.Event`, and has `state_at(times)`.
+    """
+
+    events: list[Event]
+    final: Final
+    exact: Run

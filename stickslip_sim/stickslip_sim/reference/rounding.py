@@ -1,0 +1,48 @@
+"""From multiple precision to the floats of the product."""
+
+from __future__ import annotations
+
+import mpmath
+from mpmath import mpf
+
+from .. import words
+from . import automaton
+from .result import Final, ReferenceRun
+
+_KINDS = {kind.name.lower(): kind for kind in words.EventKind}
+
+
+def rounded(run: automaton.Run) -> ReferenceRun:
+    """Return the run with its numbers rounded to floats."""
+    with mpmath.workdps(run.digits):
+        return ReferenceRun([_event(event) for event in run], _final(run), run)
+
+
+def _event(event: automaton.Event) -> words.Event:
+    second, fraction = split(event.time)
+    return words.Event(
+        second,
+        fraction,
+        _KINDS[event.kind],
+        event.mode,
+        event.direction,
+        float(event.position),
+        float(event.velocity),
+        float(event.drive_position),
+        float(event.drive_force),
+        float(event.friction_force),
+        float(event.static_coefficient),
+        float(event.rest_time),
+    )
+
+
+def split(time: mpf) -> tuple[float, float]:
+    """Return whole seconds and the rest, which is the nearest float below 1 s."""
+    second = mpmath.floor(time)
+    fraction = float(time - second)
+    return (float(second), fraction) if fraction < 1.0 else (float(second) + 1.0, 0.0)
+
+
+def _final(run: automaton.Run) -> Final:
+    end = run.final
+    return Final(float(end.position), float(end.velocity), float(end.drive_position), end.mode)

@@ -1,0 +1,128 @@
+"""First event of a mode within a step: which guard falls below zero, and when."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from mpmath import mp, mpf
+
+from .flow import Expansion, Flow, Place, State, after
+from .modes import ACCELERATE, COAST, Slip, Stick
+from .physics import Physics
+from .roots import first_root
+from .series import Series, combine, derivative, reach, scaled, value
+
+LIMIT, SURPLUS_UP, SURPLUS_DOWN, SPEED_UP, SPEED_DOWN = (
+    'limit',
+    'surplus up',
+    'surplus down',
+    'speed up',
+    'speed down',
+)
+
+
+@dataclass(frozen=True)
+class Step:
+    """A proved step: its length, the place at its end, and the guard reached there (if any)."""
+
+    length: mpf
+    place: Place
+    guard: str | None
+    sign: int = 0
+
+
+def slip_step(physics: Physics, slip: Slip, flow: Flow, state: State, h: mpf) -> Step:
+    """Advance a slip by at most h, or to its first event."""
+    series = flow.expand(state, h)
+    guards = _coast_guards if slip.phase == COAST else _moving_guards
+    time, best, name = _time_scale(flow, state, h), h, None
+    for label, guard, scale in guards(physics, slip, state, series):
+        root = first_root(guard, h, scale, time)
+        if root is not None and (name is None or root < best):
+            best, name = root, label
+    return Step(best, after(state, flow, series, best), name)
+
+
+def _time_scale(flow: Flow, state: State, h: mpf) -> mpf:
+    rate = flow.rate + state.rate
+    return 1 / rate if rate else h
+
+
+Guard = tuple[str, Series, mpf]
+
+
+def _coast_guards(physics: Physics, slip: Slip, state: State, series: Expansion) -> list[Guard]:
+    """0 <= R <= B while u is constant."""
+    speed, scale = abs(state.velocity), physics.force_scale(state)
+    net = physics.net_series(state, series)
+    friction = physics.axis.normal * physics.kinetic_line(physics.locate(speed, True)).at(speed)
+    surplus = combine((mpf(slip.direction), net), (-friction, [mpf(1)]))
+    room = combine((physics.band(slip.excess, speed), [mpf(1)]), (mpf(-1), surplus))
+    return [(SURPLUS_UP, room, scale), (SURPLUS_DOWN, surplus, scale)]
+
+
+def _moving_guards(physics: Physics, slip: Slip, state: State, series: Expansion) -> list[Guard]:
+    """σ u' keeps its sign, and |u| its table piece (or stays above zero)."""
+    rising = slip.phase == ACCELERATE
+    way = mpf(1 if rising else -1)
+    acceleration = [way * slip.direction * c for c in derivative(series.velocity)]
+    scale = physics.force_scale(state) / physics.axis.mass
+    guards = [(SURPLUS_DOWN if rising else SURPLUS_UP, acceleration, scale)]
+    knot = physics.upper_knot(slip.piece) if rising else physics.lower_knot(slip.piece)
+    if knot is not None:
+        distance = combine((way * knot, [mpf(1)]), (-way * slip.direction, series.velocity))
+        guards.append((SPEED_UP if rising else SPEED_DOWN, distance, max(knot, abs(state.velocity))))
+    return guards
+
+
+def stick_step(physics: Physics, stick: Stick, flow: Flow, state: State, t: mpf, h: mpf) -> Step:
+    """Advance a rest by at most h, or to the first break-away |F| = N mu_s.
+
+    mu_s never falls, so an interval is clear when |F| stays below N mu_s at its start; where that does
+    not prove it, the interval is shortened until mu_s is a power series on it and the guards are solved.
+    """
+    series = flow.expand(state, h)
+    force = physics.stick_force_series(state, series)
+    law, normal, age = physics.axis.static, physics.axis.normal, stick.rest_time(t)
+    lowest, span = normal * law.value(age), law.span(age)
+    scale, time = physics.force_scale(state), _time_scale(flow, state, h)
+    while True:
+        if abs(force[0]) + reach(scaled(force, h)) < lowest * (1 - mpf(10) ** -9):
+            return Step(h, after(state, flow, series, h), None)
+        if h <= span:
+            return _out(state, flow, series, h, _over([normal * c for c in law.series(age)], force, h, scale, time))
+        found = _over([lowest], force, h, scale, time)
+        if found is None:
+            return Step(h, after(state, flow, series, h), None)
+        if h < mpf(10) ** -30 * law.time_constant:
+            return _out(state, flow, series, h, _at_once(physics, stick, force, t, h, found))
+        h = max(span, h / 8)
+
+
+Found = tuple[mpf, int]
+
+
+def _over(limit: Series, force: Series, h: mpf, scale: mpf, time: mpf) -> Found | None:
+    """Return when and on which side N mu_s ∓ F falls below 0 on [0, h], N mu_s being a power series."""
+    best = None
+    for side in (1, -1):
+        root = first_root(combine((mpf(1), limit), (mpf(-side), force)), h, scale, time)
+        if root is not None and (best is None or root < best[0]):
+            best = root, side
+    return best
+
+
+def _at_once(physics: Physics, stick: Stick, force: Series, t: mpf, h: mpf, found: Found) -> Found | None:
+    """Decide a rest of no age whose law has no power series there (Kato): pass if mu_s outruns |F|."""
+    law, normal, age = physics.axis.static, physics.axis.normal, stick.rest_time(t)
+    inside = abs(force[0]) <= normal * law.value(age) * (1 + mpf(10) ** (18 - mp.dps))
+    if inside and abs(value(force, h)) <= normal * law.value(age + h):
+        return None
+    return mpf(0), found[1]
+
+
+def _out(state: State, flow: Flow, series: Expansion, h: mpf, found: Found | None) -> Step:
+    if found is None:
+        return Step(h, after(state, flow, series, h), None)
+    time, side = found
+    return Step(time, after(state, flow, series, time), LIMIT, side)

@@ -1,0 +1,65 @@
+"""From the dictionary of a stored run to the objects of the product."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from stickslip_sim.axis import Axis, CompliantContact, Friction, InitialState, RigidContact
+from stickslip_sim.courses import Course, Wave
+from stickslip_sim.friction import ExcessTable, KineticTable, StaticLaw, StaticLawKind
+from stickslip_sim.friction.kinetic import default_excess
+from stickslip_sim.reference import ReferenceRun, simulate
+from stickslip_sim.reference.automaton import Run
+
+Parameters = Mapping[str, Any]
+
+
+def axis_of(values: Parameters) -> Axis:
+    contact = values['contact']
+    model = (
+        RigidContact() if contact['model'] == 'rigid' else CompliantContact(contact['stiffness'], contact['damping'])
+    )
+    return Axis(**values['axis'], contact=model, friction=_friction(values['friction']))
+
+
+def _friction(values: Parameters) -> Friction:
+    static = values['static']
+    law = StaticLaw(
+        StaticLawKind[static['law'].upper()],
+        static['initial'],
+        static.get('limit', static['initial']),
+        static.get('time_constant', 1.0),
+        static.get('exponent', 1.0),
+    )
+    given = values['kinetic']
+    kinetic = KineticTable(tuple(given['velocities']), tuple(given['coefficients']), given.get('end_slope', 0.0))
+    if not values.get('acceleration_dependence', False):
+        return Friction(law, kinetic, None)
+    shape = values.get('excess')
+    excess = ExcessTable(tuple(shape['velocities']), tuple(shape['fractions'])) if shape else default_excess(kinetic)
+    return Friction(law, kinetic, excess)
+
+
+def course_of(given: Sequence[Sequence[float]] | Parameters) -> Course:
+    """A list of [start, value, slope], or a dictionary with that as `segments`, a `period` and `waves`."""
+    if not isinstance(given, Mapping):
+        given = {'segments': given}
+    starts, values, rates = zip(*given['segments'], strict=True)
+    waves = tuple(Wave(*wave) for wave in given.get('waves', ()))
+    return Course(starts, values, rates, given.get('period', float('inf')), waves)
+
+
+def inputs_of(values: Parameters) -> tuple[Axis, InitialState, Course, Course]:
+    """Return what a simulator takes."""
+    start = InitialState(**values['initial'])
+    return axis_of(values), start, course_of(values['drive']), course_of(values['force'])
+
+
+def reference_run(values: Parameters, duration: float, digits: int = 40) -> ReferenceRun:
+    return simulate(*inputs_of(values), duration, digits)
+
+
+def exact_run(values: Parameters, duration: float, digits: int = 40) -> Run:
+    """Return the events in multiple precision."""
+    return reference_run(values, duration, digits).exact
