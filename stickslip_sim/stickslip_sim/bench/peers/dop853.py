@@ -12,12 +12,10 @@ import numpy as np
 from ...compiled import always_compiled
 from ...errors import SolverError
 from ..problem import Outcome, Problem
-from .automaton import (
-    DIRECTION, F, F_RATE, GUARDS, MODE, SIZE, TIME, U, V, V_RATE, X, guard_scales, guards, motion_of, rates,
-)
+from .automaton import GUARDS, MODE, SIZE, TIME, U, X, guard_scales, guards, motion_of, rates
 from .dop853_step import MISSING, MORE, STAGES, between, error_norm, fill_interpolant, step
 from .peer import Peer, Setting, tolerances
-from .resets import classify, move, reset, start
+from .resets import end_of_piece, enter_piece, move, note, reset
 
 _SAFETY, _SHRINK, _GROW = 0.9, 0.2, 10.0
 _SCAN = 8             # looks into a step that begins on a guard
@@ -130,30 +128,18 @@ def run(p, begin, pieces, w, duration, tolerance, longest, m, events):
     steps, work = np.zeros(4), np.zeros((5, MORE))
     rows = 0
     for k in range(len(pieces)):
-        end = pieces[k + 1, 0] if k + 1 < len(pieces) else duration
-        was = m[DIRECTION]
-        if k == 0:
-            kind = start(p, m, w, begin[0], begin[1], begin[2], pieces[0, 1], pieces[0, 2], pieces[0, 3],
-                         pieces[0, 4])
-        else:
-            m[V], m[V_RATE], m[F], m[F_RATE] = pieces[k, 1], pieces[k, 2], pieces[k, 3], pieces[k, 4]
-            kind = classify(p, m, w)
-        direction = m[DIRECTION] if m[DIRECTION] != 0.0 else was
-        while True:
-            if kind >= 0.0:
-                if rows >= len(events):
-                    return -1
-                e = events[rows]
-                e[0], e[1], e[2], e[3], e[4] = m[TIME], kind, direction, m[X], m[U]
-                rows += 1
-            if not m[TIME] < end:
-                break
+        end = end_of_piece(pieces, k, duration)
+        kind, direction = enter_piece(p, m, w, begin, pieces, k)
+        rows = note(events, rows, m, kind, direction)
+        while m[TIME] < end and rows >= 0:
             fallen = _to_event(p, m, w, end - m[TIME], tolerance, longest, steps, work)
-            kind = -1.0
             if fallen < 0:
                 m[TIME] = end
             else:
                 kind, direction = reset(p, m, w, fallen)
+                rows = note(events, rows, m, kind, direction)
+        if rows < 0:
+            return rows
     return rows
 
 

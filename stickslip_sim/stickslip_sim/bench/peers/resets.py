@@ -200,3 +200,33 @@ def classify(p, m, w):
     if m[MODE] == STICK:
         return ARREST
     return ACCELERATE if m[MODE] == ACCELERATING else DECELERATE
+
+
+@always_compiled
+def enter_piece(p, m, w, begin, pieces, k):
+    """Begin a piece of the inputs, the first with the start; return the event that this is: (kind or −1, direction)."""
+    was = m[DIRECTION]
+    if k == 0:
+        kind = start(p, m, w, begin[0], begin[1], begin[2], pieces[0, 1], pieces[0, 2], pieces[0, 3], pieces[0, 4])
+    else:
+        m[V], m[V_RATE], m[F], m[F_RATE] = pieces[k, 1], pieces[k, 2], pieces[k, 3], pieces[k, 4]
+        kind = classify(p, m, w)
+    return kind, m[DIRECTION] if m[DIRECTION] != 0.0 else was
+
+
+@always_compiled
+def end_of_piece(pieces, k, duration):
+    """Return when a piece of the inputs ends, s."""
+    return pieces[k + 1, 0] if k + 1 < len(pieces) else duration
+
+
+@always_compiled
+def note(events, rows, m, kind, direction):
+    """Write an event at the reset, if it is one; return the rows in use, −1 when the table is full."""
+    if kind < 0.0:
+        return rows
+    if rows >= len(events):
+        return -1
+    e = events[rows]
+    e[0], e[1], e[2], e[3], e[4] = m[TIME], kind, direction, m[X], m[U]
+    return rows + 1
