@@ -1,0 +1,83 @@
+"""The solvers of this product as contestants: from event to event, without Python in between where they are compiled."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from .. import __version__
+from ..axis.layout import (
+    EVENT_DIRECTION, EVENT_FRACTION, EVENT_KIND, EVENT_POSITION, EVENT_SECOND, EVENT_SIZE, EVENT_VELOCITY, SAMPLE_SIZE,
+    STATE_SIZE,
+)
+from ..compiled import IS_COMPILED
+from ..errors import SolverError
+from ..solvers import DONE, Solver, exact
+from ..words import Sample
+from .peers.peer import EXACT, Peer, Setting
+from .problem import Outcome, Problem
+
+_POSITION = Sample._fields.index('position')
+_ORDER = (EVENT_KIND, EVENT_DIRECTION, EVENT_POSITION, EVENT_VELOCITY)
+
+
+def own_solver(name: str, settings: tuple[Setting, ...], make: Callable[[Setting], Solver]) -> Peer:
+    """Return a solver as a contestant; `make` returns it for a setting."""
+    return Peer(name, settings, None, lambda: f'stickslip {__version__}', lambda problem, setting: _prepare(
+        problem, make(setting)))
+
+
+def exact_solver() -> Peer:
+    """Return the exact engine as a contestant."""
+    name = 'exact' if IS_COMPILED else 'exact, plain Python'
+    return own_solver(name, (EXACT,), lambda setting: exact.SOLVER)
+
+
+def _prepare(problem: Problem, solver: Solver) -> Callable[[], Outcome]:
+    run, p, begin = _driver(solver), problem.parameters, problem.start
+    pieces, waves, duration = problem.pieces, problem.waves, problem.duration
+    events, state = np.zeros((len(problem.event_rows()), EVENT_SIZE)), np.zeros(STATE_SIZE)
+    sample = np.zeros(SAMPLE_SIZE)
+    if not IS_COMPILED:
+        p, begin, pieces, waves = p.tolist(), begin.tolist(), pieces.tolist(), waves.tolist()
+        events, state, sample = events.tolist(), state.tolist(), sample.tolist()
+
+    def simulate() -> Outcome:
+        rows, end = run(p, state, begin, pieces, waves, duration, events)
+        if end != DONE:
+            raise SolverError(f'{solver.name} gave up after {rows} events')
+        solver.sample(p, state, float(math.floor(duration)), duration - math.floor(duration), sample)
+        table = np.array(events[:rows]).reshape(-1, EVENT_SIZE)
+        times = table[:, EVENT_SECOND] + table[:, EVENT_FRACTION]
+        return Outcome(np.column_stack([times, table[:, _ORDER]]), float(sample[_POSITION]))
+
+    return simulate
+
+
+def _driver(solver: Solver) -> Callable[..., Any]:
+    """Return a loop over the pieces of the inputs, compiled if the solver is."""
+    start, advance, set_inputs = solver.start, solver.advance, solver.set_inputs
+
+    def run(p: Any, s: Any, begin: Any, pieces: Any, waves: Any, duration: Any, events: Any) -> Any:
+        rows, state = 0, DONE
+        for k in range(len(pieces)):
+            piece = pieces[k]
+            if k == 0:
+                rows = start(p, s, begin[0], begin[1], begin[2], piece[1], piece[2], piece[3], piece[4], waves, events, 0)
+            else:
+                whole = math.floor(piece[0])
+                rows = set_inputs(p, s, float(whole), piece[0] - whole, piece[1], piece[2], piece[3], piece[4], waves,
+                                  events, rows)
+            end = pieces[k + 1][0] if k + 1 < len(pieces) else duration
+            whole = math.floor(end)
+            rows, state = advance(p, s, float(whole), end - whole, events, rows)
+            if state != DONE:
+                break
+        return rows, state
+
+    if not hasattr(advance, 'py_func'):
+        return run
+    import numba
+    compiled: Callable[..., Any] = numba.njit(error_model='numpy')(run)
+    return compiled
