@@ -101,14 +101,15 @@ def test_first_passage_misses_nothing(snap: float) -> None:
             g, _, first, second, _ = integrals(osc, t)
             return float(rate * g + jerk * first + bend * second)
 
-        turn, passed = first_passage(osc, rate, jerk, bend, math.inf, horizon)
+        turn, passed, *_ = first_passage(osc, rate, jerk, bend, math.inf, horizon, 0.0)
         end = min(turn, horizon)
         assert not passed
         values = [r(end * i / 300) for i in range(301)]
         assert all(b > a for a, b in pairwise(values[:-1]))
         peak = r(end)
         for gap, reached in ((0.5 * peak, True), (peak * (1 - 1e-10), True), (peak * (1 + 1e-10), False)):
-            t, passed = first_passage(osc, rate, jerk, bend, gap, horizon)
+            guess = rng.choice((0.0, rng.uniform(0.0, 2.0) * end))
+            t, passed, *_ = first_passage(osc, rate, jerk, bend, gap, horizon, guess)
             assert passed == reached
             if passed:
                 assert abs(r(t) - gap) <= 1e-14 * max(1.0, math.exp(-gamma * t)) * (peak + scale * end / scale**2)

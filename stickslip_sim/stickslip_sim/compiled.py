@@ -32,7 +32,7 @@ def _load_numba() -> Callable[[_Function], _Function] | None:
         import numba
     except ImportError:
         return None
-    decorate: Callable[[_Function], _Function] = numba.njit(cache=True, error_model='numpy')
+    decorate: Callable[[_Function], _Function] = numba.njit(cache=True, error_model='numpy', _nrt=False)
     return decorate
 
 

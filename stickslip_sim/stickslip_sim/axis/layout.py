@@ -28,7 +28,12 @@ GAMMA, OMEGA2, NU, SLOW, FAST, JERK, SNAP = range(18, 25)
 NEXT, NEXT_KIND, SEARCHED = range(25, 28)
 ITERATIONS = 28                         # of all searches for events so far
 ORIGIN = 29                             # m, where the run began: POSITION and DRIVE count from there
-STATE_SIZE = 30
+# g, g′, G₁ and G₂ at AT after the anchor, near the next event or where the search ended; AT < 0: not there
+AT, AT_G, AT_RATE, AT_FIRST, AT_SECOND = range(30, 35)
+LAST = 35                               # how long each mode lasted last time: a first guess for the next time
+# the same four at the instant GRID after an anchor, for the oscillator with these two: what ticks of one length share
+GRID, GRID_GAMMA, GRID_OMEGA2, GRID_G, GRID_RATE, GRID_FIRST, GRID_SECOND = range(39, 46)
+STATE_SIZE = 46
 
 # a row of the event table; words.Event has the same order
 (EVENT_SECOND, EVENT_FRACTION, EVENT_KIND, EVENT_MODE, EVENT_DIRECTION, EVENT_POSITION, EVENT_VELOCITY, EVENT_DRIVE,

@@ -14,13 +14,14 @@ with w = s − x, and b the slope of the friction branch on the present piece of
 
 from ..compiled import compiled
 from ..friction.static import static_coefficient
-from ..linear.oscillator import integrals, oscillator
+from ..linear.oscillator import integrals, oscillator, short_integrals
 from ..words import Mode
 from .layout import (
-    ACCELERATION, BRANCHES, COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, DEFLECTION, DIRECTION, DRIVE,
-    END_SLOPE, EXCESS, F, FAST, FRACTION, F_RATE, GAMMA, JERK, KNOTS, KNOT_SIZE, MASS, MODE, NORMAL, NU, OMEGA2, PIECE,
-    POSITION, REST, SECOND, SLOW, SNAP, SPRING, STATIC_EXPONENT, STATIC_INITIAL, STATIC_LAW, STATIC_LIMIT, STATIC_TAU,
-    STIFFNESS, TABLE, V, VELOCITY, V_RATE,
+    ACCELERATION, AT, AT_FIRST, AT_G, AT_RATE, AT_SECOND, BRANCHES, COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS,
+    DAMPING, DEFLECTION, DIRECTION, DRIVE, END_SLOPE, EXCESS, F, FAST, FRACTION, F_RATE, GAMMA, GRID, GRID_FIRST,
+    GRID_G, GRID_GAMMA, GRID_OMEGA2, GRID_RATE, GRID_SECOND, JERK, KNOTS, KNOT_SIZE, MASS, MODE, NEXT, NORMAL, NU,
+    OMEGA2, PIECE, POSITION, REST, SECOND, SLOW, SNAP, SPRING, STATIC_EXPONENT, STATIC_INITIAL, STATIC_LAW,
+    STATIC_LIMIT, STATIC_TAU, STIFFNESS, TABLE, V, VELOCITY, V_RATE,
 )
 
 # floats: numba would compile a function anew for every integer constant that it is called with
@@ -28,6 +29,9 @@ STICK = float(Mode.STICK)
 ACCELERATING = float(Mode.ACCELERATING)
 COASTING = float(Mode.COASTING)
 DECELERATING = float(Mode.DECELERATING)
+
+TICK = 0.1                    # s; longer steps gain nothing from what is kept
+_SHIFTER = 1.5 * 2.0 ** 8      # adding it rounds to multiples of 2⁻⁴⁴
 
 
 @compiled
@@ -101,8 +105,9 @@ def begin_motion(p, s):
         if mode == ACCELERATING:
             slope += s[EXCESS] * psi_slope
         damping += p[NORMAL] * slope
-    osc = oscillator(0.5 * damping / p[MASS], (stiffness + contact) / p[MASS])
-    s[GAMMA], s[OMEGA2], s[NU], s[SLOW], s[FAST] = osc
+    gamma, omega2 = 0.5 * damping / p[MASS], (stiffness + contact) / p[MASS]
+    if gamma != s[GAMMA] or omega2 != s[OMEGA2]:
+        s[GAMMA], s[OMEGA2], s[NU], s[SLOW], s[FAST] = oscillator(gamma, omega2)
     pull = stiffness * (s[V] - s[VELOCITY]) + p[DAMPING] * s[V_RATE] + s[F_RATE]
     s[JERK] = (pull - contact * s[VELOCITY]) / p[MASS]
     s[SNAP] = stiffness * s[V_RATE] / p[MASS]
@@ -115,6 +120,28 @@ def oscillator_of(s):
 
 
 @compiled
+def tick_integrals(s, t):
+    """Return `short_integrals` at t, from those at the nearest multiple of 2⁻⁴⁴ s.
+
+    Ticks of one length differ by the rounding of their times.  The nearest multiple is the same for them, and what was
+    computed for it is kept; the way from there is less than 3e-14 s.  The result depends on t alone, not on what is
+    kept.
+    """
+    if t >= TICK:
+        return short_integrals(oscillator_of(s), t)
+    near = (t + _SHIFTER) - _SHIFTER
+    gamma, omega2 = s[GAMMA], s[OMEGA2]
+    if near != s[GRID] or gamma != s[GRID_GAMMA] or omega2 != s[GRID_OMEGA2]:
+        s[GRID], s[GRID_GAMMA], s[GRID_OMEGA2] = near, gamma, omega2
+        s[GRID_G], s[GRID_RATE], s[GRID_FIRST], s[GRID_SECOND] = short_integrals(oscillator_of(s), near)
+    d = t - near
+    g, rate, first = s[GRID_G], s[GRID_RATE], s[GRID_FIRST]
+    bend = -2.0 * gamma * rate - omega2 * g
+    return (g + (rate + 0.5 * bend * d) * d, rate + bend * d, first + (g + 0.5 * rate * d) * d,
+            s[GRID_SECOND] + (first + 0.5 * g * d) * d)
+
+
+@compiled
 def travel(p, s, t):
     """Return the slider's travel, velocity and acceleration at t after the anchor."""
     if s[MODE] == COASTING:
@@ -122,10 +149,38 @@ def travel(p, s, t):
     if is_rigid_stick(p, s):
         return 0.0, 0.0, 0.0
     u, a, jerk, snap = s[VELOCITY], s[ACCELERATION], s[JERK], s[SNAP]
+    if snap == 0.0:
+        g, rate, first, second = tick_integrals(s, t)
+        return u * t + a * first + jerk * second, u + a * g + jerk * first, a * rate + jerk * g
     g, rate, first, second, third = integrals(oscillator_of(s), t)
     return (u * t + a * first + jerk * second + snap * third,
             u + a * g + jerk * first + snap * second,
             a * rate + jerk * g + snap * first)
+
+
+@compiled
+def travel_at(s):
+    """Return `travel` for the time AT of the last evaluation."""
+    u, a, jerk = s[VELOCITY], s[ACCELERATION], s[JERK]
+    return (u * s[AT] + a * s[AT_FIRST] + jerk * s[AT_SECOND],
+            u + a * s[AT_G] + jerk * s[AT_FIRST],
+            a * s[AT_RATE] + jerk * s[AT_G])
+
+
+@compiled
+def travel_to_event(p, s, t):
+    """Return `travel` for the time of the next event, or where its search ended: from the last evaluation there."""
+    if s[AT] < 0.0:
+        return travel(p, s, t)
+    y, v, acceleration = travel_at(s)
+    d = t - s[AT]
+    if d == 0.0:
+        return y, v, acceleration
+    bend = s[JERK] * s[AT_RATE] - s[ACCELERATION] * (2.0 * s[GAMMA] * s[AT_RATE] + s[OMEGA2] * s[AT_G])
+    snap = -2.0 * s[GAMMA] * bend - s[OMEGA2] * acceleration
+    return (y + (v + (0.5 * acceleration + bend * d / 6.0) * d) * d,
+            v + (acceleration + (0.5 * bend + snap * d / 6.0) * d) * d,
+            acceleration + (bend + 0.5 * snap * d) * d)
 
 
 @compiled
@@ -137,7 +192,7 @@ def drive_travel(s, t):
 @compiled
 def move_anchor(p, s, second, fraction, t):
     """Move the anchor by t, to the time (second, fraction), along the present mode."""
-    y, u, a = travel(p, s, t)
+    y, u, a = travel_to_event(p, s, t) if t == s[NEXT] or t == s[AT] else travel(p, s, t)
     drive = drive_travel(s, t)
     if s[MODE] == STICK:
         s[REST] += t

@@ -7,10 +7,10 @@ rate, then of the rate's rate, decides.
 from ..compiled import compiled
 from ..words import EventKind
 from .layout import (
-    ACCELERATION, COMPLIANT, CONTACT_STIFFNESS, DAMPING, DEFLECTION, DIRECTION, DRIVE, EVENT_DIRECTION,
-    EVENT_DRIVE, EVENT_DRIVE_FORCE, EVENT_FRACTION, EVENT_FRICTION, EVENT_KIND, EVENT_MODE, EVENT_POSITION, EVENT_REST,
-    EVENT_SECOND, EVENT_STATIC, EVENT_VELOCITY, EXCESS, F, FRACTION, F_RATE, MASS, MODE, NORMAL, ORIGIN, PIECE,
-    POSITION, RESIDUAL, REST, SECOND, SPRING, STIFFNESS, V, VELOCITY, V_RATE,
+    ACCELERATION, COMPLIANT, CONTACT_STIFFNESS, DAMPING, DEFLECTION, DIRECTION, DRIVE, EVENT_DIRECTION, EVENT_DRIVE,
+    EVENT_DRIVE_FORCE, EVENT_FRACTION, EVENT_FRICTION, EVENT_KIND, EVENT_MODE, EVENT_POSITION, EVENT_REST, EVENT_SECOND,
+    EVENT_STATIC, EVENT_VELOCITY, EXCESS, F, FRACTION, F_RATE, MASS, MODE, NORMAL, ORIGIN, PIECE, POSITION, RESIDUAL,
+    REST, SECOND, SPRING, STATIC_INITIAL, STIFFNESS, V, VELOCITY, V_RATE,
 )
 from .motion import (
     ACCELERATING, COASTING, DECELERATING, STICK, contact_force, drive_force, friction_force, friction_line,
@@ -43,8 +43,8 @@ def force_rounding(p, s, friction):
 
 
 @compiled
-def write_event(p, s, events, row, kind, direction, friction):
-    """Write a row with the state at the anchor; `finish_event` adds the mode that follows."""
+def write_event(p, s, events, row, kind, direction, friction, limit):
+    """Write a row with the state at the anchor and mu_s = `limit`; who calls it adds the mode that follows."""
     e = events[row]
     e[EVENT_SECOND] = s[SECOND]
     e[EVENT_FRACTION] = s[FRACTION]
@@ -55,7 +55,7 @@ def write_event(p, s, events, row, kind, direction, friction):
     e[EVENT_DRIVE] = s[ORIGIN] + s[DRIVE]
     e[EVENT_DRIVE_FORCE] = drive_force(p, s[SPRING], s[V], s[VELOCITY])
     e[EVENT_FRICTION] = friction
-    e[EVENT_STATIC] = static_limit(p, s[REST])
+    e[EVENT_STATIC] = limit
     e[EVENT_REST] = s[REST]
 
 
@@ -165,10 +165,10 @@ def arrest(p, s, events, row):
     margin = abs(force) - p[NORMAL] * limit
     if p[COMPLIANT] == 0.0 and margin > force_rounding(p, s, limit):
         direction = 1.0 if force > 0.0 else -1.0
-        write_event(p, s, events, row, REVERSE, direction, friction)
+        write_event(p, s, events, row, REVERSE, direction, friction, limit)
         break_away(p, s, direction, limit, margin)
     else:
-        write_event(p, s, events, row, ARREST, s[DIRECTION], friction)
+        write_event(p, s, events, row, ARREST, s[DIRECTION], friction, limit)
         rest(p, s)
     events[row][EVENT_MODE] = s[MODE]
 
@@ -184,7 +184,7 @@ def release(p, s, events, row):
         margin = 0.0
     if s[VELOCITY] * direction < 0.0:
         direction = -direction
-    write_event(p, s, events, row, BREAKAWAY, direction, direction * p[NORMAL] * limit)
+    write_event(p, s, events, row, BREAKAWAY, direction, direction * p[NORMAL] * limit, limit)
     break_away(p, s, direction, limit, margin)
     events[row][EVENT_MODE] = s[MODE]
 
@@ -223,7 +223,7 @@ def turn(p, s, events, row):
     else:
         enter_branch(p, s, ACCELERATING)
         kind = ACCELERATE
-    write_event(p, s, events, row, kind, direction, friction)
+    write_event(p, s, events, row, kind, direction, friction, p[STATIC_INITIAL])
     events[row][EVENT_MODE] = s[MODE]
 
 
@@ -239,7 +239,7 @@ def enter_branch(p, s, mode):
 @compiled
 def leave_coast(p, s, events, row, kind):
     """Leave the coasting band: upwards to accelerate, downwards to decelerate."""
-    write_event(p, s, events, row, kind, s[DIRECTION], applied_force(p, s))
+    write_event(p, s, events, row, kind, s[DIRECTION], applied_force(p, s), p[STATIC_INITIAL])
     enter_branch(p, s, ACCELERATING if kind == ACCELERATE else DECELERATING)
     events[row][EVENT_MODE] = s[MODE]
 
@@ -250,7 +250,7 @@ def cross_knot(p, s, events, row):
     step = 1.0 if s[MODE] == ACCELERATING else -1.0
     knot = s[PIECE] + (1.0 if step > 0.0 else 0.0)
     s[VELOCITY] = s[DIRECTION] * knot_speed(p, int(knot))
-    write_event(p, s, events, row, KNOT, s[DIRECTION], friction_force(p, s, 0.0, s[VELOCITY], 0.0))
+    write_event(p, s, events, row, KNOT, s[DIRECTION], friction_force(p, s, 0.0, s[VELOCITY], 0.0), p[STATIC_INITIAL])
     s[PIECE] += step
     events[row][EVENT_MODE] = s[MODE]
 
@@ -272,19 +272,22 @@ def apply_inputs(p, s, events, row):
     if s[MODE] == mode:
         return False
     kind = COAST if s[MODE] == COASTING else (ACCELERATE if s[MODE] == ACCELERATING else DECELERATE)
-    write_event(p, s, events, row, kind, direction, friction_force(p, s, 0.0, s[VELOCITY], applied_force(p, s)))
+    friction = friction_force(p, s, 0.0, s[VELOCITY], applied_force(p, s))
+    write_event(p, s, events, row, kind, direction, friction, p[STATIC_INITIAL])
     events[row][EVENT_MODE] = s[MODE]
     return True
 
 
 @compiled
 def _press_stick(p, s, events, row):
-    limit = static_limit(p, s[REST])
     if p[COMPLIANT] != 0.0:
         force = contact_force(p, s[DEFLECTION], s[VELOCITY])
         s[ACCELERATION] = (applied_force(p, s) - force) / p[MASS]
     else:
         force = applied_force(p, s)
+    if abs(force) <= p[NORMAL] * p[STATIC_INITIAL]:
+        return False
+    limit = static_limit(p, s[REST])
     if abs(force) - p[NORMAL] * limit <= force_rounding(p, s, limit):
         return False
     release(p, s, events, row)

@@ -23,7 +23,7 @@ import math
 from ..compiled import compiled
 
 _SERIES_BELOW = 2.0   # (|γ| + |ν|) t up to which the power series is summed
-_SHORT_SERIES_BELOW = 0.3   # where only the first integral is asked for, which loses less to cancellation
+_SHORT_SERIES_BELOW = 0.4   # where G₃ is not asked for
 _SERIES_TERMS = 60    # never reached: 30 terms are below rounding at the bound above
 
 
@@ -76,14 +76,16 @@ def integrals(osc, t):
 
 
 @compiled
-def first_integral(osc, t):
-    """Return g, g′ and G₁ at t."""
+def short_integrals(osc, t):
+    """Return g, g′, G₁ and G₂ at t; where G₃ is not asked for, less is lost to cancellation."""
     gamma, omega2, nu, _, _ = osc
-    if (nu <= 0.0 and 4.0 * omega2 < gamma * gamma) or (abs(gamma) + abs(nu)) * t < _SHORT_SERIES_BELOW:
-        g, rate, first, _, _ = integrals(osc, t)
-        return g, rate, first
+    if (abs(gamma) + abs(nu)) * t < _SHORT_SERIES_BELOW or (nu <= 0.0 and 4.0 * omega2 < gamma * gamma):
+        g, rate, first, second, _ = integrals(osc, t)
+        return g, rate, first, second
     g, rate = impulse(osc, t)
-    return g, rate, (1.0 - rate - 2.0 * gamma * g) / omega2
+    inverse = 1.0 / omega2
+    first = (1.0 - rate - 2.0 * gamma * g) * inverse
+    return g, rate, first, (t - g - 2.0 * gamma * first) * inverse
 
 
 @compiled

@@ -4,7 +4,9 @@ Three arguments cover every guard of a linear mode; none of them scans:
 
 1. *A zero of a free motion* (`first_zero`) has a closed form: one atan2, or one logarithm when over-damped.
 2. *Monotone pieces* (`first_passage`): between the closed-form zeros of its derivative a function is monotone, so its
-   sign at the two ends decides whether it has a root between them, and a bracketed Newton step finds it.
+   sign at the two ends decides whether it has a root between them, and a bracketed Newton step finds it.  The zeros of
+   a free motion are at least half a period apart (an over-damped one has one at most): a derivative that is positive
+   from the start on, and positive at a time within half a period, was positive all the way.
 3. *Safe steps* (`safe_step`): when |f″| <= M from t on, f cannot vanish before the positive root d of
    f(t) + f′(t) d − M d²/2 = 0.  Steps of that length never pass a root, and converge to a simple one quadratically.
 
@@ -14,10 +16,11 @@ Three arguments cover every guard of a linear mode; none of them scans:
 import math
 
 from ..compiled import compiled
-from .oscillator import first_integral, integrals
+from .oscillator import integrals, short_integrals
 
 _EPSILON = 2.220446049250313e-16
 _ITERATIONS = 200
+_DIRECT_STEPS = 8
 _OVERFLOW = 600.0   # largest exponent of a growing mode; by then it has left every bounded piece
 
 
@@ -26,6 +29,8 @@ def first_zero(osc, z, jerk):
     """Return the first t > 0 at which the free motion z g′ + jerk g comes down to 0; z >= 0."""
     gamma, _, nu, slow, _ = osc
     if nu > 0.0:
+        if z == 0.0 and jerk > 0.0:
+            return math.pi / nu
         return math.atan2(abs(z) * nu, gamma * z - jerk) / nu
     fall = -(jerk + slow * z)
     if z == 0.0 or fall <= 0.0:
@@ -36,9 +41,15 @@ def first_zero(osc, z, jerk):
 
 
 @compiled
+def half_period(osc):
+    """Return the least distance of two zeros of a free motion: infinite when it has one at most."""
+    return math.pi / osc[2] if osc[2] > 0.0 else math.inf
+
+
+@compiled
 def next_zero(osc, t):
     """Return the zero of a free motion that follows one at t."""
-    return t + math.pi / osc[2] if osc[2] > 0.0 else math.inf
+    return t + half_period(osc)
 
 
 @compiled
@@ -50,16 +61,86 @@ def finite_horizon(osc, t):
 
 
 @compiled
-def first_passage(osc, rate, jerk, snap, gap, horizon):
-    """Return (t, passed): when r reaches `gap`, or stops growing, whichever is first; (inf, False) past the horizon.
+def first_passage(osc, rate, jerk, snap, gap, horizon, guess):
+    """Return when r reaches `gap`, or stops growing, whichever is first, and whether it was the gap.
 
     r(0) = 0 and r′ = a with a = rate g′ + jerk g + snap G₁ (see `oscillator`), rising at first: rate > 0, or
-    rate = 0 and jerk (or else snap) > 0.  The horizon decides whether there is a root, never which digits it has.
+    rate = 0 and jerk (or else snap) > 0.  The time is infinite past the horizon, which decides whether there is a root,
+    never which digits it has; `guess` (0: none) is a time near which the gap may be reached.
+
+    Returns (t, passed, at, g, g′, G₁, G₂): the last four are `short_integrals` at `at`, near t or at the horizon, for
+    who has to go there; `at` is negative where they were not needed.
     """
     if gap <= 0.0:
-        return 0.0, True
+        return 0.0, True, -1.0, 0.0, 0.0, 0.0, 0.0
     horizon = finite_horizon(osc, horizon)
-    turn = _first_turn(osc, rate, jerk, snap) if snap != 0.0 else first_zero(osc, rate, jerk)
+    if snap != 0.0:
+        t, passed = _passage_under_ramp(osc, rate, jerk, snap, gap, horizon)
+        return t, passed, -1.0, 0.0, 0.0, 0.0, 0.0
+    half = finite_horizon(osc, half_period(osc))
+    if guess > 0.0:
+        t, at, g, slope, first, second = _direct_root(osc, rate, jerk, gap, half, guess)
+        if 0.0 <= t <= horizon:
+            return t, True, at, g, slope, first, second
+        if t > horizon:
+            return math.inf, False, -1.0, 0.0, 0.0, 0.0, 0.0
+    turn = first_zero(osc, rate, jerk)
+    end = min(turn, horizon)
+    g, slope, first, second = short_integrals(osc, end)
+    reached = rate * g + jerk * first
+    if gap < math.inf and reached >= gap:
+        if end < turn:
+            end, reached = _bracket(osc, rate, jerk, snap, gap, turn)
+        t, at, g, slope, first, second = _direct_root(osc, rate, jerk, gap, half,
+                                                      end * _first_guess(rate, gap / reached))
+        if not 0.0 <= t <= end:
+            t, at = _monotone_root(osc, rate, jerk, snap, gap, end, reached), -1.0
+        return t, True, at, g, slope, first, second
+    return turn if turn <= horizon else math.inf, False, end, g, slope, first, second
+
+
+@compiled
+def _direct_root(osc, rate, jerk, gap, half, t):
+    """Return the root of r(t) = gap by Householder's step from t on, and `at`, g, g′, G₁, G₂ of its last evaluation.
+
+    The root is the first: see argument 2.  Where the steps leave the half period in which that holds, or do not
+    settle, the root is told as −1.
+    """
+    frequency = abs(osc[0]) + math.sqrt(osc[1])
+    for _ in range(_DIRECT_STEPS):
+        if t >= half:
+            break
+        g, slope, first, second = short_integrals(osc, t)
+        speed = rate * slope + jerk * g
+        value = rate * g + jerk * first - gap
+        change = jerk * slope - rate * (2.0 * osc[0] * slope + osc[1] * g)
+        step = _householder(osc, value, speed, change, 0.0)
+        size = abs(step)
+        if not (speed > 0.0 and size < t):
+            break
+        sharpness = size * (abs(change) / speed + frequency)
+        if sharpness < 0.3 and size * sharpness * sharpness * sharpness <= 0.1 * _EPSILON * t:
+            return t - step, t, g, slope, first, second
+        t -= step
+    return -1.0, -1.0, 0.0, 0.0, 0.0, 0.0
+
+
+@compiled
+def _householder(osc, value, slope, change, snap):
+    """Return Householder's third-order step towards the root, from r − gap, r′ and r″; infinite where it has none.
+
+    Its error is about size (size (r″/r′ + frequency))³.
+    """
+    third = snap - 2.0 * osc[0] * change - osc[1] * slope
+    square = slope * slope
+    curve = 6.0 * slope * (square - value * change) + value * value * third
+    return value * (6.0 * square - 3.0 * value * change) / curve if curve > 0.0 else math.inf
+
+
+@compiled
+def _passage_under_ramp(osc, rate, jerk, snap, gap, horizon):
+    """Return (t, passed) of `first_passage` where the drive's velocity changes: snap is not 0."""
+    turn = _first_turn(osc, rate, jerk, snap)
     end = min(turn, horizon)
     if gap < math.inf:
         reached, _, _ = _passage(osc, rate, jerk, snap, end)
@@ -89,8 +170,7 @@ def _passage(osc, rate, jerk, snap, t):
     if snap != 0.0:
         g, slope, first, second, _ = integrals(osc, t)
     else:
-        g, slope, first = first_integral(osc, t)
-        second = 0.0
+        g, slope, first, second = short_integrals(osc, t)
     bend = -2.0 * osc[0] * slope - osc[1] * g
     return (rate * g + jerk * first + snap * second,
             rate * slope + jerk * g + snap * first,
@@ -101,7 +181,7 @@ def _passage(osc, rate, jerk, snap, t):
 def _monotone_root(osc, rate, jerk, snap, gap, end, reached):
     """Return the root of r(t) = gap on (0, end], r growing on it: Householder's step inside a shrinking bracket.
 
-    Its error after a step d is about d (d (r″/r′ + frequency))³; the last step is the one that makes it rounding.
+    The last step is the one whose error is rounding.
     """
     frequency = abs(osc[0]) + math.sqrt(osc[1])
     low, high = 0.0, end
@@ -116,10 +196,7 @@ def _monotone_root(osc, rate, jerk, snap, gap, end, reached):
             high = t
         if abs(value) <= 2.0 * _EPSILON * t * slope:
             return min(max(t - value / slope, low), high) if slope > 0.0 else t
-        third = snap - 2.0 * osc[0] * change - osc[1] * slope
-        square = slope * slope
-        curve = 6.0 * slope * (square - value * change) + value * value * third
-        guess = t - value * (6.0 * square - 3.0 * value * change) / curve if curve > 0.0 else math.inf
+        guess = t - _householder(osc, value, slope, change, snap)
         size = abs(guess - t)
         if low <= guess <= high and size <= 0.5 * before and slope > 0.0:
             sharpness = size * (abs(change) / slope + frequency)

@@ -1,28 +1,33 @@
 """When the contact force of a compliant stick reaches N mu_s(t⁻).
 
-F_c = P(t) + H(t): P is linear (quadratic under a ramp of the drive), H a decaying free motion.
+F_c = P(t) + H(t): P is linear (quadratic under a ramp of the drive), H a decaying free motion with |H| <= A exp(−d t).
 
-1. Once the envelope of H leaves room between P and the limit, the guard less the envelope is concave, and its root is a
-   time before which nothing can happen: one leap over the ring-down.
-2. From there, and as long as there is no room, safe steps with a bound on the curvature that is left.
-3. Where that bound proves that the guard falls all the way to its root, the root is bracketed and found there (under
+1. Safe steps with a bound on the curvature that is left, from a contact that may sit on its limit when it begins,
+   until the envelope of H leaves room between P and the limit.
+2. From there on the guard less the envelope is concave: positive at both ends of an interval, it has no zero in it.
+   The root of the guard is sought directly; a time shortly before it, at which the guard less the envelope is positive
+   and from which on the guard falls for certain, proves that it is the first (`_direct_root`).
+3. Without that proof: the root of the guard less the envelope is a time before which nothing can happen, one leap over
+   the ring-down; then safe steps again.
+4. Where their bound proves that the guard falls all the way to its root, the root is bracketed and found there (under
    a concave law).
 """
 
 import math
 
 from ...axis.layout import (
-    ACCELERATION, CONTACT_DAMPING, CONTACT_STIFFNESS, DEFLECTION, ITERATIONS, JERK, NORMAL, REST, SNAP, STATIC_TAU,
-    VELOCITY,
+    ACCELERATION, AT, AT_FIRST, AT_G, AT_RATE, AT_SECOND, CONTACT_DAMPING, CONTACT_STIFFNESS, DEFLECTION, ITERATIONS,
+    JERK, LAST, NORMAL, REST, SNAP, STATIC_INITIAL, STATIC_TAU, VELOCITY,
 )
-from ...axis.motion import oscillator_of, static_limit
+from ...axis.motion import TICK, oscillator_of, static_limit, travel_at
 from ...axis.transitions import force_rounding
 from ...compiled import compiled
-from ...linear.oscillator import amplitude, bound, impulse
+from ...linear.oscillator import amplitude, bound, impulse, short_integrals
 from ...linear.roots import safe_step
 from .static_guards import GAVE_UP, STEPS, concave_root, is_concave, law, steep_start
 
 _EPSILON = 2.220446049250313e-16
+_DIRECT_STEPS = 8
 _GO_ON, _IS_ROOT, _IN_BRACKET = 0.0, 1.0, 2.0
 
 
@@ -30,14 +35,21 @@ _GO_ON, _IS_ROOT, _IN_BRACKET = 0.0, 1.0, 2.0
 def compliant_stick(p, s, horizon):
     """Return when |F_c| reaches N mu_s, infinity when that is behind the horizon, or GAVE_UP."""
     osc = oscillator_of(s)
+    if horizon < TICK and _keeps_off(p, s, osc, horizon):
+        return math.inf
     motion = _contact_motion(p, s, osc)
     rounding = 0.5 * force_rounding(p, s, static_limit(p, s[REST]))
     may_leap = motion[4] == 0.0 and is_concave(p)
     t = 0.0
-    for _ in range(STEPS):
+    for i in range(STEPS):
         s[ITERATIONS] += 1.0
         contact = _contact_at(p, osc, motion, t)
-        if may_leap:
+        if may_leap and i == 1:
+            root = _direct_root(p, s, osc, motion, contact, t)
+            if root > 0.0:
+                return root if root <= horizon else math.inf
+            s[AT] = -1.0
+        if may_leap and i > 0:
             leap = _leap(p, s, osc, contact, t, horizon - t)
             may_leap = leap == 0.0
             t += leap
@@ -53,6 +65,18 @@ def compliant_stick(p, s, horizon):
         if t > horizon:
             return math.inf
     return GAVE_UP
+
+
+@compiled
+def _keeps_off(p, s, osc, t):
+    """Whether the force surely stays below N mu_s(0) up to t: by its rate and a bound on its curvature."""
+    stiffness, damping = p[CONTACT_STIFFNESS], p[CONTACT_DAMPING]
+    u, a, jerk = s[VELOCITY], s[ACCELERATION], s[JERK] - 2.0 * osc[0] * s[ACCELERATION]
+    snap = s[SNAP] - 2.0 * osc[0] * jerk - osc[1] * a
+    rate = abs(stiffness * u + damping * a)
+    sag_bend = stiffness * s[SNAP] / osc[1]
+    bend = bound(osc, stiffness * a + damping * jerk - sag_bend, stiffness * jerk + damping * snap) + abs(sag_bend)
+    return abs(stiffness * s[DEFLECTION] + damping * u) + (rate + 0.5 * bend * t) * t < p[NORMAL] * p[STATIC_INITIAL]
 
 
 @compiled
@@ -85,6 +109,63 @@ def _contact_at(p, osc, motion, t):
     return (steady + (rate + 0.5 * bend * t) * t, rate + bend * t, stiffness * y + damping * v,
             stiffness * v + damping * acc, stiffness * acc + damping * jerk,
             stiffness * jerk - damping * (2.0 * gamma * jerk + omega2 * acc))
+
+
+@compiled
+def _direct_root(p, s, osc, motion, contact, begin):
+    """Return the root of the guard after `begin`, if it proves to be the first; 0 otherwise.
+
+    `contact` is `_contact_at` at begin.  The steps are Halley's, from the time that stick lasted last time, or else
+    from where the steady part alone reaches the limit.
+    """
+    sag, rate, free, free_rate, wave, _ = contact
+    side = 1.0 if rate > 0.0 else -1.0
+    size, decay = amplitude(osc, free, free_rate)
+    room = p[NORMAL] * static_limit(p, s[REST] + begin) - abs(sag) - size
+    if not room > 0.0 or rate == 0.0:
+        return 0.0
+    frequency = math.sqrt(osc[1]) + 1.0 / p[STATIC_TAU]
+    t = s[LAST]
+    if t <= begin:
+        t = begin + room / abs(rate)
+    for _ in range(_DIRECT_STEPS):
+        s[ITERATIONS] += 1.0
+        value, fall, bow = _guard_at(p, s, osc, t, side)
+        if not fall < 0.0:
+            return 0.0
+        newton = value / fall
+        step = newton / max(1.0 - 0.5 * newton * bow / fall, 0.5)
+        sharpness = abs(step) * (abs(bow / fall) + frequency)
+        t -= step
+        if t <= begin:
+            return 0.0
+        if sharpness < 0.5 and abs(step) * sharpness * sharpness <= 0.1 * _EPSILON * t:
+            break
+    else:
+        return 0.0
+    before = t + 4.0 * size * math.exp(-decay * (t - begin)) / fall
+    if before <= begin:
+        return 0.0
+    fading = math.exp(-decay * (before - begin))
+    limit, growth, _ = law(p, s[REST] + before)
+    clear = p[NORMAL] * limit - side * sag - abs(rate) * (before - begin) - size * fading
+    rise, _ = amplitude(osc, free_rate, wave)
+    falls = p[NORMAL] * growth - abs(rate) + rise * fading
+    return t if clear > 0.0 and falls < 0.0 else 0.0
+
+
+@compiled
+def _guard_at(p, s, osc, t, side):
+    """Return N mu_s − side F_c at t, its rate and a bound on its bend; note the evaluation for who has to go there."""
+    g, slope, first, second = short_integrals(osc, t)
+    s[AT], s[AT_G], s[AT_RATE], s[AT_FIRST], s[AT_SECOND] = t, g, slope, first, second
+    y, u, a = travel_at(s)
+    jerk = s[JERK] + osc[1] * (s[VELOCITY] - u) - 2.0 * osc[0] * a
+    stiffness, damping = p[CONTACT_STIFFNESS], p[CONTACT_DAMPING]
+    limit, growth, curvature = law(p, s[REST] + t)
+    return (p[NORMAL] * limit - side * (stiffness * (s[DEFLECTION] + y) + damping * u),
+            p[NORMAL] * growth - side * (stiffness * u + damping * a),
+            -p[NORMAL] * curvature - side * (stiffness * a + damping * jerk))
 
 
 @compiled

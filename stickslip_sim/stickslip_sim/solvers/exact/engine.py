@@ -10,16 +10,16 @@ in place and return the number of rows in use; `advance` also tells how it ended
 import math
 
 from ...axis.layout import (
-    COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DEFLECTION, DIRECTION, DRIVE, F, FRACTION, F_RATE, MODE, NEXT,
-    NEXT_KIND, NORMAL, ORIGIN, POSITION, REST, SEARCHED, SECOND, SPRING, STATE_SIZE, V, VELOCITY, V_RATE,
+    AT, COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DEFLECTION, DIRECTION, DRIVE, F, FRACTION, F_RATE, LAST, MODE,
+    NEXT, NEXT_KIND, NORMAL, ORIGIN, POSITION, REST, SEARCHED, SECOND, SPRING, STATE_SIZE, V, VELOCITY, V_RATE,
 )
 from ...axis.motion import (
     COASTING, STICK, begin_motion, drive_force, drive_travel, friction_force, friction_line, move_anchor, piece_above,
     travel,
 )
 from ...axis.transitions import (
-    ARREST, BREAKAWAY, KNOT, applied_force, apply_inputs, arrest, choose_slip, cross_knot, force_rounding, leave_coast,
-    release, turn,
+    ARREST, BREAKAWAY, COAST, KNOT, applied_force, apply_inputs, arrest, choose_slip, cross_knot, force_rounding,
+    leave_coast, release, turn,
 )
 from ...compiled import compiled
 from .. import DONE, FULL, NO_PROGRESS
@@ -71,7 +71,9 @@ def advance(p, s, second, fraction, events, row):
             return row, NO_PROGRESS
         later = s[FRACTION] + due
         whole = math.floor(later)
+        mode = int(s[MODE])
         move_anchor(p, s, s[SECOND] + whole, later - whole, due)
+        s[LAST + mode] = due if s[NEXT_KIND] != COAST else 0.0
         _transition(p, s, events, row)
         row += 1
         _begin(p, s)
@@ -138,6 +140,7 @@ def _begin(p, s):
     begin_motion(p, s)
     s[SEARCHED] = -1.0
     s[NEXT] = math.inf
+    s[AT] = -1.0
 
 
 @compiled

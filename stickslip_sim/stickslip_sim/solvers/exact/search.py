@@ -11,12 +11,13 @@ No guard is scanned; `linear.roots` gives the arguments why none of its roots ca
 import math
 
 from ...axis.layout import (
-    ACCELERATION, COMPLIANT, DIRECTION, JERK, KNOTS, MODE, NEXT, NEXT_KIND, PIECE, RESIDUAL, SEARCHED, SNAP, VELOCITY,
+    ACCELERATION, AT, AT_FIRST, AT_G, AT_RATE, AT_SECOND, COMPLIANT, DIRECTION, JERK, KNOTS, LAST, MODE, NEXT,
+    NEXT_KIND, PIECE, RESIDUAL, SEARCHED, SNAP, VELOCITY,
 )
-from ...axis.motion import ACCELERATING, COASTING, STICK, knot_speed, oscillator_of
+from ...axis.motion import ACCELERATING, COASTING, STICK, TICK, knot_speed, oscillator_of, tick_integrals, travel_at
 from ...axis.transitions import ACCELERATE, ARREST, BREAKAWAY, COAST, DECELERATE, KNOT, band_of, force_rate
 from ...compiled import compiled
-from ...linear.roots import first_crossing, first_passage
+from ...linear.roots import finite_horizon, first_crossing, first_passage, half_period
 from .compliant_stick import compliant_stick
 from .static_guards import rigid_stick
 
@@ -59,10 +60,32 @@ def _slipping(p, s, horizon):
     else:
         gap = speed - knot_speed(p, piece)
         sign = -s[DIRECTION]
-    t, passed = first_passage(oscillator_of(s), sign * s[ACCELERATION] + 0.0, sign * s[JERK], sign * s[SNAP], gap,
-                              horizon)
+    if horizon < TICK and _keeps_on(s, sign, gap, horizon):
+        s[NEXT] = math.inf
+        return
+    t, passed, s[AT], s[AT_G], s[AT_RATE], s[AT_FIRST], s[AT_SECOND] = first_passage(
+        oscillator_of(s), sign * s[ACCELERATION] + 0.0, sign * s[JERK], sign * s[SNAP], gap, horizon,
+        s[LAST + int(s[MODE])])
     s[NEXT] = t
     if not passed:
         s[NEXT_KIND] = COAST
     else:
         s[NEXT_KIND] = KNOT if accelerating or piece > 0 else ARREST
+
+
+@compiled
+def _keeps_on(s, sign, gap, t):
+    """Whether a short slip surely lasts up to t: the acceleration has kept its sign, and the knot is not reached.
+
+    See argument 2 of `linear.roots`.  What was evaluated is noted for who goes to t.
+    """
+    osc = oscillator_of(s)
+    if s[SNAP] != 0.0 or gap <= 0.0 or not t < finite_horizon(osc, half_period(osc)):
+        return False
+    s[AT_G], s[AT_RATE], s[AT_FIRST], s[AT_SECOND] = tick_integrals(s, t)
+    s[AT] = t
+    _, u, a = travel_at(s)
+    if sign * a > 0.0 and sign * (u - s[VELOCITY]) < gap:
+        return True
+    s[AT] = -1.0
+    return False

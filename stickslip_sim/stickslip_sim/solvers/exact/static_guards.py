@@ -7,16 +7,17 @@ where its end is negative it has one root, and a bracket to find it in.  A guard
 import math
 
 from ...axis.layout import (
-    ITERATIONS, NORMAL, REST, STATIC_EXPONENT, STATIC_INITIAL, STATIC_LAW, STATIC_LIMIT, STATIC_TAU,
+    ITERATIONS, LAST, NORMAL, REST, STATIC_EXPONENT, STATIC_INITIAL, STATIC_LAW, STATIC_LIMIT, STATIC_TAU,
 )
 from ...axis.motion import static_limit
 from ...axis.transitions import applied_force, force_rate
 from ...compiled import compiled
-from ...friction.static import CONSTANT, KATO, LOGARITHMIC, static_growth
+from ...friction.static import CONSTANT, EXPONENTIAL, KATO, LOGARITHMIC, static_growth
 from ...linear.roots import first_crossing, safe_step
 
 _EPSILON = 2.220446049250313e-16
 STEPS = 100_000
+_DIRECT_STEPS = 8
 GAVE_UP = -1.0     # instead of a time: the steps were used up
 
 
@@ -25,8 +26,13 @@ def rigid_stick(p, s, horizon):
     """Return when |F_d + F_e| reaches N mu_s; both are known in closed form."""
     force = applied_force(p, s)
     rate, bend = force_rate(p, s)
-    if rate == 0.0 and bend == 0.0:
-        return math.inf
+    if bend == 0.0:
+        if rate == 0.0:
+            return math.inf
+        if p[STATIC_LAW] == EXPONENTIAL and s[REST] < math.inf:
+            t = _exponential_root(p, s, force if rate > 0.0 else -force, abs(rate), horizon)
+            if t >= 0.0:
+                return t if t <= horizon else math.inf
     return min(_one_side(p, s, force, rate, bend, horizon), _one_side(p, s, -force, -rate, -bend, horizon))
 
 
@@ -42,6 +48,49 @@ def _one_side(p, s, force, rate, bend, horizon):
     if bend >= 0.0 and is_concave(p):
         return concave_root(p, s, rest, force, rate, 0.0, 0.0, bend, horizon)
     return _stepped_side(p, s, force, rate, bend, horizon)
+
+
+@compiled
+def _exponential_root(p, s, force, rate, horizon):
+    """Return when force + rate t, rate > 0, reaches N mu_s of the exponential law; −1 where the steps do not settle.
+
+    With z = t/τ the guard is a − d (exp(−z) − 1) − b z: concave and not negative at 0, so that of its zeros after 0
+    there is but one at which it falls.  Householder's step, from the last stick's time or else from above: 1 − exp(−z)
+    is less than 2z/(2 + z), with which the guard is a quadratic.
+    """
+    normal, rest, tau = p[NORMAL], s[REST], p[STATIC_TAU]
+    gap = max(normal * static_limit(p, rest) - force, 0.0)
+    if rate * horizon < gap:
+        return math.inf   # even the limit of now is out of reach
+    d = normal * (p[STATIC_LIMIT] - p[STATIC_INITIAL])
+    if rest > 0.0:
+        d *= math.exp(-rest / tau)
+    b = rate * tau
+    if gap == 0.0 and d < b:
+        return 0.0
+    z = s[LAST] / tau
+    if z <= 0.0:
+        q = 2.0 * (b - d) - gap
+        root = math.sqrt(q * q + 8.0 * b * gap)
+        z = min(4.0 * gap / (q + root) if q > 0.0 else 0.5 * (root - q) / b, (gap + d) / b)
+    for _ in range(_DIRECT_STEPS):
+        s[ITERATIONS] += 1.0
+        fading = math.expm1(-z)
+        wane = d * (1.0 + fading)
+        fall = b - wane
+        if fall <= 0.0:
+            break
+        value = gap - d * fading - b * z
+        square = fall * fall
+        step = value * (6.0 * square + 3.0 * value * wane) / (
+            6.0 * fall * (square + value * wane) - value * value * wane)
+        sharpness = abs(step) * (1.0 + wane / fall)
+        z += step
+        if z <= 0.0 or not sharpness < 0.5:
+            break
+        if abs(step) * sharpness * sharpness * sharpness <= 0.1 * _EPSILON * z:
+            return z * tau
+    return -1.0
 
 
 @compiled
