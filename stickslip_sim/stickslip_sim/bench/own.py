@@ -1,7 +1,9 @@
 """The solvers of this product as contestants: from event to event, without Python in between where they are compiled."""
 
+import importlib.util
 import math
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -15,7 +17,7 @@ from ..compiled import IS_COMPILED
 from ..errors import SolverError
 from ..solvers import DONE, Solver, exact
 from ..words import Sample
-from .peers.peer import EXACT, Peer, Setting
+from .peers.peer import EXACT, Peer, Setting, time_steps, tolerances
 from .problem import Outcome, Problem
 
 _POSITION = Sample._fields.index('position')
@@ -28,6 +30,28 @@ def own_solver(name: str, settings: tuple[Setting, ...], make: Callable[[Setting
         problem, make(setting)))
 
 
+def own_solvers() -> list[Peer]:
+    """Return all solvers of this product as contestants."""
+    found = [exact_solver()]
+    if importlib.util.find_spec('..solvers.fixed_step', __package__):
+        fixed_step = importlib.import_module('..solvers.fixed_step', __package__)
+        for method, steps in (('euler', time_steps(1e-3, 1e-4, 1e-5)), ('rk4', time_steps(1e-3, 1e-4))):
+            found.append(own_solver(f'fixed_step {method}', steps, partial(_by_step, fixed_step.solver, method)))
+    if importlib.util.find_spec('..solvers.adaptive', __package__):
+        adaptive = importlib.import_module('..solvers.adaptive', __package__)
+        found += [own_solver(f'adaptive {method}', tolerances(1e-6, 1e-9, 1e-12),
+                             partial(_by_tolerance, adaptive.solver, method)) for method in ('DOP853', 'RK45')]
+    return found
+
+
+def _by_step(make: Callable[..., Solver], method: str, setting: Setting) -> Solver:
+    return make(method, setting.value)
+
+
+def _by_tolerance(make: Callable[..., Solver], method: str, setting: Setting) -> Solver:
+    return make(method, setting.value, setting.value)
+
+
 def exact_solver() -> Peer:
     """Return the exact engine as a contestant."""
     name = 'exact' if IS_COMPILED else 'exact, plain Python'
@@ -35,16 +59,17 @@ def exact_solver() -> Peer:
 
 
 def _prepare(problem: Problem, solver: Solver) -> Callable[[], Outcome]:
-    run, p, begin = _driver(solver), problem.parameters, problem.start
+    run, p, begin = _driver(solver), problem.parameters, problem.start.tolist()
     pieces, waves, duration = problem.pieces, problem.waves, problem.duration
     events, state = np.zeros((len(problem.event_rows()), EVENT_SIZE)), np.zeros(STATE_SIZE)
     sample = np.zeros(SAMPLE_SIZE)
     if not IS_COMPILED:
-        p, begin, pieces, waves = p.tolist(), begin.tolist(), pieces.tolist(), waves.tolist()
+        p, pieces, waves = p.tolist(), pieces.tolist(), waves.tolist()
         events, state, sample = events.tolist(), state.tolist(), sample.tolist()
 
     def simulate() -> Outcome:
-        rows, end = run(p, state, begin, pieces, waves, duration, events)
+        rows = solver.start(p, state, *begin, *pieces[0][1:], waves, events, 0)
+        rows, end = run(p, state, pieces, waves, duration, events, rows)
         if end != DONE:
             raise SolverError(f'{solver.name} gave up after {rows} events')
         solver.sample(p, state, float(math.floor(duration)), duration - math.floor(duration), sample)
@@ -57,15 +82,13 @@ def _prepare(problem: Problem, solver: Solver) -> Callable[[], Outcome]:
 
 def _driver(solver: Solver) -> Callable[..., Any]:
     """Return a loop over the pieces of the inputs, compiled if the solver is."""
-    start, advance, set_inputs = solver.start, solver.advance, solver.set_inputs
+    advance, set_inputs = solver.advance, solver.set_inputs
 
-    def run(p: Any, s: Any, begin: Any, pieces: Any, waves: Any, duration: Any, events: Any) -> Any:
-        rows, state = 0, DONE
+    def run(p: Any, s: Any, pieces: Any, waves: Any, duration: Any, events: Any, rows: Any) -> Any:
+        state = DONE
         for k in range(len(pieces)):
             piece = pieces[k]
-            if k == 0:
-                rows = start(p, s, begin[0], begin[1], begin[2], piece[1], piece[2], piece[3], piece[4], waves, events, 0)
-            else:
+            if k > 0:
                 whole = math.floor(piece[0])
                 rows = set_inputs(p, s, float(whole), piece[0] - whole, piece[1], piece[2], piece[3], piece[4], waves,
                                   events, rows)

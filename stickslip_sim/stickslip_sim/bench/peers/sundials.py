@@ -223,4 +223,4 @@ def _version() -> str:
     return f'SUNDIALS of scikit-sundae {importlib.metadata.version("scikit-sundae")}'
 
 
-PEER = Peer('SUNDIALS CVODE (Adams), C', tolerances(1e-6, 1e-8, 1e-10, 1e-12), _missing(), _version, _prepare)
+PEER = Peer('CVODE (Adams), as from C', tolerances(1e-6, 1e-8, 1e-10, 1e-12), _missing(), _version, _prepare)
