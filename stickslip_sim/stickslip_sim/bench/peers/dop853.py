@@ -123,9 +123,9 @@ def _to_event(p, m, w, limit, tolerance, longest, steps, work):
 
 
 @always_compiled
-def run(p, begin, pieces, w, duration, tolerance, longest, m, events):
+def run(p, begin, pieces, w, duration, tolerance, longest, m, events, steps, work):
     """Simulate; return the number of events (rows: time, kind, direction, x, ẋ; −1 when the table is full)."""
-    steps, work = np.zeros(4), np.zeros((5, MORE))
+    steps[:] = 0.0
     rows = 0
     for k in range(len(pieces)):
         end = end_of_piece(pieces, k, duration)
@@ -145,10 +145,11 @@ def run(p, begin, pieces, w, duration, tolerance, longest, m, events):
 
 def _prepare(problem: Problem, setting: Setting) -> Callable[[], Outcome]:
     p, begin, pieces, waves = problem.parameters, problem.start, problem.pieces, problem.waves
-    m, events = np.zeros(SIZE), problem.event_rows()
+    m, events, steps, work = np.zeros(SIZE), problem.event_rows(), np.zeros(4), np.zeros((5, MORE))
 
     def simulate() -> Outcome:
-        rows = run(p, begin, pieces, waves, problem.duration, setting.value, problem.longest_step, m, events)
+        rows = run(p, begin, pieces, waves, problem.duration, setting.value, problem.longest_step, m, events,
+                   steps, work)
         if rows < 0:
             raise SolverError('more events than the table holds')
         return Outcome(events[:rows].copy(), float(m[X]))

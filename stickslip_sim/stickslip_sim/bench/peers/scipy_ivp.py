@@ -23,9 +23,8 @@ _FINEST = 100 * np.finfo(float).eps   # scipy's own floor of the relative tolera
 
 
 @always_compiled
-def _vector(q, w, t, y):
-    dx, du = rates(q, w, t, y[0], y[1])
-    return np.array([dx, du])
+def _rates_into(q, w, t, y, out):
+    out[0], out[1] = rates(q, w, t, y[0], y[1])
 
 
 @always_compiled
@@ -52,7 +51,12 @@ def _run(problem: Problem, method: str, tolerance: float) -> Outcome:
                                'max_step': problem.longest_step}
 
     def to_event(q: Any, limit: float, x: float, u: float) -> tuple[float, float, float, int]:
-        done = solve_ivp(lambda t, y: _vector(q, w, t, y), (0.0, limit), (x, u),
+        def right_side(t: float, y: Any) -> Any:
+            out = np.empty(2)
+            _rates_into(q, w, t, y, out)
+            return out
+
+        done = solve_ivp(right_side, (0.0, limit), (x, u),
                          events=[_Guard(q, w, i) for i in range(GUARDS)], **options)
         if not done.success:
             raise SolverError(f'solve_ivp: {done.message}')

@@ -5,18 +5,12 @@ from typing import Any
 
 import numpy as np
 
-from ...compiled import always_compiled
 from ...errors import SolverError
 from ..problem import Outcome, Problem
 from .automaton import SIZE, TIME, U, X, motion_of
 from .resets import end_of_piece, enter_piece, move, note, reset
 
 ToEvent = Callable[[Any, float, float, float], tuple[float, float, float, int]]
-
-
-@always_compiled
-def _motion(p, m):
-    return np.array(motion_of(p, m))
 
 
 def run_segments(problem: Problem, to_event: ToEvent) -> Outcome:
@@ -31,7 +25,7 @@ def run_segments(problem: Problem, to_event: ToEvent) -> Outcome:
         kind, direction = enter_piece(p, m, w, problem.start, pieces, k)
         rows = note(events, rows, m, kind, direction)
         while m[TIME] < end and rows >= 0:
-            t, x, u, fallen = to_event(_motion(p, m), end - m[TIME], m[X], m[U])
+            t, x, u, fallen = to_event(np.array(motion_of(p, m)), end - m[TIME], m[X], m[U])
             move(p, m, w, t, x, u)
             if fallen < 0:
                 m[TIME] = end
