@@ -18,10 +18,9 @@ from ..errors import SolverError
 from ..solvers import DONE, Solver, exact
 from ..words import Sample
 from .peers.peer import EXACT, Peer, Setting, time_steps, tolerances
-from .problem import Outcome, Problem
+from .problem import EVENT_COLUMNS, Outcome, Problem
 
 _POSITION = Sample._fields.index('position')
-_ORDER = (EVENT_KIND, EVENT_DIRECTION, EVENT_POSITION, EVENT_VELOCITY)
 
 
 def own_solver(name: str, settings: tuple[Setting, ...], make: Callable[[Setting], Solver]) -> Peer:
@@ -61,30 +60,29 @@ def exact_solver() -> Peer:
 def _prepare(problem: Problem, solver: Solver) -> Callable[[], Outcome]:
     run, p, begin = _driver(solver), problem.parameters, problem.start.tolist()
     pieces, waves, duration = problem.pieces, problem.waves, problem.duration
-    events, state = np.zeros((len(problem.event_rows()), EVENT_SIZE)), np.zeros(STATE_SIZE)
+    count = len(problem.event_rows())
+    events, state, out = np.zeros((count, EVENT_SIZE)), np.zeros(STATE_SIZE), np.zeros((count + 1, EVENT_COLUMNS))
     sample = np.zeros(SAMPLE_SIZE)
     if not IS_COMPILED:
-        p, pieces, waves = p.tolist(), pieces.tolist(), waves.tolist()
+        p, pieces, waves, out = p.tolist(), pieces.tolist(), waves.tolist(), out.tolist()
         events, state, sample = events.tolist(), state.tolist(), sample.tolist()
 
     def simulate() -> Outcome:
         rows = solver.start(p, state, *begin, *pieces[0][1:], waves, events, 0)
-        rows, end = run(p, state, pieces, waves, duration, events, rows)
+        rows, end = run(p, state, pieces, waves, duration, events, rows, sample, out)
         if end != DONE:
             raise SolverError(f'{solver.name} gave up after {rows} events')
-        solver.sample(p, state, float(math.floor(duration)), duration - math.floor(duration), sample)
-        table = np.array(events[:rows]).reshape(-1, EVENT_SIZE)
-        times = table[:, EVENT_SECOND] + table[:, EVENT_FRACTION]
-        return Outcome(np.column_stack([times, table[:, _ORDER]]), float(sample[_POSITION]))
+        return Outcome(np.asarray(out[:rows]).reshape(-1, EVENT_COLUMNS), float(sample[_POSITION]))
 
     return simulate
 
 
 def _driver(solver: Solver) -> Callable[..., Any]:
     """Return a loop over the pieces of the inputs, compiled if the solver is."""
-    advance, set_inputs = solver.advance, solver.set_inputs
+    advance, set_inputs, sample_at = solver.advance, solver.set_inputs, solver.sample
 
-    def run(p: Any, s: Any, pieces: Any, waves: Any, duration: Any, events: Any, rows: Any) -> Any:
+    def run(p: Any, s: Any, pieces: Any, waves: Any, duration: Any, events: Any, rows: Any, sample: Any,
+            out: Any) -> Any:
         state = DONE
         for k in range(len(pieces)):
             piece = pieces[k]
@@ -96,7 +94,14 @@ def _driver(solver: Solver) -> Callable[..., Any]:
             whole = math.floor(end)
             rows, state = advance(p, s, float(whole), end - whole, events, rows)
             if state != DONE:
-                break
+                return rows, state
+        whole = math.floor(duration)
+        sample_at(p, s, float(whole), duration - whole, sample)
+        for i in range(rows):
+            e, row = events[i], out[i]
+            row[0] = e[EVENT_SECOND] + e[EVENT_FRACTION]
+            row[1], row[2] = e[EVENT_KIND], e[EVENT_DIRECTION]
+            row[3], row[4] = e[EVENT_POSITION], e[EVENT_VELOCITY]
         return rows, state
 
     if not hasattr(advance, 'py_func'):

@@ -15,6 +15,7 @@ import click
 
 from .. import __version__
 from ..errors import StickslipError
+from .bench import bench
 from .scenes import scenes
 from .simulate import simulate
 from .warm import warm
@@ -29,7 +30,7 @@ def stickslip() -> None:
     """Stick-slip motion of a feed axis, simulated exactly."""
 
 
-for verb in (scenes, simulate, warm):
+for verb in (bench, scenes, simulate, warm):
     stickslip.add_command(verb)
 
 

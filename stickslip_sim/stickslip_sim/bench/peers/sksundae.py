@@ -56,10 +56,11 @@ class _Solver:
         done = self._cvode.solve(np.array([0.0, limit]), np.array([x, u]))
         if not done.success:
             raise SolverError(f'CVODE: {done.message}')
-        fallen = -1
-        if done.i_events is not None and len(done.i_events):
-            fallen = int(np.flatnonzero(done.i_events[-1])[0])
-        return float(done.t[-1]), float(done.y[-1, 0]), float(done.y[-1, 1]), fallen
+        time = float(done.t[-1])
+        # at the end of the interval it tells of events that are none
+        found = np.flatnonzero(done.i_events[-1]) if time < limit else []
+        fallen = int(found[0]) if len(found) else -1
+        return time, float(done.y[-1, 0]), float(done.y[-1, 1]), fallen
 
 
 def _prepare(problem: Problem, setting: Setting) -> Callable[[], Outcome]:
