@@ -1,8 +1,8 @@
 """How wrong a run is: its events paired with those of the reference; missed, invented, late, and out of place.
 
 What counts are the events at which the slider starts or stops (break-away, stick, reverse), because every solver has
-them; the sub-modes of a slip are compared too, apart.  Events of one kind and direction are paired in order, so that the
-sum of their distances in time is least; a pair further apart than half the usual distance of such events is none.
+them; the sub-modes of a slip are compared too, apart.  Events of one kind and direction are paired in order, so that
+the sum of their distances in time is least; a pair further apart than half the usual distance of such events is none.
 """
 
 import statistics

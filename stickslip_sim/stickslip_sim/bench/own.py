@@ -1,4 +1,4 @@
-"""The solvers of this product as contestants: from event to event, without Python in between where they are compiled."""
+"""The solvers of this product as contestants: no Python between two events where they are compiled."""
 
 import importlib.util
 import math

@@ -75,7 +75,7 @@ def _write(folder: Path, results: 'list[CaseResult]', claims: 'list[Ratio]', rou
                     plot_trade(panels, _TITLE, temporary)
 
 
-_TITLE = 'Cost and error of every solver and setting; hollow: events missed or invented; lower left is better'
+_TITLE = 'What every solver and setting costs, and how wrong it is\nhollow: events missed or invented; lower left is better'
 
 
 def _points(result: 'CaseResult') -> dict[str, list[tuple[float, float, bool]]]:

@@ -1,18 +1,19 @@
 """The axis between two resets, for any integrator: right-hand side and guards, written once for all peers.
 
 Between two resets the motion is an initial value problem of (x, ẋ) in the time τ since the last reset, smooth also a
-little beyond the guard that ends it (an integrator looks there).  A guard is a function that is positive inside its mode and whose fall through zero ends it.  Nothing here is taken from the exact
-engine: equations and rules are those of docs/model.md.
+little beyond the guard that ends it (an integrator looks there).  A guard is a function that is positive inside its
+mode and whose fall through zero ends it.  Nothing here is taken from the exact engine: equations and rules are those of
+docs/model.md.
 
 `p` is the array of `axis.pack`.  `m` is the state of the automaton at the last reset (below), `w` the waves: frequency
 in Hz, phase in turns, amplitude in m/s, amplitude in N for each.  What the motion until the next reset depends on is
-taken together in a tuple `q`: machine code keeps it in registers, while arrays would be counted in and out of each call.
+taken together in a tuple `q`, which machine code keeps in registers.
 """
 
 import math
 
 from ...axis.layout import (
-    COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, END_SLOPE, KNOT_SIZE, KNOTS, MASS, NORMAL, STATIC_EXPONENT,
+    CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, END_SLOPE, KNOT_SIZE, KNOTS, MASS, NORMAL, STATIC_EXPONENT,
     STATIC_INITIAL, STATIC_LAW, STATIC_LIMIT, STATIC_TAU, STIFFNESS, TABLE,
 )
 from ...compiled import always_compiled

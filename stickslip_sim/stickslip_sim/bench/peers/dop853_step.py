@@ -1,7 +1,7 @@
 """One step of Dormand and Prince's order 8(5,3) for the two states of the axis, its error and its dense output.
 
 Source: Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, sections II.5 and II.10; the coefficients
-are those of scipy.  The sums are written out without their zeros, as in the authors' code: loops cost three times as much.
+are those of scipy.  The sums of a step are written out without their zeros, as in the authors' code.
 """
 
 import math
@@ -116,6 +116,7 @@ def fill_interpolant(q, w, t, h, x, u, xn, un, kx, ku, fx, fu):
 
 @always_compiled
 def between(f, old, share):
+    """Return a state within the step, at a share of it, from the seven coefficients."""
     y = 0.0
     for i in range(7):
         y += f[6 - i]

@@ -1,8 +1,8 @@
 """SUNDIALS CVODE with root finding, called as from C: no Python between two events.
 
 The C libraries are those that scikit-sundae brings along; right-hand side and root functions are compiled to C
-callbacks, and the loop from event to event is compiled too.  Through scikit-sundae's Python callbacks the same runs cost several
-times as much.  Reference: Hindmarsh et al., ACM TOMS 31 (2005) 363.
+callbacks, and the loop from event to event is compiled too.  `sksundae` is the same integrator as Python users have it.
+Reference: Hindmarsh et al., ACM TOMS 31 (2005) 363.
 """
 
 import ctypes
