@@ -10,7 +10,14 @@ import numpy as np
 
 from .. import __version__
 from ..axis.layout import (
-    EVENT_DIRECTION, EVENT_FRACTION, EVENT_KIND, EVENT_POSITION, EVENT_SECOND, EVENT_SIZE, EVENT_VELOCITY, SAMPLE_SIZE,
+    EVENT_DIRECTION,
+    EVENT_FRACTION,
+    EVENT_KIND,
+    EVENT_POSITION,
+    EVENT_SECOND,
+    EVENT_SIZE,
+    EVENT_VELOCITY,
+    SAMPLE_SIZE,
     STATE_SIZE,
 )
 from ..compiled import IS_COMPILED
@@ -58,14 +65,12 @@ def exact_solver() -> Peer:
 
 
 def _prepare(problem: Problem, solver: Solver) -> Callable[[], Outcome]:
-    run, p, begin = _driver(solver), problem.parameters, problem.start.tolist()
-    pieces, waves, duration = problem.pieces, problem.waves, problem.duration
+    run, begin, duration = _driver(solver), problem.start.tolist(), problem.duration
     count = len(problem.event_rows())
-    events, state, out = np.zeros((count, EVENT_SIZE)), np.zeros(STATE_SIZE), np.zeros((count + 1, EVENT_COLUMNS))
-    sample = np.zeros(SAMPLE_SIZE)
-    if not IS_COMPILED:
-        p, pieces, waves, out = p.tolist(), pieces.tolist(), waves.tolist(), out.tolist()
-        events, state, sample = events.tolist(), state.tolist(), sample.tolist()
+    arrays: tuple[Any, ...] = (
+        problem.parameters, problem.pieces, problem.waves, np.zeros((count, EVENT_SIZE)), np.zeros(STATE_SIZE),
+        np.zeros(SAMPLE_SIZE), np.zeros((count, EVENT_COLUMNS)))
+    p, pieces, waves, events, state, sample, out = arrays if IS_COMPILED else tuple(a.tolist() for a in arrays)
 
     def simulate() -> Outcome:
         rows = solver.start(p, state, *begin, *pieces[0][1:], waves, events, 0)

@@ -29,6 +29,7 @@ def bench(chosen: tuple[str, ...], more: tuple[str, ...], out: str | None, round
     folder = _made(out) if out is not None else None
     from ..bench.cases import case_names, make_case
     from ..bench.contestants import contestants
+    from ..bench.outside import outside_ratios
     from ..bench.race import race
     from ..bench.ratios import ratios
     from ..bench.report import claims_table, text_table
@@ -39,7 +40,7 @@ def bench(chosen: tuple[str, ...], more: tuple[str, ...], out: str | None, round
     rounds = rounds or (_QUICK_ROUNDS if quick else _ROUNDS)
     with progress_bar('racing') as progress:
         results = race(problems, contestants(quick=quick), rounds, progress)
-    claims = [] if quick else ratios(results)
+    claims = [] if quick else [*ratios(results), *(outside_ratios() if not chosen else ())]
     print('\n\n'.join([*map(text_table, results), *([claims_table(claims)] if claims else [])]))
     if folder is not None:
         _write(folder, results, claims, rounds)
@@ -75,7 +76,7 @@ def _write(folder: Path, results: 'list[CaseResult]', claims: 'list[Ratio]', rou
                     plot_trade(panels, _TITLE, temporary)
 
 
-_TITLE = 'What every solver and setting costs, and how wrong it is\nhollow: events missed or invented; lower left is better'
+_TITLE = 'What every solver costs, and how wrong it is\nhollow: events missed or invented; lower left is better'
 
 
 def _points(result: 'CaseResult') -> dict[str, list[tuple[float, float, bool]]]:

@@ -58,8 +58,7 @@ class _Solver:
             raise SolverError(f'CVODE: {done.message}')
         time = float(done.t[-1])
         # at the end of the interval it tells of events that are none
-        found = np.flatnonzero(done.i_events[-1]) if time < limit else []
-        fallen = int(found[0]) if len(found) else -1
+        fallen = int(np.argmax(done.i_events[-1] != 0)) if time < limit else -1
         return time, float(done.y[-1, 0]), float(done.y[-1, 1]), fallen
 
 
