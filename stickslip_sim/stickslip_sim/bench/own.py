@@ -25,7 +25,7 @@ from ..errors import SolverError
 from ..solvers import DONE, Solver, exact
 from ..words import Sample
 from .peers.peer import EXACT, Peer, Setting, time_steps, tolerances
-from .problem import EVENT_COLUMNS, Outcome, Problem
+from .problem import Numbers, Outcome, Problem
 
 _POSITION = Sample._fields.index('position')
 
@@ -69,25 +69,30 @@ def _prepare(problem: Problem, solver: Solver) -> Callable[[], Outcome]:
     count = len(problem.event_rows())
     arrays: tuple[Any, ...] = (
         problem.parameters, problem.pieces, problem.waves, np.zeros((count, EVENT_SIZE)), np.zeros(STATE_SIZE),
-        np.zeros(SAMPLE_SIZE), np.zeros((count, EVENT_COLUMNS)))
-    p, pieces, waves, events, state, sample, out = arrays if IS_COMPILED else tuple(a.tolist() for a in arrays)
+        np.zeros(SAMPLE_SIZE))
+    p, pieces, waves, events, state, sample = arrays if IS_COMPILED else tuple(a.tolist() for a in arrays)
 
     def simulate() -> Outcome:
         rows = solver.start(p, state, *begin, *pieces[0][1:], waves, events, 0)
-        rows, end = run(p, state, pieces, waves, duration, events, rows, sample, out)
+        rows, end = run(p, state, pieces, waves, duration, events, rows, sample)
         if end != DONE:
             raise SolverError(f'{solver.name} gave up after {rows} events')
-        return Outcome(np.asarray(out[:rows]).reshape(-1, EVENT_COLUMNS), float(sample[_POSITION]))
+        return Outcome(events[:rows], float(sample[_POSITION]), _event_columns)
 
     return simulate
+
+
+def _event_columns(rows: Any) -> Numbers:
+    table = np.array(rows).reshape(-1, EVENT_SIZE)
+    times = table[:, EVENT_SECOND] + table[:, EVENT_FRACTION]
+    return np.column_stack([times, table[:, (EVENT_KIND, EVENT_DIRECTION, EVENT_POSITION, EVENT_VELOCITY)]])
 
 
 def _driver(solver: Solver) -> Callable[..., Any]:
     """Return a loop over the pieces of the inputs, compiled if the solver is."""
     advance, set_inputs, sample_at = solver.advance, solver.set_inputs, solver.sample
 
-    def run(p: Any, s: Any, pieces: Any, waves: Any, duration: Any, events: Any, rows: Any, sample: Any,
-            out: Any) -> Any:
+    def run(p: Any, s: Any, pieces: Any, waves: Any, duration: Any, events: Any, rows: Any, sample: Any) -> Any:
         state = DONE
         for k in range(len(pieces)):
             piece = pieces[k]
@@ -102,11 +107,6 @@ def _driver(solver: Solver) -> Callable[..., Any]:
                 return rows, state
         whole = math.floor(duration)
         sample_at(p, s, float(whole), duration - whole, sample)
-        for i in range(rows):
-            e, row = events[i], out[i]
-            row[0] = e[EVENT_SECOND] + e[EVENT_FRACTION]
-            row[1], row[2] = e[EVENT_KIND], e[EVENT_DIRECTION]
-            row[3], row[4] = e[EVENT_POSITION], e[EVENT_VELOCITY]
         return rows, state
 
     if not hasattr(advance, 'py_func'):

@@ -1,8 +1,9 @@
 """One problem for every contestant: an axis, its courses and a duration; and what a contestant gives back."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,11 +16,25 @@ Numbers = NDArray[np.float64]
 EVENT_COLUMNS = 5   # time s, kind, direction of the slip, position m, velocity m/s
 
 
-class Outcome(NamedTuple):
-    """What a run gave: rows of EVENT_COLUMNS in the order of time, and the position at the end, m."""
+def _as_it_is(table: Any) -> Any:
+    return table
 
-    events: Numbers
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a run gave: a table of events that `read` understands, and the position at the end, m.
+
+    Reading is not part of the run that is timed, and must be done before the next one.
+    """
+
+    table: Any
     position: float
+    read: Callable[[Any], Numbers] = _as_it_is
+
+    @property
+    def events(self) -> Numbers:
+        """Rows of EVENT_COLUMNS in the order of time."""
+        return self.read(self.table)
 
 
 @dataclass(frozen=True)
