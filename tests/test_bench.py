@@ -20,6 +20,7 @@ from stickslip_sim.bench.report import as_json, markdown, text_table
 from stickslip_sim.cli.main import run
 from stickslip_sim.words import EventKind
 from tests.axes import COMPLIANT, RIGID, instant, make, paper_axis
+from tests.conftest import Program
 
 FINEST = Setting(1e-12, 'tolerance')
 # docs/model.md, to ten digits: the paper's data with 2 mm/s and a rest-time constant of 0.2 s, rigid contact
@@ -106,6 +107,18 @@ def test_peers_say_what_is_missing_and_have_names_of_their_own() -> None:
     for peer in PEERS:
         assert peer.missing is None or peer.missing.startswith('pip install ')
         assert all(setting.label for setting in peer.settings)
+
+
+def test_peers_whose_packages_are_blocked_are_told_and_do_not_race(in_a_process: Program) -> None:
+    program = '''
+import sys
+for name in ('scipy', 'sksundae', 'mujoco'):
+    sys.modules[name] = None
+from stickslip_sim.bench.contestants import PEERS
+print(*sorted(peer.missing for peer in PEERS if peer.missing), sep='|')
+'''
+    missing = in_a_process(program, compiled=True).strip().split('|')
+    assert missing == ['pip install mujoco', *['pip install scikit-sundae'] * 2, *['pip install scipy'] * 4]
 
 
 def test_the_tool_runs_quickly_and_writes_everything(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -17,13 +17,13 @@ import numpy as np
 
 from ...errors import SolverError
 from ..problem import Outcome, Problem
-from .automaton import GUARDS, SIZE, TIME, U, X, guards, motion_of, rates
+from .automaton import GUARDS, Q_F_RATE, SIZE, TIME, U, X, guards, motion_of, rates
 from .peer import Peer, Setting, tolerances
 from .resets import end_of_piece, enter_piece, move, note, reset
 
 _ADAMS, _NORMAL, _ROOT_RETURN = 1, 1, 2   # CV_ADAMS, CV_NORMAL, CV_ROOT_RETURN
 _MAX_STEPS = 1_000_000
-_Q = len(motion_of(np.zeros(64), np.zeros(SIZE)))
+_Q = Q_F_RATE + 1                         # numbers of a motion
 _WORD, _REAL, _INT = ctypes.c_size_t, ctypes.c_double, ctypes.c_int   # a pointer is a word
 
 
