@@ -15,7 +15,7 @@ from .peer import Peer, Setting, tolerances
 from .segments import run_segments
 
 _MISSING = None if importlib.util.find_spec('sksundae') else 'pip install scikit-sundae'
-_MAX_STEPS = 1_000_000
+_MAX_STEPS = 10_000   # memory for as many is taken anew at each event
 
 
 @always_compiled
