@@ -30,7 +30,11 @@ check: tools  ## style, types, architecture
 extremes: build  ## what breaks other simulators, measured beside its mark (minutes); fails when one is missed
 	@$(HERE) python3 -m stickslip_sim extremes
 
-bench: build  ## measure the loop of the node; writes docs/loop.md (six minutes)
+bench: build  ## measure every solver beside its peers, and the loop of the node; writes docs/ (half an hour)
+	@ros2_ws/bootstrap --bench
+	@$(HERE) python3 -m stickslip_sim bench --out runs/bench
+	@$(HERE) --own-domain python3 benchmarks/tick.py --json runs/bench/bench.json
+	@$(HERE) python3 benchmarks/accuracy.py runs/bench
 	@$(HERE) --own-domain python3 benchmarks/loop.py
 
 clean:  ## remove everything that was set up, built or cached in this tree

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Resolve requirements-DISTRO.in and requirements-test.in into full locks.
+"""Resolve requirements-DISTRO.in, requirements-test.in and requirements-bench.in into full locks.
 
     python3.10 lock.py [DISTRO]
 
@@ -36,14 +36,16 @@ def write(path: pathlib.Path, pins: set[str]) -> None:
 
 
 def main() -> None:
-    """Write both locks; the second holds only what the first lacks."""
+    """Write all locks; those beside the product's hold only what it lacks."""
     if sys.version_info[:2] != OLDEST:
         sys.exit('run lock.py with Python {}.{}, the oldest supported'.format(*OLDEST))
     distro = sys.argv[1] if len(sys.argv) > 1 else 'jazzy'
-    product, test = HERE / f'requirements-{distro}.in', HERE / 'requirements-test.in'
+    product = HERE / f'requirements-{distro}.in'
     pins = resolve(product)
     write(product.with_suffix('.txt'), pins)
-    write(test.with_suffix('.txt'), resolve(product, test) - pins)
+    for name in ('test', 'bench'):
+        beside = HERE / f'requirements-{name}.in'
+        write(beside.with_suffix('.txt'), resolve(product, beside) - pins)
 
 
 if __name__ == '__main__':

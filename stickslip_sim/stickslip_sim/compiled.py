@@ -12,7 +12,7 @@ from collections.abc import Callable
 from typing import Any, TypeVar
 
 _Function = TypeVar('_Function', bound=Callable[..., object])
-_ROOMS = ('compiled.py', 'friction', 'axis', 'linear', 'solvers')
+_ROOMS = ('compiled.py', 'friction', 'axis', 'linear', 'solvers', 'bench/peers')
 
 
 def _cache_folder() -> pathlib.Path:
@@ -27,8 +27,6 @@ def _cache_folder() -> pathlib.Path:
 
 
 def _load_numba() -> Any:
-    if os.environ.get('STICKSLIP_COMPILED', '1') == '0':
-        return None
     os.environ.setdefault('NUMBA_CACHE_DIR', str(_cache_folder()))
     try:
         import numba
@@ -37,7 +35,11 @@ def _load_numba() -> Any:
     return numba
 
 
-_numba = _load_numba()
+def _is_switched_off() -> bool:
+    return os.environ.get('STICKSLIP_COMPILED', '1') == '0'
+
+
+_numba: Any = None if _is_switched_off() else _load_numba()
 IS_COMPILED = _numba is not None
 _OPTIONS = {'cache': True, 'error_model': 'numpy', '_nrt': False}   # no array is made, so that none needs counting
 
@@ -50,3 +52,9 @@ def compiled(function: _Function) -> _Function:
 def compiled_without_lock(function: _Function) -> _Function:
     """Compile a function that works for long, while other threads may run Python; or leave it as it is."""
     return _numba.njit(nogil=True, **_OPTIONS)(function) if IS_COMPILED else function
+
+
+def always_compiled(function: _Function) -> _Function:
+    """Compile whatever the switch says: a rival of the benchmark is never held back by it."""
+    numba = _numba or _load_numba()
+    return function if numba is None else numba.njit(**_OPTIONS)(function)

@@ -1,0 +1,16 @@
+"""Who races: the solvers of this product, and the peers."""
+
+from .own import own_solvers
+from .peers import dop853, euler, mujoco, scipy_ivp, sksundae, sundials
+from .peers.peer import Peer
+
+PEERS: tuple[Peer, ...] = (dop853.PEER, sundials.PEER, sksundae.PEER, *scipy_ivp.PEERS, euler.PEER, mujoco.PEER)
+
+
+def contestants(*, quick: bool = False) -> list[Peer]:
+    """Return all; quickly: the coarsest and the finest setting of each, without those that compile anew each time."""
+    everyone = [*own_solvers(), *PEERS]
+    if not quick:
+        return everyone
+    return [peer._replace(settings=tuple(dict.fromkeys((peer.settings[0], peer.settings[-1]))))
+            for peer in everyone if peer.name != sundials.PEER.name]

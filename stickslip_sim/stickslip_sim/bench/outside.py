@@ -1,0 +1,70 @@
+"""What can only be measured in a process of its own: plain Python, the first start, a start with cached code."""
+
+import json
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+
+from .cases import make_case
+from .measure import measure
+from .own import exact_solver
+from .peers import scipy_ivp
+from .peers.peer import EXACT, Setting
+from .ratios import Ratio
+
+_CASES, _DURATION, _ROUNDS, _STARTS = 'ABC', 20.0, 5, 5
+_PLAIN_CLAIM, _COLD_CLAIM, _START_CLAIM = 200.0, 6.0, 0.6   # times, s, s
+_FIRST_SAMPLE = '''
+from stickslip_sim.scene import load_scene
+from stickslip_sim.simulator import Simulator
+scene = load_scene('paper_fig8')
+Simulator(scene.axis, scene.initial, scene.drive, scene.force).sample()
+'''
+_PLAIN = 'from stickslip_sim.bench.outside import tell_plain_ratios; tell_plain_ratios()'
+
+
+def outside_ratios() -> Iterator[Ratio]:
+    """Yield the claims on plain Python and on the time of a start."""
+    told = json.loads(_run(_PLAIN, STICKSLIP_COMPILED='0'))
+    for case, ratio in told.items() if scipy_ivp.PEERS[0].missing is None else ():
+        yield Ratio('cost of scipy DOP853, 1e-12 / exact, plain Python', case, ratio, f'>= {_PLAIN_CLAIM:g}',
+                    ratio >= _PLAIN_CLAIM)
+    with tempfile.TemporaryDirectory() as folder:
+        cold = _wall(folder)
+        warm = statistics.median(_wall(folder) for _ in range(_STARTS))
+    yield Ratio('first start until the first sample, all compiled, s', '', cold, f'<= {_COLD_CLAIM:g}',
+                cold <= _COLD_CLAIM)
+    yield Ratio('start with cached code until the first sample, s', '', warm, f'<= {_START_CLAIM:g}',
+                warm <= _START_CLAIM)
+
+
+def tell_plain_ratios() -> None:
+    """Print the cost of scipy over that of the exact engine by case; scipy's functions are compiled all the same."""
+    peer = scipy_ivp.PEERS[0]
+    ratios = {}
+    for case in _CASES if peer.missing is None else ():
+        problem = make_case(case, _DURATION)
+        runs = [exact_solver().prepare(problem, EXACT), peer.prepare(problem, Setting(1e-12, 'tolerance'))]
+        for run in runs:
+            run()
+        own, other = measure(runs, _ROUNDS)
+        ratios[case] = other.median / own.median
+    sys.stdout.write(json.dumps(ratios) + '\n')
+
+
+def _wall(cache: str) -> float:
+    begin = time.monotonic()
+    _run(_FIRST_SAMPLE, XDG_CACHE_HOME=cache, STICKSLIP_COMPILED='1')
+    return time.monotonic() - begin
+
+
+def _run(program: str, **environment: str) -> str:
+    """Run a program in a Python of its own; numba's cache is where that one says."""
+    inherited = {name: value for name, value in os.environ.items() if name != 'NUMBA_CACHE_DIR'}
+    path = os.pathsep.join(filter(None, sys.path))
+    return subprocess.run([sys.executable, '-c', program], env={**inherited, 'PYTHONPATH': path, **environment},
+                          check=True, stdout=subprocess.PIPE, text=True).stdout

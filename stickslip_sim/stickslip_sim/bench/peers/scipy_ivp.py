@@ -1,0 +1,83 @@
+"""scipy's solve_ivp with events: what most people reach for.  Right-hand side and guards are compiled."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from ...compiled import always_compiled
+from ...errors import SolverError
+from ..problem import Outcome, Problem
+from .automaton import GUARDS, guards, rates
+from .peer import Peer, Setting, tolerances
+from .segments import run_segments
+
+try:
+    import scipy
+    from scipy.integrate import solve_ivp
+    _MISSING = None
+except ImportError:
+    _MISSING = 'pip install scipy'
+
+_FINEST = 100 * np.finfo(float).eps   # scipy's own floor of the relative tolerance
+
+
+@always_compiled
+def _rates_into(q, w, t, y, out):
+    out[0], out[1] = rates(q, w, t, y[0], y[1])
+
+
+@always_compiled
+def _guard(q, w, t, y, which):
+    return guards(q, w, t, y[0], y[1])[which]
+
+
+class _Guard:
+    """A guard as solve_ivp wants it: it ends the integration where it falls through zero."""
+
+    terminal = True
+    direction = -1.0
+
+    def __init__(self, q: Any, w: Any, which: float) -> None:
+        self._q, self._w, self._which = q, w, which
+
+    def __call__(self, t: float, y: Any) -> Any:
+        return _guard(self._q, self._w, t, y, self._which)
+
+
+def _run(problem: Problem, method: str, tolerance: float) -> Outcome:
+    w = problem.waves
+    options: dict[str, Any] = {'method': method, 'rtol': max(tolerance, _FINEST), 'atol': tolerance,
+                               'max_step': problem.longest_step}
+
+    def to_event(q: Any, limit: float, x: float, u: float) -> tuple[float, float, float, int]:
+        def right_side(t: float, y: Any) -> Any:
+            out = np.empty(2)
+            _rates_into(q, w, t, y, out)
+            return out
+
+        done = solve_ivp(right_side, (0.0, limit), (x, u),
+                         events=[_Guard(q, w, i) for i in range(GUARDS)], **options)
+        if not done.success:
+            raise SolverError(f'solve_ivp: {done.message}')
+        fallen = next((i for i, times in enumerate(done.t_events) if len(times)), -1)
+        return done.t[-1], done.y[0, -1], done.y[1, -1], fallen
+
+    return run_segments(problem, to_event)
+
+
+def _prepare(method: str) -> Callable[[Problem, Setting], Callable[[], Outcome]]:
+
+    def prepare(problem: Problem, setting: Setting) -> Callable[[], Outcome]:
+        return lambda: _run(problem, method, setting.value)
+
+    return prepare
+
+
+def _version() -> str:
+    return f'scipy {scipy.__version__}'
+
+
+PEERS = tuple(Peer(f'scipy {method}', settings, _MISSING, _version, _prepare(method)) for method, settings in (
+    ('DOP853', tolerances(1e-4, 1e-6, 1e-8, 1e-10, 1e-12)), ('LSODA', tolerances(1e-6, 1e-9, 1e-12)),
+    ('Radau', tolerances(1e-6, 1e-9))))

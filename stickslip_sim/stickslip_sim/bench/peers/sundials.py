@@ -1,0 +1,226 @@
+"""SUNDIALS CVODE with root finding, called as from C: no Python between two events.
+
+The C libraries are those that scikit-sundae brings along; right-hand side and root functions are compiled to C
+callbacks, and the loop from event to event is compiled too.  `sksundae` is the same integrator as Python users have it.
+Reference: Hindmarsh et al., ACM TOMS 31 (2005) 363.
+"""
+
+import ctypes
+import functools
+import importlib.metadata
+import importlib.util
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...errors import SolverError
+from ..problem import Outcome, Problem
+from .automaton import GUARDS, Q_F_RATE, SIZE, TIME, U, X, guards, motion_of, rates
+from .peer import Peer, Setting, tolerances
+from .resets import end_of_piece, enter_piece, move, note, reset
+
+_ADAMS, _NORMAL, _ROOT_RETURN = 1, 1, 2   # CV_ADAMS, CV_NORMAL, CV_ROOT_RETURN
+_MAX_STEPS = 1_000_000
+_Q = Q_F_RATE + 1                         # numbers of a motion
+_WORD, _REAL, _INT = ctypes.c_size_t, ctypes.c_double, ctypes.c_int   # a pointer is a word
+
+
+def _missing() -> str | None:
+    if importlib.util.find_spec('sksundae') is None:
+        return 'pip install scikit-sundae'
+    try:
+        import numba  # noqa: F401
+    except ImportError:
+        return 'pip install numba'
+    return None
+
+
+def _library(name: str) -> ctypes.CDLL:
+    """Load a library of the wheel; raises SolverError when the wheel is laid out in another way."""
+    spec = importlib.util.find_spec('sksundae')
+    assert spec is not None
+    assert spec.origin is not None
+    found = sorted((Path(spec.origin).parents[1] / 'scikit_sundae.libs').glob(f'lib{name}-*.so*'))
+    if not found:
+        raise SolverError(f'scikit-sundae has no library {name}: install the wheel of scikit-sundae 1.2')
+    return ctypes.CDLL(str(found[0]), mode=ctypes.RTLD_GLOBAL)
+
+
+class _C:
+    """The C functions, with pointers as words, as compiled code can call them."""
+
+    def __init__(self) -> None:
+        core, vectors, cvode = (_library(f'sundials_{name}') for name in ('core', 'nvecserial', 'cvode'))
+
+        def declare(library: ctypes.CDLL, name: str, result: Any, *arguments: Any) -> Any:
+            function = getattr(library, name)
+            function.restype, function.argtypes = result, list(arguments)
+            return function
+
+        self.context = declare(core, 'SUNContext_Create', _INT, _INT, _WORD)
+        self.data = declare(core, 'N_VGetArrayPointer', _WORD, _WORD)
+        self.destroy = declare(core, 'N_VDestroy', None, _WORD)
+        self.free_context = declare(core, 'SUNContext_Free', _INT, _WORD)
+        self.free_solver = declare(core, 'SUNNonlinSolFree', _INT, _WORD)
+        self.vector = declare(vectors, 'N_VMake_Serial', _WORD, ctypes.c_int64, _WORD, _WORD)
+        self.create = declare(cvode, 'CVodeCreate', _WORD, _INT, _WORD)
+        self.init = declare(cvode, 'CVodeInit', _INT, _WORD, _WORD, _REAL, _WORD)
+        self.reinit = declare(cvode, 'CVodeReInit', _INT, _WORD, _REAL, _WORD)
+        self.tolerances = declare(cvode, 'CVodeSStolerances', _INT, _WORD, _REAL, _REAL)
+        self.roots = declare(cvode, 'CVodeRootInit', _INT, _WORD, _INT, _WORD)
+        self.directions = declare(cvode, 'CVodeSetRootDirection', _INT, _WORD, _WORD)
+        self.no_warnings = declare(cvode, 'CVodeSetNoInactiveRootWarn', _INT, _WORD)
+        self.user_data = declare(cvode, 'CVodeSetUserData', _INT, _WORD, _WORD)
+        self.max_steps = declare(cvode, 'CVodeSetMaxNumSteps', _INT, _WORD, ctypes.c_long)
+        self.max_step = declare(cvode, 'CVodeSetMaxStep', _INT, _WORD, _REAL)
+        self.stop = declare(cvode, 'CVodeSetStopTime', _INT, _WORD, _REAL)
+        self.fixed_point = declare(cvode, 'SUNNonlinSol_FixedPoint', _WORD, _WORD, _INT, _WORD)
+        self.set_solver = declare(cvode, 'CVodeSetNonlinearSolver', _INT, _WORD, _WORD)
+        self.advance = declare(cvode, 'CVode', _INT, _WORD, _REAL, _WORD, _WORD, _INT)
+        self.root_info = declare(cvode, 'CVodeGetRootInfo', _INT, _WORD, _WORD)
+        self.free = declare(cvode, 'CVodeFree', None, _WORD)
+
+
+class _Code:
+    """What has to be compiled once the libraries are there: two callbacks and the loop."""
+
+    def __init__(self, c: _C) -> None:
+        import numba
+        from numba import carray, types
+        from numba.extending import intrinsic
+
+        data, reinit, stop, advance, root_info = c.data, c.reinit, c.stop, c.advance, c.root_info
+        word, real = types.uintp, types.float64
+
+        @intrinsic
+        def pointer(context: Any, address: Any) -> Any:
+            def generate(backend: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+                return builder.inttoptr(arguments[0], backend.get_value_type(signature.return_type))
+            return types.CPointer(real)(word), generate
+
+        @numba.njit
+        def numbers(address: Any, count: Any) -> Any:
+            return carray(pointer(address), (count,))
+
+        @numba.cfunc(types.intc(real, word, word, word))
+        def right_side(t: Any, y: Any, dy: Any, user: Any) -> Any:
+            waves = int(numbers(user, 1)[0])
+            known = numbers(user, 1 + _Q + waves)
+            state, rate = numbers(data(y), 2), numbers(data(dy), 2)
+            rate[0], rate[1] = rates(known[1:1 + _Q], known[1 + _Q:], t, state[0], state[1])
+            return 0
+
+        @numba.cfunc(types.intc(real, word, word, word))
+        def root_function(t: Any, y: Any, out: Any, user: Any) -> Any:
+            waves = int(numbers(user, 1)[0])
+            known = numbers(user, 1 + _Q + waves)
+            state, values = numbers(data(y), 2), numbers(out, 3)
+            values[0], values[1], values[2] = guards(known[1:1 + _Q], known[1 + _Q:], t, state[0], state[1])
+            return 0
+
+        @numba.njit
+        def to_event(memory: Any, vector: Any, p: Any, m: Any, w: Any, end: Any, y: Any, user: Any, at: Any,
+                     found: Any) -> Any:
+            """Integrate from the reset to the next event or to `end`; return the guard that fell, −1 or −2."""
+            q, limit = motion_of(p, m), end - m[TIME]
+            for i in range(_Q):
+                user[1 + i] = q[i]
+            y[0], y[1] = m[X], m[U]
+            flag = reinit(memory, 0.0, vector)
+            flag += stop(memory, limit)
+            if flag != 0:
+                return -2
+            flag = advance(memory, limit, vector, at.ctypes.data, _NORMAL)
+            if flag < 0:
+                return -2
+            move(p, m, w, at[0], y[0], y[1])
+            if flag == _ROOT_RETURN:
+                root_info(memory, found.ctypes.data)
+                for i in range(GUARDS):
+                    if found[i] != 0:
+                        return i
+            m[TIME] = end
+            return -1
+
+        @numba.njit
+        def run(memory: Any, vector: Any, p: Any, begin: Any, pieces: Any, w: Any, duration: Any, m: Any, y: Any,
+                user: Any, events: Any) -> Any:
+            at, found, rows = np.zeros(1), np.zeros(GUARDS, np.int32), 0
+            for k in range(len(pieces)):
+                end = end_of_piece(pieces, k, duration)
+                kind, direction = enter_piece(p, m, w, begin, pieces, k)
+                rows = note(events, rows, m, kind, direction)
+                while m[TIME] < end and rows >= 0:
+                    fallen = to_event(memory, vector, p, m, w, end, y, user, at, found)
+                    if fallen == -2:
+                        return -2
+                    if fallen >= 0:
+                        kind, direction = reset(p, m, w, fallen)
+                        rows = note(events, rows, m, kind, direction)
+                if rows < 0:
+                    return rows
+            return rows
+
+        self.right_side, self.root_function, self.run = right_side, root_function, run
+
+
+@functools.cache
+def _loaded() -> tuple[_C, _Code]:
+    c = _C()
+    return c, _Code(c)
+
+
+class _Solver:
+    """One CVODE object, ready to be run as often as wanted."""
+
+    def __init__(self, problem: Problem, tolerance: float) -> None:
+        self._c, self._code = _loaded()
+        self._problem, c = problem, self._c
+        self._y, self._user = np.zeros(2), np.concatenate([[len(problem.waves)], np.zeros(_Q), problem.waves])
+        self._m, self._events = np.zeros(SIZE), problem.event_rows()
+        context = ctypes.c_size_t(0)
+        c.context(0, ctypes.addressof(context))
+        self._context = context
+        self._vector = c.vector(2, self._y.ctypes.data, context)
+        self._memory = c.create(_ADAMS, context)
+        self._fixed_point = c.fixed_point(self._vector, 0, context)
+        directions = np.full(GUARDS, -1, np.int32)
+        memory = self._memory
+        for flag in (c.init(memory, self._code.right_side.address, 0.0, self._vector),
+                     c.tolerances(memory, tolerance, tolerance),
+                     c.set_solver(memory, self._fixed_point), c.user_data(memory, self._user.ctypes.data),
+                     c.roots(memory, GUARDS, self._code.root_function.address),
+                     c.directions(memory, directions.ctypes.data), c.no_warnings(memory),
+                     c.max_steps(memory, _MAX_STEPS),
+                     c.max_step(memory, problem.longest_step if problem.longest_step < np.inf else 0.0)):
+            if flag != 0:
+                raise SolverError(f'CVODE refuses its settings (flag {flag})')
+
+    def simulate(self) -> Outcome:
+        """Run once."""
+        problem = self._problem
+        rows = self._code.run(self._memory, self._vector, problem.parameters, problem.start, problem.pieces,
+                              problem.waves, problem.duration, self._m, self._y, self._user, self._events)
+        if rows < 0:
+            raise SolverError('CVODE gave up' if rows == -2 else 'more events than the table holds')
+        return Outcome(self._events[:rows].copy(), float(self._m[X]))
+
+    def __del__(self) -> None:
+        c = self._c
+        for release, word in ((c.free, self._memory), (c.free_solver, self._fixed_point), (c.destroy, self._vector),
+                              (c.free_context, self._context)):
+            word = word if isinstance(word, ctypes.c_size_t) else ctypes.c_size_t(word)
+            release(ctypes.addressof(word) if release in (c.free, c.free_context) else word)
+
+
+def _prepare(problem: Problem, setting: Setting) -> Callable[[], Outcome]:
+    return _Solver(problem, setting.value).simulate
+
+
+def _version() -> str:
+    return f'SUNDIALS of scikit-sundae {importlib.metadata.version("scikit-sundae")}'
+
+
+PEER = Peer('CVODE (Adams), as from C', tolerances(1e-6, 1e-8, 1e-10, 1e-12), _missing(), _version, _prepare)

@@ -1,0 +1,88 @@
+"""One problem for every contestant: an axis, its courses and a duration; and what a contestant gives back."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..axis import Axis, InitialState, pack
+from ..courses import Course
+
+Numbers = NDArray[np.float64]
+
+EVENT_COLUMNS = 5   # time s, kind, direction of the slip, position m, velocity m/s
+
+
+def _as_it_is(table: Any) -> Any:
+    return table
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a run gave: a table of events that `read` understands, and the position at the end, m.
+
+    Reading is not part of the run that is timed, and must be done before the next one.
+    """
+
+    table: Any
+    position: float
+    read: Callable[[Any], Numbers] = _as_it_is
+
+    @property
+    def events(self) -> Numbers:
+        """Rows of EVENT_COLUMNS in the order of time."""
+        return self.read(self.table)
+
+
+@dataclass(frozen=True)
+class Problem:
+    """What is simulated, and for how long (s)."""
+
+    name: str
+    summary: str
+    axis: Axis
+    initial: InitialState
+    drive: Course   # m/s
+    force: Course   # N
+    duration: float
+
+    @cached_property
+    def parameters(self) -> Numbers:
+        """The axis as the array of `axis.layout`."""
+        return np.array(pack(self.axis))
+
+    @cached_property
+    def start(self) -> Numbers:
+        """Position, velocity, rest time."""
+        return np.array([self.initial.position, self.initial.velocity, self.initial.rest_time])
+
+    @cached_property
+    def pieces(self) -> Numbers:
+        """One row for each stretch on which both inputs are linear: begin, v, its rate, F_e, its rate (waves apart)."""
+        rows, time = [], 0.0
+        while time < self.duration:
+            v, f = self.drive.piece_at(time), self.force.piece_at(time)
+            rows.append((time, v.value + v.rate * (time - v.start), v.rate, f.value + f.rate * (time - f.start),
+                         f.rate))
+            time = min(v.end, f.end)
+        return np.array(rows)
+
+    @cached_property
+    def waves(self) -> Numbers:
+        """Four numbers a wave, as `solvers.Solver` wants them: frequency Hz, phase in turns, m/s, N."""
+        rows: list[tuple[float, ...]] = [(w.frequency, 0.5 * w.phase / np.pi, w.amplitude, 0.0)
+                                         for w in self.drive.waves]
+        rows += [(w.frequency, 0.5 * w.phase / np.pi, 0.0, w.amplitude) for w in self.force.waves]
+        return np.array(rows).reshape(-1)
+
+    @cached_property
+    def longest_step(self) -> float:
+        """A quarter of the shortest wave, so that no adaptive step jumps over one, s."""
+        return min((0.25 / frequency for frequency in self.waves[::4]), default=np.inf)
+
+    def event_rows(self) -> Any:
+        """Return an empty table that holds far more events than a sound solver finds."""
+        return np.zeros((int(2000 + 2000 * self.duration), EVENT_COLUMNS))

@@ -1,0 +1,77 @@
+"""The race: every contestant and setting over every case, in one process; errors first, then interleaved cost."""
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+from ..errors import SolverError
+from ..reference import simulate as simulate_reference
+from .errors import Errors, Truth, errors_of
+from .measure import Cost, measure
+from .peers.peer import Peer, Setting
+from .problem import Outcome, Problem
+
+DIGITS = 30   # of the reference
+
+
+class Row(NamedTuple):
+    """One contestant with one setting on one case; without errors and cost, `note` says why."""
+
+    contestant: str
+    setting: Setting
+    version: str
+    errors: Errors | None
+    cost: Cost | None      # s of processor time for each simulated second
+    note: str
+
+
+class CaseResult(NamedTuple):
+    """All rows of a case, in the order of the contestants."""
+
+    problem: Problem
+    reference_events: int
+    rows: list[Row]
+
+
+def race(problems: Sequence[Problem], contestants: Sequence[Peer], rounds: int,
+         progress: Callable[[float], None] | None = None) -> list[CaseResult]:
+    """Run all; `progress` is called with the share that is done.  Raises InputError when mpmath is missing."""
+    results = []
+    for k, problem in enumerate(problems):
+        results.append(_race_case(problem, contestants, rounds))
+        if progress:
+            progress((k + 1) / len(problems))
+    return results
+
+
+def truth_of(problem: Problem) -> Truth:
+    """Return what the reference says, right to DIGITS digits."""
+    run = simulate_reference(problem.axis, problem.initial, problem.drive, problem.force, problem.duration, DIGITS)
+    return Truth(list(run.events), run.final.position)
+
+
+def _race_case(problem: Problem, contestants: Sequence[Peer], rounds: int) -> CaseResult:
+    truth = truth_of(problem)
+    rows: list[Row] = []
+    runs: list[Callable[[], Outcome]] = []
+    places = []
+    for peer in contestants:
+        if peer.missing is not None:
+            rows.append(Row(peer.name, peer.settings[0], '', None, None, f'not installed ({peer.missing})'))
+            continue
+        for setting in peer.settings:
+            try:
+                run = peer.prepare(problem, setting)
+                errors = errors_of(run(), truth, problem.duration)
+            except SolverError as error:
+                rows.append(Row(peer.name, setting, peer.version(), None, None, f'gave up: {error}'))
+                continue
+            places.append(len(rows))
+            runs.append(run)
+            rows.append(Row(peer.name, setting, peer.version(), errors, None, ''))
+    for place, cost in zip(places, measure(runs, rounds)):
+        rows[place] = rows[place]._replace(cost=_per_second(cost, problem.duration))
+    return CaseResult(problem, sum(event.kind.name != 'KNOT' for event in truth.events), rows)
+
+
+def _per_second(cost: Cost, duration: float) -> Cost:
+    return Cost(cost.median / duration, cost.low / duration, cost.high / duration, cost.samples)

@@ -1,0 +1,89 @@
+"""`stickslip bench`: what every solver costs and how wrong it is, against the reference and beside its peers."""
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from .files import whole, write_text
+
+if TYPE_CHECKING:
+    from ..bench.race import CaseResult
+    from ..bench.ratios import Ratio
+
+_ROUNDS, _QUICK_ROUNDS = 7, 1
+_QUICK_CASES, _QUICK_DURATION = ('A', 'paper_fig8'), 2.0   # s
+
+
+@click.command()
+@click.option('--scenes', 'chosen', multiple=True, metavar='NAME...', help='A to D or shipped scenes [default: all].')
+@click.argument('more', nargs=-1, metavar='')
+@click.option('--out', metavar='FOLDER', help='Write bench.json, bench.md and the pictures there.')
+@click.option('--rounds', type=click.IntRange(1, 1000), metavar='N', help='Samples of each cost [default: 7].')
+@click.option('--quick', is_flag=True, help='Two scenes, 2 s, one sample: a check that it works, not a figure.')
+def bench(chosen: tuple[str, ...], more: tuple[str, ...], out: str | None, rounds: int | None, quick: bool) -> None:
+    """Measure error and cost of every solver and setting, and of other simulators where they are installed."""
+    if more and not chosen:
+        raise click.UsageError('name the scenes after --scenes.')
+    folder = _made(out) if out is not None else None
+    from ..bench.cases import case_names, make_case
+    from ..bench.contestants import contestants
+    from ..bench.outside import outside_ratios
+    from ..bench.race import race
+    from ..bench.ratios import ratios
+    from ..bench.report import claims_table, text_table
+    from .progress import progress_bar
+
+    names = (*chosen, *more) or (_QUICK_CASES if quick else tuple(case_names()))
+    problems = [make_case(name, _QUICK_DURATION if quick else None) for name in dict.fromkeys(names)]
+    rounds = rounds or (_QUICK_ROUNDS if quick else _ROUNDS)
+    with progress_bar('racing') as progress:
+        results = race(problems, contestants(quick=quick), rounds, progress)
+    claims = [] if quick else [*ratios(results), *(outside_ratios() if not chosen else ())]
+    print('\n\n'.join([*map(text_table, results), *([claims_table(claims)] if claims else [])]))
+    if folder is not None:
+        _write(folder, results, claims, rounds)
+
+
+def _made(path: str) -> Path:
+    """Make the folder before the work begins; an earlier benchmark in it is replaced."""
+    from ..errors import InputError
+
+    folder = Path(path)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError('--out', path, 'a folder that can be made', error.strerror or str(error)) from None
+    return folder
+
+
+def _write(folder: Path, results: 'list[CaseResult]', claims: 'list[Ratio]', rounds: int) -> None:
+    from ..bench.cases import LETTERS
+    from ..bench.report import as_json, markdown
+    from ..plots import Line, plot_trade
+
+    data = as_json(results, claims, rounds)
+    write_text(str(folder / 'bench.json'), [json.dumps(data, indent=1, allow_nan=False) + '\n'])
+    write_text(str(folder / 'bench.md'), [markdown(results, claims, rounds)])
+    for name, wanted in (('trade', True), ('trade_scenes', False)):
+        panels = {f'{result.problem.name}: {result.problem.summary}': [
+            Line(label, *zip(*points)) for label, points in _points(result).items()]
+            for result in results if (result.problem.name in LETTERS) == wanted}
+        for ending in ('png', 'svg'):
+            if panels:
+                with whole(str(folder / f'{name}.{ending}')) as temporary:
+                    plot_trade(panels, _TITLE, temporary)
+
+
+_TITLE = 'What every solver costs, and how wrong it is\nhollow: events missed or invented; lower left is better'
+
+
+def _points(result: 'CaseResult') -> dict[str, list[tuple[float, float, bool]]]:
+    """Return (error, cost, flawed) of each solver's settings."""
+    lines: dict[str, list[tuple[float, float, bool]]] = {}
+    for row in result.rows:
+        if row.errors is not None and row.cost is not None:
+            flawed = row.errors.missed + row.errors.invented > 0
+            lines.setdefault(row.contestant, []).append((row.errors.time, row.cost.median, flawed))
+    return lines
