@@ -50,11 +50,14 @@ UNDAMPED_KATO: dict[str, Any] = {
 UNDAMPED_UNDER_A_RAMP = UNDAMPED_KATO | {
     'friction': UNDAMPED_KATO['friction'] | {'static': UNDAMPED_KATO['friction']['static'] | {'law': 'exponential'}},
     'drive': [[0.0, 0.002, -5e-4]]}
+NO_FRICTION = UNDAMPED_KATO | {'axis': UNDAMPED_KATO['axis'] | {'normal_force': 0.0}}
 
 
 @pytest.mark.parametrize(('scene', 'duration'), [
     (OVERDAMPED_SLIP, 0.1), (KATO_IN_AN_OVERDAMPED_CONTACT, 0.05), (KATO_THAT_DOES_NOT_RISE, 0.3),
-    (UNDAMPED_KATO, 1.4), (UNDAMPED_UNDER_A_RAMP, 1.6)])
+    (UNDAMPED_KATO, 1.4), (UNDAMPED_UNDER_A_RAMP, 1.6),
+    (NO_FRICTION | {'drive': [[0.0, 0.0, 0.001]]}, 0.3),
+    (NO_FRICTION | {'drive': [[0.0, 0.0, 0.0], [0.1, 0.002, 0.0]], 'force': [[0.0, 0.0, 50.0]]}, 0.3)])
 def test_events_equal_the_reference(scene: dict[str, Any], duration: float) -> None:
     events, want = Simulator(*inputs_of(scene)).advance(instant(duration)), exact_run(scene, duration)
     assert [(e.kind.name.lower(), e.direction) for e in events] == [(e.kind, e.direction) for e in want]

@@ -18,7 +18,7 @@ import math
 
 from ...axis.layout import (
     ACCELERATION, AT, AT_FIRST, AT_G, AT_RATE, AT_SECOND, CONTACT_DAMPING, CONTACT_STIFFNESS, DEFLECTION, ITERATIONS,
-    JERK, LAST, NORMAL, REST, SNAP, STATIC_INITIAL, STATIC_TAU, VELOCITY,
+    JERK, LAST, NORMAL, REST, SNAP, STATIC_INITIAL, STATIC_LIMIT, STATIC_TAU, VELOCITY,
 )
 from ...axis.motion import TICK, oscillator_of, static_limit, travel, travel_at
 from ...axis.transitions import force_rounding
@@ -39,6 +39,8 @@ def compliant_stick(p, s, horizon):
     osc = oscillator_of(s)
     if horizon < TICK and _keeps_off(p, s, osc, horizon):
         return math.inf
+    if p[NORMAL] * p[STATIC_LIMIT] == 0.0:
+        return 0.0 if _moves(s) else math.inf
     motion = _contact_motion(p, s, osc)
     rounding = 0.5 * force_rounding(p, s, static_limit(p, s[REST]))
     may_leap = leaps_far = motion[4] == 0.0 and is_concave(p)
@@ -86,6 +88,13 @@ def _keeps_off(p, s, osc, t):
     sag_bend = stiffness * s[SNAP] / osc[1]
     bend = bound(osc, stiffness * a + damping * jerk - sag_bend, stiffness * jerk + damping * snap) + abs(sag_bend)
     return abs(stiffness * s[DEFLECTION] + damping * u) + (rate + 0.5 * bend * t) * t < p[NORMAL] * p[STATIC_INITIAL]
+
+
+@compiled
+def _moves(s):
+    """Whether a contact that holds nothing gives way: it does with the first derivative of its force that is not 0."""
+    return not (s[DEFLECTION] == 0.0 and s[VELOCITY] == 0.0 and s[ACCELERATION] == 0.0 and s[JERK] == 0.0
+                and s[SNAP] == 0.0)
 
 
 @compiled
