@@ -8,7 +8,8 @@ F_c = P(t) + H(t): P is linear (quadratic under a ramp of the drive), H a decayi
    The root of the guard is sought directly; a time shortly before it, at which the guard less the envelope is positive
    and from which on the guard falls for certain, proves that it is the first (`_direct_root`).
 3. Without that proof: the root of the guard less the envelope is a time before which nothing can happen, one leap over
-   the ring-down; then safe steps again.
+   the ring-down; then safe steps again.  Where P is bent or the law not concave, many shorter leaps below the limit
+   of now take its place.
 4. Where their bound proves that the guard falls all the way to its root, the root is bracketed and found there (under
    a concave law).
 """
@@ -17,17 +18,18 @@ import math
 
 from ...axis.layout import (
     ACCELERATION, AT, AT_FIRST, AT_G, AT_RATE, AT_SECOND, CONTACT_DAMPING, CONTACT_STIFFNESS, DEFLECTION, ITERATIONS,
-    JERK, LAST, NORMAL, REST, SNAP, STATIC_INITIAL, STATIC_TAU, VELOCITY,
+    JERK, LAST, NORMAL, REST, SNAP, STATIC_INITIAL, STATIC_LIMIT, STATIC_TAU, VELOCITY,
 )
 from ...axis.motion import TICK, oscillator_of, static_limit, travel, travel_at
 from ...axis.transitions import force_rounding
 from ...compiled import compiled
 from ...linear.oscillator import amplitude, bound, impulse, short_integrals
-from ...linear.roots import safe_step
+from ...linear.roots import first_crossing, safe_step
 from .static_guards import GAVE_UP, STEPS, concave_root, is_concave, law, steep_start
 
 _EPSILON = 2.220446049250313e-16
 _DIRECT_STEPS = 8
+_WORTH = 0.5   # radian of the free motion: shorter leaps are left to the safe steps
 _GO_ON, _IS_ROOT, _IN_BRACKET = 0.0, 1.0, 2.0
 
 
@@ -37,9 +39,12 @@ def compliant_stick(p, s, horizon):
     osc = oscillator_of(s)
     if horizon < TICK and _keeps_off(p, s, osc, horizon):
         return math.inf
+    if p[NORMAL] * p[STATIC_LIMIT] == 0.0:
+        return 0.0 if _moves(s) else math.inf
     motion = _contact_motion(p, s, osc)
     rounding = 0.5 * force_rounding(p, s, static_limit(p, s[REST]))
-    may_leap = motion[4] == 0.0 and is_concave(p)
+    may_leap = leaps_far = motion[4] == 0.0 and is_concave(p)
+    pace = math.sqrt(osc[1])
     t = 0.0
     for i in range(STEPS):
         s[ITERATIONS] += 1.0
@@ -55,6 +60,12 @@ def compliant_stick(p, s, horizon):
             t += leap
             if leap > 0.0 and t <= horizon:
                 continue
+        if i > 0 and not leaps_far:
+            leap = _frozen_leap(p, s, osc, motion[4], contact, t)
+            if leap * pace > _WORTH:
+                t += leap
+                if t <= horizon:
+                    continue
         if t <= horizon:
             step, found, side = _step(p, s, osc, contact, motion[4], t, rounding)
             if found == _IN_BRACKET:
@@ -77,6 +88,13 @@ def _keeps_off(p, s, osc, t):
     sag_bend = stiffness * s[SNAP] / osc[1]
     bend = bound(osc, stiffness * a + damping * jerk - sag_bend, stiffness * jerk + damping * snap) + abs(sag_bend)
     return abs(stiffness * s[DEFLECTION] + damping * u) + (rate + 0.5 * bend * t) * t < p[NORMAL] * p[STATIC_INITIAL]
+
+
+@compiled
+def _moves(s):
+    """Whether a contact that holds nothing gives way: it does with the first derivative of its force that is not 0."""
+    return not (s[DEFLECTION] == 0.0 and s[VELOCITY] == 0.0 and s[ACCELERATION] == 0.0 and s[JERK] == 0.0
+                and s[SNAP] == 0.0)
 
 
 @compiled
@@ -185,6 +203,20 @@ def _leap(p, s, osc, contact, t, horizon):
     if rate == 0.0:
         return math.inf
     return concave_root(p, s, rest, math.copysign(1.0, rate) * sag, abs(rate), size, decay, 0.0, horizon)
+
+
+@compiled
+def _frozen_leap(p, s, osc, sag_bend, contact, t):
+    """Return how long the force keeps off the limit of now, which no law takes back, whatever the free motion does.
+
+    It serves where P is bent or the law is not concave, under which the guard less the envelope may vanish twice.
+    """
+    sag, rate, free, free_rate, _, _ = contact
+    size, _ = amplitude(osc, free, free_rate)
+    room = p[NORMAL] * static_limit(p, s[REST] + t) - size
+    if room <= abs(sag):
+        return 0.0
+    return min(first_crossing(room - sag, -rate, -sag_bend), first_crossing(room + sag, rate, sag_bend))
 
 
 @compiled
