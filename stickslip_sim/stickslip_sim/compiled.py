@@ -67,6 +67,11 @@ def compiled(function: _Function) -> _Function:
     return _numba.njit(**_OPTIONS)(function) if _numba else function
 
 
+def inlined(function: _Function) -> _Function:
+    """Compile a function into its callers: an array as an argument is seven numbers, and a call of three takes 10 ns."""
+    return _numba.njit(forceinline=True, **_OPTIONS)(function) if _numba else function
+
+
 def compiled_without_lock(function: _Function) -> _Function:
     """Compile a function that works for long, while other threads may run Python; or leave it as it is."""
     return _numba.njit(nogil=True, **_OPTIONS)(function) if _numba else function

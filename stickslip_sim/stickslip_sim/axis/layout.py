@@ -44,7 +44,10 @@ SUM_COUNT = 8
 INPUT_SECOND, INPUT_FRACTION, INPUT_V, INPUT_V_RATE, INPUT_F, INPUT_F_RATE, INPUT_WAVES = range(69, 76)
 # and the grid of fixed steps: its last point, in ticks within its second; a step and a second in ticks; time beyond it
 METHOD, GRID_SECOND, GRID_TICKS, STEP_TICKS, SECOND_TICKS, LEAD = range(76, 82)
-STATE_SIZE = 82
+# the oscillator that each mode had last
+KEPT = 82
+KEPT_SIZE = 5
+STATE_SIZE = KEPT + 4 * KEPT_SIZE
 
 # then a record for each wave, the first numbers as they are given: frequency Hz, phase turns, amplitudes m/s and N; at
 # the anchor its phase in turns, sine and cosine of that, and its pull in N/s (see `waves`)

@@ -13,16 +13,16 @@ with w = s − x, and b the slope of the friction branch on the present piece of
 their own answer, see `waves`.
 """
 
-from ..compiled import compiled
+from ..compiled import compiled, inlined
 from ..friction.static import static_coefficient
 from ..linear.oscillator import integrals, oscillator, short_integrals
 from ..words import Mode
 from .layout import (
     ACCELERATION, AT, AT_FIRST, AT_G, AT_RATE, AT_SECOND, BASE_V, BRANCHES, COMPLIANT, CONTACT_DAMPING,
     CONTACT_STIFFNESS, DAMPING, DEFLECTION, DIRECTION, DRIVE, END_SLOPE, EXCESS, F, FAST, FRACTION, F_RATE, GAMMA, NEAR,
-    NEAR_FIRST, NEAR_G, NEAR_GAMMA, NEAR_OMEGA2, NEAR_RATE, NEAR_SECOND, JERK, KNOTS, KNOT_SIZE, MASS, MODE, NEXT,
-    NORMAL, NU, OMEGA2, PIECE, POSITION, REST, SECOND, SLOW, SNAP, SPRING, STATIC_EXPONENT, STATIC_INITIAL, STATIC_LAW,
-    STATIC_LIMIT, STATIC_TAU, STIFFNESS, TABLE, V, VELOCITY, V_RATE, WAVES,
+    NEAR_FIRST, NEAR_G, NEAR_GAMMA, NEAR_OMEGA2, NEAR_RATE, NEAR_SECOND, JERK, KEPT, KEPT_SIZE, KNOTS, KNOT_SIZE, MASS,
+    MODE, NEXT, NORMAL, NU, OMEGA2, PIECE, POSITION, REST, SECOND, SLOW, SNAP, SPRING, STATIC_EXPONENT, STATIC_INITIAL,
+    STATIC_LAW, STATIC_LIMIT, STATIC_TAU, STIFFNESS, TABLE, V, VELOCITY, V_RATE, WAVES,
 )
 from .waves import begin_waves, move_waves, wave_drive_travel, wave_travel
 
@@ -33,17 +33,19 @@ COASTING = float(Mode.COASTING)
 DECELERATING = float(Mode.DECELERATING)
 
 TICK = 0.1             # s; a search no longer than that begins with a bound, which mostly ends it
+STAMP = 2.0 ** -51     # s, more than the time of an event is rounded by
+_SIXTH = 1.0 / 6.0
 _SPLIT = 131073.0      # splits off the upper 36 bits of a number (Dekker 1971)
 
 
-@compiled
+@inlined
 def static_limit(p, rest):
     """Return mu_s after the rest time."""
     return static_coefficient(p[STATIC_LAW], p[STATIC_INITIAL], p[STATIC_LIMIT], p[STATIC_TAU], p[STATIC_EXPONENT],
                               rest)
 
 
-@compiled
+@inlined
 def piece_above(p, speed):
     """Return the index of the piece of the table that goes up from a speed: a knot belongs to the piece above it."""
     piece = 0
@@ -53,20 +55,20 @@ def piece_above(p, speed):
     return piece
 
 
-@compiled
+@inlined
 def piece_below(p, speed):
     """Return the index of the piece of the table that goes down from a speed: a knot belongs to the piece below it."""
     piece = piece_above(p, speed)
     return piece - 1 if piece > 0 and p[TABLE + KNOT_SIZE * piece] == speed else piece
 
 
-@compiled
+@inlined
 def knot_speed(p, piece):
     """Return the speed of a knot."""
     return p[TABLE + KNOT_SIZE * piece]
 
 
-@compiled
+@inlined
 def friction_line(p, piece, speed):
     """Return mu_k, its slope, psi and its slope at `speed` on a piece of the table."""
     at = TABLE + KNOT_SIZE * piece
@@ -80,19 +82,19 @@ def friction_line(p, piece, speed):
     return p[at + 1] + slope * beyond, slope, p[at + 2] + psi_slope * beyond, psi_slope
 
 
-@compiled
+@inlined
 def is_rigid_stick(p, s):
     """Whether the slider stands still in a rigid contact."""
     return s[MODE] == STICK and p[COMPLIANT] == 0.0
 
 
-@compiled
+@inlined
 def kinetic_at_rest(p):
     """Return mu_k(0)."""
     return p[TABLE + 1]
 
 
-@compiled
+@inlined
 def begin_motion(p, s):
     """Set the closed form of the motion from the anchor on."""
     v = s[V]
@@ -113,19 +115,22 @@ def begin_motion(p, s):
         damping += p[NORMAL] * slope
     gamma, omega2 = 0.5 * damping / p[MASS], (stiffness + contact) / p[MASS]
     if gamma != s[GAMMA] or omega2 != s[OMEGA2]:
-        s[GAMMA], s[OMEGA2], s[NU], s[SLOW], s[FAST] = oscillator(gamma, omega2)
+        at = KEPT + KEPT_SIZE * int(mode)
+        if gamma != s[at] or omega2 != s[at + 1]:
+            s[at], s[at + 1], s[at + 2], s[at + 3], s[at + 4] = oscillator(gamma, omega2)
+        s[GAMMA], s[OMEGA2], s[NU], s[SLOW], s[FAST] = gamma, omega2, s[at + 2], s[at + 3], s[at + 4]
     pull = stiffness * (v - s[VELOCITY]) + p[DAMPING] * s[V_RATE] + s[F_RATE]
     s[JERK] = (pull - contact * s[VELOCITY]) / p[MASS]
     s[SNAP] = stiffness * s[V_RATE] / p[MASS]
 
 
-@compiled
+@inlined
 def oscillator_of(s):
     """Return the oscillator of the mode."""
     return s[GAMMA], s[OMEGA2], s[NU], s[SLOW], s[FAST]
 
 
-@compiled
+@inlined
 def tick_integrals(s, t):
     """Return `short_integrals` at t, from those at the nearest number of 36 bits.
 
@@ -167,7 +172,7 @@ def travel(p, s, t):
     return y, velocity, acceleration
 
 
-@compiled
+@inlined
 def _response(p, s, t, g, rate, first, second):
     """Return travel, velocity and acceleration without ramp and waves, from `short_integrals` at t.
 
@@ -178,21 +183,22 @@ def _response(p, s, t, g, rate, first, second):
     acceleration = a * rate + jerk * g
     if not (s[OMEGA2] * t * t >= 1.0 if s[NU] > 0.0 else s[SLOW] * t <= -1.0):
         return u * t + a * first + jerk * second, u + a * g + jerk * first, acceleration
-    stiffness = p[STIFFNESS] + (p[CONTACT_STIFFNESS] if s[MODE] == STICK else 0.0)
-    v = s[BASE_V] if s[WAVES] != 0.0 else s[V]
-    settled = (p[STIFFNESS] * v + p[DAMPING] * s[V_RATE] + s[F_RATE]) / stiffness
+    settled = s[BASE_V] if s[WAVES] != 0.0 else s[V]
+    if s[MODE] == STICK or s[F_RATE] != 0.0 or s[V_RATE] != 0.0:
+        contact = p[CONTACT_STIFFNESS] if s[MODE] == STICK else 0.0
+        settled = (p[STIFFNESS] * settled + p[DAMPING] * s[V_RATE] + s[F_RATE]) / (p[STIFFNESS] + contact)
     free, damping = u - settled, 2.0 * s[GAMMA]
     return (settled * t + (free * (g + damping * first) + a * first),
             settled + (free * (rate + damping * g) + a * g), acceleration)
 
 
-@compiled
+@inlined
 def travel_at(p, s):
     """Return `travel` for the time AT of the last evaluation."""
     return _response(p, s, s[AT], s[AT_G], s[AT_RATE], s[AT_FIRST], s[AT_SECOND])
 
 
-@compiled
+@inlined
 def travel_to_event(p, s, t):
     """Return `travel` for the time of the next event, or where its search ended: from the last evaluation there."""
     y, v, acceleration = travel_at(p, s)
@@ -201,12 +207,12 @@ def travel_to_event(p, s, t):
         return y, v, acceleration
     bend = s[JERK] * s[AT_RATE] - s[ACCELERATION] * (2.0 * s[GAMMA] * s[AT_RATE] + s[OMEGA2] * s[AT_G])
     snap = -2.0 * s[GAMMA] * bend - s[OMEGA2] * acceleration
-    return (y + (v + (0.5 * acceleration + bend * d / 6.0) * d) * d,
-            v + (acceleration + (0.5 * bend + snap * d / 6.0) * d) * d,
+    return (y + (v + (0.5 * acceleration + _SIXTH * bend * d) * d) * d,
+            v + (acceleration + (0.5 * bend + _SIXTH * snap * d) * d) * d,
             acceleration + (bend + 0.5 * snap * d) * d)
 
 
-@compiled
+@inlined
 def drive_travel(s, t):
     """Return how far the drive moves within t after the anchor."""
     if s[WAVES] != 0.0:
@@ -214,7 +220,7 @@ def drive_travel(s, t):
     return (s[V] + 0.5 * s[V_RATE] * t) * t
 
 
-@compiled
+@inlined
 def move_anchor(p, s, second, fraction, t):
     """Move the anchor by t, to the time (second, fraction), along the present mode."""
     drive = drive_travel(s, t)
@@ -242,19 +248,19 @@ def move_anchor(p, s, second, fraction, t):
         move_waves(s, t)
 
 
-@compiled
+@inlined
 def drive_force(p, spring, v, u):
     """Return F_d = c (s − x) + h (v − ẋ)."""
     return p[STIFFNESS] * spring + p[DAMPING] * (v - u)
 
 
-@compiled
+@inlined
 def contact_force(p, deflection, u):
     """Return F_c = c_c δ + h_c ẋ of the compliant contact."""
     return p[CONTACT_STIFFNESS] * deflection + p[CONTACT_DAMPING] * u
 
 
-@compiled
+@inlined
 def friction_force(p, s, deflection, u, applied):
     """Return the friction force at velocity u in the present mode, under `applied` = F_d + F_e."""
     mode = s[MODE]
@@ -268,7 +274,7 @@ def friction_force(p, s, deflection, u, applied):
     return s[DIRECTION] * p[NORMAL] * coefficient
 
 
-@compiled
+@inlined
 def has_branches(p):
     """Whether friction depends on the sign of the acceleration."""
     return p[BRANCHES] != 0.0

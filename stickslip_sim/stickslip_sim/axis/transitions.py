@@ -4,7 +4,7 @@ Ties are decided by where the force moves next: a residual within rounding of ze
 rate, then of the rate's rate, decides.
 """
 
-from ..compiled import compiled
+from ..compiled import compiled, inlined
 from ..words import EventKind
 from .layout import (
     ACCELERATION, COMPLIANT, CONTACT_STIFFNESS, DAMPING, DEFLECTION, DIRECTION, DRIVE, EVENT_DIRECTION, EVENT_DRIVE,
@@ -30,20 +30,20 @@ _ROUNDING = 8.0 * 2.220446049250313e-16
 _TIE = 1e-15   # of the friction force: a closed-form acceleration smaller than that is a tie
 
 
-@compiled
+@inlined
 def applied_force(p, s):
     """Return F_d + F_e at the anchor."""
     return drive_force(p, s[SPRING], s[V], s[VELOCITY]) + s[F]
 
 
-@compiled
+@inlined
 def force_rounding(p, s, friction):
     """Return the size of rounding errors in a sum of the forces at the anchor."""
     return _ROUNDING * (p[STIFFNESS] * abs(s[SPRING]) + p[DAMPING] * (abs(s[V]) + abs(s[VELOCITY])) + abs(s[F])
                         + p[NORMAL] * friction)
 
 
-@compiled
+@inlined
 def write_event(p, s, events, row, kind, direction, friction, limit):
     """Write a row with the state at the anchor and mu_s = `limit`; who calls it adds the mode that follows."""
     e = events[row]
@@ -60,7 +60,7 @@ def write_event(p, s, events, row, kind, direction, friction, limit):
     e[EVENT_REST] = s[REST]
 
 
-@compiled
+@inlined
 def force_rate(p, s):
     """Return the rate of F_d + F_e at constant velocity, and the rate's rate; within rounding of 0 the first is 0."""
     if s[WAVES] != 0.0:
@@ -72,7 +72,7 @@ def force_rate(p, s):
     return rate, p[STIFFNESS] * s[V_RATE]
 
 
-@compiled
+@inlined
 def choose_slip(p, s, residual, tolerance):
     """Set the slip sub-mode from R − B = `residual`; return False when the slider comes to rest instead.
 
@@ -111,14 +111,14 @@ def choose_slip(p, s, residual, tolerance):
     return True
 
 
-@compiled
+@inlined
 def band_of(p, s):
     """Return B = N e(|ẋ|), the width of the coasting band at the anchor, N."""
     _, _, psi, _ = friction_line(p, int(s[PIECE]), abs(s[VELOCITY]))
     return p[NORMAL] * s[EXCESS] * psi
 
 
-@compiled
+@inlined
 def break_away(p, s, direction, limit, margin):
     """Begin a slip at the friction coefficient `limit`; `margin` is how far the force is beyond it, N.
 
@@ -143,7 +143,7 @@ def break_away(p, s, direction, limit, margin):
         rest(p, s)
 
 
-@compiled
+@inlined
 def rest(p, s):
     """Begin to stick at standstill."""
     s[MODE] = STICK
@@ -158,7 +158,7 @@ def rest(p, s):
     s[DIRECTION] = 0.0
 
 
-@compiled
+@inlined
 def arrest(p, s, events, row):
     """End a slip at standstill: stick, or reverse at once where a rigid contact cannot hold the force."""
     s[VELOCITY] = 0.0
@@ -176,11 +176,11 @@ def arrest(p, s, events, row):
     events[row][EVENT_MODE] = s[MODE]
 
 
-@compiled
+@inlined
 def release(p, s, events, row):
     """Begin a slip from stick, where |F| has reached N mu_s(t⁻)."""
-    limit = static_limit(p, s[REST])
     force = applied_force(p, s) if is_rigid_stick(p, s) else contact_force(p, s[DEFLECTION], s[VELOCITY])
+    limit = static_limit(p, s[REST])
     direction = _way_out(p, s, force)
     margin = abs(force) - p[NORMAL] * limit
     if margin <= force_rounding(p, s, limit):
@@ -204,7 +204,7 @@ def _way_out(p, s, force):
     return 1.0 if way > 0.0 else -1.0
 
 
-@compiled
+@inlined
 def turn(p, s, events, row):
     """Leave a sub-mode where its acceleration vanishes: coast, or pass to the other branch where they coincide."""
     mode = s[MODE]
@@ -230,7 +230,7 @@ def turn(p, s, events, row):
     events[row][EVENT_MODE] = s[MODE]
 
 
-@compiled
+@inlined
 def enter_branch(p, s, mode):
     """Begin to accelerate or decelerate with no acceleration yet."""
     s[MODE] = mode
@@ -239,7 +239,7 @@ def enter_branch(p, s, mode):
     s[ACCELERATION] = 0.0
 
 
-@compiled
+@inlined
 def leave_coast(p, s, events, row, kind):
     """Leave the coasting band: upwards to accelerate, downwards to decelerate."""
     write_event(p, s, events, row, kind, s[DIRECTION], applied_force(p, s), p[STATIC_INITIAL])
@@ -258,7 +258,7 @@ def cross_knot(p, s, events, row):
     events[row][EVENT_MODE] = s[MODE]
 
 
-@compiled
+@inlined
 def apply_inputs(p, s, events, row):
     """Choose the mode anew after a jump of an input or a parameter at the anchor; return True if it wrote an event."""
     mode = s[MODE]
@@ -281,7 +281,7 @@ def apply_inputs(p, s, events, row):
     return True
 
 
-@compiled
+@inlined
 def _press_stick(p, s, events, row):
     if p[COMPLIANT] != 0.0:
         force = contact_force(p, s[DEFLECTION], s[VELOCITY])

@@ -13,7 +13,7 @@ import math
 from dataclasses import dataclass
 from enum import IntEnum
 
-from ..compiled import compiled
+from ..compiled import compiled, inlined
 from ..errors import InputError
 
 
@@ -73,7 +73,7 @@ class StaticLaw:
                                   rest_time)
 
 
-@compiled
+@inlined
 def static_coefficient(kind, initial, limit, tau, exponent, rest):
     """Return mu_s(rest)."""
     if kind == CONSTANT or rest == 0.0:
@@ -90,7 +90,7 @@ def static_coefficient(kind, initial, limit, tau, exponent, rest):
     return initial + rise * math.log1p(rest / tau)
 
 
-@compiled
+@inlined
 def static_growth(kind, initial, limit, tau, exponent, rest):
     """Return mu_s(rest), mu_s′(rest), and a bound on −mu_s″ from `rest` on.
 

@@ -20,14 +20,14 @@ An oscillator is the tuple (γ, ω², ν, λ₁, λ₂): ν > 0 is the damped an
 
 import math
 
-from ..compiled import compiled
+from ..compiled import compiled, inlined
 
 _SERIES_BELOW = 2.0   # (|γ| + |ν|) t up to which the power series is summed
 _SHORT_SERIES_BELOW = 0.4   # where G₃ is not asked for
 _SERIES_TERMS = 60    # never reached: 30 terms are below rounding at the bound above
 
 
-@compiled
+@inlined
 def oscillator(gamma, omega2):
     """Return (γ, ω², ν, λ₁, λ₂) of y″ + 2γ y′ + ω² y."""
     omega = math.sqrt(omega2)
@@ -132,7 +132,7 @@ def _phi(rate, t):
     return t + rate * second, second, third
 
 
-@compiled
+@inlined
 def bound(osc, z, rate):
     """Return a bound on |z(t + s)| for all s >= 0 of a free motion with γ >= 0 from its value and rate at t."""
     gamma, _, nu, slow, _ = osc

@@ -15,7 +15,7 @@ Three arguments cover every guard of a linear mode; none of them scans:
 
 import math
 
-from ..compiled import compiled
+from ..compiled import compiled, inlined
 from .oscillator import integrals, short_integrals
 
 _EPSILON = 2.220446049250313e-16
@@ -24,7 +24,7 @@ _DIRECT_STEPS = 8
 _OVERFLOW = 600.0   # largest exponent of a growing mode; by then it has left every bounded piece
 
 
-@compiled
+@inlined
 def first_zero(osc, z, jerk):
     """Return the first t > 0 at which the free motion z g′ + jerk g comes down to 0; z >= 0."""
     gamma, _, nu, slow, _ = osc
@@ -40,7 +40,7 @@ def first_zero(osc, z, jerk):
     return math.log1p(-2.0 * nu * z / fall) / (-2.0 * nu)
 
 
-@compiled
+@inlined
 def half_period(osc):
     """Return the least distance of two zeros of a free motion: infinite when it has one at most."""
     return math.pi / osc[2] if osc[2] > 0.0 else math.inf
@@ -52,7 +52,7 @@ def next_zero(osc, t):
     return t + half_period(osc)
 
 
-@compiled
+@inlined
 def finite_horizon(osc, t):
     """Return t, or less where a growing mode would leave the range of numbers before."""
     gamma, _, nu, slow, _ = osc
@@ -60,7 +60,7 @@ def finite_horizon(osc, t):
     return min(t, _OVERFLOW / growth) if growth > 0.0 else t
 
 
-@compiled
+@inlined
 def first_passage(osc, rate, jerk, snap, gap, horizon, guess):
     """Return when r reaches `gap`, or stops growing, whichever is first, and whether it was the gap.
 
@@ -99,7 +99,7 @@ def first_passage(osc, rate, jerk, snap, gap, horizon, guess):
     return turn if turn <= horizon else math.inf, False, end, g, slope, first, second
 
 
-@compiled
+@inlined
 def _direct_root(osc, rate, jerk, gap, half, t):
     """Return the root of r(t) = gap by Householder's step from t on, and `at`, g, g′, G₁, G₂ of its last evaluation.
 
@@ -125,7 +125,7 @@ def _direct_root(osc, rate, jerk, gap, half, t):
     return -1.0, -1.0, 0.0, 0.0, 0.0, 0.0
 
 
-@compiled
+@inlined
 def _householder(osc, value, slope, change, snap):
     """Return Householder's third-order step towards the root, from r − gap, r′ and r″; infinite where it has none.
 
@@ -164,7 +164,7 @@ def _bracket(osc, rate, jerk, snap, gap, turn):
         end *= 2.0
 
 
-@compiled
+@inlined
 def _passage(osc, rate, jerk, snap, t):
     """Return r, r′ and r″ at t."""
     if snap != 0.0:

@@ -4,6 +4,8 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from ...axis.layout import (
     ACCELERATION, DEFLECTION, DIRECTION, DRIVE, EVENT_FRICTION, EVENT_MODE, EXCESS, FRACTION, MODE, NORMAL, PIECE,
     POSITION, RESIDUAL, REST, SECOND, SPRING, STATIC_INITIAL, VELOCITY,
@@ -21,6 +23,8 @@ from .motion import Motion
 
 _SAME_INSTANT = 64   # events without progress in time; a sound model needs three
 
+_QUIET = np.errstate(all='ignore')   # what overflows ends as OUT_OF_RANGE
+
 
 @dataclass(frozen=True, slots=True)
 class Engine:
@@ -31,6 +35,7 @@ class Engine:
     atol: float
     law: Any
 
+    @_QUIET
     def start(self, p, s, position, velocity, rest, v, v_rate, f, f_rate, waves, events, row):
         """Set the state at time 0: the spring unstretched, at rest (it may break away at once) or sliding."""
         begin_state(s, position, velocity, rest)
@@ -41,6 +46,7 @@ class Engine:
         self._choose(p, s)
         return row
 
+    @_QUIET
     def advance(self, p, s, second, fraction, events, row):
         """Bring the state to a time; return the rows in use and how it ended."""
         same_instant = 0
@@ -67,6 +73,7 @@ class Engine:
             self._transition(p, s, events, row, kind)
             row += 1
 
+    @_QUIET
     def set_inputs(self, p, s, second, fraction, v, v_rate, f, f_rate, waves, events, row):
         """Let the inputs be others from a time on, to which the state was advanced."""
         if same_inputs(s, v, v_rate, f, f_rate, waves):
@@ -75,11 +82,13 @@ class Engine:
         refresh_inputs(s)
         return self._apply(p, s, events, row)
 
+    @_QUIET
     def set_parameters(self, p, new, s, second, fraction, events, row):
         """Let the axis have other parameters from a time on, to which the state was advanced with the old ones."""
         change_contact(new, s, Motion(p, s, self.law).friction(0.0, (0.0, float(s[VELOCITY]))))
         return self._apply(new, s, events, row)
 
+    @_QUIET
     def sample(self, p, s, second, fraction, out):
         """Fill a row with the state; the time is the one that it was advanced to."""
         motion = Motion(p, s, self.law)
@@ -90,7 +99,6 @@ class Engine:
 
     def _integrate(self, motion, t, u):
         """Return time, travel, velocity and kind (None: none) of the next event up to t; None where it fails."""
-        import numpy as np
         from scipy.integrate import solve_ivp   # a second that a user of the other solvers need not wait
 
         guards = motion.guards()

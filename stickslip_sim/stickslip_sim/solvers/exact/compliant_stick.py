@@ -22,7 +22,7 @@ from ...axis.layout import (
 )
 from ...axis.motion import TICK, oscillator_of, static_limit, travel, travel_at
 from ...axis.transitions import force_rounding
-from ...compiled import compiled
+from ...compiled import compiled, inlined
 from ...linear.oscillator import amplitude, bound, impulse, short_integrals
 from ...linear.roots import first_crossing, safe_step
 from .static_guards import GAVE_UP, STEPS, concave_root, is_concave, law, steep_start
@@ -78,7 +78,7 @@ def compliant_stick(p, s, horizon):
     return GAVE_UP
 
 
-@compiled
+@inlined
 def _keeps_off(p, s, osc, t):
     """Whether the force surely stays below N mu_s(0) up to t: by its rate and a bound on its curvature."""
     stiffness, damping = p[CONTACT_STIFFNESS], p[CONTACT_DAMPING]
@@ -129,7 +129,7 @@ def _contact_at(p, osc, motion, t):
             stiffness * jerk - damping * (2.0 * gamma * jerk + omega2 * acc))
 
 
-@compiled
+@inlined
 def _direct_root(p, s, osc, motion, contact, begin):
     """Return the root of the guard after `begin`, if it proves to be the first; 0 otherwise.
 
@@ -172,7 +172,7 @@ def _direct_root(p, s, osc, motion, contact, begin):
     return t if clear > 0.0 and falls < 0.0 else 0.0
 
 
-@compiled
+@inlined
 def _guard_at(p, s, osc, t, side):
     """Return N mu_s − side F_c at t, its rate and its bend (with the bound of a law that is not concave).
 

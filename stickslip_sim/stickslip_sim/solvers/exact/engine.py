@@ -15,21 +15,20 @@ from ...axis.layout import (
     STATE_SIZE, STORED_AT_START, V, VELOCITY, V_RATE, WAVES,
 )
 from ...axis.motion import (
-    COASTING, STICK, begin_motion, drive_force, drive_travel, friction_force, friction_line, move_anchor, piece_above,
-    travel,
+    COASTING, STAMP, STICK, begin_motion, drive_force, drive_travel, friction_force, friction_line, move_anchor,
+    piece_above, travel,
 )
 from ...axis.transitions import (
     ARREST, BREAKAWAY, COAST, KNOT, applied_force, apply_inputs, arrest, choose_slip, cross_knot, force_rounding,
     leave_coast, release, turn,
 )
 from ...axis.waves import inputs_at, load_waves, same_waves
-from ...compiled import compiled
+from ...compiled import compiled, inlined
 from .. import DONE, FULL, NO_PROGRESS
 from .account import book_contact, book_parameters, book_works, read_account
 from .search import find_event
 from .works import contact_energy, stored_energy
 
-_STAMP = 2.0 ** -51    # s, more than the time of an event is rounded by
 _SAME_INSTANT = 64   # events without progress in time; a sound model needs three
 
 
@@ -67,7 +66,7 @@ def advance(p, s, second, fraction, events, row):
     same_instant = 0
     while True:
         t = (second - s[SECOND]) + (fraction - s[FRACTION])
-        reach = t + _STAMP
+        reach = t + STAMP
         if s[SEARCHED] < reach:
             find_event(p, s, reach)
         due = s[NEXT]
@@ -89,7 +88,7 @@ def advance(p, s, second, fraction, events, row):
         _begin(p, s)
 
 
-@compiled
+@inlined
 def _pass_event(p, s, due, second, fraction, events, row):
     mode = int(s[MODE])
     accounting = s[ACCOUNTING] != 0.0
@@ -176,7 +175,7 @@ def energy(p, s, second, fraction, out):
     read_account(p, s, t, out)
 
 
-@compiled
+@inlined
 def _begin(p, s):
     begin_motion(p, s)
     s[SEARCHED] = -1.0
@@ -185,7 +184,7 @@ def _begin(p, s):
     s[AT] = -1.0
 
 
-@compiled
+@inlined
 def _apply(p, s, events, row):
     contact = contact_energy(p, s, 0.0)
     if apply_inputs(p, s, events, row):
@@ -195,7 +194,7 @@ def _apply(p, s, events, row):
     return row
 
 
-@compiled
+@inlined
 def _anchor_at(p, s, second, fraction):
     t = (second - s[SECOND]) + (fraction - s[FRACTION])
     if s[ACCOUNTING] != 0.0:
@@ -203,7 +202,7 @@ def _anchor_at(p, s, second, fraction):
     move_anchor(p, s, second, fraction, t)
 
 
-@compiled
+@inlined
 def _transition(p, s, events, row):
     kind = s[NEXT_KIND]
     if kind == BREAKAWAY:

@@ -15,16 +15,20 @@ from ...axis.layout import (
     ACCELERATION, AT, AT_FIRST, AT_G, AT_RATE, AT_SECOND, COMPLIANT, DIRECTION, JERK, KNOTS, LAST, MODE, NEXT,
     NEXT_KIND, PIECE, RESIDUAL, SEARCHED, SNAP, VELOCITY, WAVES,
 )
-from ...axis.motion import ACCELERATING, COASTING, STICK, TICK, knot_speed, oscillator_of, tick_integrals, travel_at
+from ...axis.motion import (
+    ACCELERATING, COASTING, STAMP, STICK, TICK, knot_speed, oscillator_of, tick_integrals, travel_at,
+)
 from ...axis.transitions import ACCELERATE, ARREST, BREAKAWAY, COAST, DECELERATE, KNOT, band_of, force_rate
-from ...compiled import compiled
+from ...compiled import inlined
 from ...linear.roots import finite_horizon, first_crossing, first_passage, half_period
 from .compliant_stick import compliant_stick
 from .forced import forced_event
 from .static_guards import rigid_stick
 
+_SURELY = 1e-9   # of the change over a tick: far more than it changes within a STAMP
 
-@compiled
+
+@inlined
 def find_event(p, s, due):
     """Set the next event of the mode at the anchor, searched up to `due` (s after the anchor) at least."""
     if s[WAVES] != 0.0:
@@ -42,7 +46,7 @@ def find_event(p, s, due):
         s[NEXT] = compliant_stick(p, s, horizon) if p[COMPLIANT] != 0.0 else rigid_stick(p, s, horizon)
 
 
-@compiled
+@inlined
 def _coasting(p, s):
     direction = s[DIRECTION]
     rate, bend = force_rate(p, s)
@@ -55,7 +59,7 @@ def _coasting(p, s):
     s[SEARCHED] = math.inf
 
 
-@compiled
+@inlined
 def _slipping(p, s, horizon):
     accelerating = s[MODE] == ACCELERATING
     speed = abs(s[VELOCITY])
@@ -66,7 +70,7 @@ def _slipping(p, s, horizon):
     else:
         gap = speed - knot_speed(p, piece)
         sign = -s[DIRECTION]
-    if horizon < TICK and _keeps_on(p, s, sign, gap, horizon):
+    if horizon < TICK and _keeps_on(p, s, sign, gap, horizon - STAMP):
         s[NEXT] = math.inf
         return
     t, passed, s[AT], s[AT_G], s[AT_RATE], s[AT_FIRST], s[AT_SECOND] = first_passage(
@@ -79,9 +83,9 @@ def _slipping(p, s, horizon):
         s[NEXT_KIND] = KNOT if accelerating or piece > 0 else ARREST
 
 
-@compiled
+@inlined
 def _keeps_on(p, s, sign, gap, t):
-    """Whether a short slip surely lasts up to t: the acceleration has kept its sign, and the knot is not reached.
+    """Whether a short slip surely lasts up to t, and a STAMP beyond: the same sign of the acceleration, within the gap.
 
     See argument 2 of `linear.roots`.  What was evaluated is noted for who goes to t.
     """
@@ -91,7 +95,8 @@ def _keeps_on(p, s, sign, gap, t):
     s[AT_G], s[AT_RATE], s[AT_FIRST], s[AT_SECOND] = tick_integrals(s, t)
     s[AT] = t
     _, u, a = travel_at(p, s)
-    if sign * a > 0.0 and sign * (u - s[VELOCITY]) < gap:
+    still = _SURELY * (abs(s[ACCELERATION]) + abs(s[JERK]) * t)
+    if sign * a > still and sign * (u - s[VELOCITY]) < gap - still * t:
         return True
     s[AT] = -1.0
     return False

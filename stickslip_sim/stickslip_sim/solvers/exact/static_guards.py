@@ -11,7 +11,7 @@ from ...axis.layout import (
 )
 from ...axis.motion import static_limit
 from ...axis.transitions import applied_force, force_rate
-from ...compiled import compiled
+from ...compiled import compiled, inlined
 from ...friction.static import CONSTANT, EXPONENTIAL, KATO, LOGARITHMIC, static_growth
 from ...linear.roots import first_crossing, safe_step
 
@@ -21,7 +21,7 @@ _DIRECT_STEPS = 8
 GAVE_UP = -1.0     # instead of a time: the steps were used up
 
 
-@compiled
+@inlined
 def rigid_stick(p, s, horizon):
     """Return when |F_d + F_e| reaches N mu_s; both are known in closed form."""
     force = applied_force(p, s)
@@ -50,7 +50,7 @@ def _one_side(p, s, force, rate, bend, horizon):
     return _stepped_side(p, s, force, rate, bend, horizon)
 
 
-@compiled
+@inlined
 def _exponential_root(p, s, force, rate, horizon):
     """Return when force + rate t, rate > 0, reaches N mu_s of the exponential law; −1 where the steps do not settle.
 
@@ -93,7 +93,7 @@ def _exponential_root(p, s, force, rate, horizon):
     return -1.0
 
 
-@compiled
+@inlined
 def law(p, rest):
     """Return mu_s, its rate and a bound on −mu_s″ after a rest time."""
     return static_growth(p[STATIC_LAW], p[STATIC_INITIAL], p[STATIC_LIMIT], p[STATIC_TAU], p[STATIC_EXPONENT], rest)
