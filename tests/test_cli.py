@@ -159,7 +159,7 @@ def test_existing_files_are_replaced(tmp_path: Path) -> None:
     (['simulate', 'paper_fig7', '--duration', 'inf'], ['duration', 'inf', '<= 1e+09 s']),
     (['simulate', 'no_such_scene', '--duration', '1'], ['no_such_scene', 'paper_fig8']),
     (['simulate', 'paper_fig7', '--duration', '1', '--set', 'axis.mas=1'], ['axis.mas']),
-    (['simulate', 'paper_fig7', '--duration', '1', '--set', 'axis.mass=-1'], ['axis.mass', '-1', '> 0']),
+    (['simulate', 'paper_fig7', '--duration', '1', '--set', 'axis.mass=-1'], ['axis.mass', '-1', '>= 1e-09 and']),
     (['simulate', 'paper_fig7', '--duration', '1', '--set', 'axis.mass'], ['axis.mass']),
     (['simulate', 'paper_fig7', '--duration', '1', '--knots'], ['--knots', '--events']),
     (['simulate', 'paper_fig7', '--duration', '1', '--sample-period', '1'], ['--sample-period', '--samples']),

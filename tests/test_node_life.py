@@ -271,7 +271,8 @@ class TestRecording:
             axis.send_velocity(0.003)
             axis.next('slider_state', lambda state: state.drive_velocity == 0.003)
             assert axis.switch('record', True).success
-            axis.next('timing', lambda timing: True)
+            begin = axis.latest('slider_state').step
+            axis.next('slider_state', lambda state: state.step > begin + 600)
             assert axis.switch('record', False).success
             heard = {state.step: state for state in axis.heard['slider_state']}
             assert_clean(*process.end())

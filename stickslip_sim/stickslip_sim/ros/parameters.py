@@ -1,5 +1,6 @@
 """The scene as ROS parameters: declared from the one schema, and checked together whenever any of them changes."""
 
+import math
 from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
 from typing import Any, NamedTuple
@@ -125,7 +126,8 @@ def describe(entry: Entry) -> ParameterDescriptor:
         read_only=not entry.live)
     if entry.low is not None and entry.high is not None:
         if entry.type == 'double':
-            descriptor.floating_point_range = [FloatingPointRange(from_value=entry.low, to_value=entry.high)]
+            high = math.inf if entry.infinite else entry.high
+            descriptor.floating_point_range = [FloatingPointRange(from_value=entry.low, to_value=high)]
         if entry.type == 'integer':
             descriptor.integer_range = [IntegerRange(from_value=int(entry.low), to_value=int(entry.high), step=1)]
     return descriptor
