@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from stickslip_sim.errors import InputError
+from stickslip_sim.errors import InputError, RecordingWarning
 from stickslip_sim.recording import Run, read_run
 from stickslip_sim.scene import load_scene
 from stickslip_sim.words import EventKind
@@ -26,7 +26,7 @@ def recording_into(folder: Path) -> list[str]:
 
 class TestRefusedStart:
     @pytest.mark.parametrize(('content', 'told'), [
-        ('axis: {mass: -1.0}', ['axis.mass = -1.0', '> 0 kg']),
+        ('axis: {mass: -1.0}', ['axis.mass = -1.0', '>= 1e-09 and <= 1e+12 kg']),
         ('axis: {weight: 1.0}', ['axis.weight = 1.0']),
         ('axis: {mass: heavy}', ["axis.mass = 'heavy'"]),
         ('friction: {kinetic: {velocities: [0.0, 1], coefficients: [0.1, 0.1]}}', ['a list of one type']),
@@ -205,7 +205,8 @@ class TestSignals:
             axis.next('slider_state', lambda state: state.step > 2500)
             process.kill()
             last = axis.latest('slider_state').step
-        run = read_run(folder)
+        with pytest.warns(RecordingWarning, match='no end'):
+            run = read_run(folder)
         assert not run.is_complete
         steps = run.columns('/slider_state')['step']
         assert list(steps) == list(range(len(steps)))
@@ -251,7 +252,19 @@ class TestRecording:
             step = axis.latest('slider_state').step
             axis.next('slider_state', lambda state: state.step > step + 100)
             assert_clean(*process.end())
-        assert len(read_run(folder).columns('/slider_state')['step']) > 100
+        with pytest.warns(RecordingWarning, match='no end'):
+            run = read_run(folder)
+        assert len(run.columns('/slider_state')['step']) > 100
+
+    def test_the_receipt_tells_the_solver_and_its_settings(self, tmp_path: Path) -> None:
+        folder = tmp_path / 'run'
+        wanted = [*recording_into(folder), '-p', 'solver.name:=fixed_step', '-p', 'solver.step:=0.0005']
+        with running(*wanted) as process, client() as axis:
+            axis.connect()
+            assert_clean(*process.end())
+        receipt = read_run(folder).receipt
+        assert (receipt['solver'], receipt['solver_settings']) == ('fixed_step', {'method': 'euler', 'step': 0.0005})
+        assert 'error_estimate' not in receipt
 
     def test_namespace(self, tmp_path: Path) -> None:
         folder = tmp_path / 'run'
