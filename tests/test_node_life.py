@@ -64,11 +64,14 @@ class TestRefusedStart:
 
     @pytest.mark.parametrize(('name', 'value', 'told'), [
         ('ROS_DOMAIN_ID', '9999', '0 to 232'), ('ROS_DOMAIN_ID', '-1', '0 to 232'), ('ROS_DOMAIN_ID', 'x', '0 to 232'),
+        ('ROS_STATIC_PEERS', 'no address', 'Unable to resolve peer'),
+        ('AMENT_PREFIX_PATH', '', 'setup.bash'),
         ('RMW_IMPLEMENTATION', 'rmw_smoke_signals', 'rmw_fastrtps_cpp'), ('ROS_LOG_DIR', '/proc/x', '/proc/x'),
     ])
     def test_environment(self, monkeypatch: pytest.MonkeyPatch, name: str, value: str, told: str) -> None:
+        program = executable('sim_node')
         monkeypatch.setenv(name, value)
-        code, errors = start()
+        code, errors = run(program)
         assert (code, len(errors.splitlines())) == (2, 1), errors
         assert value in errors
         assert told in errors
@@ -87,8 +90,11 @@ class TestRefusedStart:
 
 
 def start(*ros_args: str) -> tuple[int, str]:
-    done = subprocess.run([executable('sim_node'), '--ros-args', *ros_args], capture_output=True, text=True, timeout=60,
-                          check=False)
+    return run(executable('sim_node'), '--ros-args', *ros_args)
+
+
+def run(*command: str) -> tuple[int, str]:
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
     return done.returncode, done.stderr
 
 

@@ -1,6 +1,5 @@
 """The life of the process around the node, from its arguments to the exit code."""
 
-import re
 import sys
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
@@ -110,14 +109,11 @@ def _init_ros(args: Sequence[str]) -> None:
     from rclpy.logging import LoggingSeverity, set_logger_level
     from rclpy.signals import SignalHandlerOptions
 
-    from ..errors import InputError
+    from .environment import refusing
 
     set_logger_level('rcl', LoggingSeverity.FATAL)    # it would say half of it in a line of its own
-    try:
+    with refusing('ROS arguments or environment', args):
         rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
-    except RuntimeError as error:    # the base of all that rclpy raises there
-        raise InputError('ROS arguments or environment', args, 'understood by ROS',
-                         re.sub(r',? at /\S+', '', str(error))) from None
     set_logger_level('rcl', LoggingSeverity.UNSET)
 
 

@@ -15,6 +15,7 @@ from ..scene.model import Scene
 from ..scene.parameter import Parameter as Entry
 from ..scene.schema import BY_NAME, PARAMETERS
 from ..scene.sections import describes_an_axis, without_those_of_ros
+from .environment import refusing, variables
 
 DEFAULT_SCENE = 'paper_fig8'
 _TYPES = {
@@ -47,7 +48,8 @@ class SceneNode(Node):  # type: ignore[misc]
     scene: Scene
 
     def __init__(self, name: str, files: FileParameters) -> None:
-        super().__init__(name)
+        with refusing('ROS environment', variables()):
+            super().__init__(name)
         # rclpy has no public way to see what was given but never declared
         given = without_those_of_ros({name: parameter.value for name, parameter in self._parameter_overrides.items()})
         with named(files.source) if files.source else nullcontext():
