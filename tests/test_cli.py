@@ -158,7 +158,7 @@ def test_existing_files_are_replaced(tmp_path: Path) -> None:
     (['simulate', 'paper_fig7', '--duration', 'inf'], ['duration', 'inf', '<= 1e+09 s']),
     (['simulate', 'no_such_scene', '--duration', '1'], ['no_such_scene', 'paper_fig8']),
     (['simulate', 'paper_fig7', '--duration', '1', '--set', 'axis.mas=1'], ['axis.mas']),
-    (['simulate', 'paper_fig7', '--duration', '1', '--set', 'axis.mass=-1'], ['axis.mass', '-1', '> 0']),
+    (['simulate', 'paper_fig7', '--duration', '1', '--set', 'axis.mass=-1'], ['axis.mass', '-1', '>= 1e-09 and']),
     (['simulate', 'paper_fig7', '--duration', '1', '--set', 'axis.mass'], ['axis.mass']),
     (['simulate', 'paper_fig7', '--duration', '1', '--knots'], ['--knots', '--events']),
     (['simulate', 'paper_fig7', '--duration', '1', '--sample-period', '1'], ['--sample-period', '--samples']),
@@ -190,6 +190,42 @@ def test_unwritable_folder(capsys: Capture) -> None:
 def test_a_full_disk_gets_one_line(capsys: Capture) -> None:
     line = refused(capsys, 2, 'simulate', 'paper_fig7', '--duration', '1', '--events', '/dev/full')
     assert 'No space left' in line
+
+
+@pytest.mark.parametrize('arguments', [
+    ['scenes'], ['--help'], ['simulate', 'paper_fig7', '--duration', '1'],
+    ['simulate', 'paper_fig7', '--duration', '9', '--samples', '-'], ['extremes', '--only', 'X4', '--quick'],
+])
+def test_full_standard_output_gets_one_line(arguments: list[str]) -> None:
+    with open('/dev/full', 'w') as full:
+        done = subprocess.run([sys.executable, '-m', 'stickslip_sim', *arguments], stdout=full, stderr=subprocess.PIPE,
+                              text=True, timeout=60, check=False)
+    assert done.returncode == 2
+    assert done.stderr.startswith('stickslip: ')
+    assert 'standard output' in done.stderr
+    assert 'No space left' in done.stderr
+    assert done.stderr.count('\n') == 1
+
+
+def test_closed_standard_output() -> None:
+    command = f'{sys.executable} -m stickslip_sim simulate paper_fig7 --duration 1'
+    assert subprocess.run(['sh', '-c', f'{command} >&-'], timeout=60, check=False).returncode == 0
+    done = subprocess.run(['sh', '-c', f'{command} --events - >&-'], stderr=subprocess.PIPE, text=True, timeout=60,
+                          check=False)
+    assert (done.returncode, done.stderr.count('\n')) == (2, 1)
+    assert 'standard output' in done.stderr
+
+
+def test_the_summary_gives_way_to_what_is_written_to_standard_output(tmp_path: Path, capsys: Capture) -> None:
+    simulate = ['simulate', 'paper_fig7', '--duration', '1']
+    assert run([*simulate, '--events', str(tmp_path / 'e.csv'), '--plot', str(tmp_path / 'p.png')]) == 0
+    out = capsys.readouterr().out
+    assert out.startswith('paper_fig7: 1 s')
+    assert 'events' in out
+    assert run([*simulate, '--events', '-', '--plot', str(tmp_path / 'p.png')]) == 0
+    out, err = capsys.readouterr()
+    assert out.startswith(EVENT_HEADER)
+    assert ('exact solver' in out, err) == (False, '')
 
 
 def test_special_files_are_written_to_and_stay(capsys: Capture) -> None:

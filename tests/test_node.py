@@ -58,7 +58,7 @@ class TestParameters:
             assert entry.allowed in told.additional_constraints
             if entry.type == 'double':
                 assert [told.floating_point_range[0].from_value, told.floating_point_range[0].to_value] == [
-                    entry.low, entry.high]
+                    entry.low, math.inf if entry.infinite else entry.high]
 
     def test_values_are_those_of_the_default_scene(self, connected: Client) -> None:
         names = ['scene', 'axis.mass', 'friction.kinetic.velocities', 'drive.velocity', 'initial.rest_time']
@@ -72,10 +72,10 @@ class TestParameters:
         assert (absent.type, mass.double_value) == (0, 350.0)
 
     @pytest.mark.parametrize(('values', 'told'), [
-        ({'axis__mass': -1.0}, ['axis.mass = -1.0', '> 0 kg']),
-        ({'axis__mass': math.nan}, ['axis.mass = nan', '> 0 kg']),
+        ({'axis__mass': -1.0}, ['axis.mass = -1.0', '>= 1e-09 and <= 1e+12 kg']),
+        ({'axis__mass': math.nan}, ['axis.mass = nan', '>= 1e-09']),
         ({'axis__mass': 'heavy'}, ["axis.mass = 'heavy'", 'a number']),
-        ({'axis__normal_force': math.inf}, ['axis.normal_force = inf', 'finite']),
+        ({'axis__normal_force': math.inf}, ['axis.normal_force = inf', '<= 1e+15 N']),
         ({'friction__kinetic__velocities': [0.02, 0.01]}, ['friction.kinetic.velocities']),
         ({'friction__kinetic__coefficients': [0.5, 0.05]}, ['friction.kinetic.coefficients[0] = 0.5', '0.12']),
         ({'axis__mass': 300.0, 'friction__static__limit': 0.01}, ['friction.static.limit']),

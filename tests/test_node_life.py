@@ -4,13 +4,16 @@ import itertools
 import resource
 import signal
 import subprocess
+import sys
 import time
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from stickslip_sim.errors import InputError, RecordingWarning
 from stickslip_sim.recording import Run, read_run
+from stickslip_sim.scene import load_scene
 from stickslip_sim.words import EventKind
 from tests.ros_nodes import client, executable, restore_interrupt, running, wait_for
 
@@ -23,12 +26,12 @@ def recording_into(folder: Path) -> list[str]:
 
 class TestRefusedStart:
     @pytest.mark.parametrize(('content', 'told'), [
-        ('axis: {mass: -1.0}', ['axis.mass = -1.0', '> 0 kg']),
+        ('axis: {mass: -1.0}', ['axis.mass = -1.0', '>= 1e-09 and <= 1e+12 kg']),
         ('axis: {weight: 1.0}', ['axis.weight = 1.0']),
         ('axis: {mass: heavy}', ["axis.mass = 'heavy'"]),
-        ('friction: {kinetic: {velocities: [0.0, 1], coefficients: [0.1, 0.1]}}', ['same type']),
-        ('axis: [', ['params file']),
-        (None, ['params file', 'opening']),
+        ('friction: {kinetic: {velocities: [0.0, 1], coefficients: [0.1, 0.1]}}', ['a list of one type']),
+        ('axis: [', ['scene.yaml', 'YAML as ROS reads it']),
+        (None, ['scene.yaml', 'No such file']),
     ])
     def test_one_line_and_exit_code(self, tmp_path: Path, content: str | None, told: list[str]) -> None:
         file = tmp_path / 'scene.yaml'
@@ -39,6 +42,39 @@ class TestRefusedStart:
         assert errors.startswith('sim_node: ')
         assert len(errors.splitlines()) == 1, errors
         assert all(words in errors for words in told), errors
+
+    @pytest.mark.parametrize('text', [
+        '', '# nothing\n', 'other:\n  ros__parameters:\n    scene: mine\n', '/**:\n  ros__parameters:\n',
+        '/**:\n  ros__parameters:\n    scene: a\n---\n/**:\n  ros__parameters:\n    scene: b\n',
+        '/**:\n  ros__parameters:\n    scene: mine.yaml\n', '/**:\n  ros__parameters:\n    axis: {mass: 0.0}\n',
+    ])
+    def test_in_the_words_of_the_tool(self, tmp_path: Path, text: str) -> None:
+        file = tmp_path / 'scene.yaml'
+        file.write_text(text)
+        with pytest.raises(InputError) as of_the_tool:
+            load_scene(str(file))
+        assert start('--params-file', str(file)) == (2, f'sim_node: {of_the_tool.value}\n')
+
+    def test_a_file_for_a_node_elsewhere(self, tmp_path: Path) -> None:
+        file = tmp_path / 'scene.yaml'
+        file.write_text('/press/feed_axis:\n  ros__parameters:\n    axis: {mass: 1.0}\n')
+        code, errors = start('--params-file', str(file))
+        assert (code, len(errors.splitlines())) == (2, 1), errors
+        assert 'axis.mass = 1.0 is refused: must be in a section of /feed_axis' in errors
+
+    @pytest.mark.parametrize(('name', 'value', 'told'), [
+        ('ROS_DOMAIN_ID', '9999', '0 to 232'), ('ROS_DOMAIN_ID', '-1', '0 to 232'), ('ROS_DOMAIN_ID', 'x', '0 to 232'),
+        ('ROS_STATIC_PEERS', 'no address', 'Unable to resolve peer'),
+        ('AMENT_PREFIX_PATH', '', 'setup.bash'),
+        ('RMW_IMPLEMENTATION', 'rmw_smoke_signals', 'rmw_fastrtps_cpp'), ('ROS_LOG_DIR', '/proc/x', '/proc/x'),
+    ])
+    def test_environment(self, monkeypatch: pytest.MonkeyPatch, name: str, value: str, told: str) -> None:
+        program = executable('sim_node')
+        monkeypatch.setenv(name, value)
+        code, errors = run(program)
+        assert (code, len(errors.splitlines())) == (2, 1), errors
+        assert value in errors
+        assert told in errors
 
     @pytest.mark.parametrize(('arguments', 'told'), [
         (['-p', 'axis.mas:=1.0'], ['axis.mas = 1.0', 'did you mean axis.mass?']),
@@ -54,9 +90,64 @@ class TestRefusedStart:
 
 
 def start(*ros_args: str) -> tuple[int, str]:
-    done = subprocess.run([executable('sim_node'), '--ros-args', *ros_args], capture_output=True, text=True, timeout=60,
-                          check=False)
+    return run(executable('sim_node'), '--ros-args', *ros_args)
+
+
+def run(*command: str) -> tuple[int, str]:
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
     return done.returncode, done.stderr
+
+
+class TestFiles:
+    @pytest.mark.parametrize(('texts', 'arguments', 'scene', 'mass'), [
+        (['scene: mine'], [], 'mine', 350.0),
+        (['scene: paper_fig7'], ['-p', 'axis.mass:=300.0'], 'paper_fig7', 300.0),
+        (['record: {enabled: false}'], ['-p', 'scene:=positioning'], 'positioning', 350.0),
+        (['{scene: mine, axis: {mass: 200.0}}', 'seed: 5'], ['-p', 'scene:=yours'], 'yours', 200.0),
+        (['use_sim_time: false'], [], 'paper_fig8', 350.0),
+    ])
+    def test_are_a_scene_by_the_rules_of_the_tool(self, tmp_path: Path, texts: list[str], arguments: list[str],
+                                                  scene: str, mass: float) -> None:
+        for number, text in reversed([*enumerate(texts)]):    # what comes later on the command line wins
+            file = tmp_path / f'{number}.yaml'
+            file.write_text(f'/**:\n  ros__parameters: {text}\n' if text[0] == '{'
+                            else f'/**:\n  ros__parameters:\n    {text}\n')
+            arguments = ['--params-file', str(file), *arguments]
+        with running(*arguments) as process, client() as axis:
+            axis.connect()
+            of_the_node = axis.values('scene', 'axis.mass', 'contact.model', 'friction.static.law')
+            assert [value.string_value or value.double_value for value in of_the_node[:2]] == [scene, mass]
+            if texts[0].startswith('scene'):
+                same = load_scene(str(tmp_path / '0.yaml')).values
+                assert [value.string_value for value in of_the_node[2:]] == [
+                    same['contact.model'], same['friction.static.law']]
+            assert_clean(*process.end())
+
+    def test_one_without_an_axis_is_warned_of(self, tmp_path: Path) -> None:
+        file = tmp_path / 'scene.yaml'
+        file.write_text('/**:\n  ros__parameters:\n    scene: mine\n')
+        with running('--params-file', str(file)) as process, client() as axis:
+            axis.connect()
+            code, errors = process.end()
+        assert (code, 'nothing of an axis' in errors) == (0, True)
+
+
+def test_nothing_is_imported_before_signals_are_taken() -> None:
+    program = ('import os, signal, sys, collections.abc; before = set(sys.modules); import stickslip_sim.ros.sim_node;'
+               ' print(*sorted(set(sys.modules) - before))')
+    done = subprocess.run([sys.executable, '-c', program], capture_output=True, text=True, timeout=60, check=True)
+    assert done.stdout.split() == ['stickslip_sim', 'stickslip_sim.ros', 'stickslip_sim.ros.sim_node']
+
+
+def test_refused_commands_of_one_kind_do_not_hush_up_the_other() -> None:
+    with running() as process, client() as axis:
+        axis.connect()
+        axis.send_velocity(5.0)
+        axis.send_force(1e9)
+        axis.status('command', lambda values: values['velocity refused'] == values['force refused'] == '1')
+        _, errors = process.end()
+    assert 'velocity = 5.0 is refused' in errors
+    assert 'force = 1000000000.0 is refused' in errors
 
 
 def test_a_smooth_law_changes_while_the_axis_moves() -> None:
@@ -120,7 +211,8 @@ class TestSignals:
             axis.next('slider_state', lambda state: state.step > 2500)
             process.kill()
             last = axis.latest('slider_state').step
-        run = read_run(folder)
+        with pytest.warns(RecordingWarning, match='no end'):
+            run = read_run(folder)
         assert not run.is_complete
         steps = run.columns('/slider_state')['step']
         assert list(steps) == list(range(len(steps)))
@@ -166,7 +258,19 @@ class TestRecording:
             step = axis.latest('slider_state').step
             axis.next('slider_state', lambda state: state.step > step + 100)
             assert_clean(*process.end())
-        assert len(read_run(folder).columns('/slider_state')['step']) > 100
+        with pytest.warns(RecordingWarning, match='no end'):
+            run = read_run(folder)
+        assert len(run.columns('/slider_state')['step']) > 100
+
+    def test_the_receipt_tells_the_solver_and_its_settings(self, tmp_path: Path) -> None:
+        folder = tmp_path / 'run'
+        wanted = [*recording_into(folder), '-p', 'solver.name:=fixed_step', '-p', 'solver.step:=0.0005']
+        with running(*wanted) as process, client() as axis:
+            axis.connect()
+            assert_clean(*process.end())
+        receipt = read_run(folder).receipt
+        assert (receipt['solver'], receipt['solver_settings']) == ('fixed_step', {'method': 'euler', 'step': 0.0005})
+        assert 'error_estimate' not in receipt
 
     def test_namespace(self, tmp_path: Path) -> None:
         folder = tmp_path / 'run'
@@ -186,7 +290,8 @@ class TestRecording:
             axis.send_velocity(0.003)
             axis.next('slider_state', lambda state: state.drive_velocity == 0.003)
             assert axis.switch('record', True).success
-            axis.next('timing', lambda timing: True)
+            begin = axis.latest('slider_state').step
+            axis.next('slider_state', lambda state: state.step > begin + 600)
             assert axis.switch('record', False).success
             heard = {state.step: state for state in axis.heard['slider_state']}
             assert_clean(*process.end())

@@ -10,7 +10,7 @@ from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 
-from stickslip_sim.errors import RecordingError
+from stickslip_sim.errors import RecordingError, RecordingWarning
 from stickslip_sim.recording import (
     messages,
     open_run,
@@ -157,7 +157,8 @@ class TestLayout:
         assert body['message_count'] == 0
         assert [topic['topic_metadata']['name'] for topic in body['topics_with_message_count']][:2] == [
             '/cell/slider_state', '/cell/friction_force']
-        run = read_run(tmp_path / 'new')
+        with pytest.warns(RecordingWarning, match='no end'):
+            run = read_run(tmp_path / 'new')
         assert not run.is_complete
         assert run.attachments['scene.yaml'].decode() == FACTS.scene_text
         assert run.metadata['stickslip']['scene_hash'] == FACTS.scene_hash

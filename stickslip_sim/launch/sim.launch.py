@@ -7,7 +7,6 @@ from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
-from launch_ros.parameter_descriptions import ParameterValue
 
 
 def generate_launch_description() -> LaunchDescription:
@@ -21,10 +20,9 @@ def generate_launch_description() -> LaunchDescription:
             executable='sim_node',
             name='feed_axis',
             namespace=LaunchConfiguration('namespace'),
-            parameters=[{
-                'scene': LaunchConfiguration('scene'),
-                'record.enabled': ParameterValue(LaunchConfiguration('record'), value_type=bool),
-            }],
+            # Not as `parameters`: launch makes a file of those, and in a file `scene` is no file.
+            arguments=['--ros-args', '-p', ['scene:=', LaunchConfiguration('scene')],
+                       '-p', ['record.enabled:=', LaunchConfiguration('record')]],
             output='screen',
         ),
     ])

@@ -35,6 +35,10 @@ class RecordingError(StickslipError):
     exit_code = 2
 
 
+class RecordingWarning(UserWarning):
+    """A run folder can be read, but not all of the run is in it."""
+
+
 class SolverError(StickslipError):
     """The solver cannot go on; the last state it reached is still valid."""
 

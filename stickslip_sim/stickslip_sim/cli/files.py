@@ -63,6 +63,8 @@ def whole(path: str) -> Iterator[Path]:
 def write_text(path: str, lines: Iterable[str]) -> None:
     """Write lines to a file, or to standard output for '-'."""
     if path == STDOUT:
+        if sys.stdout is None:
+            raise InputError('output', 'standard output', 'open', 'it was closed by what started this')
         with _refusing('standard output'):
             sys.stdout.writelines(lines)
             sys.stdout.flush()

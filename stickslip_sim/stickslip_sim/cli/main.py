@@ -4,10 +4,12 @@ Exit codes: 0 done; 1 internal error; 2 wrong use, scene, parameter or file; 3 t
 4 the solver gave up; 130 interrupted.  One line on standard error says why; STICKSLIP_DEBUG=1 shows the traceback.
 """
 
+import errno
 import os
 import signal
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from types import FrameType
 from typing import NoReturn
 
@@ -21,6 +23,7 @@ from .scenes import scenes
 from .simulate import simulate
 
 _INTERRUPTED = 130
+_UNWRITABLE = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EBADF, errno.EPIPE)
 _TERMINATED = 143
 
 
@@ -43,9 +46,22 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
 def run(arguments: Sequence[str]) -> int:
     """Run the tool and return its exit code."""
     try:
+        code = _invoked(arguments)
+        _flush()
+        return code
+    except BrokenPipeError:     # whoever reads has seen enough
+        _give_up_output()
+        return 0
+    except OSError as error:
+        _give_up_output()
+        return _refuse(f'standard output cannot be written: {error.strerror}; send it somewhere else', 2)
+
+
+def _invoked(arguments: Sequence[str]) -> int:
+    """Run the tool and return its exit code; raises OSError when standard output fails."""
+    try:
         with stickslip.make_context('stickslip', list(arguments)) as context:
             stickslip.invoke(context)
-        sys.stdout.flush()
         return 0
     except click.exceptions.Exit as end:
         return end.exit_code
@@ -58,9 +74,9 @@ def run(arguments: Sequence[str]) -> int:
         return _refuse(str(error), error.exit_code)
     except KeyboardInterrupt:
         return _refuse('interrupted', _INTERRUPTED)
-    except BrokenPipeError:
-        return _reader_left()
     except Exception as error:
+        if _is_of_output(error):
+            raise
         if os.environ.get('STICKSLIP_DEBUG') == '1':
             raise
         first, *_ = str(error).splitlines() or ['']
@@ -68,7 +84,8 @@ def run(arguments: Sequence[str]) -> int:
 
 
 def _refuse(text: str, code: int) -> int:
-    print(f'stickslip: {" ".join(text.split())}', file=sys.stderr)
+    with suppress(OSError):
+        print(f'stickslip: {" ".join(text.split())}', file=sys.stderr)
     return code
 
 
@@ -78,10 +95,19 @@ def _usage(error: click.ClickException) -> str:
     return f'{error.format_message()} See {command} --help'
 
 
-def _reader_left() -> int:
-    """End quietly when whoever reads standard output has seen enough; Python must not flush into it at its end."""
+def _is_of_output(error: Exception) -> bool:
+    """Return whether standard output failed: what is written to files is refused by their name (`files`)."""
+    return isinstance(error, OSError) and error.filename is None and error.errno in _UNWRITABLE
+
+
+def _flush() -> None:
+    if sys.stdout is not None:    # None: closed by whoever started this
+        sys.stdout.flush()
+
+
+def _give_up_output() -> None:
+    """Let what is still on its way to standard output go nowhere: Python would fail to write it at its end."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    return 0
 
 
 def _leave(signum: int, frame: FrameType | None) -> NoReturn:

@@ -45,7 +45,7 @@ class _Wishes(NamedTuple):
 def simulate(scene: str, changes: tuple[str, ...], **options: object) -> None:
     """Simulate SCENE, the name of a shipped scene or a file.
 
-    Without any output a summary is printed.
+    A summary is printed, unless something else is written to standard output ("-").
     """
     wishes = _Wishes(**options)  # type: ignore[arg-type]
     _check(wishes)
@@ -119,7 +119,7 @@ def _write(wishes: _Wishes, run: 'Trajectory') -> None:
     for path, lines in sorted(texts, key=lambda text: text[0] == STDOUT):
         if path is not None:
             write_text(path, lines)
-    if not any((wishes.bag, wishes.plot, wishes.receipt, wishes.events, wishes.samples)):
+    if STDOUT not in (wishes.receipt, wishes.events, wishes.samples):
         _tell(run)
 
 

@@ -2,6 +2,7 @@
 
 import json
 import struct
+import warnings
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -16,7 +17,7 @@ from mcap.stream_reader import CRCValidationError, StreamReader
 from numpy.typing import NDArray
 from rosbags.typesys.store import Typestore
 
-from ..errors import RecordingError
+from ..errors import RecordingError, RecordingWarning
 from .layout import layout_of, numbers_of
 from .schemas import store_of
 
@@ -96,7 +97,11 @@ class Run:
 
 
 def read_run(path: Path | str) -> Run:
-    """Return the run in a folder, or in an MCAP file by itself; raises RecordingError when there is none."""
+    """Return the run in a folder, or in an MCAP file by itself; raises RecordingError when there is none.
+
+    A run without an end (its process was killed, its disk was full, or it is still being written) is read as far as it
+    goes, with a RecordingWarning.
+    """
     run = Run(_file_of(Path(path)))
     names: dict[int, str] = {}
     channels: dict[int, str] = {}
@@ -117,6 +122,9 @@ def read_run(path: Path | str) -> Run:
             run.metadata[record.name] = record.metadata
         elif isinstance(record, Footer):
             run.is_complete = True
+    if not run.is_complete:
+        warnings.warn(f'{run.path} has no end: cut off, or still being written; {sum(run.counts.values())} messages are'
+                      ' whole, and metadata.yaml does not count them', RecordingWarning, stacklevel=2)
     return run
 
 

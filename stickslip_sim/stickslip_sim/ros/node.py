@@ -21,25 +21,24 @@ from ..simulator import Simulator
 from . import conversion, reports
 from .loop import StepLoop
 from .outlet import Outlet
-from .parameters import SceneNode
+from .parameters import FileParameters, SceneNode
 from .recordings import Recordings
 from .run_receipt import run_receipt
 from .topics import publisher, subscription
 
 NAME = 'feed_axis'
 _REPORT_PERIOD = 1.0     # s
-_LOG_PERIOD = 1.0        # s between two warnings of a kind
+_QUIET = 1_000_000_000   # ns between two warnings of refused commands of a topic
 
 
 class FeedAxis(SceneNode):
     """Publishes the motion of one axis in real time; callbacks run in an executor, the steps in the loop's thread.
 
-    `from_file`: the parameters come from a file, which then is a whole scene.
     Raises InputError when the parameters are no scene, or one for offline use only.
     """
 
-    def __init__(self, from_file: bool) -> None:
-        super().__init__(NAME, from_file)
+    def __init__(self, files: FileParameters) -> None:
+        super().__init__(NAME, files)
         scene = self.scene
         if scene.solver.name == 'adaptive':
             raise InputError('solver.name', 'adaptive', 'exact or fixed_step in the node',
@@ -55,6 +54,7 @@ class FeedAxis(SceneNode):
                                     accounting=True)
         self.loop = StepLoop(self._simulator, self._grid, self._pacer, self._slots, self._outlet)
         self._reporter = reports.Reporter(self.loop, self._pacer.account, self._slots)
+        self._quiet_until: dict[str, int] = {}   # by kind of command
         self._told = ''          # the failure of the solver that was logged
         self._wall, self._cpu = time.monotonic(), time.process_time()
         self._open_endpoints()
@@ -113,9 +113,11 @@ class FeedAxis(SceneNode):
         self.create_timer(_REPORT_PERIOD, self._report, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def _take(self, slot: CommandSlot, value: float) -> None:
-        refusal = slot.offer(value, self._pacer.now())
-        if refusal:
-            self.get_logger().warning(refusal, throttle_duration_sec=_LOG_PERIOD)
+        now = self._pacer.now()
+        refusal = slot.offer(value, now)
+        if refusal and now >= self._quiet_until.get(slot.name, now):
+            self._quiet_until[slot.name] = now + _QUIET
+            self.get_logger().warning(refusal)
 
     def _reset(self, _: Any, response: Any) -> Any:
         """Begin anew at simulation time 0; a bag would then hold two runs, hence not while recording."""

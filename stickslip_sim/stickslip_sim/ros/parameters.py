@@ -1,25 +1,42 @@
 """The scene as ROS parameters: declared from the one schema, and checked together whenever any of them changes."""
 
+import math
 from collections.abc import Mapping, Sequence
-from typing import Any
+from contextlib import nullcontext
+from typing import Any, NamedTuple
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor, SetParametersResult
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from ..errors import InputError
-from ..scene.load import load_scene, scene_from_values
+from ..scene.load import load_scene, named, read_parameters, scene_from_values, scene_names, scene_of_parameters
 from ..scene.model import Scene
 from ..scene.parameter import Parameter as Entry
 from ..scene.schema import BY_NAME, PARAMETERS
+from ..scene.sections import describes_an_axis, without_those_of_ros
+from .environment import refusing, variables
 
 DEFAULT_SCENE = 'paper_fig8'
 _TYPES = {
     'double': Parameter.Type.DOUBLE, 'double_array': Parameter.Type.DOUBLE_ARRAY, 'string': Parameter.Type.STRING,
     'bool': Parameter.Type.BOOL, 'integer': Parameter.Type.INTEGER,
 }
-_NOT_OF_THE_AXIS = ('scene', 'record.', 'time.', 'command.', 'seed')
-_OF_ROS = ('use_sim_time', 'start_type_description_service', 'qos_overrides.')
+
+
+class FileParameters(NamedTuple):
+    """What parameter files give of a scene, by dotted name; `source` names the files, and is empty without any."""
+
+    source: str
+    values: Mapping[str, object]
+
+    @classmethod
+    def read(cls, paths: Sequence[str]) -> 'FileParameters':
+        """Return what files give, read as the tool does; a later one wins.  Raises InputError."""
+        values: dict[str, object] = {}
+        for path in paths:
+            values |= without_those_of_ros(read_parameters(path))
+        return cls(' + '.join(paths), values)
 
 
 class SceneNode(Node):  # type: ignore[misc]
@@ -30,13 +47,24 @@ class SceneNode(Node):  # type: ignore[misc]
 
     scene: Scene
 
-    def __init__(self, name: str, from_file: bool) -> None:
-        super().__init__(name)
+    def __init__(self, name: str, files: FileParameters) -> None:
+        with refusing('ROS environment', variables()):
+            super().__init__(name)
         # rclpy has no public way to see what was given but never declared
-        given = {name: parameter.value for name, parameter in self._parameter_overrides.items()
-                 if not name.startswith(_OF_ROS)}
-        self.scene = scene_at_start(given, from_file)
+        given = without_those_of_ros({name: parameter.value for name, parameter in self._parameter_overrides.items()})
+        with named(files.source) if files.source else nullcontext():
+            self._check_addressed(files, given)
+            self.scene = scene_at_start(given, files.values)
+        if files.values and not describes_an_axis(given) and self.scene.name not in scene_names():
+            self.get_logger().warning('the parameters say nothing of an axis: it stands still, without friction')
         self._declare(self.scene.values)
+
+    def _check_addressed(self, files: FileParameters, given: Mapping[str, object]) -> None:
+        """Raise InputError when a section of the files is for a node by another name, which ROS passes over."""
+        for name, value in files.values.items():
+            if name not in given:
+                raise InputError(name, value, f'in a section of {self.get_fully_qualified_name()}',
+                                 'name the section /**, or as this node')
 
     def scene_changed(self, scene: Scene, changed: Sequence[Parameter]) -> None:
         """Let a change take effect; for the heir."""
@@ -70,14 +98,15 @@ class SceneNode(Node):  # type: ignore[misc]
                                    ignore_override=True)
 
 
-def scene_at_start(given: Mapping[str, object], from_file: bool) -> Scene:
-    """Return the scene of the parameters given at the start; raises InputError.
+def scene_at_start(given: Mapping[str, object], in_files: Mapping[str, object]) -> Scene:
+    """Return the scene of the parameters given at the start, of which some are in files; raises InputError.
 
-    A parameter file that describes an axis is a whole scene, as for the offline tool; then `scene` is just its name.
-    Otherwise `scene` is a shipped one or a file (as for the tool), and what else is given changes it.
+    Files that describe an axis are a whole scene, as for the tool; `scene` is just its name.  Otherwise `scene` is a
+    shipped one or a file, and what else is given changes it.
     """
-    if from_file and any(not name.startswith(_NOT_OF_THE_AXIS) for name in given):
-        return scene_from_values(given)
+    changes = {name: value for name, value in given.items() if name not in in_files or value != in_files[name]}
+    if in_files and (describes_an_axis(in_files) or 'scene' not in changes):
+        return scene_of_parameters(in_files, changes)
     rest = {name: value for name, value in given.items() if name != 'scene'}
     return load_scene(str(given.get('scene', DEFAULT_SCENE)), rest)
 
@@ -99,7 +128,8 @@ def describe(entry: Entry) -> ParameterDescriptor:
         read_only=not entry.live)
     if entry.low is not None and entry.high is not None:
         if entry.type == 'double':
-            descriptor.floating_point_range = [FloatingPointRange(from_value=entry.low, to_value=entry.high)]
+            high = math.inf if entry.infinite else entry.high
+            descriptor.floating_point_range = [FloatingPointRange(from_value=entry.low, to_value=high)]
         if entry.type == 'integer':
             descriptor.integer_range = [IntegerRange(from_value=int(entry.low), to_value=int(entry.high), step=1)]
     return descriptor

@@ -18,7 +18,9 @@ contradict a choice, with one line.  The shipped files in `stickslip_sim/sticksl
 
 * What is left out takes the default.  Only the axis has the paper's values there; everything else that is left out is
   not modelled: no friction, a rigid contact, a drive that stands still, no force.  (A node that gets no file runs the
-  scene `paper_fig8`.)
+  scene `paper_fig8`.)  Every number has bounds, far beyond any machine, within which nothing overflows.
+* `scene` is a name for people.  Only a file that says nothing of an axis (but `scene`, `time`, `command`, `record`,
+  `seed`) and bears the name of a shipped scene means that scene, with what else the file says.
 * "with" says for which choice a parameter has a meaning.  Given with another choice it is refused; without a default
   (*needed*) it must be given.
 * Write numbers with a dot, `350.0` or `6.0e5`.  A whole number is taken for a double, but inside a list ROS wants all

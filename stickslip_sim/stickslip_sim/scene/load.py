@@ -10,7 +10,7 @@ from ..errors import InputError
 from .build import build_scene
 from .model import Scene
 from .ros_yaml import read_yaml
-from .sections import parameters_of
+from .sections import describes_an_axis, parameters_of, without_those_of_ros
 from .values import overridden
 
 SIZE_LIMIT = 1 << 20   # bytes of a scene file
@@ -29,10 +29,34 @@ def load_scene(name_or_path: str, overrides: Mapping[str, object] | None = None)
     An override of a choice (contact.model) drops what the file gives for the old one (contact.stiffness).  Raises
     InputError, whose text begins with the file.
     """
-    with _named(name_or_path):
+    with named(name_or_path):
         text = _read(_find(name_or_path))
         values = parameters_of(read_yaml(text))
-        return build_scene(overridden(values, overrides or {}), _first_comment(text))
+        return scene_of_parameters(values, overrides or {}, _first_comment(text))
+
+
+def read_parameters(path: str) -> dict[str, object]:
+    """Return the unchecked parameters of a file by dotted name; raises InputError, whose text begins with the file."""
+    with named(path):
+        return parameters_of(read_yaml(_read(pathlib.Path(path))))
+
+
+def scene_of_parameters(values: Mapping[str, object], overrides: Mapping[str, object], summary: str = '') -> Scene:
+    """Return the scene of the parameters of a file, with other values; raises InputError.
+
+    A file that says nothing of an axis but bears the name of a shipped scene means that one, with what it says: so a
+    launch file names one.  Any other name is for people, and what is left out is not modelled.
+    """
+    values = without_those_of_ros(values)
+    if not values:
+        raise InputError('parameters', None, 'of a scene', 'see the shipped scenes')
+    name = values.get('scene')
+    if not describes_an_axis(values) and isinstance(name, str):
+        if name in scene_names():
+            values = overridden(parameters_of(read_yaml(_read(_find(name)))), values)
+        elif name.endswith(_ENDINGS):
+            raise InputError('scene', name, 'a name in a file', 'give the file of that scene itself')
+    return build_scene(overridden(values, overrides), summary)
 
 
 def scene_from_values(values: Mapping[str, object], name: str = 'unnamed') -> Scene:
@@ -49,7 +73,7 @@ def parse_override(text: str) -> tuple[str, object]:
     name = name.strip()
     if not equals or not name or not word.strip():
         raise InputError('override', text, 'a.b=value', 'for example axis.mass=400.0')
-    with _named(text):
+    with named(text):
         value = read_yaml(word)
     if isinstance(value, dict) or value is None:
         raise InputError(name, word.strip(), 'a number, a word, or a list of numbers', 'give one parameter at a time')
@@ -91,7 +115,7 @@ def _first_comment(text: str) -> str:
 
 
 @contextmanager
-def _named(source: str) -> Iterator[None]:
+def named(source: str) -> Iterator[None]:
     """Put the source in front of the text of an InputError."""
     try:
         yield

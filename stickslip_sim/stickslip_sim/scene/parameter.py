@@ -40,7 +40,7 @@ class Parameter:
     """A parameter of a scene; `default` is its value when it is left out but has a meaning (see `when`).
 
     Without a default it is `required`, or optional and then absent.  `low` and `high` bound numbers, also those of a
-    list; infinite open bounds mean finite.  `live`: it may change while the node runs.
+    list; `infinite` lets +infinity in beside them.  `live`: it may change while the node runs.
     """
 
     name: str                       # dotted
@@ -51,7 +51,7 @@ class Parameter:
     low: float | None = None
     high: float | None = None
     low_open: bool = False
-    high_open: bool = False
+    infinite: bool = False
     choices: tuple[str, ...] = ()
     live: bool = False
     when: When | None = None
@@ -61,13 +61,11 @@ class Parameter:
     def range(self) -> str:
         """The bounds in words, empty without any."""
         parts = []
-        if self.high == math.inf and self.high_open:
-            parts.append('finite')
-        if self.low is not None and self.low > -math.inf:
-            parts.append(f'{">" if self.low_open else ">="} {self.low:.16g}')
-        if self.high is not None and self.high < math.inf:
-            parts.append(f'{"<" if self.high_open else "<="} {self.high:.16g}')
-        return ' and '.join(parts)
+        if self.low is not None:
+            parts.append(f'{">" if self.low_open else ">="} {_bound(self.low)}')
+        if self.high is not None:
+            parts.append(f'<= {_bound(self.high)}')
+        return ' and '.join(parts) + (', or .inf' if self.infinite else '')
 
     @property
     def allowed(self) -> str:
@@ -127,10 +125,13 @@ class Parameter:
 
     def _in_range(self, value: float) -> bool:
         low = -math.inf if self.low is None else self.low
-        high = math.inf if self.high is None else self.high
-        above = low < value if self.low_open else low <= value
-        below = value < high if self.high_open else value <= high
-        return above and below
+        high = math.inf if self.high is None or (self.infinite and value == math.inf) else self.high
+        return (low < value if self.low_open else low <= value) and value <= high
+
+
+def _bound(number: float) -> str:
+    short = f'{number:g}'
+    return short if float(short) == number else f'{number:.16g}'
 
 
 def yaml_word(value: object) -> str:

@@ -2,6 +2,9 @@
 
 Defaults are for what is left out.  The axis is the paper's; whatever else is left out is not modelled: no friction, a
 rigid contact, a drive that stands still, no force.  (A node without any file runs the scene `paper_fig8`, not this.)
+
+Every number has bounds, so that no product of them (an energy, a square of a rate) leaves the range of doubles: far
+beyond any machine, from the tip of an atomic force microscope to a tectonic plate, and far within 1e±308.
 """
 
 import math
@@ -9,6 +12,21 @@ import math
 from ..courses import FREQUENCIES, MAX_WAVES
 from ..friction.shapes import MAX_EXPONENT, MIN_EXPONENT
 from .parameter import Parameter, When
+
+_MASS = 1e-9, 1e12              # kg
+_STIFFNESS = 1e18               # N/m
+_SOFTEST = 1e-6                 # N/m, of a contact: softer is none
+_DAMPING = 1e15                 # N s/m
+_FORCE, _FORCE_RATE = 1e15, 1e18          # N, N/s
+_COEFFICIENT = 1e3
+_SLOPE = 1e9                    # s/m, of a coefficient
+_SPEED, _ACCELERATION = 1e6, 1e9          # m/s, m/s²
+_LOWEST_SPEED = 1e-12           # m/s, at which something may lie in a law: an atom in two minutes
+_PLACE = 1e12                   # m
+_TIME, _SHORTEST = 1e15, 1e-12  # s
+_PHASE = 1e6                    # rad
+_KATO = 1e-2, 1e2               # exponents
+_FINEST = 1e-12                 # tolerance of a table
 
 _SOLVERS = ('exact', 'fixed_step', 'adaptive')
 _METHODS = ('euler', 'rk4', 'RK45', 'DOP853', 'Radau', 'BDF', 'LSODA')
@@ -29,27 +47,27 @@ _EXCESS_KNOTS = When('friction.excess.law', ('table',))
 _EXCESS_SMOOTH = When('friction.excess.law', _EXCESS[1:])
 
 
-def _number(name: str, default: float | None, unit: str, description: str, *, low: float = -math.inf,
-            high: float = math.inf, above: bool = False, infinite: bool = False, live: bool = False,
-            when: When | None = None) -> Parameter:
+def _number(name: str, default: float | None, unit: str, description: str, *, low: float, high: float,
+            above: bool = False, infinite: bool = False, live: bool = False, when: When | None = None) -> Parameter:
     """Return a double from `low` (excluded with `above`) to `high`; required when it has no default."""
-    return Parameter(name, 'double', default, unit, description, low, high, above or low == -math.inf,
-                     high == math.inf and not infinite, (), live, when, default is None)
+    return Parameter(name, 'double', default, unit, description, low, high, above, infinite, (), live, when,
+                     default is None)
 
 
-def _numbers(name: str, default: tuple[float, ...] | None, unit: str, description: str, *, low: float = -math.inf,
-             high: float = math.inf, live: bool = False, when: When | None = None, required: bool = True) -> Parameter:
-    """Return a list of finite doubles."""
-    return Parameter(name, 'double_array', default, unit, description, low, high, low == -math.inf, high == math.inf,
-                     (), live, when, required and default is None)
+def _numbers(name: str, default: tuple[float, ...] | None, unit: str, description: str, *, low: float, high: float,
+             live: bool = False, when: When | None = None, required: bool = True) -> Parameter:
+    """Return a list of doubles."""
+    return Parameter(name, 'double_array', default, unit, description, low, high, live=live, when=when,
+                     required=required and default is None)
 
 
 def _choice(name: str, default: str, description: str, choices: tuple[str, ...], when: When | None = None) -> Parameter:
     return Parameter(name, 'string', default, '', description, choices=choices, when=when)
 
 
-def _course(section: str, value: str, rate: str, values: str, unit: str, what: str) -> tuple[Parameter, ...]:
-    """Return the parameters of an input course of `what`, which is a `unit`."""
+def _course(section: str, value: str, rate: str, values: str, unit: str, what: str, most: float,
+            fastest_change: float) -> tuple[Parameter, ...]:
+    """Return the parameters of an input course of `what`, which is a `unit` and at most `most` of them."""
     ramp = When(f'{section}.course', ('ramp',))
     knots = When(f'{section}.course', ('steps', 'table'))
     sine = When(f'{section}.course', ('sine',))
@@ -59,94 +77,104 @@ def _course(section: str, value: str, rate: str, values: str, unit: str, what: s
                 f'how the {what} goes on offline, and in the node until a command arrives: constant; ramp (to a'
                 ' constant); steps (jumps); sine; table (linear between knots); sines may come on top', _COURSES),
         _number(f'{section}.{value}', 0.0, unit, f'{what}; of a ramp the one at its start, of a sine its mean',
-                when=When(f'{section}.course', ('constant', 'ramp', 'sine'))),
+                low=-most, high=most, when=When(f'{section}.course', ('constant', 'ramp', 'sine'))),
         _number(f'{section}.{rate}', None, f'{unit}/s' if unit == 'N' else 'm/s²', f'change of the {what}, of a ramp',
-                when=ramp),
-        _number(f'{section}.duration', math.inf, 's', 'of a ramp; then its last value holds', low=0.0, above=True,
-                infinite=True, when=ramp),
+                low=-fastest_change, high=fastest_change, when=ramp),
+        _number(f'{section}.duration', math.inf, 's', 'of a ramp; then its last value holds', low=0.0, high=_TIME,
+                above=True, infinite=True, when=ramp),
         _numbers(f'{section}.times', None, 's', 'when the values of steps or a table begin: 0, then each later',
-                 low=0.0, when=knots),
-        _numbers(f'{section}.{values}', None, unit, f'{what} at these times; the last one holds', when=knots),
+                 low=0.0, high=_TIME, when=knots),
+        _numbers(f'{section}.{values}', None, unit, f'{what} at these times; the last one holds', low=-most, high=most,
+                 when=knots),
         _number(f'{section}.period', math.inf, 's', 'after which steps or a table begin again (.inf: never); a table is'
-                ' linear from its last knot back to the first', low=1e-6, infinite=True, when=knots),
+                ' linear from its last knot back to the first', low=1e-6, high=_TIME,
+                infinite=True, when=knots),
         _number(f'{section}.amplitude', None, unit, 'of a sine: amplitude sin(2π frequency t + phase), t since the'
-                ' start of the run', when=sine),
+                ' start of the run', low=-most, high=most, when=sine),
         _number(f'{section}.frequency', None, 'Hz', 'of a sine', low=slowest, high=fastest, when=sine),
-        _number(f'{section}.phase', 0.0, 'rad', 'of a sine', when=sine),
+        _number(f'{section}.phase', 0.0, 'rad', 'of a sine', low=-_PHASE, high=_PHASE, when=sine),
         _numbers(f'{section}.amplitudes', None, unit, f'of sines on top of any course, at most {MAX_WAVES}',
-                 required=False),
+                 low=-most, high=most, required=False),
         _numbers(f'{section}.frequencies', None, 'Hz', 'of these sines', low=slowest, high=fastest, required=False),
-        _numbers(f'{section}.phases', None, 'rad', 'of these sines; left out: 0', required=False),
+        _numbers(f'{section}.phases', None, 'rad', 'of these sines; left out: 0', low=-_PHASE, high=_PHASE,
+                 required=False),
     )
 
 
 PARAMETERS: tuple[Parameter, ...] = (
     Parameter('scene', 'string', 'unnamed', '', 'name of the scene, for people'),
 
-    _number('axis.mass', 350.0, 'kg', "slider m; default: the paper's", low=0.0, above=True, live=True),
-    _number('axis.drive_stiffness', 6.0e5, 'N/m', "drive spring c; default: the paper's", low=0.0, live=True),
-    _number('axis.drive_damping', 4000.0, 'N s/m', "drive damper h; default: the paper's", low=0.0, live=True),
+    _number('axis.mass', 350.0, 'kg', "slider m; default: the paper's", low=_MASS[0], high=_MASS[1],
+            live=True),
+    _number('axis.drive_stiffness', 6.0e5, 'N/m', "drive spring c; default: the paper's", low=0.0,
+            high=_STIFFNESS, live=True),
+    _number('axis.drive_damping', 4000.0, 'N s/m', "drive damper h; default: the paper's", low=0.0,
+            high=_DAMPING, live=True),
     _number('axis.normal_force', 3432.3275, 'N', 'normal force N, friction = coefficient times N; not in the paper,'
-            ' default: the weight of its 350 kg (it does not follow axis.mass)', low=0.0, live=True),
+            ' default: the weight of its 350 kg (it does not follow axis.mass)', low=0.0, high=_FORCE, live=True),
 
     _choice('contact.model', 'rigid', 'contact in stick: rigid (the slider stands still) or compliant (a spring and a'
             ' damper)', ('rigid', 'compliant')),
-    _number('contact.stiffness', None, 'N/m', 'tangential contact spring c_c, in stick only', low=0.0, above=True,
+    _number('contact.stiffness', None, 'N/m', 'tangential contact spring c_c, in stick only', low=_SOFTEST,
+            high=_STIFFNESS, live=True, when=_COMPLIANT),
+    _number('contact.damping', 0.0, 'N s/m', 'tangential contact damper h_c, in stick only', low=0.0, high=_DAMPING,
             live=True, when=_COMPLIANT),
-    _number('contact.damping', 0.0, 'N s/m', 'tangential contact damper h_c, in stick only', low=0.0, live=True,
-            when=_COMPLIANT),
 
     _choice('friction.static.law', 'constant', 'growth of the static coefficient mu_s with the rest time', _LAWS),
-    _number('friction.static.initial', 0.0, '', 'mu_s at zero rest time', low=0.0, live=True),
+    _number('friction.static.initial', 0.0, '', 'mu_s at zero rest time', low=0.0, high=_COEFFICIENT, live=True),
     _number('friction.static.limit', None, '', 'mu_s upon infinite rest (logarithmic: initial + one unit of growth)',
-            low=0.0, live=True, when=_GROWS),
-    _number('friction.static.time_constant', None, 's', 'tau of the growth of mu_s', low=0.0, above=True, live=True,
-            when=_GROWS),
-    _number('friction.static.exponent', None, '', "n of Kato's law exp(-(t/tau)^n)", low=0.0, above=True, live=True,
-            when=When('friction.static.law', ('kato',))),
+            low=0.0, high=_COEFFICIENT, live=True, when=_GROWS),
+    _number('friction.static.time_constant', None, 's', 'tau of the growth of mu_s', low=_SHORTEST, high=_TIME,
+            live=True, when=_GROWS),
+    _number('friction.static.exponent', None, '', "n of Kato's law exp(-(t/tau)^n)", low=_KATO[0], high=_KATO[1],
+            live=True, when=When('friction.static.law', ('kato',))),
     _choice('friction.kinetic.law', 'table', 'kinetic coefficient mu_k over the speed: a table of knots, linear between'
             ' them; or mu_c + (mu_0 - mu_c) g(speed/v_s) + k_v speed with g(z) = exp(-z^exponent) (stribeck), exp(-z)'
             ' (exponential) or 1/(1 + z) (hyperbolic)', _KINETIC),
     _numbers('friction.kinetic.velocities', (0.0,), 'm/s', 'knots of the kinetic coefficient; the first is 0, each is'
-             ' higher, the last is v_gr', low=0.0, live=True, when=_KNOTS),
-    _numbers('friction.kinetic.coefficients', (0.0,), '', 'mu_k at these speeds', low=0.0, live=True, when=_KNOTS),
-    _number('friction.kinetic.end_slope', 0.0, 's/m', 'slope of mu_k beyond the last knot', low=0.0, live=True,
-            when=_KNOTS),
+             ' higher, the last is v_gr', low=0.0, high=_SPEED, live=True, when=_KNOTS),
+    _numbers('friction.kinetic.coefficients', (0.0,), '', 'mu_k at these speeds', low=0.0,
+             high=_COEFFICIENT, live=True, when=_KNOTS),
+    _number('friction.kinetic.end_slope', 0.0, 's/m', 'slope of mu_k beyond the last knot', low=0.0, high=_SLOPE,
+            live=True, when=_KNOTS),
     _number('friction.kinetic.initial', None, '', 'mu_0, mu_k at rest; not above friction.static.initial', low=0.0,
-            live=True, when=_SMOOTH),
+            high=_COEFFICIENT, live=True, when=_SMOOTH),
     _number('friction.kinetic.limit', None, '', 'mu_c, what the falling part tends to at high speed', low=0.0,
-            live=True, when=_SMOOTH),
+            high=_COEFFICIENT, live=True, when=_SMOOTH),
     _number('friction.kinetic.stribeck_velocity', None, 'm/s', 'v_s, at which the falling part has dropped to 1/e'
-            ' (hyperbolic: to 1/2)', low=0.0, above=True, live=True, when=_SMOOTH),
+            ' (hyperbolic: to 1/2)', low=_LOWEST_SPEED, high=_SPEED, live=True, when=_SMOOTH),
     _number('friction.kinetic.exponent', 2.0, '', 'of the law stribeck; 2: Gaussian', low=MIN_EXPONENT,
             high=MAX_EXPONENT, live=True, when=When('friction.kinetic.law', ('stribeck',))),
-    _number('friction.kinetic.viscous', 0.0, 's/m', 'k_v, what mu_k rises by with the speed', low=0.0, live=True,
-            when=_SMOOTH),
+    _number('friction.kinetic.viscous', 0.0, 's/m', 'k_v, what mu_k rises by with the speed', low=0.0, high=_SLOPE,
+            live=True, when=_SMOOTH),
     _number('friction.kinetic.tolerance', 1e-4, '', 'largest difference, in mu, between the smooth law and the table'
-            ' that is computed with', low=0.0, above=True, live=True, when=_SMOOTH),
+            ' that is computed with', low=_FINEST, high=1.0, live=True, when=_SMOOTH),
     Parameter('friction.acceleration_dependence', 'bool', False, '', 'whether the accelerating branch of mu_k lies'
               ' above the decelerating one (Fig. 6) instead of one curve for both (Fig. 3)'),
     _choice('friction.excess.law', 'table', 'psi over the speed, the shape of the excess of the accelerating branch: a'
             ' table of knots; or (1 + cos(pi z))/2 (cosine) or (1 - z)^exponent (power) with z = speed/limit_velocity,'
             ' 0 beyond', _EXCESS, _BRANCHES),
     _numbers('friction.excess.velocities', None, 'm/s', 'knots of psi; left out: linear to 0 at the last knot of'
-             ' mu_k (a smooth law: where its falling part has dropped to 1 %)', low=0.0, live=True, when=_EXCESS_KNOTS,
-             required=False),
+             ' mu_k (a smooth law: where its falling part has dropped to 1 %)', low=0.0, high=_SPEED, live=True,
+             when=_EXCESS_KNOTS, required=False),
     _numbers('friction.excess.fractions', None, '', 'psi at these speeds: 1 at the first, 0 at the last', low=0.0,
-             live=True, when=_EXCESS_KNOTS, required=False),
-    Parameter('friction.excess.limit_velocity', 'double', None, 'm/s', 'where psi ends; left out: as for a table', 0.0,
-              math.inf, True, True, (), True, _EXCESS_SMOOTH),
+             high=1.0, live=True, when=_EXCESS_KNOTS, required=False),
+    Parameter('friction.excess.limit_velocity', 'double', None, 'm/s', 'where psi ends; left out: as for a table',
+              _LOWEST_SPEED, _SPEED, live=True, when=_EXCESS_SMOOTH),
     _number('friction.excess.exponent', None, '', 'n of the law power', low=1.0, high=MAX_EXPONENT, above=True,
             live=True, when=When('friction.excess.law', ('power',))),
-    _number('friction.excess.tolerance', 1e-3, '', 'largest difference between the smooth psi and its table', low=0.0,
-            above=True, live=True, when=_EXCESS_SMOOTH),
+    _number('friction.excess.tolerance', 1e-3, '', 'largest difference between the smooth psi and its table',
+            low=_FINEST, high=1.0, live=True, when=_EXCESS_SMOOTH),
 
-    *_course('drive', 'velocity', 'acceleration', 'velocities', 'm/s', 'velocity of the drive end of the spring'),
-    *_course('force', 'constant', 'rate', 'forces', 'N', 'external force on the slider, along +x'),
+    *_course('drive', 'velocity', 'acceleration', 'velocities', 'm/s', 'velocity of the drive end of the spring',
+             _SPEED, _ACCELERATION),
+    *_course('force', 'constant', 'rate', 'forces', 'N', 'external force on the slider, along +x', _FORCE, _FORCE_RATE),
 
-    _number('initial.position', 0.0, 'm', 'slider and drive at the start; the spring is unstretched'),
-    _number('initial.velocity', 0.0, 'm/s', 'slider at the start'),
-    _number('initial.rest_time', math.inf, 's', 'rest before the start (.inf: prolonged rest)', low=0.0, infinite=True),
+    _number('initial.position', 0.0, 'm', 'slider and drive at the start; the spring is unstretched', low=-_PLACE,
+            high=_PLACE),
+    _number('initial.velocity', 0.0, 'm/s', 'slider at the start', low=-_SPEED, high=_SPEED),
+    _number('initial.rest_time', math.inf, 's', 'rest before the start (.inf: prolonged rest)', low=0.0, high=_TIME,
+            infinite=True),
 
     _choice('solver.name', 'exact', 'exact: closed form, from event to event; fixed_step: the usual loop, to compare'
             ' with; adaptive: steps of a stated tolerance, offline only (docs/solvers.md)', _SOLVERS),
@@ -163,9 +191,9 @@ PARAMETERS: tuple[Parameter, ...] = (
     _number('time.factor', 1.0, '', 'simulation time per real time', low=1e-3, high=1e3),
 
     _number('command.max_velocity', 1.0, 'm/s', 'a drive_velocity beyond it, either way, is refused', low=0.0,
-            above=True, live=True),
-    _number('command.max_force', 1.0e5, 'N', 'an external_force beyond it, either way, is refused', low=0.0, above=True,
-            live=True),
+            high=_SPEED, above=True, live=True),
+    _number('command.max_force', 1.0e5, 'N', 'an external_force beyond it, either way, is refused', low=0.0,
+            high=_FORCE, above=True, live=True),
 
     _number('command.timeout', 0.0, 's', 'silence after which a command is stale; 0: off, and nothing else yet',
             low=0.0, high=0.0),

@@ -7,6 +7,8 @@ from ..errors import InputError
 NODE = 'feed_axis'
 _ALL_NODES = ('/**', '/*', '/**/' + NODE)
 _PARAMETERS = 'ros__parameters'
+_NOT_OF_THE_AXIS = ('scene', 'record.', 'time.', 'command.', 'seed')
+_OF_ROS = ('use_sim_time', 'start_type_description_service', 'qos_overrides.')   # any node has them
 
 
 def parameters_of(document: object) -> dict[str, object]:
@@ -26,6 +28,16 @@ def parameters_of(document: object) -> dict[str, object]:
     if not values:
         raise InputError('parameters', None, f'given in a section /**: {_PARAMETERS}:', 'see the shipped scenes')
     return values
+
+
+def without_those_of_ros(values: Mapping[str, object]) -> dict[str, object]:
+    """Return the parameters that are of a scene and not of every node."""
+    return {name: value for name, value in values.items() if not name.startswith(_OF_ROS)}
+
+
+def describes_an_axis(values: Mapping[str, object]) -> bool:
+    """Return whether parameters say anything of the axis, its motion or its solver, and so are a whole scene."""
+    return any(not name.startswith(_NOT_OF_THE_AXIS) for name in values)
 
 
 def _nodes(tree: object, path: str) -> Iterator[tuple[str, Mapping[str, object]]]:
