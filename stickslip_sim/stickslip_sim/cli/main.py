@@ -15,6 +15,7 @@ import click
 
 from .. import __version__
 from ..errors import StickslipError
+from .advise import advise
 from .bench import bench
 from .extremes import extremes
 from .scenes import scenes
@@ -31,7 +32,7 @@ def stickslip() -> None:
     """Stick-slip motion of a feed axis, simulated exactly."""
 
 
-for verb in (bench, extremes, scenes, simulate, warm):
+for verb in (advise, bench, extremes, scenes, simulate, warm):
     stickslip.add_command(verb)
 
 
