@@ -23,7 +23,7 @@ class Figures(NamedTuple):
     duration: float
     events: list[Event]
     cycles: list[Cycle]
-    peak_speed: float          # m/s, of the whole run
+    peak_speed: float          # m/s, of the whole run; 0 without a slip, however the contact creeps
     break_away_force: float    # N, of the first break-away; 0 without one
     stick_share: float
     end_position: float
@@ -54,7 +54,7 @@ def figures_of(events: Sequence[Event], duration: float, start: Sample, end: Sam
     points: list[Event | Sample] = [start, *events, end]
     return Figures(
         outline.motion, duration, boundaries, cycle_figures(events),
-        peak_speed=max(abs(point.velocity) for point in points),
+        peak_speed=max(abs(point.velocity) for point in points) if outline.motion != 'at rest' else 0.0,
         break_away_force=abs(slips[0].friction_force) if slips else 0.0,
         stick_share=outline.stick_share,
         end_position=end.position,
