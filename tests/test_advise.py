@@ -23,7 +23,8 @@ from stickslip_sim.scene import Scene, load_scene, scene_from_values
 
 Capture = pytest.CaptureFixture[str]
 DURATION = 2.0   # s; the second break-away of paper_fig7 comes at 1.33 s
-TWO_WAVES: dict[str, object] = {'force.amplitudes': [1.0, 1.0], 'force.frequencies': [5.0, 5.0], 'force.phases': [0.0, 0.0]}
+TWO_WAVES: dict[str, object] = {'force.amplitudes': [1.0, 1.0], 'force.frequencies': [5.0, 5.0],
+                               'force.phases': [0.0, 0.0]}
 KNOTTED: dict[str, object] = {'friction.kinetic.velocities': [0.0, 0.0175, 0.035],
                              'friction.kinetic.coefficients': [0.12, 0.085, 0.05]}
 
@@ -219,7 +220,8 @@ def test_the_tool_prints_overrides_that_give_the_least_scene(tmp_path: Path, cap
     (['--tolerance', '1'], ['--tolerance', '< 1']),
     (['--tolerance', 'nan'], ['--tolerance']),
     ([], ['--tolerance']),
-    (['--tolerance', '0.1', '--duration', '-1'], ['duration']),
+    (['--tolerance', '0.1', '--duration', '-1'], ['duration', '> 0']),
+    (['--tolerance', '0.1', '--duration', '1e5'], ['duration', '<= 3600 s']),
     (['--tolerance', '0.1', '--set', 'axis.mass=-1'], ['axis.mass']),
     (['--tolerance', '0.1', '--scene-out', 'least.txt'], ['--scene-out', '.yaml']),
     (['--tolerance', '0.1', '--out', '/no/folder/a.json'], ['--out', '/no/folder']),

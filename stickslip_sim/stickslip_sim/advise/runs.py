@@ -21,6 +21,7 @@ from .figures import Difference, Figures, difference, figures_of
 from .part import Changes
 
 _SLOW = 0.05            # s: a run that takes longer is timed once
+_LONGEST = 320.0        # s of simulation that costs are measured over
 _MOMENT = 1e-3          # s of simulation
 _MOST = 10              # times as many events as the reference, and
 _MOST_AT_LEAST = 1000   # these: a solver that finds more chatters
@@ -90,6 +91,7 @@ def try_changes(reference: Reference, name: str, changes: Changes, how: str = ''
 
 def costs(scenes: Sequence[Scene], duration: float, rounds: int) -> list[Cost | None]:
     """Return the processor time of each scene per simulated second, interleaved; None where the solver gives up."""
+    duration = min(duration, _LONGEST)
     for scene in scenes:
         _cost_of_one(_prepared(scene, _MOMENT))   # compiles what is not
     runs = [_prepared(scene, duration) for scene in scenes]

@@ -28,17 +28,16 @@ def advise(scene: str, tolerance: float, duration: float | None, changes: tuple[
     """Run SCENE without each of its parts and with each solver; print what changes, and the least that T asks for."""
     _check(out, scene_out)
     from ..advise import advice as work
-    from ..advise.duration import default_duration
+    from ..advise.duration import check_duration, default_duration
     from ..advise.report import as_json, text_lines, verdict_lines
     from ..advise.runs import changes_between
-    from ..offline import check_times
     from ..scene import load_scene, parse_override
     from ..scene.values import overridden
     from .progress import progress_bar
 
     work.check_tolerance(tolerance)
     if duration is not None:
-        check_times(duration, None)
+        check_duration(duration)
     given = dict(parse_override(change) for change in changes)
     loaded = load_scene(scene, given)
     with progress_bar('advising') as progress:
