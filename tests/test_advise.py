@@ -118,6 +118,8 @@ def test_the_run_is_as_long_as_twenty_cycles_take() -> None:
     assert default_duration(scene('paper_fig8')) == 20.0      # 0.66 s each
     assert default_duration(scene('cutting_force')) == 10.0   # 16 a second
     assert default_duration(scene('fast_feed')) == 10.0       # none
+    stepped = scene('paper_fig8', s={'solver.name': 'fixed_step', 'solver.step': 1e-6})
+    assert default_duration(stepped) == 20.0   # found by the exact solver, in no time
 
 
 def test_a_part_that_changes_nothing_is_left_out_and_the_others_stay(advised: Advice) -> None:
@@ -186,6 +188,14 @@ def test_the_scene_names_its_own_solver_among_the_others() -> None:
     own = scene(solver={'solver.name': 'fixed_step', 'solver.step': 5e-5})
     assert 'fixed_step euler, step 0.05 ms' in solver_settings(own)
     assert reference_of(own, DURATION).scene.solver.name == 'exact'
+
+
+def test_a_part_of_what_is_left_out_goes_with_it() -> None:
+    """The contact damper alone is needed, but not without the contact."""
+    advice = work.advise(scene('positioning'), 0.2, 4.0, rounds=1)
+    rows = {line.split('  ')[0]: line for line in text_lines(advice)}
+    assert rows['contact compliance'].endswith(' no')
+    assert rows['contact damping'].endswith(' goes with another')
 
 
 def test_advice_as_text_and_json(advised: Advice) -> None:

@@ -3,6 +3,7 @@
 from ..errors import InputError
 from ..offline import run_offline
 from ..scene import Scene
+from .runs import BY_EXACT, changed
 
 _CYCLES = 20
 _SHORTEST, _LONGEST = 10.0, 320.0   # s
@@ -18,10 +19,10 @@ def check_duration(duration: float) -> None:
 
 
 def default_duration(scene: Scene) -> float:
-    """Return 10 s, doubled up to 320 s while there are fewer than 20 cycles; 10 s if there are none at all."""
-    duration = _SHORTEST
+    """Return 10 s, doubled up to 320 s while the exact solver finds fewer than 20 cycles; 10 s if there are none."""
+    exact, duration = changed(scene, BY_EXACT), _SHORTEST
     while True:
-        cycles = run_offline(scene, duration).summary.cycles
+        cycles = run_offline(exact, duration).summary.cycles
         if cycles >= _CYCLES:
             return duration
         if duration >= _LONGEST:

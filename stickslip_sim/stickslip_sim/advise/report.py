@@ -21,7 +21,7 @@ _Row = tuple[str, ...]
 def text_lines(advice: Advice) -> Iterator[str]:
     """Yield the tables of parts, of what the scene leaves out, and of solvers."""
     yield _headline(advice)
-    parts = [(_named(found.trial), *_outcome(advice, found.trial), 'needed' if is_needed(advice, k) else 'no')
+    parts = [(_named(found.trial), *_outcome(advice, found.trial), _need(advice, k))
              for k, found in enumerate(advice.parts)]
     absent = [(trial.name, 'identical to the bit' if trial.identical else _outcome(advice, trial)[0],
                *_outcome(advice, trial)[1:], '') for trial in advice.absent]
@@ -97,6 +97,12 @@ def is_needed(advice: Advice, k: int) -> bool:
     """Return whether the least scene still has the part number `k`."""
     part, scene = advice.parts[k].part, advice.least.trial.scene
     return scene is None or any(variant.changes(scene.values) for variant in part.variants)
+
+
+def _need(advice: Advice, k: int) -> str:
+    if is_needed(advice, k):
+        return 'needed'
+    return 'no' if _is_within(advice, advice.parts[k].trial) else 'goes with another'
 
 
 def _headline(advice: Advice) -> str:

@@ -20,6 +20,8 @@ from ..words import Event, Instant, Sample
 from .figures import Difference, Figures, difference, figures_of
 from .part import Changes
 
+BY_EXACT: Changes = {'solver.name': 'exact'}
+
 _SLOW = 0.05            # s: a run that takes longer is timed once
 _LONGEST = 320.0        # s of simulation that costs are measured over
 _MOMENT = 1e-3          # s of simulation
@@ -70,7 +72,7 @@ def changes_between(base: Scene, other: Scene) -> Changes:
 
 def reference_of(scene: Scene, duration: float) -> Reference:
     """Run a scene with the exact solver, whichever it names."""
-    exact = changed(scene, {'solver.name': 'exact'})
+    exact = changed(scene, BY_EXACT)
     run = run_offline(exact, duration, duration)   # sampled at its start and its end
     start, end = run.sample_rows()
     return Reference(exact, run, end, figures_of(run.events, duration, start, end))
