@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from functools import partial
+from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
@@ -88,8 +88,20 @@ def _event_columns(rows: Any) -> Numbers:
 
 def _driver(solver: Solver) -> Callable[..., Any]:
     """Return a loop over the pieces of the inputs, compiled if the solver is."""
-    advance, set_inputs, sample_at = solver.advance, solver.set_inputs, solver.sample
+    functions = (solver.advance, solver.set_inputs, solver.sample)
+    return _compiled_loop(*functions) if hasattr(solver.advance, 'py_func') else _loop(*functions)
 
+
+@lru_cache(maxsize=16)
+def _compiled_loop(*functions: Callable[..., Any]) -> Callable[..., Any]:
+    """Return the loop as machine code; settings of a solver share it."""
+    import numba
+    compiled: Callable[..., Any] = numba.njit(error_model='numpy')(_loop(*functions))
+    return compiled
+
+
+def _loop(advance: Callable[..., Any], set_inputs: Callable[..., Any],
+          sample_at: Callable[..., Any]) -> Callable[..., Any]:
     def run(p: Any, s: Any, pieces: Any, waves: Any, duration: Any, events: Any, rows: Any, sample: Any) -> Any:
         state = DONE
         for k in range(len(pieces)):
@@ -107,8 +119,4 @@ def _driver(solver: Solver) -> Callable[..., Any]:
         sample_at(p, s, float(whole), duration - whole, sample)
         return rows, state
 
-    if not hasattr(advance, 'py_func'):
-        return run
-    import numba
-    compiled: Callable[..., Any] = numba.njit(error_model='numpy')(run)
-    return compiled
+    return run

@@ -72,11 +72,11 @@ class Problem:
 
     @cached_property
     def waves(self) -> Numbers:
-        """Four numbers a wave, as `solvers.Solver` wants them: frequency Hz, phase in turns, m/s, N."""
+        """Four numbers for each wave that is not 0, see `solvers.Solver`: frequency Hz, phase in turns, m/s, N."""
         rows: list[tuple[float, ...]] = [(w.frequency, 0.5 * w.phase / np.pi, w.amplitude, 0.0)
                                          for w in self.drive.waves]
         rows += [(w.frequency, 0.5 * w.phase / np.pi, 0.0, w.amplitude) for w in self.force.waves]
-        return np.array(rows).reshape(-1)
+        return np.array([row for row in rows if row[2] != 0.0 or row[3] != 0.0]).reshape(-1)
 
     @cached_property
     def longest_step(self) -> float:

@@ -17,6 +17,7 @@ import click
 
 from .. import __version__
 from ..errors import StickslipError
+from .advise import advise
 from .bench import bench
 from .extremes import extremes
 from .scenes import scenes
@@ -33,7 +34,7 @@ def stickslip() -> None:
     """Stick-slip motion of a feed axis, simulated exactly."""
 
 
-for verb in (bench, extremes, scenes, simulate):
+for verb in (advise, bench, extremes, scenes, simulate):
     stickslip.add_command(verb)
 
 

@@ -1,0 +1,30 @@
+"""How long to simulate: what may be asked for, and what is enough when nobody says."""
+
+from ..errors import InputError
+from ..offline import run_offline
+from ..scene import Scene
+from .runs import BY_EXACT, changed
+
+_CYCLES = 20
+_SHORTEST, _LONGEST = 10.0, 320.0   # s
+
+MAX_DURATION = 3600.0               # s: solvers that step take minutes for it
+
+
+def check_duration(duration: float) -> None:
+    """Raise InputError unless all solvers can be run for `duration` s in a bearable time."""
+    if not 0.0 < duration <= MAX_DURATION:
+        raise InputError('duration', duration, f'> 0 and <= {MAX_DURATION:g} s',
+                         'every solver runs it, also those of the shortest steps: advise on a part of it')
+
+
+def default_duration(scene: Scene) -> float:
+    """Return 10 s, doubled up to 320 s while the exact solver finds fewer than 20 cycles; 10 s if there are none."""
+    exact, duration = changed(scene, BY_EXACT), _SHORTEST
+    while True:
+        cycles = run_offline(exact, duration).summary.cycles
+        if cycles >= _CYCLES:
+            return duration
+        if duration >= _LONGEST:
+            return _LONGEST if cycles else _SHORTEST
+        duration *= 2.0
