@@ -81,3 +81,20 @@ def test_a_ring_that_never_dies_is_leapt_over(scene: dict[str, Any]) -> None:
     events = simulator.advance(instant(2.0))
     assert len(events) >= 8
     assert simulator.root_iterations <= 100 * len(events)
+
+
+def test_knots_that_are_close_together_lose_no_digits() -> None:
+    # psi falls by 9e-5 between the first two knots, which belong to mu_k: the difference of two rounded fractions there
+    table = {'velocities': [0.0, 1e-06, 0.01], 'coefficients': [0.09, 0.09, 0.14]}
+    scene: dict[str, Any] = {
+        'axis': {'mass': 102.3, 'drive_stiffness': 7.2e6, 'drive_damping': 21712.0, 'normal_force': 1682.0},
+        'contact': {'model': 'rigid'},
+        'friction': {'static': {'law': 'constant', 'initial': 0.24}, 'kinetic': table, 'acceleration_dependence': True},
+        'drive': [[0.0, -1e-07, 0.0]], 'force': [[0.0, -300.0, 0.0]],
+        'initial': {'position': 0.0, 'velocity': 0.0, 'rest_time': 0.0}}
+    events, want = Simulator(*inputs_of(scene)).advance(instant(600.0)), exact_run(scene, 600.0)
+    assert [e.kind.name.lower() for e in events] == [e.kind for e in want]
+    assert len(events) >= 3
+    for event, exact in zip(events, want):
+        assert abs(float(event.time - exact.time)) <= 1e-15 * 600.0
+        assert abs(float(event.velocity - exact.velocity)) <= 4e-15 * abs(exact.velocity)
