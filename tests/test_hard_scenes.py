@@ -98,3 +98,21 @@ def test_knots_that_are_close_together_lose_no_digits() -> None:
     for event, exact in zip(events, want):
         assert abs(float(event.time - exact.time)) <= 1e-15 * 600.0
         assert abs(float(event.velocity - exact.velocity)) <= 4e-15 * abs(exact.velocity)
+
+
+def test_a_command_in_a_long_slip_does_not_depend_on_the_ticks_before_it() -> None:
+    # more than 4 s after the break-away a search up to the jump ends at it, to the bit
+    scene: dict[str, Any] = {
+        'axis': {'mass': 10.3, 'drive_stiffness': 0.001, 'drive_damping': 1014.0, 'normal_force': 437.7},
+        'contact': {'model': 'rigid'},
+        'friction': {'static': {'law': 'exponential', 'initial': 0.28, 'limit': 0.3, 'time_constant': 0.14},
+                     'kinetic': {'velocities': [0.0, 0.045], 'coefficients': [0.28, 0.13]},
+                     'acceleration_dependence': False},
+        'drive': [[0.0, -0.0008, 0.0]], 'force': [[0.0, 0.0, 530.6], [4.6, -83.9, -530.6]],
+        'initial': {'position': 0.0, 'velocity': 0.0, 'rest_time': 0.0}}
+    for jump in (4.6, 4.7, 4.8, 4.9, 5.0, 5.1, 5.2, 5.3):
+        scene['force'][1][0] = jump
+        whole, split = Simulator(*inputs_of(scene)), Simulator(*inputs_of(scene))
+        want = whole.advance(instant(6.0))
+        assert [e for i in range(1, 13) for e in split.advance(instant(0.5 * i))] == want
+        assert split.sample() == whole.sample()
