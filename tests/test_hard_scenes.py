@@ -61,8 +61,8 @@ HARDLY_PRESSED: dict[str, Any] = {
 
 
 @pytest.mark.parametrize(('scene', 'duration'), [
-    (OVERDAMPED_SLIP, 0.1), (KATO_IN_AN_OVERDAMPED_CONTACT, 0.05), (KATO_THAT_DOES_NOT_RISE, 0.3), (HARDLY_PRESSED, 1e-8),
-    (UNDAMPED_KATO, 1.4), (UNDAMPED_UNDER_A_RAMP, 1.6),
+    (OVERDAMPED_SLIP, 0.1), (KATO_IN_AN_OVERDAMPED_CONTACT, 0.05), (KATO_THAT_DOES_NOT_RISE, 0.3),
+    (HARDLY_PRESSED, 1e-8), (UNDAMPED_KATO, 1.4), (UNDAMPED_UNDER_A_RAMP, 1.6),
     (NO_FRICTION | {'drive': [[0.0, 0.0, 0.001]]}, 0.3),
     (NO_FRICTION | {'drive': [[0.0, 0.0, 0.0], [0.1, 0.002, 0.0]], 'force': [[0.0, 0.0, 50.0]]}, 0.3)])
 def test_events_equal_the_reference(scene: dict[str, Any], duration: float) -> None:
