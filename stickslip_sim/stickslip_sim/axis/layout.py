@@ -1,6 +1,6 @@
 """Where each number stands in the flat arrays that the compiled code works on.
 
-An axis is one array of parameters, followed by three numbers for each knot of the friction tables.  A state is one
+An axis is one array of parameters, followed by five numbers for each knot of the friction tables.  A state is one
 array: the state of motion at an anchor (the last event or jump of an input), the inputs from there on, the closed form
 of the motion since, and the next event.  Nothing in it changes until the next event, however time is split.
 """
@@ -10,8 +10,8 @@ MASS, STIFFNESS, DAMPING, NORMAL = range(4)
 COMPLIANT, CONTACT_STIFFNESS, CONTACT_DAMPING = range(4, 7)
 STATIC_LAW, STATIC_INITIAL, STATIC_LIMIT, STATIC_TAU, STATIC_EXPONENT = range(7, 12)
 BRANCHES, END_SLOPE, KNOTS = range(12, 15)
-TABLE = 15                              # then (velocity, mu_k, psi) for each knot
-KNOT_SIZE = 3
+TABLE = 15                              # then (velocity, mu_k, psi, slopes of mu_k and psi above) for each knot
+KNOT_SIZE = 5
 
 # the anchor: time, mode, state of motion
 SECOND, FRACTION = range(2)

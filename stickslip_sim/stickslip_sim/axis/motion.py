@@ -19,7 +19,7 @@ from ..linear.oscillator import integrals, oscillator, short_integrals
 from ..words import Mode
 from .layout import (
     ACCELERATION, AT, AT_FIRST, AT_G, AT_RATE, AT_SECOND, BASE_V, BRANCHES, COMPLIANT, CONTACT_DAMPING,
-    CONTACT_STIFFNESS, DAMPING, DEFLECTION, DIRECTION, DRIVE, END_SLOPE, EXCESS, F, FAST, FRACTION, F_RATE, GAMMA, NEAR,
+    CONTACT_STIFFNESS, DAMPING, DEFLECTION, DIRECTION, DRIVE, EXCESS, F, FAST, FRACTION, F_RATE, GAMMA, NEAR,
     NEAR_FIRST, NEAR_G, NEAR_GAMMA, NEAR_OMEGA2, NEAR_RATE, NEAR_SECOND, JERK, KEPT, KEPT_SIZE, KNOTS, KNOT_SIZE, MASS,
     MODE, NEXT, NORMAL, NU, OMEGA2, PIECE, POSITION, REST, SECOND, SLOW, SNAP, SPRING, STATIC_EXPONENT, STATIC_INITIAL,
     STATIC_LAW, STATIC_LIMIT, STATIC_TAU, STIFFNESS, TABLE, V, VELOCITY, V_RATE, WAVES,
@@ -72,13 +72,7 @@ def knot_speed(p, piece):
 def friction_line(p, piece, speed):
     """Return mu_k, its slope, psi and its slope at `speed` on a piece of the table."""
     at = TABLE + KNOT_SIZE * piece
-    beyond = speed - p[at]
-    if piece + 1 >= p[KNOTS]:
-        slope = p[END_SLOPE]
-        return p[at + 1] + slope * beyond, slope, p[at + 2], 0.0
-    width = p[at + 3] - p[at]
-    slope = (p[at + 4] - p[at + 1]) / width
-    psi_slope = (p[at + 5] - p[at + 2]) / width
+    beyond, slope, psi_slope = speed - p[at], p[at + 3], p[at + 4]
     return p[at + 1] + slope * beyond, slope, p[at + 2] + psi_slope * beyond, psi_slope
 
 

@@ -76,12 +76,18 @@ class ExcessTable:
         return _interpolate(self.velocities, self.fractions, speed, 0.0)
 
 
-def merged_knots(kinetic: KineticTable, excess: ExcessTable | None) -> list[tuple[float, float, float]]:
-    """Return (velocity, mu_k, psi) at every knot of the two tables; psi is 0 without an excess."""
-    if excess is None:
-        return [(v, mu, 0.0) for v, mu in zip(kinetic.velocities, kinetic.coefficients, strict=True)]
-    speeds = sorted({*kinetic.velocities, *excess.velocities})
-    return [(v, kinetic.coefficient(v), excess.fraction(v)) for v in speeds]
+def merged_knots(
+    kinetic: KineticTable, excess: ExcessTable | None
+) -> list[tuple[float, float, float, float, float]]:
+    """Return (velocity, mu_k, psi) at every knot of the two tables, and the slopes of mu_k and psi above it, in s/m.
+
+    The slopes are those of the given tables: between knots of both, close together, the difference of two rounded
+    coefficients would have few digits.  psi is 0 without an excess.
+    """
+    speeds = sorted({*kinetic.velocities, *(excess.velocities if excess else ())})
+    return [(v, kinetic.coefficient(v), excess.fraction(v) if excess else 0.0,
+             _slope_above(kinetic.velocities, kinetic.coefficients, v, kinetic.end_slope),
+             _slope_above(excess.velocities, excess.fractions, v, 0.0) if excess else 0.0) for v in speeds]
 
 
 def default_excess(kinetic: KineticTable) -> ExcessTable:
@@ -97,9 +103,12 @@ def default_excess(kinetic: KineticTable) -> ExcessTable:
 
 def _interpolate(xs: Sequence[float], ys: Sequence[float], x: float, end_slope: float) -> float:
     i = bisect_right(xs, x) - 1
-    if i + 1 == len(xs):
-        return ys[-1] + end_slope * (x - xs[-1])
-    return ys[i] + (ys[i + 1] - ys[i]) / (xs[i + 1] - xs[i]) * (x - xs[i])
+    return ys[i] + _slope_above(xs, ys, x, end_slope) * (x - xs[i])
+
+
+def _slope_above(xs: Sequence[float], ys: Sequence[float], x: float, end_slope: float) -> float:
+    i = bisect_right(xs, x) - 1
+    return end_slope if i + 1 == len(xs) else (ys[i + 1] - ys[i]) / (xs[i + 1] - xs[i])
 
 
 def _check_knots(name: str, velocities: Sequence[float], other: str, values: Sequence[float]) -> None:

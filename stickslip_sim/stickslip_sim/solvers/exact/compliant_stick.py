@@ -129,6 +129,14 @@ def _contact_at(p, osc, motion, t):
             stiffness * jerk - damping * (2.0 * gamma * jerk + omega2 * acc))
 
 
+@compiled
+def _force_at(p, s, t):
+    """Return F_c and its rate at t, from the travel: P + H may cancel."""
+    y, u, a = (0.0, s[VELOCITY], s[ACCELERATION]) if t == 0.0 else travel(p, s, t)
+    stiffness, damping = p[CONTACT_STIFFNESS], p[CONTACT_DAMPING]
+    return stiffness * (s[DEFLECTION] + y) + damping * u, stiffness * u + damping * a
+
+
 @inlined
 def _direct_root(p, s, osc, motion, contact, begin):
     """Return the root of the guard after `begin`, if it proves to be the first; 0 otherwise.
@@ -174,10 +182,7 @@ def _direct_root(p, s, osc, motion, contact, begin):
 
 @inlined
 def _guard_at(p, s, osc, t, side):
-    """Return N mu_s − side F_c at t, its rate and its bend (with the bound of a law that is not concave).
-
-    It is taken from the travel, not from P + H, which may cancel.
-    """
+    """Return N mu_s − side F_c at t, its rate and its bend (with the bound of a law that is not concave)."""
     if s[SNAP] == 0.0:
         s[AT] = t
         s[AT_G], s[AT_RATE], s[AT_FIRST], s[AT_SECOND] = short_integrals(osc, t)
@@ -222,8 +227,8 @@ def _frozen_leap(p, s, osc, sag_bend, contact, t):
 @compiled
 def _step(p, s, osc, contact, sag_bend, t, rounding):
     """Return a step, what is at its end (nothing yet, the root, the upper end of a bracket around it), and the side."""
-    sag, sag_rate, free, free_rate, wave, wave_rate = contact
-    force, rate = sag + free, sag_rate + free_rate
+    _, _, _, _, wave, wave_rate = contact
+    force, rate = _force_at(p, s, t)
     limit, growth, curvature = law(p, s[REST] + t)
     top, top_rate = p[NORMAL] * limit, p[NORMAL] * growth
     swing = bound(osc, wave, wave_rate) + abs(sag_bend)

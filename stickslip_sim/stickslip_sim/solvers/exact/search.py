@@ -77,6 +77,8 @@ def _slipping(p, s, horizon):
         oscillator_of(s), sign * s[ACCELERATION] + 0.0, sign * s[JERK], sign * s[SNAP], gap, horizon,
         s[LAST + int(s[MODE])])
     s[NEXT] = t
+    if t == math.inf:
+        s[AT] = -1.0   # where a search ends depends on the ticks; a command there must not
     if not passed:
         s[NEXT_KIND] = COAST
     else:
