@@ -16,7 +16,7 @@ from stickslip_sim.bench.peers.peer import EXACT, Setting
 from stickslip_sim.bench.problem import Outcome, Problem
 from stickslip_sim.bench.race import race
 from stickslip_sim.bench.ratios import ratios
-from stickslip_sim.bench.report import as_json, markdown, text_table
+from stickslip_sim.bench.report import as_case, as_json, markdown, text_table
 from stickslip_sim.cli.main import run
 from stickslip_sim.words import EventKind
 from tests.axes import COMPLIANT, RIGID, instant, make, paper_axis
@@ -97,7 +97,7 @@ def test_a_race_is_reported_in_full_and_a_missing_peer_by_name() -> None:
     data = json.loads(json.dumps(as_json(results, ratios(results), 1), allow_nan=False))
     assert data['cases'][0]['rows'][1]['setting'] == {'tolerance': 1e-12}
     assert data['cases'][0]['rows'][0]['cost_per_simulated_second']['median'] > 0.0
-    for text in (text_table(results[0]), markdown(results, [], 1)):
+    for text in (text_table(as_case(results[0])), markdown(data)):
         assert 'not installed (pip install scipy)' in text
         assert 'DOP853 with events, numba' in text
 

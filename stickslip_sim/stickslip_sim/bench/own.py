@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from functools import partial
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -62,12 +62,18 @@ def exact_solver() -> Peer:
     return own_solver(name, (EXACT,), lambda setting: exact.SOLVER)
 
 
+def state_for(problem: Problem) -> Numbers:
+    """Return an empty state with room for the waves of a problem."""
+    return np.zeros(STATE_SIZE + WAVE_SIZE * (len(problem.waves) // WAVE_INPUTS))
+
+
 def _prepare(problem: Problem, solver: Solver) -> Callable[[], Outcome]:
-    run, begin, duration = _driver(solver), problem.start.tolist(), problem.duration
+    run = _driver(solver.advance, solver.set_inputs, solver.sample)
+    begin, duration = problem.start.tolist(), problem.duration
     count = len(problem.event_rows())
     arrays: tuple[Any, ...] = (
-        problem.parameters, problem.pieces, problem.waves, np.zeros((count, EVENT_SIZE)),
-        np.zeros(STATE_SIZE + WAVE_SIZE * (len(problem.waves) // WAVE_INPUTS)), np.zeros(SAMPLE_SIZE))
+        problem.parameters, problem.pieces, problem.waves, np.zeros((count, EVENT_SIZE)), state_for(problem),
+        np.zeros(SAMPLE_SIZE))
     p, pieces, waves, events, state, sample = arrays if IS_COMPILED else tuple(a.tolist() for a in arrays)
 
     def simulate() -> Outcome:
@@ -86,9 +92,10 @@ def _event_columns(rows: Any) -> Numbers:
     return np.column_stack([times, table[:, (EVENT_KIND, EVENT_DIRECTION, EVENT_POSITION, EVENT_VELOCITY)]])
 
 
-def _driver(solver: Solver) -> Callable[..., Any]:
+@cache
+def _driver(advance: Callable[..., Any], set_inputs: Callable[..., Any],
+            sample_at: Callable[..., Any]) -> Callable[..., Any]:
     """Return a loop over the pieces of the inputs, compiled if the solver is."""
-    advance, set_inputs, sample_at = solver.advance, solver.set_inputs, solver.sample
 
     def run(p: Any, s: Any, pieces: Any, waves: Any, duration: Any, events: Any, rows: Any, sample: Any) -> Any:
         state = DONE
