@@ -195,8 +195,6 @@ def travel_at(p, s):
 @compiled
 def travel_to_event(p, s, t):
     """Return `travel` for the time of the next event, or where its search ended: from the last evaluation there."""
-    if s[AT] < 0.0:
-        return travel(p, s, t)
     y, v, acceleration = travel_at(p, s)
     d = t - s[AT]
     if d == 0.0:
@@ -219,8 +217,15 @@ def drive_travel(s, t):
 @compiled
 def move_anchor(p, s, second, fraction, t):
     """Move the anchor by t, to the time (second, fraction), along the present mode."""
-    y, u, a = travel_to_event(p, s, t) if t == s[NEXT] or t == s[AT] else travel(p, s, t)
     drive = drive_travel(s, t)
+    if s[MODE] == COASTING:
+        y, u, a = s[VELOCITY] * t, s[VELOCITY], 0.0
+    elif is_rigid_stick(p, s):
+        y, u, a = 0.0, 0.0, 0.0
+    elif s[AT] >= 0.0 and (t == s[NEXT] or t == s[AT]):
+        y, u, a = travel_to_event(p, s, t)
+    else:
+        y, u, a = travel(p, s, t)
     if s[MODE] == STICK:
         s[REST] += t
         s[DEFLECTION] += y

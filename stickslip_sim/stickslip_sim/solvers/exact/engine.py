@@ -76,7 +76,7 @@ def advance(p, s, second, fraction, events, row):
         if due < 0.0:
             return row, NO_PROGRESS
         later = s[FRACTION] + due
-        whole = math.floor(later)
+        whole = 0.0 if later < 1.0 else math.floor(later)
         if (s[SECOND] + whole - second) + ((later - whole) - fraction) > 0.0:
             return row, DONE   # its time, as it is written down, is still to come
         if row >= len(events):
