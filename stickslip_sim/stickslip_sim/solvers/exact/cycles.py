@@ -72,7 +72,7 @@ def _book(row, e):
         row[PEAK] = max(row[PEAK], abs(e[EVENT_VELOCITY]))
         if begins or mode == STICK:
             row[SLIPS] = 0.0
-            row[IS_OVER] = float(kind in (ARREST, REVERSE))
+            row[IS_OVER] = 1.0 if kind in (ARREST, REVERSE) else 0.0
             row[STOP_SECOND], row[STOP_FRACTION] = e[EVENT_SECOND], e[EVENT_FRACTION]
             row[STOP_POSITION] = e[EVENT_POSITION]
     if begins:
