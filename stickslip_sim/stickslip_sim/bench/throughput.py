@@ -20,17 +20,17 @@ from .problem import Problem
 from .ratios import Ratio, at_least
 
 AXES, DURATION = 10_000, 10.0   # s
+FEED = 0.001                    # m/s, of A and B
 CORES = 2
 _MARK, _AIM = 1e6, 4e6          # axis-seconds a second
 _SEED, _ROUNDS, _FEW = 20261121, 5, 6
 
 
 def drawn(axis: Axis, count: int, seed: int = _SEED) -> dict[str, Any]:
-    """Return masses, stiffnesses (within a factor of 2 of the axis) and feeds (0.5 to 5 mm/s), drawn at random."""
+    """Return masses, stiffnesses and feeds drawn at random, each within a factor of 2 of the axis and 1 mm/s."""
     random = np.random.default_rng(seed)
-    return {'mass': axis.mass * 2.0 ** random.uniform(-1.0, 1.0, count),
-            'drive_stiffness': axis.drive_stiffness * 2.0 ** random.uniform(-1.0, 1.0, count),
-            'drive_velocity': 0.0005 * 10.0 ** random.uniform(0.0, 1.0, count)}
+    return {name: middle * 2.0 ** random.uniform(-1.0, 1.0, count) for name, middle in (
+        ('mass', axis.mass), ('drive_stiffness', axis.drive_stiffness), ('drive_velocity', FEED))}
 
 
 def batch_ratios() -> Iterator[Ratio]:
