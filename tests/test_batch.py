@@ -79,7 +79,7 @@ def test_every_column_goes_where_its_name_says() -> None:
     axis = paper_axis(COMPLIANT)
     static = replace(axis.friction.static, kind=StaticLawKind.KATO)
     axis = replace(axis, friction=replace(axis.friction, static=static))
-    values = {'mass': 300.0, 'drive_stiffness': 5e5, 'drive_damping': 3000.0, 'normal_force': 3000.0,
+    values: dict[str, Any] = {'mass': 300.0, 'drive_stiffness': 5e5, 'drive_damping': 3000.0, 'normal_force': 3000.0,
               'contact_stiffness': 4e6, 'contact_damping': 1e4, 'static_initial': 0.13, 'static_limit': 0.3,
               'static_time_constant': 0.5, 'static_exponent': 0.7}
     assert values.keys() == COLUMNS.keys()
