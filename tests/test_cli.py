@@ -45,7 +45,6 @@ def test_version_and_help() -> None:
     assert (done.returncode, done.stdout) == (0, f'stickslip {__version__}\n')
     assert 'simulate' in tool('--help').stdout
     assert '--sample-period' in tool('simulate', '--help').stdout
-    assert 'warm' not in tool('--help').stdout
 
 
 def test_scenes_are_listed_with_a_line_each(capsys: Capture) -> None:
@@ -283,10 +282,6 @@ def test_help_loads_nothing_heavy() -> None:
                'assert not {"numba", "numpy", "yaml"} & set(sys.modules)')
     subprocess.run([sys.executable, '-c', program], check=True, timeout=60, stdout=subprocess.DEVNULL)
 
-
-def test_warm_is_quiet(capsys: Capture) -> None:
-    assert run(['warm']) == 0
-    assert capsys.readouterr() == ('', '')
 
 
 def _default_interrupt() -> None:

@@ -23,6 +23,7 @@ from .axis.layout import (
     STATIC_INITIAL, STATIC_LIMIT, STATIC_TAU, STIFFNESS, TABLE,
 )
 from .errors import InputError
+from .solvers import exact
 from .solvers.exact import cycles
 
 Numbers = NDArray[np.float64]
@@ -117,8 +118,8 @@ def _run(parameters: Numbers, inputs: Numbers, starts: Numbers, duration: float,
     out = np.empty((count, cycles.ROW_SIZE))
 
     def work(first: int) -> None:
-        cycles.run_axes(parameters, inputs, starts, duration, first, min(first + _AT_A_TIME, count),
-                        np.zeros(STATE_SIZE), np.empty((_ROWS, EVENT_SIZE)), np.empty(0), out)
+        exact.run_axes(parameters, inputs, starts, duration, first, min(first + _AT_A_TIME, count),
+                       np.zeros(STATE_SIZE), np.empty((_ROWS, EVENT_SIZE)), np.empty(0), out)
 
     with ThreadPoolExecutor(threads) as pool:
         list(pool.map(work, range(0, count, _AT_A_TIME)))

@@ -10,7 +10,7 @@ import numpy
 
 from . import __version__
 from .analysis import Summary
-from .compiled import IS_COMPILED
+from .compiled import hot_path
 from .energy import EnergyBalance
 from .scene import Scene
 from .words import Mode, Sample
@@ -44,14 +44,7 @@ def receipt_of(scene: Scene, duration: float, sample_period: float | None, figur
 def versions() -> dict[str, str]:
     """Return the versions of everything that the numbers depend on."""
     return {'stickslip': __version__, 'python': platform.python_version(), 'numpy': numpy.__version__,
-            'hot_path': _hot_path()}
-
-
-def _hot_path() -> str:
-    if not IS_COMPILED:
-        return 'plain python'
-    import numba
-    return f'numba {numba.__version__}'
+            'hot_path': hot_path()}
 
 
 def _plain(value: Any) -> Any:

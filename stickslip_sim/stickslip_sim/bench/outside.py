@@ -34,10 +34,12 @@ def outside_ratios() -> Iterator[Ratio]:
     for case, ratio in told.items():
         yield at_least('cost of scipy DOP853, 1e-12 / exact, plain Python', case, ratio, _PLAIN_MARK, _PLAIN_AIM)
     with tempfile.TemporaryDirectory() as folder:
-        cold = _wall(folder)
-        warm = statistics.median(_wall(folder) for _ in range(_STARTS))
-    yield at_most('first start until the first sample, all compiled, s', '', cold, _COLD_MARK)
-    yield at_most('start with cached code until the first sample, s', '', warm, _START_MARK, _START_AIM)
+        cold = _wall(folder, '1')
+        warm = statistics.median(_wall(folder, '1') for _ in range(_STARTS))
+        by_numba = _wall(folder, 'jit')
+    yield at_most('first start until the first sample, nothing cached, s', '', cold, _COLD_MARK)
+    yield at_most('later start until the first sample, s', '', warm, _START_MARK, _START_AIM)
+    yield Ratio('first start when numba has to compile the hot path, s', '', by_numba)
 
 
 def tell_plain_ratios() -> None:
@@ -54,9 +56,9 @@ def tell_plain_ratios() -> None:
     sys.stdout.write(json.dumps(ratios) + '\n')
 
 
-def _wall(cache: str) -> float:
+def _wall(cache: str, compiled: str) -> float:
     begin = time.monotonic()
-    _run(_FIRST_SAMPLE, XDG_CACHE_HOME=cache, STICKSLIP_COMPILED='1')
+    _run(_FIRST_SAMPLE, XDG_CACHE_HOME=cache, STICKSLIP_COMPILED=compiled)
     return time.monotonic() - begin
 
 

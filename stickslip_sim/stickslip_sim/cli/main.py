@@ -19,7 +19,6 @@ from .bench import bench
 from .extremes import extremes
 from .scenes import scenes
 from .simulate import simulate
-from .warm import warm
 
 _INTERRUPTED = 130
 _TERMINATED = 143
@@ -31,7 +30,7 @@ def stickslip() -> None:
     """Stick-slip motion of a feed axis, simulated exactly."""
 
 
-for verb in (bench, extremes, scenes, simulate, warm):
+for verb in (bench, extremes, scenes, simulate):
     stickslip.add_command(verb)
 
 

@@ -1,7 +1,13 @@
 """The exact solver: from event to event in closed form."""
 
+from ...compiled import entry
 from .. import Solver
-from .engine import advance, energy, sample, set_inputs, set_parameters, start
+from . import cycles, engine
+
+start, advance, set_inputs, set_parameters, sample, energy = (
+    entry('exact', function) for function in (engine.start, engine.advance, engine.set_inputs, engine.set_parameters,
+                                              engine.sample, engine.energy))
+run_axes = entry('exact', cycles.run_axes)
 
 SOLVER = Solver('exact', start, advance, set_inputs, set_parameters, sample, energy)
 

@@ -22,11 +22,16 @@ import math
 from fractions import Fraction
 from typing import Any
 
+from ...compiled import entry
 from ...errors import InputError
 from .. import Solver
-from .loop import advance, sample, set_inputs, set_parameters, start
+from . import loop
 from .stability import check_step
 from .steps import EULER, RK4
+
+start, advance, set_inputs, set_parameters, sample = (
+    entry('fixed_step', function) for function in (loop.start, loop.advance, loop.set_inputs, loop.set_parameters,
+                                                   loop.sample))
 
 METHODS = {'euler': EULER, 'rk4': RK4}
 MIN_STEP, MAX_STEP = 1e-9, 1.0   # s
