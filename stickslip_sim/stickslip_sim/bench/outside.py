@@ -36,6 +36,7 @@ def outside_ratios() -> Iterator[Ratio]:
     with tempfile.TemporaryDirectory() as folder:
         cold = _wall(folder, '1')
         warm = statistics.median(_wall(folder, '1') for _ in range(_STARTS))
+    with tempfile.TemporaryDirectory() as folder:
         by_numba = _wall(folder, 'jit')
     yield at_most('first start until the first sample, nothing cached, s', '', cold, _COLD_MARK)
     yield at_most('later start until the first sample, s', '', warm, _START_MARK, _START_AIM)
