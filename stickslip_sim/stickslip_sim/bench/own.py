@@ -40,7 +40,7 @@ def own_solver(name: str, settings: tuple[Setting, ...], make: Callable[[Setting
 def own_solvers() -> list[Peer]:
     """Return all solvers of this product as contestants."""
     found = [exact_solver()]
-    for method, steps in (('euler', time_steps(1e-3, 1e-4, 1e-5)), ('rk4', time_steps(1e-3, 1e-4))):
+    for method, steps in (('euler', time_steps(1e-3, 1e-4, 1e-5)), ('rk4', time_steps(1e-3, 1e-4, 1e-5))):
         found.append(own_solver(f'fixed_step {method}', steps, partial(_by_step, fixed_step.solver, method)))
     for method in ('DOP853', 'RK45'):
         found.append(own_solver(f'adaptive {method}', tolerances(1e-6, 1e-9, 1e-12),
