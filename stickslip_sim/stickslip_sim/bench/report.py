@@ -46,7 +46,7 @@ def text_table(case: Json) -> str:
 
 def marks_table(figures: Sequence[Json]) -> str:
     """Return the figures beside their marks for the terminal."""
-    return '\n'.join(_aligned(_MARK_HEADS, _mark_cells(figures), texts=2))
+    return '\n'.join(_aligned(_MARK_HEADS, _mark_cells(figures, 'NO'), texts=2))
 
 
 def markdown(data: Json) -> str:
@@ -55,7 +55,7 @@ def markdown(data: Json) -> str:
     lines = [f'Measured on {data["machine"]} with {known}; medians of {data["rounds"]} interleaved rounds (fewer of'
              ' what takes seconds), processor time.', '']
     if data['ratios']:
-        lines += [*_markdown_table(_MARK_HEADS, _mark_cells(data['ratios'])), '']
+        lines += [*_markdown_table(_MARK_HEADS, _mark_cells(data['ratios'], '**no**')), '']
     for case in data['cases']:
         lines += [f'### {_heading(case)}', '', *_markdown_table(_HEADS, _cells(case)), '',
                   *(f'* {note}' for note in _notes(case)), '']
@@ -78,9 +78,9 @@ def _cost(row: Json) -> float:
     return float(row['cost_per_simulated_second']['median'])
 
 
-def _mark_cells(figures: Sequence[Json]) -> list[tuple[str, ...]]:
+def _mark_cells(figures: Sequence[Json], missed: str) -> list[tuple[str, ...]]:
     return [(figure['what'], figure['case'], _short(figure['measured']), figure['mark'] or '–', figure['aim'] or '–',
-             {True: 'yes', False: '**no**', None: '–'}[figure['met']]) for figure in figures]
+             {True: 'yes', False: missed, None: '–'}[figure['met']]) for figure in figures]
 
 
 def _notes(case: Json) -> list[str]:

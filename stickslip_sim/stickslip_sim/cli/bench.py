@@ -75,7 +75,7 @@ def _write(folder: Path, data: dict[str, Any]) -> None:
     write_text(str(folder / 'bench.json'), [json.dumps(data, indent=1, allow_nan=False) + '\n'])
     write_text(str(folder / 'bench.md'), [markdown(data)])
     for name, wanted in (('trade', True), ('trade_scenes', False)):
-        panels = {f'{case["name"]}: {case["summary"]}': [
+        panels = {f'{case["name"]}: {case["summary"]}' if wanted else case['name']: [
             Line(label, *zip(*points)) for label, points in _points(case).items()]
             for case in data['cases'] if (case['name'] in LETTERS) == wanted}
         for ending in ('png', 'svg'):
