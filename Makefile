@@ -30,7 +30,7 @@ check: tools  ## style, types, architecture
 extremes: build  ## what breaks other simulators, measured beside its mark (minutes); fails when one is missed
 	@$(HERE) python3 -m stickslip_sim extremes
 
-bench: build  ## measure every solver beside its peers, and the loop of the node; writes docs/ (half an hour)
+bench: build  ## measure every solver beside its peers, and the loop of the node; writes docs/ (25 minutes)
 	@ros2_ws/bootstrap --bench
 	@$(HERE) python3 -m stickslip_sim bench --out runs/bench
 	@$(HERE) --own-domain python3 benchmarks/tick.py --json runs/bench/bench.json

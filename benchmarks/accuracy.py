@@ -1,11 +1,14 @@
-"""Put what `stickslip bench` wrote into docs/accuracy.md, between its markers.
+"""Put what `stickslip bench` wrote, and tick.py added to it, into docs/accuracy.md, between its markers.
 
     python3 benchmarks/accuracy.py runs/bench
 """
 
+import json
 import pathlib
 import shutil
 import sys
+
+from stickslip_sim.bench.report import markdown
 
 PAGE = pathlib.Path('docs/accuracy.md')
 IMAGES = pathlib.Path('docs/images')
@@ -19,7 +22,7 @@ def main() -> None:
     _, end, after = rest.partition(END)
     if not begin or not end:
         raise SystemExit(f'{PAGE} lacks {BEGIN} or {END}')
-    table = (folder / 'bench.md').read_text(encoding='utf-8')
+    table = markdown(json.loads((folder / 'bench.json').read_text(encoding='utf-8')))
     PAGE.write_text(f'{before}{BEGIN}\n\n{table}\n{END}{after}', encoding='utf-8')
     for name in ('trade', 'trade_scenes'):
         if (folder / f'{name}.png').is_file():

@@ -18,9 +18,9 @@ HERE = pathlib.Path(__file__).resolve().parent
 OLDEST = (3, 10)
 
 
-def resolve(*requirements: pathlib.Path) -> set[str]:
-    """Return the pins `name==version` of everything that the files need."""
-    files = [word for path in requirements for word in ('-r', str(path))]
+def resolve(requirements: pathlib.Path, beside: pathlib.Path | None = None) -> set[str]:
+    """Return the pins `name==version` of everything that the file needs, where the lock `beside` allows it."""
+    files = ['-r', str(requirements), *(('-c', str(beside)) if beside else ())]
     command = [sys.executable, '-m', 'pip', 'install', '--quiet', '--dry-run',
                '--ignore-installed', '--report', '-', *files]
     report = json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout)
@@ -42,10 +42,11 @@ def main() -> None:
     distro = sys.argv[1] if len(sys.argv) > 1 else 'jazzy'
     product = HERE / f'requirements-{distro}.in'
     pins = resolve(product)
-    write(product.with_suffix('.txt'), pins)
+    lock = product.with_suffix('.txt')
+    write(lock, pins)
     for name in ('test', 'bench'):
-        beside = HERE / f'requirements-{name}.in'
-        write(beside.with_suffix('.txt'), resolve(product, beside) - pins)
+        more = HERE / f'requirements-{name}.in'
+        write(more.with_suffix('.txt'), resolve(more, lock) - pins)
 
 
 if __name__ == '__main__':

@@ -15,8 +15,8 @@ from stickslip_sim.bench.peers import dop853, euler, scipy_ivp
 from stickslip_sim.bench.peers.peer import EXACT, Setting
 from stickslip_sim.bench.problem import Outcome, Problem
 from stickslip_sim.bench.race import race
-from stickslip_sim.bench.ratios import ratios
-from stickslip_sim.bench.report import as_json, markdown, text_table
+from stickslip_sim.bench.ratios import Ratio, at_least, at_most, ratios
+from stickslip_sim.bench.report import as_case, as_json, markdown, text_table
 from stickslip_sim.cli.main import run
 from stickslip_sim.words import EventKind
 from tests.axes import COMPLIANT, RIGID, instant, make, paper_axis
@@ -97,9 +97,27 @@ def test_a_race_is_reported_in_full_and_a_missing_peer_by_name() -> None:
     data = json.loads(json.dumps(as_json(results, ratios(results), 1), allow_nan=False))
     assert data['cases'][0]['rows'][1]['setting'] == {'tolerance': 1e-12}
     assert data['cases'][0]['rows'][0]['cost_per_simulated_second']['median'] > 0.0
-    for text in (text_table(results[0]), markdown(results, [], 1)):
+    for text in (text_table(as_case(results[0])), markdown(data)):
         assert 'not installed (pip install scipy)' in text
         assert 'DOP853 with events, numba' in text
+
+
+def test_a_run_that_would_take_too_long_is_told_and_not_waited_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr('stickslip_sim.bench.race.PATIENCE', 0.0)   # s
+    results = race([paper('rigid', 2.0)], [euler.PEER._replace(settings=(Setting(1e-3, 'step'),))], 1)
+    left_out = results[0].rows[0]
+    assert left_out.errors is None
+    assert left_out.cost is None
+    assert left_out.note.startswith('left out: a run would take ')
+
+
+def test_figures_stand_beside_their_marks() -> None:
+    assert at_least('speed', 'A', 3.0, 2.0, 4.0) == ('speed', 'A', 3.0, '>= 2', '4', True)
+    assert at_most('error', 'A', 3e-12, 1e-12) == ('error', 'A', 3e-12, '<= 1e-12', '', False)
+    page = markdown({'versions': {}, 'machine': 'a machine', 'rounds': 1, 'cases': [], 'ratios': [
+        at_most('error', 'A', 3e-12, 1e-12)._asdict(), Ratio('told', '', 2.5)._asdict()]})
+    assert '| error | A | 3.0e-12 | <= 1e-12 | – | **no** |' in page
+    assert '| told |  | 2.5 | – | – | – |' in page
 
 
 def test_peers_say_what_is_missing_and_have_names_of_their_own() -> None:

@@ -68,7 +68,7 @@ def compiled(function: _Function) -> _Function:
 
 
 def inlined(function: _Function) -> _Function:
-    """Compile a function into its callers: an array as an argument is seven numbers, and a call of three takes 10 ns."""
+    """Compile a function into its callers: an array as an argument is seven numbers, a call of three costs 10 ns."""
     return _numba.njit(forceinline=True, **_OPTIONS)(function) if _numba else function
 
 

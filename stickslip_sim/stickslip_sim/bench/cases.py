@@ -14,6 +14,7 @@ LETTERS = ('A', 'B', 'C', 'D')
 _DURATION = 60.0          # s, of A, B and C
 _CHAOTIC_DURATION = 5.0   # s, of D: errors grow tenfold every 2 s, so that a longer comparison says nothing
 _SCENE_DURATION = 10.0    # s
+_LONG_SCENES = {'micro_feed': 60.0}   # s: it breaks away for the first time after 15 s
 _TICK = 1000.0            # Hz, of the commands of D
 
 
@@ -30,7 +31,7 @@ def make_case(name: str, duration: float | None = None) -> Problem:
         raise InputError('--scenes', name, 'one of ' + ', '.join(case_names()), 'see `stickslip scenes`')
     scene = load_scene(name)
     return Problem(name, scene.summary, scene.axis, scene.initial, scene.drive, scene.force,
-                   duration or _SCENE_DURATION)
+                   duration or _LONG_SCENES.get(name, _SCENE_DURATION))
 
 
 def _letter(name: str, duration: float | None) -> Problem:

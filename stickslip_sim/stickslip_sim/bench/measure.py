@@ -6,8 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 SHORTEST = 2e-3   # s: shorter runs are repeated until a sample takes as long
-LONGEST = 1.0     # s: runs that take longer are sampled no more than that often
-_FEWEST = 3
+ENOUGH = 2.5      # s: when the samples of a run have taken that long together, no more are taken
 
 
 class Cost(NamedTuple):
@@ -26,22 +25,23 @@ def measure(runs: Sequence[Callable[[], object]], rounds: int) -> list[Cost]:
     """
     repeats = [_repeats(run) for run in runs]
     samples: list[list[float]] = [[] for _ in runs]
-    for turn in range(rounds):
+    for _ in range(rounds):
         for run, count, costs in zip(runs, repeats, samples):
-            if turn < _FEWEST or costs[0] < LONGEST:
-                costs.append(_sample(run, count))
+            if sum(costs) < ENOUGH:
+                costs.append(sample(run, count))
     return [_cost(costs) for costs in samples]
 
 
-def _repeats(run: Callable[[], object]) -> int:
-    return max(1, round(SHORTEST / max(_sample(run, 1), 1e-7)))
-
-
-def _sample(run: Callable[[], object], count: int) -> float:
+def sample(run: Callable[[], object], count: int = 1) -> float:
+    """Return what a run costs, the mean of `count` in a row."""
     begin = time.process_time()
     for _ in range(count):
         run()
     return (time.process_time() - begin) / count
+
+
+def _repeats(run: Callable[[], object]) -> int:
+    return max(1, round(SHORTEST / max(sample(run), 1e-7)))
 
 
 def _cost(samples: Sequence[float]) -> Cost:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from functools import lru_cache, partial
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -40,7 +40,7 @@ def own_solver(name: str, settings: tuple[Setting, ...], make: Callable[[Setting
 def own_solvers() -> list[Peer]:
     """Return all solvers of this product as contestants."""
     found = [exact_solver()]
-    for method, steps in (('euler', time_steps(1e-3, 1e-4, 1e-5)), ('rk4', time_steps(1e-3, 1e-4))):
+    for method, steps in (('euler', time_steps(1e-3, 1e-4, 1e-5)), ('rk4', time_steps(1e-3, 1e-4, 1e-5))):
         found.append(own_solver(f'fixed_step {method}', steps, partial(_by_step, fixed_step.solver, method)))
     for method in ('DOP853', 'RK45'):
         found.append(own_solver(f'adaptive {method}', tolerances(1e-6, 1e-9, 1e-12),
@@ -62,12 +62,18 @@ def exact_solver() -> Peer:
     return own_solver(name, (EXACT,), lambda setting: exact.SOLVER)
 
 
+def state_for(problem: Problem) -> Numbers:
+    """Return an empty state with room for the waves of a problem."""
+    return np.zeros(STATE_SIZE + WAVE_SIZE * (len(problem.waves) // WAVE_INPUTS))
+
+
 def _prepare(problem: Problem, solver: Solver) -> Callable[[], Outcome]:
-    run, begin, duration = _driver(solver), problem.start.tolist(), problem.duration
+    run = _driver(solver.advance, solver.set_inputs, solver.sample)
+    begin, duration = problem.start.tolist(), problem.duration
     count = len(problem.event_rows())
     arrays: tuple[Any, ...] = (
-        problem.parameters, problem.pieces, problem.waves, np.zeros((count, EVENT_SIZE)),
-        np.zeros(STATE_SIZE + WAVE_SIZE * (len(problem.waves) // WAVE_INPUTS)), np.zeros(SAMPLE_SIZE))
+        problem.parameters, problem.pieces, problem.waves, np.zeros((count, EVENT_SIZE)), state_for(problem),
+        np.zeros(SAMPLE_SIZE))
     p, pieces, waves, events, state, sample = arrays if IS_COMPILED else tuple(a.tolist() for a in arrays)
 
     def simulate() -> Outcome:
@@ -86,22 +92,11 @@ def _event_columns(rows: Any) -> Numbers:
     return np.column_stack([times, table[:, (EVENT_KIND, EVENT_DIRECTION, EVENT_POSITION, EVENT_VELOCITY)]])
 
 
-def _driver(solver: Solver) -> Callable[..., Any]:
+@cache
+def _driver(advance: Callable[..., Any], set_inputs: Callable[..., Any],
+            sample_at: Callable[..., Any]) -> Callable[..., Any]:
     """Return a loop over the pieces of the inputs, compiled if the solver is."""
-    functions = (solver.advance, solver.set_inputs, solver.sample)
-    return _compiled_loop(*functions) if hasattr(solver.advance, 'py_func') else _loop(*functions)
 
-
-@lru_cache(maxsize=16)
-def _compiled_loop(*functions: Callable[..., Any]) -> Callable[..., Any]:
-    """Return the loop as machine code; settings of a solver share it."""
-    import numba
-    compiled: Callable[..., Any] = numba.njit(error_model='numpy')(_loop(*functions))
-    return compiled
-
-
-def _loop(advance: Callable[..., Any], set_inputs: Callable[..., Any],
-          sample_at: Callable[..., Any]) -> Callable[..., Any]:
     def run(p: Any, s: Any, pieces: Any, waves: Any, duration: Any, events: Any, rows: Any, sample: Any) -> Any:
         state = DONE
         for k in range(len(pieces)):
@@ -119,4 +114,8 @@ def _loop(advance: Callable[..., Any], set_inputs: Callable[..., Any],
         sample_at(p, s, float(whole), duration - whole, sample)
         return rows, state
 
-    return run
+    if not hasattr(advance, 'py_func'):
+        return run
+    import numba
+    compiled: Callable[..., Any] = numba.njit(error_model='numpy')(run)
+    return compiled

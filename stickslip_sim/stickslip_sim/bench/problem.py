@@ -85,4 +85,4 @@ class Problem:
 
     def event_rows(self) -> Any:
         """Return an empty table that holds far more events than a sound solver finds."""
-        return np.zeros((int(2000 + 2000 * self.duration), EVENT_COLUMNS))
+        return np.zeros((int(1000 + 300 * self.duration), EVENT_COLUMNS))

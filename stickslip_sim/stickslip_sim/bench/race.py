@@ -1,16 +1,19 @@
 """The race: every contestant and setting over every case, in one process; errors first, then interleaved cost."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 from ..errors import SolverError
 from ..reference import simulate as simulate_reference
 from .errors import Errors, Truth, errors_of
-from .measure import Cost, measure
+from .measure import Cost, measure, sample
 from .peers.peer import Peer, Setting
 from .problem import Outcome, Problem
 
-DIGITS = 30   # of the reference
+DIGITS = 30        # of the reference
+PATIENCE = 30.0    # s of processor time: a run that would take longer is told as such, and not waited for
+_PARTS = (64, 8)   # of the duration that is run first, to foresee the cost of all of it
 
 
 class Row(NamedTuple):
@@ -60,6 +63,11 @@ def _race_case(problem: Problem, contestants: Sequence[Peer], rounds: int) -> Ca
             continue
         for setting in peer.settings:
             try:
+                foreseen = _foresee(peer, problem, setting)
+                if foreseen > PATIENCE:
+                    rows.append(Row(peer.name, setting, peer.version(), None, None,
+                                    f'left out: a run would take {foreseen:.0f} s or more'))
+                    continue
                 run = peer.prepare(problem, setting)
                 errors = errors_of(run(), truth, problem.duration)
             except SolverError as error:
@@ -71,6 +79,19 @@ def _race_case(problem: Problem, contestants: Sequence[Peer], rounds: int) -> Ca
     for place, cost in zip(places, measure(runs, rounds)):
         rows[place] = rows[place]._replace(cost=_per_second(cost, problem.duration))
     return CaseResult(problem, sum(event.kind.name != 'KNOT' for event in truth.events), rows)
+
+
+def _foresee(peer: Peer, problem: Problem, setting: Setting) -> float:
+    """Return what a run would take, judged by its beginning, s of processor time."""
+    foreseen = 0.0
+    for part in _PARTS:
+        run = peer.prepare(replace(problem, duration=problem.duration / part), setting)
+        if part == _PARTS[0]:
+            run()   # what is compiled at the first run is no part of it
+        foreseen = part * sample(run)
+        if foreseen > PATIENCE:
+            break
+    return foreseen
 
 
 def _per_second(cost: Cost, duration: float) -> Cost:

@@ -1,16 +1,14 @@
 """`stickslip bench`: what every solver costs and how wrong it is, against the reference and beside its peers."""
 
 import json
+import os
+import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 import click
 
 from .files import whole, write_text
-
-if TYPE_CHECKING:
-    from ..bench.race import CaseResult
-    from ..bench.ratios import Ratio
 
 _ROUNDS, _QUICK_ROUNDS = 7, 1
 _QUICK_CASES, _QUICK_DURATION = ('A', 'paper_fig8'), 2.0   # s
@@ -27,12 +25,14 @@ def bench(chosen: tuple[str, ...], more: tuple[str, ...], out: str | None, round
     if more and not chosen:
         raise click.UsageError('name the scenes after --scenes.')
     folder = _made(out) if out is not None else None
+    _compile_here()
     from ..bench.cases import case_names, make_case
     from ..bench.contestants import contestants
     from ..bench.outside import outside_ratios
     from ..bench.race import race
     from ..bench.ratios import ratios
-    from ..bench.report import claims_table, text_table
+    from ..bench.report import as_json, marks_table, text_table
+    from ..bench.throughput import batch_ratios
     from .progress import progress_bar
 
     names = (*chosen, *more) or (_QUICK_CASES if quick else tuple(case_names()))
@@ -40,10 +40,19 @@ def bench(chosen: tuple[str, ...], more: tuple[str, ...], out: str | None, round
     rounds = rounds or (_QUICK_ROUNDS if quick else _ROUNDS)
     with progress_bar('racing') as progress:
         results = race(problems, contestants(quick=quick), rounds, progress)
-    claims = [] if quick else [*ratios(results), *(outside_ratios() if not chosen else ())]
-    print('\n\n'.join([*map(text_table, results), *([claims_table(claims)] if claims else [])]))
+    figures = [] if quick else ratios(results)
+    if not chosen and not quick:
+        figures += [*outside_ratios(), *batch_ratios()]
+    data = as_json(results, figures, rounds)
+    print('\n\n'.join([*map(text_table, data['cases']), *([marks_table(data['ratios'])] if figures else [])]))
     if folder is not None:
-        _write(folder, results, claims, rounds)
+        _write(folder, data)
+
+
+def _compile_here() -> None:
+    """Have numba compile the hot path as it compiles the rivals: the race runs loops of its own around it."""
+    if 'stickslip_sim.compiled' not in sys.modules:
+        os.environ.setdefault('STICKSLIP_COMPILED', 'jit')
 
 
 def _made(path: str) -> Path:
@@ -58,18 +67,17 @@ def _made(path: str) -> Path:
     return folder
 
 
-def _write(folder: Path, results: 'list[CaseResult]', claims: 'list[Ratio]', rounds: int) -> None:
+def _write(folder: Path, data: dict[str, Any]) -> None:
     from ..bench.cases import LETTERS
-    from ..bench.report import as_json, markdown
+    from ..bench.report import markdown
     from ..plots import Line, plot_trade
 
-    data = as_json(results, claims, rounds)
     write_text(str(folder / 'bench.json'), [json.dumps(data, indent=1, allow_nan=False) + '\n'])
-    write_text(str(folder / 'bench.md'), [markdown(results, claims, rounds)])
+    write_text(str(folder / 'bench.md'), [markdown(data)])
     for name, wanted in (('trade', True), ('trade_scenes', False)):
-        panels = {f'{result.problem.name}: {result.problem.summary}': [
-            Line(label, *zip(*points)) for label, points in _points(result).items()]
-            for result in results if (result.problem.name in LETTERS) == wanted}
+        panels = {f'{case["name"]}: {case["summary"]}' if wanted else case['name']: [
+            Line(label, *zip(*points)) for label, points in _points(case).items()]
+            for case in data['cases'] if (case['name'] in LETTERS) == wanted}
         for ending in ('png', 'svg'):
             if panels:
                 with whole(str(folder / f'{name}.{ending}')) as temporary:
@@ -79,11 +87,12 @@ def _write(folder: Path, results: 'list[CaseResult]', claims: 'list[Ratio]', rou
 _TITLE = 'What every solver costs, and how wrong it is\nhollow: events missed or invented; lower left is better'
 
 
-def _points(result: 'CaseResult') -> dict[str, list[tuple[float, float, bool]]]:
+def _points(case: dict[str, Any]) -> dict[str, list[tuple[float, float, bool]]]:
     """Return (error, cost, flawed) of each solver's settings."""
     lines: dict[str, list[tuple[float, float, bool]]] = {}
-    for row in result.rows:
-        if row.errors is not None and row.cost is not None:
-            flawed = row.errors.missed + row.errors.invented > 0
-            lines.setdefault(row.contestant, []).append((row.errors.time, row.cost.median, flawed))
+    for row in case['rows']:
+        errors, cost = row['errors'], row['cost_per_simulated_second']
+        if errors and cost:
+            flawed = errors['missed'] + errors['invented'] > 0
+            lines.setdefault(row['solver'], []).append((errors['time'], cost['median'], flawed))
     return lines

@@ -39,6 +39,7 @@ COASTING, DECELERATING = float(Mode.COASTING), float(Mode.DECELERATING)
 
 TURN = 2.0 * math.pi
 ROUNDING = 1e-14   # of the forces: what a sum of them may be off by
+SPEED_SCALE = 1e-17   # m/s: below that a speed counts as zero
 _NEVER = 1.0       # a guard that the mode does not have
 
 
@@ -189,9 +190,15 @@ def guards(q, w, t, x, u):
 
 
 @always_compiled
+def force_scale(q):
+    """Return below which size a force counts as zero, N."""
+    return ROUNDING * q[Q_NORMAL] * q[Q_LIMIT] + 1e-300
+
+
+@always_compiled
 def guard_scales(q):
     """Return below which size each guard counts as zero at a reset."""
-    force, speed = ROUNDING * q[Q_NORMAL] * q[Q_LIMIT] + 1e-300, 1e-17
+    force, speed = force_scale(q), SPEED_SCALE
     if q[Q_MODE] == ACCELERATING:
         return force, speed, 0.0
     return force, force if q[Q_MODE] == COASTING else speed, speed

@@ -7,30 +7,56 @@ import numpy as np
 from ...compiled import always_compiled
 from ...errors import SolverError
 from ..problem import Outcome, Problem
-from .automaton import SIZE, U, X, motion_of
-from .grid import acceleration, act, begin, fallen_guard, holds, next_piece
+from .automaton import Q_MASS, Q_MODE, SIZE, STICK, TIME, U, X, applied, is_compliant, motion_of
+from .grid import act, begin, breaks, look, next_piece
 from .peer import Peer, Setting, time_steps
+
+
+@always_compiled
+def _wait(q, w, h, k, last, since, x):
+    """Step in a rigid stick, where nothing moves, until it breaks away or `last`; return the step and 0 or −1."""
+    while k < last:
+        k += 1
+        t = k * h - since
+        if breaks(q, w, t, x, 0.0, applied(q, w, t, x, 0.0)):
+            return k, 0
+    return k, -1
+
+
+@always_compiled
+def _march(q, w, h, k, last, since, x, u):
+    """Step from k h until a guard has fallen, at most to `last` h; return the step, x, ẋ and the guard or −1.
+
+    The acceleration at the end of a step is that of the next one, so that the forces are summed once a step.
+    """
+    per_mass = 1.0 / q[Q_MASS]
+    rate, fallen = look(q, w, per_mass, k * h - since, x, u)
+    fallen = -1
+    while k < last and fallen < 0:
+        k += 1
+        u += h * rate
+        x += h * u
+        rate, fallen = look(q, w, per_mass, k * h - since, x, u)
+    return k, x, u, fallen
 
 
 @always_compiled
 def run(p, at_start, pieces, w, steps, h, m, events):
     """Simulate; return the number of events, −1 when the table is full."""
-    rows, piece = begin(p, m, w, at_start, pieces, events), 0
-    x, u, since, q = m[X], m[U], 0.0, motion_of(p, m)
-    due = next_piece(pieces, piece)
-    for k in range(steps):
-        time = (k + 1) * h
-        if not holds(q):
-            u += h * acceleration(q, w, k * h - since, x, u)
-            x += h * u
-        fallen = fallen_guard(q, w, time - since, x, u)
-        if fallen >= 0 or due <= time:
-            rows, piece = act(p, m, w, pieces, piece, fallen, time, x, u, events, rows)
-            x, u, since, q = m[X], m[U], time, motion_of(p, m)
-            due = next_piece(pieces, piece)
-            if rows < 0:
-                break
-    m[X] = x
+    rows, piece, k = begin(p, m, w, at_start, pieces, events), 0, 0
+    while k < steps and rows >= 0:
+        due = next_piece(pieces, piece)
+        last = steps
+        if due < steps * h:
+            last = int(due / h)
+            while last * h < due:
+                last += 1
+        q, x, u = motion_of(p, m), m[X], m[U]
+        if q[Q_MODE] == STICK and not is_compliant(q):
+            k, fallen = _wait(q, w, h, k, last, m[TIME], x)
+        else:
+            k, x, u, fallen = _march(q, w, h, k, last, m[TIME], x, u)
+        rows, piece = act(p, m, w, pieces, piece, fallen, k * h, x, u, events, rows)
     return rows
 
 

@@ -7,7 +7,9 @@ import math
 
 from ...compiled import always_compiled
 from .automaton import (
-    DIRECTION, F, F_RATE, Q_MODE, STICK, TIME, U, V, V_RATE, guard_scales, guards, is_compliant, rates,
+    ACCELERATING, COASTING, DIRECTION, F, F_RATE, Q_BAND, Q_BAND_SLOPE, Q_DIRECTION, Q_INITIAL, Q_KNOT_ABOVE,
+    Q_KNOT_BELOW, Q_LOWER, Q_LOWER_SLOPE, Q_MODE, Q_NORMAL, SPEED_SCALE, STICK, TIME, U, V, V_RATE, applied,
+    contact, force_scale, is_compliant, static_margin,
 )
 from .resets import KNOT, classify, move, note, reset, start
 
@@ -20,27 +22,38 @@ def begin(p, m, w, at_start, pieces, events):
 
 
 @always_compiled
-def acceleration(q, w, t, x, u):
-    """Return ẍ at τ = t."""
-    return rates(q, w, t, x, u)[1]
+def look(q, w, per_mass, t, x, u):
+    """Return ẍ at τ = t, and the guard that has fallen there, or −1; one sum of the forces serves both.
+
+    `per_mass` is 1/m, kg⁻¹: what a loop takes out of itself.
+    """
+    mode, direction = q[Q_MODE], q[Q_DIRECTION]
+    force = applied(q, w, t, x, u)
+    if mode == STICK:
+        held = contact(q, x, u) if is_compliant(q) else force
+        return (force - held) * per_mass, 0 if breaks(q, w, t, x, u, held) else -1
+    speed = direction * u
+    lower = direction * force - (q[Q_LOWER] + q[Q_LOWER_SLOPE] * speed)
+    band = q[Q_BAND] + q[Q_BAND_SLOPE] * speed
+    if mode == ACCELERATING:
+        return direction * (lower - band) * per_mass, _first(lower - band, q[Q_KNOT_ABOVE] - speed, q)
+    if mode == COASTING:
+        return 0.0, 1 if band - lower < -force_scale(q) else 0 if lower < -force_scale(q) else -1
+    stopped = speed < -SPEED_SCALE
+    return direction * lower * per_mass, 2 if stopped else _first(-lower, speed - q[Q_KNOT_BELOW], q)
 
 
 @always_compiled
-def holds(q):
-    """Whether the slider stands still in a rigid contact."""
-    return q[Q_MODE] == STICK and not is_compliant(q)
+def breaks(q, w, t, x, u, held):
+    """Whether a contact that is held by a force breaks away at τ = t."""
+    # the static limit only grows from its initial value: below that, its law need not be asked
+    return abs(held) > q[Q_NORMAL] * q[Q_INITIAL] and static_margin(q, w, t, x, u) < -force_scale(q)
 
 
 @always_compiled
-def fallen_guard(q, w, t, x, u):
-    """Return the guard that has fallen at τ = t, or −1."""
-    first, second, third = guards(q, w, t, x, u)
-    scales = guard_scales(q)
-    if third < -scales[2]:
-        return 2
-    if second < -scales[1]:
-        return 1
-    return 0 if first < -scales[0] else -1
+def _first(force, speed, q):
+    """Return which of two guards has fallen, one of force and one of speed, or −1."""
+    return 1 if speed < -SPEED_SCALE else 0 if force < -force_scale(q) else -1
 
 
 @always_compiled

@@ -13,7 +13,7 @@ from ...axis.layout import MASS
 from ...errors import SolverError
 from ..problem import Outcome, Problem
 from .automaton import SIZE, U, X, motion_of
-from .grid import acceleration, act, begin, fallen_guard, holds, next_piece
+from .grid import act, begin, look, next_piece
 from .peer import Peer, Setting, time_steps
 
 _MODEL = """
@@ -29,6 +29,7 @@ _MODEL = """
   </worldbody>
 </mujoco>
 """
+_UNIT = 1.0   # of mass: the force is wanted, not the acceleration
 _MISSING = None if importlib.util.find_spec('mujoco') else 'pip install mujoco'
 
 
@@ -47,24 +48,24 @@ class _Run:
         """Run once."""
         model, data, problem, m, h = self._model, self._data, self._problem, self._m, self._step
         p, w, pieces, events = problem.parameters, problem.waves, problem.pieces, self._events
-        mass = float(p[MASS])
         self._clear(model, data)
         rows, piece = begin(p, m, w, problem.start, pieces, events), 0
         data.qpos[0], data.qvel[0] = m[X], m[U]
-        q, stands = np.array(motion_of(p, m)), holds(np.array(motion_of(p, m)))
+        q = np.array(motion_of(p, m))
+        pull, _ = look(q, w, _UNIT, 0.0, m[X], m[U])
         since, due = 0.0, next_piece(pieces, piece)
         position, velocity, force = data.qpos, data.qvel, data.qfrc_applied
         for k in range(round(problem.duration / h)):
-            force[0] = 0.0 if stands else mass * acceleration(q, w, k * h - since, position[0], velocity[0])
+            force[0] = pull
             self._advance(model, data)
             time = (k + 1) * h
-            fallen = fallen_guard(q, w, time - since, position[0], velocity[0])
+            pull, fallen = look(q, w, _UNIT, time - since, position[0], velocity[0])
             if fallen >= 0 or due <= time:
                 rows, piece = act(p, m, w, pieces, piece, fallen, time, position[0], velocity[0], events, rows)
                 since, due = time, next_piece(pieces, piece)
                 position[0], velocity[0] = m[X], m[U]
                 q = np.array(motion_of(p, m))
-                stands = holds(q)
+                pull, _ = look(q, w, _UNIT, 0.0, m[X], m[U])
                 if rows < 0:
                     raise SolverError('more events than the table holds')
         return Outcome(events[:rows].copy(), float(position[0]))
