@@ -98,6 +98,8 @@ def run_batch(axis: Axis, duration: float, *, drive_velocity: ArrayLike, externa
     """
     initial = initial or InitialState()
     check_start(axis, initial)
+    if threads is not None and not 1 <= threads <= 1024:
+        raise InputError('threads', threads, '1 to 1024', 'leave it out for all cores')
     if not 0.0 < duration < np.inf:
         raise InputError('duration', duration, 'finite and > 0 s', 'give the seconds to simulate')
     velocity, force = _finite('drive_velocity', drive_velocity), _finite('external_force', external_force)

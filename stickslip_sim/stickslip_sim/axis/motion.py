@@ -35,6 +35,7 @@ DECELERATING = float(Mode.DECELERATING)
 TICK = 0.1             # s; a search no longer than that begins with a bound, which mostly ends it
 STAMP = 2.0 ** -51     # s, more than the time of an event is rounded by
 _SIXTH = 1.0 / 6.0
+_LONG = 1e3            # so much longer than the spring's stretch a slide has to be for the balance to be the better one
 _SPLIT = 131073.0      # splits off the upper 36 bits of a number (Dekker 1971)
 
 
@@ -215,6 +216,22 @@ def drive_travel(s, t):
 
 
 @inlined
+def spring_after(p, s, t, drive, y, u, a):
+    """Return the stretch of the spring at t after the anchor, where drive and slider have moved by `drive` and y.
+
+    After a long slide that is the small difference of two long ways; the balance of forces has it with all its digits.
+    """
+    stretch = s[SPRING] + (drive - y)
+    if abs(drive) <= _LONG * abs(stretch) or s[MODE] == STICK or p[STIFFNESS] == 0.0 or s[WAVES] != 0.0:
+        return stretch
+    v = s[V] + s[V_RATE] * t
+    if s[MODE] == COASTING:
+        return s[SPRING] + (0.5 * (s[V] + v) - u) * t
+    force = friction_force(p, s, 0.0, u, 0.0) + p[MASS] * a - (s[F] + s[F_RATE] * t)
+    return (force - p[DAMPING] * (v - u)) / p[STIFFNESS]
+
+
+@inlined
 def move_anchor(p, s, second, fraction, t):
     """Move the anchor by t, to the time (second, fraction), along the present mode."""
     drive = drive_travel(s, t)
@@ -229,9 +246,9 @@ def move_anchor(p, s, second, fraction, t):
     if s[MODE] == STICK:
         s[REST] += t
         s[DEFLECTION] += y
+    s[SPRING] = spring_after(p, s, t, drive, y, u, a)
     s[POSITION] += y
     s[DRIVE] += drive
-    s[SPRING] += drive - y
     s[VELOCITY] = u
     s[ACCELERATION] = a
     s[V] += s[V_RATE] * t

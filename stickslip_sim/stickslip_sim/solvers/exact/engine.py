@@ -11,12 +11,12 @@ import math
 
 from ...axis.layout import (
     ACCOUNTING, AT, COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DEFLECTION, DIRECTION, DRIVE, F, FRACTION, F_RATE,
-    NEAR, LAST, MASS, MODE, NEXT, NEXT_KIND, NORMAL, ORIGIN, POSITION, PROGRESS, REST, SEARCHED, SECOND, SPRING,
-    STATE_SIZE, STORED_AT_START, V, VELOCITY, V_RATE, WAVES,
+    NEAR, LAST, MASS, MODE, NEXT, NEXT_KIND, NORMAL, ORIGIN, POSITION, PROGRESS, REST, SEARCHED, SECOND, STATE_SIZE,
+    STORED_AT_START, V, VELOCITY, V_RATE, WAVES,
 )
 from ...axis.motion import (
     COASTING, STAMP, STICK, begin_motion, drive_force, drive_travel, friction_force, friction_line, move_anchor,
-    piece_above, travel,
+    piece_above, spring_after, travel,
 )
 from ...axis.transitions import (
     ARREST, BREAKAWAY, COAST, KNOT, applied_force, apply_inputs, arrest, choose_slip, cross_knot, force_rounding,
@@ -147,7 +147,7 @@ def sample(p, s, second, fraction, out):
     force = s[F] + s[F_RATE] * t
     if s[WAVES] != 0.0:
         v, force = inputs_at(s, second, fraction, t)
-    pull = drive_force(p, s[SPRING] + (drive - y), v, u)
+    pull = drive_force(p, spring_after(p, s, t, drive, y, u, a), v, u)
     stuck = s[MODE] == STICK
     deflection = s[DEFLECTION] + y if stuck else 0.0
     friction = friction_force(p, s, deflection, u, pull + force)
