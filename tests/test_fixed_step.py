@@ -250,8 +250,8 @@ class TestTooLongSteps:
         with pytest.raises(InputError, match=r'solver.step = 0.03 .* stick of this axis with euler'):
             load_scene('paper_fig8', fixed)
         assert load_scene('paper_fig7', fixed).solver.step == 0.03
-        with pytest.raises(InputError, match=r'0 s for slip'):
-            load_scene('paper_fig7', {**fixed, 'axis.mass': 1e-300})
+        with pytest.raises(InputError, match=r' s for slip'):
+            load_scene('paper_fig7', {**fixed, 'axis.mass': 1e-9})
 
 
 @pytest.mark.parametrize(('method', 'step', 'name'), [
