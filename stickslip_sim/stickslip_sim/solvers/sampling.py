@@ -1,12 +1,12 @@
-"""The row of a sample, for solvers that step."""
+"""The row of a sample, for every solver."""
 
-from ..axis.layout import COMPLIANT, DEFLECTION, DIRECTION, DRIVE, MODE, NORMAL, ORIGIN, POSITION, REST, SPRING
-from ..axis.motion import STICK, drive_force
-from ..compiled import compiled
+from ..axis.layout import COMPLIANT, DEFLECTION, DIRECTION, DRIVE, MODE, NORMAL, ORIGIN, POSITION, REST
+from ..axis.motion import STICK
+from ..compiled import inlined
 
 
-@compiled
-def write_sample(p, s, second, fraction, t, y, u, a, drive, v, force, friction, out):
+@inlined
+def write_sample(p, s, second, fraction, t, y, u, a, drive, v, pull, force, friction, out):
     """Fill a row (`words.Sample` names the columns): t, travel y and drive travel since the state s, the rest at t."""
     stuck = s[MODE] == STICK
     out[0] = second
@@ -18,7 +18,7 @@ def write_sample(p, s, second, fraction, t, y, u, a, drive, v, force, friction, 
     out[6] = a
     out[7] = s[ORIGIN] + (s[DRIVE] + drive)
     out[8] = v
-    out[9] = drive_force(p, s[SPRING] + (drive - y), v, u)
+    out[9] = pull
     out[10] = force
     out[11] = friction
     out[12] = abs(friction) / p[NORMAL] if p[NORMAL] > 0.0 else 0.0

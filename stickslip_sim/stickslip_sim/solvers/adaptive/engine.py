@@ -10,7 +10,7 @@ from ...axis.layout import (
     ACCELERATION, DEFLECTION, DIRECTION, DRIVE, EVENT_FRICTION, EVENT_MODE, EXCESS, FRACTION, MODE, NORMAL, PIECE,
     POSITION, RESIDUAL, REST, SECOND, SPRING, STATIC_INITIAL, VELOCITY,
 )
-from ...axis.motion import ACCELERATING, COASTING, STICK, friction_line, piece_above
+from ...axis.motion import ACCELERATING, COASTING, STICK, drive_force, friction_line, piece_above
 from ...axis.transitions import (
     ACCELERATE, ARREST, BREAKAWAY, COAST, DECELERATE, KNOT, applied_force, apply_inputs, arrest, choose_slip,
     cross_knot, force_rounding, leave_coast, release, turn, write_event,
@@ -94,7 +94,8 @@ class Engine:
         motion = Motion(p, s, self.law)
         now = (0.0, float(s[VELOCITY]))
         v, f = motion.inputs.at(0.0)
-        write_sample(p, s, second, fraction, 0.0, 0.0, now[1], motion.rates(0.0, now)[1], 0.0, v, f,
+        write_sample(p, s, second, fraction, 0.0, 0.0, now[1], motion.rates(0.0, now)[1], 0.0, v,
+                     drive_force(p, s[SPRING], v, now[1]), f,
                      motion.friction(0.0, now), out)
 
     def _integrate(self, motion, t, u):

@@ -10,9 +10,9 @@ in place and return the number of rows in use; `advance` also tells how it ended
 import math
 
 from ...axis.layout import (
-    ACCOUNTING, AT, COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DEFLECTION, DIRECTION, DRIVE, F, FRACTION, F_RATE,
-    NEAR, LAST, MASS, MODE, NEXT, NEXT_KIND, NORMAL, ORIGIN, POSITION, PROGRESS, REST, SEARCHED, SECOND, STATE_SIZE,
-    STORED_AT_START, V, VELOCITY, V_RATE, WAVES,
+    ACCOUNTING, AT, COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DEFLECTION, DIRECTION, F, FRACTION, F_RATE, NEAR,
+    LAST, MASS, MODE, NEXT, NEXT_KIND, NORMAL, ORIGIN, PROGRESS, REST, SEARCHED, SECOND, STATE_SIZE, STORED_AT_START, V,
+    VELOCITY, V_RATE, WAVES,
 )
 from ...axis.motion import (
     COASTING, STAMP, STICK, begin_motion, drive_force, drive_travel, friction_force, friction_line, move_anchor,
@@ -25,6 +25,7 @@ from ...axis.transitions import (
 from ...axis.waves import inputs_at, load_waves, same_waves
 from ...compiled import compiled, inlined
 from .. import DONE, FULL, NO_PROGRESS
+from ..sampling import write_sample
 from .account import book_contact, book_parameters, book_works, read_account
 from .search import find_event
 from .works import contact_energy, stored_energy
@@ -148,24 +149,8 @@ def sample(p, s, second, fraction, out):
     if s[WAVES] != 0.0:
         v, force = inputs_at(s, second, fraction, t)
     pull = drive_force(p, spring_after(p, s, t, drive, y, u, a), v, u)
-    stuck = s[MODE] == STICK
-    deflection = s[DEFLECTION] + y if stuck else 0.0
-    friction = friction_force(p, s, deflection, u, pull + force)
-    out[0] = second
-    out[1] = fraction
-    out[2] = s[MODE]
-    out[3] = s[DIRECTION]
-    out[4] = s[ORIGIN] + (s[POSITION] + y)
-    out[5] = u
-    out[6] = a
-    out[7] = s[ORIGIN] + (s[DRIVE] + drive)
-    out[8] = v
-    out[9] = pull
-    out[10] = force
-    out[11] = friction
-    out[12] = abs(friction) / p[NORMAL] if p[NORMAL] > 0.0 else 0.0
-    out[13] = deflection if p[COMPLIANT] != 0.0 else 0.0
-    out[14] = s[REST] + t if stuck else 0.0
+    friction = friction_force(p, s, s[DEFLECTION] + y, u, pull + force)
+    write_sample(p, s, second, fraction, t, y, u, a, drive, v, pull, force, friction, out)
 
 
 @compiled

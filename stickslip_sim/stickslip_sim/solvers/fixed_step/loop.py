@@ -91,9 +91,10 @@ def sample(p, s, second, fraction, out):
     if t > 0.0:
         y, u, drive = step(p, s, t)
     v, f = inputs_at(s, second, fraction)
-    applied = drive_force(p, s[SPRING] + (drive - y), v, u) + f
+    pull = drive_force(p, s[SPRING] + (drive - y), v, u)
+    applied = pull + f
     friction = friction_at(p, s, applied, u, s[DEFLECTION] + y)
-    write_sample(p, s, second, fraction, t, y, u, (applied - friction) / p[MASS], drive, v, f, friction, out)
+    write_sample(p, s, second, fraction, t, y, u, (applied - friction) / p[MASS], drive, v, pull, f, friction, out)
 
 
 @compiled
