@@ -36,11 +36,6 @@ class SteadyClock:
     sleep = staticmethod(time.sleep)
 
 
-def wall_clock_ns() -> int:
-    """Return the time of day, ns since 1970 (what ROS time is without a simulated clock)."""
-    return time.time_ns()
-
-
 def utc_stamp() -> str:
     """Return the time of day as a part of a folder name, to the second."""
     return time.strftime('%Y%m%dT%H%M%SZ', time.gmtime())

@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 
 SCENE_FILE = 'scene.yaml'
 RECEIPT_FILE = 'receipt.json'
-METADATA = 'stickslip'  # name of the record in the file
 _LIBRARIES = ('numpy', 'numba', 'mcap', 'rosbags')
 
 

@@ -56,7 +56,7 @@ def forced_event(p, s, due):
         s[ITERATIONS] += 1.0
         f, rate, bend, reach, size, decay, noise, gained = read_signal(p, s, osc, signal, t)
         if gained >= gap:
-            _set_event(s, _knot_root(p, s, osc, signal, gap, before, t), _passed_kind(s))
+            _set_event(s, _root(p, s, osc, signal, 0.0, gap, t, before, t), _passed_kind(s))
             return
         top, top_rate, bow, floor, floor_rate = _limits(p, s, t)
         if top == floor and top_rate == 0.0 and bow == 0.0 and s[MODE] == STICK:   # nothing holds
@@ -86,7 +86,7 @@ def forced_event(p, s, due):
         if high <= t + reach and high < math.inf:
             low = before if value <= 0.0 else t
             hovered = value <= 0.0 and value_before <= 0.0
-            root = before if hovered else _root(p, s, osc, signal, side, low, high)
+            root = before if hovered else _root(p, s, osc, signal, side, 0.0, low, low, high)
             _conclude(p, s, osc, signal, slips, side, gap, low, root)
             return
         s[PROGRESS] = t
@@ -213,14 +213,16 @@ def _root_at_last(p, s, value, fall, swing, noise, t):
 
 
 @compiled
-def _root(p, s, osc, signal, side, low, high):
-    """Return the root of a gap that is positive at low and not at high: Newton's step inside a shrinking bracket."""
-    t, before = low, 2.0 * (high - low)
+def _root(p, s, osc, signal, side, gap, t, low, high):
+    """Return the root, between low and high, of what is positive at low and not at high; the search begins at t.
+
+    That is the gap from a limit (`side` 1: top, −1: floor), or what a slip's speed has still to gain of `gap` (0).
+    Newton's step inside a shrinking bracket.
+    """
+    before = 2.0 * (high - low)
     for _ in range(_ITERATIONS):
         s[ITERATIONS] += 1.0
-        f, rate, bend, _, _, _, _, _ = read_signal(p, s, osc, signal, t)
-        top, top_rate, bow, floor, floor_rate = _limits(p, s, t)
-        value, fall = (top - f, top_rate - rate) if side > 0.0 else (f - floor, rate - floor_rate)
+        value, fall, curve, change = _reading(p, s, osc, signal, side, gap, t)
         if value > 0.0:
             low = t
         else:
@@ -228,7 +230,7 @@ def _root(p, s, osc, signal, side, low, high):
         guess = t - value / fall if fall < 0.0 else math.inf
         size = abs(guess - t)
         if low <= guess <= high and size <= 0.5 * before:
-            if size * size * (bend + bow) <= 0.2 * _EPSILON * t * -fall:
+            if size * size * (curve + change * size) <= 0.2 * _EPSILON * t * -fall:
                 return guess
         else:
             guess = 0.5 * (low + high)
@@ -242,31 +244,15 @@ def _root(p, s, osc, signal, side, low, high):
 
 
 @compiled
-def _knot_root(p, s, osc, signal, gap, low, high):
-    """Return when the speed that was gained passes the gap, between low and high: the same step, on the speed."""
-    t, before = high, 2.0 * (high - low)
-    for _ in range(_ITERATIONS):
-        s[ITERATIONS] += 1.0
-        rise, slope, bend, _, _, _, _, gained = read_signal(p, s, osc, signal, t)
-        value = gained - gap
-        if value < 0.0:
-            low = t
-        else:
-            high = t
-        guess = t - value / rise if rise > 0.0 else math.inf
-        size = abs(guess - t)
-        if low <= guess <= high and size <= 0.5 * before:
-            if size * size * (abs(slope) + bend * size) <= 0.2 * _EPSILON * t * rise:
-                return guess
-        else:
-            guess = 0.5 * (low + high)
-            size = abs(guess - t)
-            if guess <= low or guess >= high:
-                return guess
-        if size <= _EPSILON * t:
-            return guess
-        before, t = size, guess
-    return t
+def _reading(p, s, osc, signal, side, gap, t):
+    """Return what `_root` seeks the zero of, its rate, and bounds on its second and third derivative at t."""
+    f, rate, bend, _, _, _, _, gained = read_signal(p, s, osc, signal, t)
+    if side == 0.0:
+        return gap - gained, -f, abs(rate), bend
+    top, top_rate, bow, floor, floor_rate = _limits(p, s, t)
+    if side > 0.0:
+        return top - f, top_rate - rate, bend + bow, 0.0
+    return f - floor, rate - floor_rate, bend + bow, 0.0
 
 
 @compiled
@@ -280,6 +266,6 @@ def _conclude(p, s, osc, signal, slips, side, gap, low, root):
         return
     gained = read_signal(p, s, osc, signal, root)[7]
     if gained >= gap:
-        _set_event(s, _knot_root(p, s, osc, signal, gap, min(low, root), root), _passed_kind(s))
+        _set_event(s, _root(p, s, osc, signal, 0.0, gap, root, min(low, root), root), _passed_kind(s))
     else:
         _set_event(s, root, COAST)
