@@ -4,11 +4,15 @@ from collections import deque
 from typing import Protocol
 
 from rclpy.node import Node
+from rclpy.serialization import deserialize_message
+
+from stickslip_msgs.msg import FrictionForce, ModeEvent, SliderState
 
 from ..recording import flat_layout
 from ..recording import topics as names
 from ..recording.messages import Packer
 from ..recording.topics import RECORDED, Topic
+from ..rig import Product
 from ..words import Event, EventKind, Mode, Sample
 from .topics import publisher
 
@@ -33,13 +37,24 @@ class Outlet:
         self._state = _Port(node, names.SLIDER_STATE)
         self._friction = _Port(node, names.FRICTION_FORCE)
         self._event = _Port(node, names.MODE_EVENT)
+        self._time_ns = 0     # of the latest state
         self._commands = [(RECORDED.index(topic), flat_layout(topic.type))
                           for topic in (names.DRIVE_VELOCITY, names.EXTERNAL_FORCE)]
 
     def begin_run(self, start_ns: int) -> None:
         """Let simulation time 0 be a ROS time, ns, and forget the events."""
         self.start_ns = start_ns
+        self._time_ns = 0
         self.events.clear()
+
+    def take(self, product: Product) -> None:
+        """Record the commands of a step; publish and record its events, and the state at its end."""
+        for kind, value in enumerate((product.velocity, product.force)):
+            if value is not None and self.recorder is not None:
+                self.command(kind, product.step, self._time_ns, value)
+        for event in product.events:
+            self.event(max(product.step, 1), event)
+        self.sample(product.step, product.sample)
 
     def event(self, step: int, event: Event) -> None:
         """Publish an event that fell into a step; knots of the friction table are nobody's business."""
@@ -52,9 +67,21 @@ class Outlet:
         """Publish the state at the end of a step."""
         if step == 0:
             self.first_mode = sample.mode
-        time_ns = sample.instant.nanoseconds
+        time_ns = self._time_ns = sample.instant.nanoseconds
         self._send(self._state, time_ns, step, sample)
         self._send(self._friction, time_ns, step, sample)
+
+    def state_messages(self, step: int, sample: Sample) -> tuple[SliderState, FrictionForce]:
+        """Return the messages of a state."""
+        stamp_ns = self.start_ns + sample.instant.nanoseconds
+        return (deserialize_message(self._state.pack(stamp_ns, step, sample), SliderState),
+                deserialize_message(self._friction.pack(stamp_ns, step, sample), FrictionForce))
+
+    def event_message(self, step: int, event: Event) -> ModeEvent | None:
+        """Return the message of an event that is published."""
+        if event.kind == EventKind.KNOT:
+            return None
+        return deserialize_message(self._event.pack(self.start_ns + event.instant.nanoseconds, step, event), ModeEvent)
 
     def command(self, kind: int, step: int, time_ns: int, value: float) -> None:
         """Record a command that holds from the begin of a step on."""
