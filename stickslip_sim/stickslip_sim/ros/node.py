@@ -148,7 +148,8 @@ class FeedAxis(SceneNode):
     def _receipt(self) -> dict[str, Any]:
         cost = (time.process_time() - self._cpu, time.monotonic() - self._wall)
         try:
-            return run_receipt(self.scene, self.loop, self._outlet, self._record_service.recordings.total_dropped, cost)
+            dropped = self._record_service.recordings.total_dropped
+            return run_receipt(self.scene, self.loop, self._outlet, dropped, cost)
         except SolverError as error:    # the state has left the range of numbers
             return {'failure': str(error)}
 
