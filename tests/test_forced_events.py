@@ -7,9 +7,10 @@ from typing import Any
 
 import pytest
 
-from stickslip_sim.axis import CompliantContact
+from stickslip_sim.axis import CompliantContact, InitialState
 from stickslip_sim.courses import Course, constant, steps
 from stickslip_sim.grazing import FREQUENCIES, PHASES, grazing_drive
+from stickslip_sim.reference import simulate
 from stickslip_sim.words import EventKind, Instant, Mode
 from tests.axes import COMPLIANT, RIGID, instant, make, paper_axis, random_axis, run
 from tests.conftest import Program
@@ -43,6 +44,18 @@ def test_a_blow_on_top_of_a_sine_is_not_missed(contact: Any) -> None:
         events = run(paper_axis(contact), 0.0, 6.0, blow)
         assert events[0].kind is EventKind.BREAKAWAY
         assert t <= events[0].time <= t + 0.002
+
+
+@pytest.mark.parametrize(('amplitude', 'frequency', 'phase'), [(900.0, 0.7, 0.3), (850.0, 1.1, 2.0)])
+def test_a_slip_that_begins_where_friction_is_continuous_goes_the_way_the_force_moves_then(
+        amplitude: float, frequency: float, phase: float) -> None:
+    """At such a break-away nothing but the force's rate at that very instant says that the slider slips."""
+    pytest.importorskip('mpmath')
+    axis, push = paper_axis(RIGID), with_waves(constant(0.0), (amplitude, frequency, phase))
+    events, expected = run(axis, 0.0, 4.0, push), simulate(axis, InitialState(), constant(0.0), push, 4.0).events
+    assert [(e.kind, e.mode, e.direction) for e in events] == [(e.kind, e.mode, e.direction) for e in expected]
+    assert all(abs(a.time - b.time) <= 1e-12 for a, b in zip(events, expected))
+    assert len(events) > 15
 
 
 def test_a_short_wave_on_a_slow_one_is_found_where_their_peaks_meet() -> None:
