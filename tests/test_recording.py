@@ -24,7 +24,7 @@ from tests.recorded_runs import FACTS, events, friction_force, mode_event, sampl
 
 COUNTS = {
     '/slider_state': 120, '/friction_force': 120, '/mode_event': 5, '/drive_velocity': 2, '/external_force': 3,
-    '/run_info': 1, '/timing': 0, '/parameter_events': 0,
+    '/rig_event': 0, '/run_info': 1, '/timing': 0, '/parameter_events': 0,
 }
 Values = dict[str, Any]
 
