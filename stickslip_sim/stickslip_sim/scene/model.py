@@ -1,6 +1,7 @@
 """A scene: everything that decides a run, checked and ready for the simulator."""
 
 from dataclasses import dataclass, field
+from fractions import Fraction
 
 from ..axis import Axis, InitialState
 from ..courses import Course
@@ -14,6 +15,11 @@ class TimeSettings:
     mode: str
     rate: float
     factor: float
+
+    @property
+    def step(self) -> Fraction:
+        """Simulation time of a step, s, exactly."""
+        return 1 / Fraction(repr(self.rate))
 
 
 @dataclass(frozen=True, slots=True)
