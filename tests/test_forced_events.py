@@ -68,7 +68,7 @@ def test_a_year_under_a_sine_below_the_limit(contact: Any) -> None:
     assert simulator.root_iterations < 50
     sample = simulator.sample()
     assert sample.external_force == pytest.approx(100.0 + 500.0 * math.sin(0.5), rel=1e-13)
-    simulator.command_velocity(0.001)
+    simulator.command_drive(0.001)
     broken = simulator.advance(Instant(year.second + 2.0, 0.0))
     assert broken[0].kind is EventKind.BREAKAWAY
     if contact is RIGID:
@@ -138,12 +138,12 @@ def test_a_command_ends_the_waves_of_its_course_only() -> None:
                      with_waves(constant(0.0), (50.0, 2.0, 0.3)))
     simulator.advance(instant(0.4))
     before = simulator.sample()
-    simulator.command_velocity(0.001)
+    simulator.command_drive(0.001)
     after = simulator.sample()
     assert (after.drive_velocity, after.external_force) == (0.001, before.external_force)
     assert after.drive_position == before.drive_position
     for _ in range(3):
-        simulator.command_velocity(0.001)   # the same again: no bit changes
+        simulator.command_drive(0.001)   # the same again: no bit changes
         assert simulator.sample() == after
 
 

@@ -9,27 +9,25 @@ from stickslip_sim.errors import RecordingError
 from stickslip_sim.recording import (
     RECORDED,
     BagWriter,
-    MessageCodec,
     columns_of,
     events_of,
-    messages,
     read_run,
     recorded,
     schema,
 )
+from stickslip_sim.recording.messages import Packer
 from stickslip_sim.recording.schemas import store_of
 from stickslip_sim.recording.topics import MODE_EVENT, SLIDER_STATE
 from stickslip_sim.words import EventKind
 from tests.recorded_runs import events
 
 
-def with_events(folder: Path, namespace: str, **changes: object) -> Path:
+def with_events(folder: Path, namespace: str, **changes: int) -> Path:
     """Write the transitions of the made-up run, with other fields."""
-    codec = MessageCodec([MODE_EVENT.type])
+    packer = Packer(MODE_EVENT)
     writer = BagWriter(folder, recorded(namespace), {}, {})
     for event in events():
-        fields = {**messages.mode_event(1, event, 0), **changes}
-        writer.write(RECORDED.index(MODE_EVENT), codec.encode(MODE_EVENT.type, fields), 0, 0, 1)
+        writer.write(RECORDED.index(MODE_EVENT), packer.pack(0, 1, event._replace(**changes)), 0, 0, 1)
     writer.close()
     return folder
 
