@@ -148,7 +148,8 @@ class FeedAxis(SceneNode):
     def _receipt(self) -> dict[str, Any]:
         cost = (time.process_time() - self._cpu, time.monotonic() - self._wall)
         try:
-            return run_receipt(self.scene, self.loop, self._outlet, self._record_service.recordings.total_dropped, cost)
+            dropped = self._record_service.recordings.total_dropped
+            return run_receipt(self.scene, self.loop, self._outlet, dropped, cost)
         except SolverError as error:    # the state has left the range of numbers
             return {'failure': str(error)}
 
@@ -157,7 +158,8 @@ class FeedAxis(SceneNode):
         second = self._reporter.look(self._step_clock.now())
         judged = verdict(self.scene, self.loop)
         self._tell_troubles(second)
-        message = reports.timing_message(second, self.loop, self._step_clock.period * 1e-9, bool(judged.valid), stamp_ns)
+        period = self._step_clock.period * 1e-9
+        message = reports.timing_message(second, self.loop, period, bool(judged.valid), stamp_ns)
         self._timing_out.publish(message)
         self._record(names.TIMING, message, max(self.loop.step, 0))
         events, recordings = self._outlet.events, self._record_service.recordings
