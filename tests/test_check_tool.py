@@ -12,7 +12,7 @@ import pytest
 from stickslip_sim.check.kinds import KINDS
 from stickslip_sim.cli.main import run
 from stickslip_sim.offline import run_offline
-from stickslip_sim.recording import BagWriter, OfflineBag, RunFacts, topics, write_bag
+from stickslip_sim.recording import BagWriter, OfflineBag, RunFacts, read_run, topics, write_bag
 from stickslip_sim.scene import load_scene
 from stickslip_sim.words import Sample
 from tests.check_files import limits_file
@@ -88,6 +88,14 @@ class TestOutcome:
                                limits_file(tmp_path, LIMITS))
         assert (code, out.splitlines()[-1]) == (3, 'FAILED: 1 of 3: longest_stick')
         assert '0 transitions' in out
+
+    def test_faults_are_told_to_be_left_out(self, tmp_path: Path, capsys: Capture) -> None:
+        fault = ['faults.ids=[pulse]', 'faults.kinds=[force_pulse]', 'faults.starts=[0.1]', 'faults.durations=[0.1]',
+                 'faults.values=[100.0]']
+        sets = [word for change in fault for word in ('--set', change)]
+        _, out, _ = checked(capsys, 'paper_fig7', '--duration', DURATION, *sets, '--limits',
+                            limits_file(tmp_path, LIMITS))
+        assert out.splitlines()[1].startswith('note: the faults of this scene act in the node only')
 
     def test_junit(self, tmp_path: Path, capsys: Capture) -> None:
         path = tmp_path / 'c.xml'
@@ -213,7 +221,7 @@ class TestRefusals:
         ('limits: {peak_speed: {target: 0.0, max: 1.0}}', ['peak_speed.target', 'one of check, max, window']),
         ('limits: {timing: invalid}', ["timing = 'invalid'", 'valid']),
         ('limits: {timing: {max: 1}}', ['timing', 'valid']),
-        ('limits: {timing: valid}', ['timing', 'recorded by the node', 'drop this limit']),
+        ('limits: {timing: valid}', ['timing', 'the node recorded in real time', 'drop this limit']),
         ('target: far\n' + LIMITS, ["target = 'far'", 'a number']),
         ('window: 3\n' + LIMITS, ['window = 3', 'begin, end']),
         ('window: {start: 3.0}\n' + LIMITS, ['window.start = 3.0', 'begin, end']),
@@ -290,11 +298,11 @@ class TestRefusals:
         write_bag(tmp_path / 'two', RunFacts.of(scene), rows + rows, [], {})
         assert 'time goes back' in refused(capsys, tmp_path / 'two', '--limits', limits_file(tmp_path, LIMITS))
 
-    @pytest.mark.parametrize('timing', [None, {'steps': 3}, 'good'])
+    @pytest.mark.parametrize('timing', [None, {'steps': 3}, {'valid': None, 'verdict': 'not in real time'}, 'good'])
     def test_a_bag_without_a_verdict(self, timing: object, tmp_path: Path, capsys: Capture) -> None:
         folder = node_bag(tmp_path / 'run', timing)
         line = refused(capsys, folder, '--limits', limits_file(tmp_path, 'limits: {timing: valid}'))
-        assert 'only a run recorded by the node' in line
+        assert 'only a run that the node recorded in real time' in line
 
 
 @pytest.mark.ros
@@ -302,8 +310,9 @@ def test_a_run_of_the_node_has_the_figures_of_the_simulation(tmp_path: Path, cap
     from tests.ros_nodes import client, running
 
     folder = tmp_path / 'run'
-    limits = limits_file(tmp_path, 'window: {end: 1.0}\nlimits: {following_error: {max: 1.0}, sticks: {max: 1},'
-                                   ' longest_stick: {max: 1.0}, peak_speed: {max: 1.0}}')
+    text = 'window: {end: 1.0}\nlimits: {' + ''.join(
+        f'{name}: {{max: 1}}, ' for name in ('following_error', 'sticks', 'longest_stick', 'peak_speed')) + '}'
+    limits = limits_file(tmp_path, text)
     with running('-r', '__ns:=/cell', '-p', 'scene:=paper_fig7', '-p', 'record.enabled:=true', '-p',
                  f'record.folder:={folder}') as process, client('/cell') as axis:
         axis.connect()
@@ -315,3 +324,8 @@ def test_a_run_of_the_node_has_the_figures_of_the_simulation(tmp_path: Path, cap
         assert code == 0
         found.append(json.loads(out)['limits'])
     assert found[0] == found[1]
+    (tmp_path / 'timing.yaml').write_text('limits: {timing: valid}')
+    code, out, _ = checked(capsys, folder, '--limits', tmp_path / 'timing.yaml')
+    receipt = read_run(folder).receipt['timing']
+    assert code == (0 if receipt['valid'] else 3)
+    assert receipt['verdict'] in out

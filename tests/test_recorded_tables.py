@@ -1,6 +1,7 @@
 """States and transitions read back from runs: of any namespace, and refused when another version wrote them."""
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 from rosbags.rosbag2 import StoragePlugin, Writer
@@ -22,7 +23,7 @@ from stickslip_sim.words import EventKind
 from tests.recorded_runs import events
 
 
-def with_events(folder: Path, namespace: str, **changes: int) -> Path:
+def with_events(folder: Path, namespace: str, **changes: Any) -> Path:
     """Write the transitions of the made-up run, with other fields."""
     packer = Packer(MODE_EVENT)
     writer = BagWriter(folder, recorded(namespace), {}, {})

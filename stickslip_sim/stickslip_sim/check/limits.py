@@ -74,7 +74,7 @@ def limits_of(document: object) -> Limits:
 def check_fit(limits: Limits, begin: float, end: float, has_timing: bool) -> None:
     """Raise InputError when a limit is set for what a run from `begin` to `end` (s) does not have."""
     if limits.timing and not has_timing:
-        raise InputError(TIMING, _VALID, 'left out here: only a run recorded by the node has a verdict on its timing',
+        raise InputError(TIMING, _VALID, 'left out here: only a run that the node recorded in real time has a verdict',
                          'drop this limit')
     for limit in limits.limits:
         for edge, time in zip(Window._fields, limit.window):

@@ -18,6 +18,7 @@ from ..words import EventKind, Mode
 from .motion import Motion
 
 _STATE_FIELDS = ('step', 'time', 'position', 'velocity', 'drive_position', 'mode')
+_NO_FAULTS = 'the faults of this scene act in the node only; this simulation is without them'
 
 
 @dataclass(frozen=True)
@@ -34,7 +35,7 @@ class Evidence:
 
     name: str
     motion: Motion
-    timing: Timing | None = None    # None: no clock took part
+    timing: Timing | None = None    # None: no verdict, for no clock was to be kept
     is_complete: bool = True
     notes: tuple[str, ...] = ()     # for people: what is missing
 
@@ -42,9 +43,10 @@ class Evidence:
 def simulated(run: Trajectory) -> Evidence:
     """Return the motion of an offline run with samples."""
     columns = run.samples
-    return Evidence(run.scene.name, Motion(
+    motion = Motion(
         0.0, run.duration, Mode(int(columns['mode'][0])), columns['time'], columns['position'], columns['velocity'],
-        columns['drive_position'], [event for event in run.events if event.kind != EventKind.KNOT]))
+        columns['drive_position'], [event for event in run.events if event.kind != EventKind.KNOT])
+    return Evidence(run.scene.name, motion, notes=(_NO_FAULTS,) if run.scene.rig.faults else ())
 
 
 def recorded(path: str) -> Evidence:
@@ -87,7 +89,7 @@ def _timing(run: Run) -> Timing | None:
         timing = run.receipt.get('timing')
     except (TypeError, ValueError):   # an attachment of somebody else
         return None
-    if not isinstance(timing, dict) or 'valid' not in timing:
+    if not isinstance(timing, dict) or timing.get('valid') is None:   # None: not in real time
         return None
     return Timing(timing['valid'] is True, _printable(str(timing.get('verdict', ''))))
 
