@@ -1,6 +1,7 @@
 """A scene: everything that decides a run, checked and ready for the simulator."""
 
 from dataclasses import dataclass, field
+from fractions import Fraction
 
 from ..axis import Axis, InitialState
 from ..courses import Course
@@ -26,6 +27,11 @@ class TimeSettings:
     def makes_clock(self) -> bool:
         """Whether simulation time is the time of the ROS graph."""
         return self.mode != 'realtime'
+
+    @property
+    def step(self) -> Fraction:
+        """Simulation time of a step, s, exactly."""
+        return 1 / Fraction(repr(self.rate))
 
 
 @dataclass(frozen=True, slots=True)
