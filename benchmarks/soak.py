@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .hil.measure import bag_figures, node_figures
-from .hil.process import control, node_command, resident, running
+from .hil.process import SCENE, control, node_command, resident, running
 from .loop import machine
 
 RATE = 1000.0    # 1/s
@@ -102,7 +102,7 @@ def page(minutes: float, figures: Mapping[str, float]) -> str:
         '# The soak', '',
         f'Written by `python3 -m benchmarks.soak --minutes {minutes:g}` (`make soak`) on',
         f'{machine()}.', '',
-        f'`sim_node` on `paper_fig8` at {RATE:g} steps a second with its recording, for {minutes:g} minutes; a',
+        f'`sim_node` on `{SCENE}` at {RATE:g} steps a second with its recording, for {minutes:g} minutes; a',
         'controller in a process of its own answers every state with a drive velocity.  What grows while the node',
         'records: the index of the bag, which MCAP writes at its end, and the events that the figures of the run are',
         'made of (the last 20 000 at most).', '',

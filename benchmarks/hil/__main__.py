@@ -8,14 +8,15 @@ import json
 import sys
 from pathlib import Path
 
+from stickslip_sim.scene import load_scene
+
 from ..loop import machine
 from .measure import measure, summary
 from .page import RATE, page
-from .process import COMMANDS, SIMULATING
+from .process import COMMANDS, SCENE, SIMULATING
 
 RATES = (1000, 2000, 4000, 6000, 8000, 10_000, 12_000)
 TOLERANCE = 1e-3                                    # of the rate: two looks at a step and a clock, ms apart
-MOST_OVERRUNS = 0.05                                # of the steps; the node's diagnostics warn beyond it
 Figures = dict[str, float]
 
 
@@ -29,7 +30,7 @@ def main() -> None:
     rates = search(options.seconds)
     found = {'machine': machine(), 'seconds': options.seconds, 'repeats': options.repeats, 'runs': runs,
              'cases': {case: summary(figures) for case, figures in runs.items()}, 'rates': rates,
-             'breaks': {rate: loss(float(rate), figures) or lag(figures) for rate, figures in rates.items()}}
+             'troubles': {rate: (loss(float(rate), figures), lag(figures)) for rate, figures in rates.items()}}
     for file, text in ((options.json, json.dumps(found, indent=1) + '\n'), (options.out, page(found))):
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(text, encoding='utf-8')
@@ -53,10 +54,10 @@ def loss(rate: float, figures: Figures) -> str:
 
 
 def lag(figures: Figures) -> str:
-    """Return why the steps are not real time although none is lost, or an empty text."""
-    if figures['overruns'] <= MOST_OVERRUNS:
+    """Return that more steps are late than the scene allows, or an empty text."""
+    if figures['overruns'] <= load_scene(SCENE).timing.max_overruns:
         return ''
-    return f'no step lost, but {figures["overruns"]:.0%} begin more than a period late'
+    return f'{figures["overruns"]:.1%} of the steps begin more than a period late'
 
 
 def tell(name: str, figures: Figures) -> Figures:

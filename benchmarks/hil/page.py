@@ -1,9 +1,10 @@
 """The page with the figures of the bench: docs/hil_figures.md."""
 
 from collections.abc import Callable, Mapping
+from itertools import takewhile
 from typing import Any, NamedTuple
 
-from .process import BARE, RECORDING_BARE, SIMULATING
+from .process import BARE, RECORDING_BARE, SCENE, SIMULATING
 
 Figures = Mapping[str, float]
 RATE = 1000.0           # 1/s, of the comparison
@@ -43,7 +44,7 @@ COLUMNS = (
 _LEGEND = (
     'CPU: user and system time of the whole process of the node, per step.  Unheard: steps that the controller did not',
     'receive.  Unrecorded: steps that are not in the bag.  Overruns: share of the steps that began more than a period',
-    'late.  Waited: how long threads of the node that could run had no core, which is where overruns come from.',
+    'late.  Waited: how long threads of the node that could run had no core.',
     'Latency, as the node tells on `timing`: from the arrival of a command to the first published state that it moved.',
     'Answer to effect, as the controller sees it: from the state that it answered to the first state that moved.',
 )
@@ -57,7 +58,7 @@ def page(found: Mapping[str, Any]) -> str:
         f'Written by `python3 -m benchmarks.hil --seconds {seconds} --repeats {repeats}` on',
         f'{found["machine"]}.', '',
         '## Beside a bare node', '',
-        f'At 1 kHz, in turns, {seconds} s each, {repeats} times: `sim_node` on `paper_fig8` with its default topics',
+        f'At 1 kHz, in turns, {seconds} s each, {repeats} times: `sim_node` on `{SCENE}` with its default topics',
         'and its recording; and a node with the same loop (thread, absolute deadlines, EventsExecutor beside it) that',
         'fills and publishes the same two messages with rclpy and simulates nothing.  A controller in a process of its',
         'own answers every state with a drive velocity.  Medians; sums of unheard and unrecorded, the worst of maxima.',
@@ -66,7 +67,7 @@ def page(found: Mapping[str, Any]) -> str:
         '## The highest rate', '',
         f'`sim_node` alone, {seconds} s at each rate, up to the first at which steps are lost or come behind their',
         'clock.  The controller answers 1000 states a second.', '',
-        *table('rate, 1/s', found['rates']), '', *highest(found['breaks']), ''])
+        *table('rate, 1/s', found['rates']), '', *highest(found['troubles']), ''])
 
 
 def table(first: str, rows: Mapping[str, Figures]) -> list[str]:
@@ -87,8 +88,15 @@ def verdict(cases: Mapping[str, Figures]) -> list[str]:
             f' (median; mark: at most {LATENCY_MARK:g} steps).']
 
 
-def highest(breaks: Mapping[str, str]) -> list[str]:
-    """Say which rates hold, given what breaks each, or an empty text."""
-    holding = [rate for rate, reason in breaks.items() if not reason]
-    return [f'* {rate} 1/s: {reason or "holds"}' for rate, reason in breaks.items()] + [
-        '', f'The highest rate that holds: {holding[-1] if holding else "none"} 1/s.']
+def highest(troubles: Mapping[str, tuple[str, str]]) -> list[str]:
+    """Say which rates hold, given for each what is lost and what is late, empty texts where nothing is."""
+    whole = list(takewhile(lambda rate: not troubles[rate][0], troubles))
+    valid = list(takewhile(lambda rate: not any(troubles[rate]), troubles))
+    told = {rate: '; '.join(filter(None, both)) or 'holds' for rate, both in troubles.items()}
+    return [*(f'* {rate} 1/s: {text}' for rate, text in told.items()), '',
+            f'The highest rate with no more late steps than the scene allows (`timing.max_overruns`): {_last(valid)}.',
+            f'The highest at which no step is lost: {_last(whole)}.']
+
+
+def _last(rates: list[str]) -> str:
+    return f'{rates[-1]} 1/s' if rates else 'none'

@@ -11,12 +11,13 @@ from pathlib import Path
 
 from ..loop import executable
 
+SCENE = 'paper_fig8'
 PATIENCE = 60.0    # s for a process to end
 
 
 def node_command(rate: float, folder: Path) -> list[str]:
     """Return how to start the installed node on the paper's scene, recording into a folder."""
-    return [executable('sim_node'), '--ros-args', '--log-level', 'error', '-p', 'scene:=paper_fig8',
+    return [executable('sim_node'), '--ros-args', '--log-level', 'error', '-p', f'scene:={SCENE}',
             '-p', f'time.rate:={rate}', '-p', 'record.enabled:=true', '-p', f'record.folder:={folder}']
 
 
