@@ -34,7 +34,7 @@ bench: build  ## measure every solver beside its peers, and the loop of the node
 	@ros2_ws/bootstrap --bench
 	@$(HERE) python3 -m stickslip_sim bench --out runs/bench
 	@$(HERE) --own-domain python3 benchmarks/tick.py --json runs/bench/bench.json
-	@$(HERE) python3 benchmarks/accuracy.py runs/bench
+	@$(HERE) python3 -m benchmarks.accuracy runs/bench
 	@$(HERE) --own-domain python3 benchmarks/loop.py
 
 clean:  ## remove everything that was set up, built or cached in this tree

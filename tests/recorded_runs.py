@@ -5,6 +5,7 @@ import time
 from collections.abc import Iterator
 from typing import Any
 
+from stickslip_sim.recording.messages import Fields, header
 from stickslip_sim.recording.run import RunFacts
 from stickslip_sim.words import Event, EventKind, Mode, Sample
 
@@ -28,6 +29,27 @@ def events() -> list[Event]:
               i + 0.6, i + 0.7)
         for i, time in enumerate(times)
     ] + [Event(0.0, 0.0995, EventKind.KNOT, Mode.ACCELERATING, 1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)]
+
+
+def slider_state(step: int, sample: Sample, stamp_ns: int) -> Fields:
+    """Return the fields of SliderState at the end of a step."""
+    names = ('time', 'position', 'velocity', 'acceleration', 'drive_position', 'drive_velocity', 'drive_force',
+             'rest_time', 'mode', 'direction')
+    return {'header': header(stamp_ns), 'step': step, **{name: getattr(sample, name) for name in names}}
+
+
+def friction_force(step: int, sample: Sample, stamp_ns: int) -> Fields:
+    """Return the fields of FrictionForce at the end of a step."""
+    names = ('time', 'contact_deflection', 'mode', 'direction')
+    return {'header': header(stamp_ns), 'step': step, 'force': sample.friction_force,
+            'coefficient': sample.friction_coefficient, **{name: getattr(sample, name) for name in names}}
+
+
+def mode_event(step: int, event: Event, stamp_ns: int) -> Fields:
+    """Return the fields of ModeEvent."""
+    names = ('time', 'kind', 'mode', 'direction', 'position', 'velocity', 'drive_force', 'friction_force',
+             'static_coefficient', 'rest_time')
+    return {'header': header(stamp_ns), 'step': step, **{name: getattr(event, name) for name in names}}
 
 
 def wait_for(look: Any, timeout: float = 10.0) -> Any:

@@ -142,10 +142,10 @@ class Client:
         self._executor.shutdown()
         self.node.destroy_node()
 
-    def connect(self) -> None:
-        """Wait until a node hears the commands and is heard."""
+    def connect(self, is_moving: bool = True) -> None:
+        """Wait until a node hears the commands and is heard; without states while its time stands still."""
         wait_for(lambda: self._velocity.get_subscription_count() and self._force.get_subscription_count()
-                 and self.heard['slider_state'] and self.heard['run_info'], 'the node')
+                 and (self.heard['slider_state'] or not is_moving) and self.heard['run_info'], 'the node')
 
     def latest(self, topic: str) -> Any:
         return self.heard[topic][-1]
@@ -161,7 +161,7 @@ class Client:
     def send_force(self, force: float) -> None:
         self._force.publish(ExternalForce(force=force))
 
-    def call(self, kind: Any, name: str, **request: Any) -> Any:
+    def call(self, kind: Any, name: str, /, **request: Any) -> Any:
         client = self.node.create_client(kind, f'feed_axis/{name}')
         try:
             assert client.wait_for_service(DEADLINE), name

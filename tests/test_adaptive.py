@@ -72,7 +72,7 @@ class TestAgainstTheExactEngine:
             events = simulator.advance(instant(1.2))
             simulator.command_force(70.0)
             events += simulator.advance(instant(1.7))
-            simulator.command_velocity(0.004)
+            simulator.command_drive(0.004)
             simulator.change_axis(replace(axis, mass=200.0, contact=COMPLIANT if contact is RIGID else RIGID))
             events += simulator.advance(instant(2.5))
             runs.append(([e for e in events if e.kind != EventKind.KNOT], simulator.sample()))

@@ -174,7 +174,7 @@ def test_a_jump_of_an_input_stores_nothing() -> None:
     simulator = accounted(paper_axis(COMPLIANT), constant(0.002))
     simulator.advance(Instant(0.8, 0.0))
     before = energy_of(simulator)
-    simulator.command_velocity(0.005)
+    simulator.command_drive(0.005)
     simulator.command_force(40.0)
     after = energy_of(simulator)
     assert after.stored == pytest.approx(before.stored, rel=1e-15)

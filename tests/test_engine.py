@@ -33,7 +33,7 @@ def test_a_command_that_repeats_the_present_value_changes_no_bit() -> None:
     for k in range(1, 3001):
         to = Instant(k // 1000, (k % 1000) / 1000)
         a += quiet.advance(to)
-        busy.command_velocity(0.002)
+        busy.command_drive(0.002)
         b += busy.advance(to)
         assert quiet.sample() == busy.sample()
     assert a == b

@@ -114,7 +114,7 @@ class TestAskingChangesNothing:
         events = []
         for k in range(1, 5001):
             events += busy.advance(instant(k * 0.0004))
-            busy.command_velocity(0.002)
+            busy.command_drive(0.002)
         assert (events, busy.sample()) == (expected, quiet.sample())
 
     @pytest.mark.parametrize('method', METHODS)

@@ -7,9 +7,10 @@ from typing import Any
 
 import pytest
 
-from stickslip_sim.axis import CompliantContact
+from stickslip_sim.axis import CompliantContact, InitialState
 from stickslip_sim.courses import Course, constant, steps
 from stickslip_sim.grazing import FREQUENCIES, PHASES, grazing_drive
+from stickslip_sim.reference import simulate
 from stickslip_sim.words import EventKind, Instant, Mode
 from tests.axes import COMPLIANT, RIGID, instant, make, paper_axis, random_axis, run
 from tests.conftest import Program
@@ -45,6 +46,18 @@ def test_a_blow_on_top_of_a_sine_is_not_missed(contact: Any) -> None:
         assert t <= events[0].time <= t + 0.002
 
 
+@pytest.mark.parametrize(('amplitude', 'frequency', 'phase'), [(900.0, 0.7, 0.3), (850.0, 1.1, 2.0)])
+def test_a_slip_that_begins_where_friction_is_continuous_goes_the_way_the_force_moves_then(
+        amplitude: float, frequency: float, phase: float) -> None:
+    """At such a break-away nothing but the force's rate at that very instant says that the slider slips."""
+    pytest.importorskip('mpmath')
+    axis, push = paper_axis(RIGID), with_waves(constant(0.0), (amplitude, frequency, phase))
+    events, expected = run(axis, 0.0, 4.0, push), simulate(axis, InitialState(), constant(0.0), push, 4.0).events
+    assert [(e.kind, e.mode, e.direction) for e in events] == [(e.kind, e.mode, e.direction) for e in expected]
+    assert all(abs(a.time - b.time) <= 1e-12 for a, b in zip(events, expected))
+    assert len(events) > 15
+
+
 def test_a_short_wave_on_a_slow_one_is_found_where_their_peaks_meet() -> None:
     """Incommensurate waves that pass the limit together only: the first time is that of a fine scan."""
     rng = random.Random(8)
@@ -68,7 +81,7 @@ def test_a_year_under_a_sine_below_the_limit(contact: Any) -> None:
     assert simulator.root_iterations < 50
     sample = simulator.sample()
     assert sample.external_force == pytest.approx(100.0 + 500.0 * math.sin(0.5), rel=1e-13)
-    simulator.command_velocity(0.001)
+    simulator.command_drive(0.001)
     broken = simulator.advance(Instant(year.second + 2.0, 0.0))
     assert broken[0].kind is EventKind.BREAKAWAY
     if contact is RIGID:
@@ -138,12 +151,12 @@ def test_a_command_ends_the_waves_of_its_course_only() -> None:
                      with_waves(constant(0.0), (50.0, 2.0, 0.3)))
     simulator.advance(instant(0.4))
     before = simulator.sample()
-    simulator.command_velocity(0.001)
+    simulator.command_drive(0.001)
     after = simulator.sample()
     assert (after.drive_velocity, after.external_force) == (0.001, before.external_force)
     assert after.drive_position == before.drive_position
     for _ in range(3):
-        simulator.command_velocity(0.001)   # the same again: no bit changes
+        simulator.command_drive(0.001)   # the same again: no bit changes
         assert simulator.sample() == after
 
 

@@ -16,7 +16,7 @@ from tests.ros_nodes import Client, NodeProcess, client, running, wait_for
 
 pytestmark = pytest.mark.ros
 
-ParameterType = {'bool': 1, 'integer': 2, 'double': 3, 'string': 4, 'double_array': 8}
+ParameterType = {'bool': 1, 'integer': 2, 'double': 3, 'string': 4, 'double_array': 8, 'string_array': 9}
 
 
 @pytest.fixture(scope='module')

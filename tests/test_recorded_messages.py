@@ -7,21 +7,32 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from stickslip_sim.errors import RecordingError
 from stickslip_sim.recording import (
     RECORDED,
     MessageCodec,
+    flat_layout,
     schema,
     topics,
 )
-from tests.recorded_runs import wait_for
+from stickslip_sim.recording.messages import Packer, header
+from stickslip_sim.words import Event, Sample
+from tests.recorded_runs import friction_force, mode_event, slider_state, wait_for
 
 # lark, which rosidl's Python brings in, imports modules that Python wants to rename.
 pytestmark = pytest.mark.filterwarnings("ignore:module 'sre_:DeprecationWarning")
 
 ROOT = Path(__file__).parent.parent
 Values = dict[str, Any]
+
+STAMPS = st.integers(0, 2**31 * 10**9 - 1)
+STEPS = st.integers(0, 2**64 - 1)
+DIRECTIONS = st.integers(-1, 1)
+SAMPLES = st.builds(Sample, direction=DIRECTIONS)   # any float: NaN, infinity, -0, denormal
+EVENTS = st.builds(Event, direction=DIRECTIONS)
 
 
 @pytest.fixture(scope='module')
@@ -38,12 +49,31 @@ class TestMessages:
         from rclpy.serialization import deserialize_message, serialize_message
         message = distinct(ros_class(topic.type), frame_id)
         values = values_of(message)
-        ours, theirs = codec.encode(topic.type, values), serialize_message(message)
-        padding = padding_of(codec, topic.type, values)
-        assert len(ours) == len(theirs)
-        assert [b for b, pad in zip(ours, padding) if not pad] == [b for b, pad in zip(theirs, padding) if not pad]
+        ours = codec.encode(topic.type, values)
+        same_as_rclpy(codec, topic, ours, values)
         assert deserialize_message(ours, type(message)) == message
-        assert values_of(codec.decode(topic.type, theirs), like=message) == values
+        assert values_of(codec.decode(topic.type, serialize_message(message)), like=message) == values
+
+    @given(STAMPS, STEPS, SAMPLES)
+    @pytest.mark.parametrize(('topic', 'fields'), [(topics.SLIDER_STATE, slider_state),
+                                                   (topics.FRICTION_FORCE, friction_force)])
+    def test_samples_become_the_bytes_of_rclpy(self, codec: MessageCodec, topic: topics.Topic, fields: Any,
+                                               stamp_ns: int, step: int, sample: Sample) -> None:
+        same_as_rclpy(codec, topic, Packer(topic).pack(stamp_ns, step, sample), fields(step, sample, stamp_ns))
+
+    @given(STAMPS, STEPS, EVENTS)
+    def test_events_become_the_bytes_of_rclpy(self, codec: MessageCodec, stamp_ns: int, step: int,
+                                              event: Event) -> None:
+        topic = topics.MODE_EVENT
+        same_as_rclpy(codec, topic, Packer(topic).pack(stamp_ns, step, event), mode_event(step, event, stamp_ns))
+
+    @given(STAMPS, st.floats())
+    @pytest.mark.parametrize(('topic', 'field'), [(topics.DRIVE_VELOCITY, 'velocity'),
+                                                  (topics.EXTERNAL_FORCE, 'force')])
+    def test_commands_become_the_bytes_of_rclpy(self, codec: MessageCodec, topic: topics.Topic, field: str,
+                                                stamp_ns: int, value: float) -> None:
+        data = flat_layout(topic.type).pack(stamp_ns, value)
+        same_as_rclpy(codec, topic, data, {'header': header(stamp_ns), field: value})
 
     @pytest.mark.parametrize('topic', RECORDED, ids=lambda t: t.name)
     def test_type_hash_is_the_installed_one(self, topic: topics.Topic) -> None:
@@ -87,6 +117,22 @@ class TestMessages:
     def test_unknown_type(self) -> None:
         with pytest.raises(RecordingError, match='no definition of stickslip_msgs/msg/Nothing in AMENT_PREFIX_PATH; '):
             schema('stickslip_msgs/msg/Nothing')
+
+
+def same_as_rclpy(codec: MessageCodec, topic: topics.Topic, data: bytes, values: Values) -> None:
+    """Assert that these are the bytes of a message with these fields, as rclpy makes them."""
+    from rclpy.serialization import serialize_message
+    theirs = serialize_message(filled(ros_class(topic.type)(), values))
+    padding = padding_of(codec, topic.type, values)
+    assert len(data) == len(theirs)
+    assert [b for b, pad in zip(data, padding) if not pad] == [b for b, pad in zip(theirs, padding) if not pad]
+
+
+def filled(message: Any, values: Values) -> Any:
+    """Return a ROS message with these fields."""
+    for name, value in values.items():
+        setattr(message, name, filled(getattr(message, name), value) if isinstance(value, dict) else value)
+    return message
 
 
 def ros_class(type_name: str) -> Any:

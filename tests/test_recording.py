@@ -20,11 +20,11 @@ from stickslip_sim.recording import (
     write_bag,
 )
 from stickslip_sim.words import Sample
-from tests.recorded_runs import FACTS, events, samples
+from tests.recorded_runs import FACTS, events, friction_force, mode_event, samples, slider_state
 
 COUNTS = {
     '/slider_state': 120, '/friction_force': 120, '/mode_event': 5, '/drive_velocity': 2, '/external_force': 3,
-    '/run_info': 1, '/timing': 0, '/parameter_events': 0,
+    '/rig_event': 0, '/run_info': 1, '/timing': 0, '/parameter_events': 0,
 }
 Values = dict[str, Any]
 
@@ -42,13 +42,18 @@ def expected(folder: Path) -> dict[str, list[Values]]:
     stamps = [k * 1_000_000 for k in range(120)]
     steps = [1, 11, 11, 40, 100]
     return {
-        '/slider_state': [messages.slider_state(k, s, t) for k, (s, t) in enumerate(zip(states, stamps))],
-        '/friction_force': [messages.friction_force(k, s, t) for k, (s, t) in enumerate(zip(states, stamps))],
-        '/mode_event': [messages.mode_event(k, e, e.instant.nanoseconds) for k, e in zip(steps, events())],
-        '/drive_velocity': [messages.drive_velocity(v, t) for v, t in ((0.002, 0), (-0.001, 50_000_000))],
-        '/external_force': [messages.external_force(f, t) for f, t in ((0.0, 0), (5.0, 20_000_000), (0.0, 30_000_000))],
+        '/slider_state': [slider_state(k, s, t) for k, (s, t) in enumerate(zip(states, stamps))],
+        '/friction_force': [friction_force(k, s, t) for k, (s, t) in enumerate(zip(states, stamps))],
+        '/mode_event': [mode_event(k, e, e.instant.nanoseconds) for k, e in zip(steps, events())],
+        '/drive_velocity': commands('velocity', {0: 0.002, 50: -0.001}),
+        '/external_force': commands('force', {0: 0.0, 20: 5.0, 30: 0.0}),
         '/run_info': [messages.run_info(FACTS, 0, 0, str(folder))],
     }
+
+
+def commands(field: str, values: dict[int, float]) -> list[Values]:
+    """Return the fields of commands by the ms at which they were given."""
+    return [{'header': messages.header(at * 1_000_000), field: value} for at, value in values.items()]
 
 
 def fields(message: Any, like: Values) -> Values:
@@ -102,7 +107,7 @@ class TestReaders:
 
     def test_columns(self, bag: Path) -> None:
         columns = read_run(bag).columns('/slider_state')
-        wanted = [messages.slider_state(k, sample, 0) for k, sample in enumerate(samples(120))]
+        wanted = [slider_state(k, sample, 0) for k, sample in enumerate(samples(120))]
         for name in ('step', 'time', 'position', 'drive_force', 'rest_time', 'mode', 'direction'):
             assert columns[name].tolist() == [values[name] for values in wanted]
         assert columns['log_time'].tolist() == [k * 1_000_000 for k in range(120)]

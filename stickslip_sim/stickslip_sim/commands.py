@@ -28,13 +28,19 @@ class CommandSlot:
     def offer(self, value: float, arrival: int) -> str:
         """Take a value that arrived; return why it is refused, or an empty text.  The one before stays then."""
         self.received += 1
+        refusal = self.refusal(value)
+        if refusal:
+            self.refused += 1
+            self.last_refusal = f'{refusal}; the previous command stays'
+            return self.last_refusal
+        self.latest = Command(value, arrival)
+        return ''
+
+    def refusal(self, value: float) -> str:
+        """Return why a value would be refused, or an empty text."""
         if -self.limit <= value <= self.limit:   # false for NaN
-            self.latest = Command(value, arrival)
             return ''
-        self.refused += 1
-        self.last_refusal = (f'{self.name} = {value!r} is refused: must be finite and within '
-                             f'±{self.limit!r} {self.unit}; the previous command stays')
-        return self.last_refusal
+        return f'{self.name} = {value!r} is refused: must be finite and within ±{self.limit!r} {self.unit}'
 
     def forget(self) -> None:
         """Drop the command that waits or holds, and begin to count anew, as if none had come."""

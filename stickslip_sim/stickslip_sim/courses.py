@@ -3,7 +3,7 @@
 import math
 from bisect import bisect_right
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -74,6 +74,10 @@ class Course:
         i = max(bisect_right(self.starts, time, key=lambda start: turn + start) - 1, 0)
         end = turn + self.starts[i + 1] if i + 1 < len(self.starts) else (turns + 1.0) * self.period
         return Piece(turn + self.starts[i], end, self.values[i], self.rates[i])
+
+    def plus(self, value: float) -> 'Course':
+        """Return the course with a constant added."""
+        return replace(self, values=tuple(own + value for own in self.values))
 
     def value_at(self, time: float) -> float:
         """Return the value at `time` >= 0 s."""

@@ -101,7 +101,7 @@ def _loaded_simulator(scene: Scene) -> Simulator:
     simulator = Simulator(scene.axis, scene.initial, scene.drive, scene.force, scene.solver.make(scene.axis),
                           accounting=True)
     simulator.advance(Instant(0.0, 0.0))
-    simulator.command_velocity(simulator.sample().drive_velocity)
+    simulator.command_drive(simulator.sample().drive_velocity)
     _ = simulator.energy
     simulator.reset()
     return simulator

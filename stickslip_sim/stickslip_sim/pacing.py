@@ -5,6 +5,7 @@ accumulates.  A late step is caught up at once; what is later than the allowed b
 """
 
 import ctypes
+import math
 import time
 from contextlib import suppress
 from dataclasses import dataclass
@@ -47,6 +48,28 @@ def wake_precisely() -> None:
         ctypes.CDLL(None).prctl(_PR_SET_TIMERSLACK, 1, 0, 0, 0)
 
 
+class StepClock(Protocol):
+    """What tells the step loop when to make a step; durations in ns."""
+
+    period: int
+    account: 'Account'
+
+    def restart(self, step: int) -> None:
+        """Let a step be due now, and those after it follow."""
+
+    def wait(self, step: int) -> bool:
+        """Wait until a step is due, at most a while; return whether it is."""
+
+    def begin(self, step: int) -> tuple[int, int]:
+        """Account for a step that begins; return the time now and how late it is."""
+
+    def now(self) -> int:
+        """Return the time on the steady clock."""
+
+    def watch_time(self, now: int, time: int) -> float:
+        """Return the time, s, by which silence is measured: `now` on the steady clock, or simulation `time`."""
+
+
 class Grid:
     """The times of the steps: step n ends at n / rate, exact for every rate (1/s, > 0)."""
 
@@ -62,6 +85,10 @@ class Grid:
     def nanoseconds(self, step: int) -> int:
         """Return that time rounded to nanoseconds."""
         return self.instant(step).nanoseconds
+
+    def steps(self, seconds: float) -> int:
+        """Return in how many steps this much time has passed; exact, as both numbers are meant as decimals."""
+        return math.ceil(_decimal(seconds) * self._up / self._down)
 
 
 @dataclass(slots=True)
@@ -80,16 +107,18 @@ class Account:
 
 
 class Pacer:
-    """Says when each step is due, and accounts for lateness.
+    """Says when each step is due on the steady clock, and accounts for lateness.
 
-    `factor` is simulation time per wall time.
+    `factor` is simulation time per wall time.  Silence is measured on the steady clock, or in simulation time.
     """
 
-    def __init__(self, grid: Grid, factor: float = 1.0, clock: Clock | None = None) -> None:
+    def __init__(self, grid: Grid, factor: float = 1.0, clock: Clock | None = None,
+                 watches_steady: bool = True) -> None:
         up, down = (_decimal(grid.rate) * _decimal(factor)).as_integer_ratio()
         self._numerator, self._denominator = NANOSECONDS * down, up
         self.period = self._numerator // self._denominator
         self.account = Account()
+        self._watches_steady = watches_steady
         self._backlog = max(_MAX_BACKLOG, 2 * self.period)
         self._clock: Clock = clock or SteadyClock()
         self._origin = 0
@@ -113,10 +142,6 @@ class Pacer:
         self._clock.sleep(min(left / NANOSECONDS, _SLICE))
         return self.due(step) <= self._clock.now()
 
-    def idle(self, seconds: float) -> None:
-        """Wait while time stands still."""
-        self._clock.sleep(seconds)
-
     def begin(self, step: int) -> tuple[int, int]:
         """Account for a step that begins; return the time now and how late it is, ns."""
         now = self._clock.now()
@@ -136,8 +161,44 @@ class Pacer:
         """Return the time, ns on the steady clock."""
         return self._clock.now()
 
+    def watch_time(self, now: int, time: int) -> float:
+        """Return the time, s, by which silence is measured."""
+        return (now if self._watches_steady else time) / NANOSECONDS
+
     def _offset(self, step: int) -> int:
         return step * self._numerator // self._denominator
+
+
+class Unpaced:
+    """Lets each step be due at once, for time that goes as fast as it can or as it is asked to."""
+
+    def __init__(self, grid: Grid) -> None:
+        self.period = round(NANOSECONDS / grid.rate)
+        self.account = Account()
+        self.now = SteadyClock.now
+
+    def restart(self, step: int) -> None:
+        """Do nothing: no step waits for another."""
+
+    def wait(self, step: int) -> bool:
+        """Return that a step is due."""
+        return True
+
+    def begin(self, step: int) -> tuple[int, int]:
+        """Account for a step that begins, never late."""
+        self.account.steps += 1
+        return self.now(), 0
+
+    def watch_time(self, now: int, time: int) -> float:
+        """Return simulation time, s."""
+        return time / NANOSECONDS
+
+
+def step_clock(grid: Grid, mode: str, factor: float) -> StepClock:
+    """Return what paces a mode of time: realtime, lockstep or free_run."""
+    if mode == 'lockstep' or factor == math.inf:
+        return Unpaced(grid)
+    return Pacer(grid, factor, watches_steady=mode == 'realtime')
 
 
 def _decimal(number: float) -> Fraction:

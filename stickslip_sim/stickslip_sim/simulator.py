@@ -107,14 +107,18 @@ class Simulator:
             self._counts[event.kind] += 1
         return events
 
-    def command_velocity(self, velocity: float) -> None:
-        """Let the drive move at a constant velocity (m/s) from now on; events that this causes come with `advance`."""
-        self._drive = _command('velocity', velocity, 'm/s')
+    def command_drive(self, velocity: float | Course) -> None:
+        """Let the drive move at a constant velocity (m/s), or after a course over simulation time, from now on.
+
+        Events that this causes come with `advance`.  Raises InputError; a course must have no more waves than that of
+        the start.
+        """
+        self._drive = _command('velocity', velocity, 'm/s', self._courses[0])
         self._commanded = True
 
-    def command_force(self, force: float) -> None:
-        """Let a constant external force (N) act from now on; events that this causes come with `advance`."""
-        self._force = _command('force', force, 'N')
+    def command_force(self, force: float | Course) -> None:
+        """Let a constant external force (N), or a course over simulation time, act from now on, as `command_drive`."""
+        self._force = _command('force', force, 'N', self._courses[1])
         self._commanded = True
 
     def change_axis(self, axis: Axis) -> None:
@@ -176,7 +180,13 @@ class Simulator:
             yield Event(second, fraction, _KINDS[int(kind)], _MODES[int(mode)], int(direction), *rest)
 
 
-def _command(name: str, value: float, unit: str) -> Course:
+def _command(name: str, value: float | Course, unit: str, first: Course) -> Course:
+    if isinstance(value, Course):
+        value.check(name)
+        if len(value.waves) > len(first.waves):
+            raise InputError(f'{name}.waves', len(value.waves), f'at most {len(first.waves)}, as at the start',
+                             'give the simulator a course with as many waves at its start')
+        return value
     if not math.isfinite(value):
         raise InputError(name, value, f'finite, in {unit}', 'the command before it stays in force')
     return constant(value)

@@ -89,6 +89,11 @@ class Sample(NamedTuple):
     rest_time: float             # s, 0 in slip
 
     @property
+    def instant(self) -> Instant:
+        """When it was taken."""
+        return Instant(self.second, self.fraction)
+
+    @property
     def time(self) -> float:
         """When it was taken, s."""
         return self.second + self.fraction

@@ -152,8 +152,9 @@ def wave_force(p, s, t):
 def forced_rate(p, s):
     """Return the rate of F_d + F_e at constant velocity, and the first of its rates that is not 0 (up to the fourth).
 
-    Both count as 0 within rounding.
+    Both count as 0 within rounding.  A transition asks before `begin_motion` has set the pulls of its instant.
     """
+    begin_waves(p, s)
     base = p[STIFFNESS] * (s[BASE_V] - s[VELOCITY]) + p[DAMPING] * s[V_RATE] + s[F_RATE]
     size = p[STIFFNESS] * (abs(s[BASE_V]) + abs(s[VELOCITY])) + p[DAMPING] * abs(s[V_RATE]) + abs(s[F_RATE])
     rate = _wave_rate(s, 0, base, size)

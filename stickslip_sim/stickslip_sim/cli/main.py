@@ -19,6 +19,7 @@ from .. import __version__
 from ..errors import StickslipError
 from .advise import advise
 from .bench import bench
+from .check import check
 from .extremes import extremes
 from .scenes import scenes
 from .simulate import simulate
@@ -34,7 +35,7 @@ def stickslip() -> None:
     """Stick-slip motion of a feed axis, simulated exactly."""
 
 
-for verb in (advise, bench, extremes, scenes, simulate):
+for verb in (advise, bench, check, extremes, scenes, simulate):
     stickslip.add_command(verb)
 
 

@@ -91,11 +91,7 @@ def _check_picture(path: str) -> None:
 def _sample_period(wishes: _Wishes, scene: 'Scene') -> Fraction | float | None:
     if wishes.sample_period is not None:
         return wishes.sample_period
-    return _step(scene) if wishes.samples or wishes.bag else None
-
-
-def _step(scene: 'Scene') -> Fraction:
-    return 1 / Fraction(repr(scene.time.rate))
+    return scene.time.step if wishes.samples or wishes.bag else None
 
 
 def _with_estimate(run: 'Trajectory') -> 'Trajectory':
@@ -128,7 +124,7 @@ def _write_bag(folder: str, run: 'Trajectory') -> None:
     from ..recording.offline import write_bag
     from ..recording.run import RunFacts
 
-    run = _sampled(run, _step(run.scene))
+    run = _sampled(run, run.scene.time.step)
     check_new_folder('--bag', folder)
     try:
         write_bag(folder, RunFacts.of(run.scene), run.sample_rows(), run.events, run.receipt)

@@ -148,7 +148,7 @@ def _recorded_commands(solver: Solver, seed: int) -> float:
 
 
 def _command(simulator: Simulator, velocity: float, force: float) -> None:
-    simulator.command_velocity(velocity)
+    simulator.command_drive(velocity)
     simulator.command_force(force)
 
 

@@ -48,7 +48,7 @@ def _refused_by_the_simulator(solver: Solver, contact: Contact, given: str, bad:
     simulator, twin = (make(paper_axis(contact), 0.002, solver=solver) for _ in range(2))
     simulator.advance(instant(0.5))
     twin.advance(instant(0.5))
-    command = simulator.command_velocity if given == 'velocity' else simulator.command_force
+    command = simulator.command_drive if given == 'velocity' else simulator.command_force
     _check_refused(lambda: command(bad), given)
     check(simulator.sample() == twin.sample(), 'the state is another one')
     check(simulator.advance(instant(2.0)) == twin.advance(instant(2.0)), 'the events are other ones')
@@ -101,9 +101,9 @@ def _burst(solver: Solver, contact: Contact, seed: int) -> float:
                 slot.offer(value, step)   # twice
         if slot.latest is not None:
             if rng.random() < 0.5:        # a duplicate of the command in force changes nothing
-                busy.command_velocity(slot.latest.value)
-            busy.command_velocity(slot.latest.value)
-            quiet.command_velocity(slot.latest.value)
+                busy.command_drive(slot.latest.value)
+            busy.command_drive(slot.latest.value)
+            quiet.command_drive(slot.latest.value)
         check(busy.sample() == quiet.sample(), f'another state at step {step}')
     check(seen == wanted, f'{len(seen)} events instead of {len(wanted)}, or other bits')
     return 0.0
@@ -113,7 +113,7 @@ def _huge(solver: Solver, contact: Contact, huge: float) -> float:
     """See that a command beyond all sense is refused, simulated or given up by name, and that a reset works after."""
     simulator = make(paper_axis(contact), 0.002, solver=solver)
     simulator.advance(instant(0.5))
-    for command in (simulator.command_velocity, simulator.command_force):
+    for command in (simulator.command_drive, simulator.command_force):
         try:
             command(huge)
             simulator.advance(Instant(simulator.time.second + 1.0, 0.0))

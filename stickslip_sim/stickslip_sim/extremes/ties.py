@@ -133,7 +133,7 @@ def _commands_in_any_order(solver: Solver, axis: Axis, seed: int) -> float:
     rng = random.Random(seed)
     v, f = rng.uniform(-0.1, 0.1), rng.uniform(-1000.0, 1000.0)
     when = instant(rng.uniform(0.0, 1.5))
-    orders: tuple[Callable[[Simulator], None], ...] = (lambda s: s.command_velocity(v), lambda s: s.command_force(f))
+    orders: tuple[Callable[[Simulator], None], ...] = (lambda s: s.command_drive(v), lambda s: s.command_force(f))
     outcomes = []
     for order in permutations(orders):
         simulator = make(axis, 0.002, solver=solver)

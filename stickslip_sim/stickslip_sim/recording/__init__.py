@@ -4,7 +4,8 @@ from .bag import BagWriter
 from .offline import OfflineBag, samples_of, write_bag
 from .reader import RecordedMessage, Run, read_run
 from .run import RunFacts, open_run, receipt_file
-from .schemas import MessageCodec, Schema, schema
+from .schemas import MessageCodec, Schema, flat_layout, schema
+from .tables import columns_of, events_of
 from .thread import RecorderThread
 from .topics import DIAGNOSTICS, RECORDED, QosProfile, Topic, recorded
 
@@ -21,6 +22,9 @@ __all__ = [
     'RunFacts',
     'Schema',
     'Topic',
+    'columns_of',
+    'events_of',
+    'flat_layout',
     'open_run',
     'read_run',
     'receipt_file',

@@ -2,7 +2,6 @@
 
 import struct
 from collections.abc import Mapping
-from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -15,9 +14,10 @@ _NUMBERS = {
     'bool': ('?', 1), 'int8': ('b', 1), 'uint8': ('B', 1), 'int16': ('h', 2), 'uint16': ('H', 2), 'int32': ('i', 4),
     'uint32': ('I', 4), 'int64': ('q', 8), 'uint64': ('Q', 8), 'float32': ('f', 4), 'float64': ('d', 8),
 }
-_ENCAPSULATION = 4                   # bytes before the message: CDR, little endian
+_CDR = b'\0\1\0\0'                  # before the message: CDR, little endian
 _HEADER = 'std_msgs/msg/Header'
 _HEADER_FORMAT, _HEADER_SIZE = '<4siIIx', 13  # sec, nanosec, a text of one byte, which is its end
+_NANOSECONDS = 1_000_000_000
 
 
 class Layout:
@@ -31,11 +31,11 @@ class Layout:
             code += f'{gap}x{character}'
             places[name] = at + gap
             at += gap + size
+        self.names = tuple(fields)
         self._struct = struct.Struct(code)
-        self._numbers = itemgetter(*fields, next(iter(fields)))  # one more, so that it is always a tuple
         self._dtype = np.dtype({
             'names': list(fields), 'formats': [f'<{np.dtype(kind).str[1:]}' for kind in fields.values()],
-            'offsets': [place + _ENCAPSULATION for place in places.values()], 'itemsize': self._struct.size,
+            'offsets': [place + len(_CDR) for place in places.values()], 'itemsize': self._struct.size,
         })
 
     @property
@@ -43,10 +43,9 @@ class Layout:
         """Bytes of a message."""
         return self._struct.size
 
-    def pack(self, values: Mapping[str, Any]) -> bytes:
-        """Return the CDR bytes of a message; its frame must be empty."""
-        stamp = values['header']['stamp']
-        return self._struct.pack(b'\0\1\0\0', stamp['sec'], stamp['nanosec'], 1, *self._numbers(values)[:-1])
+    def pack(self, stamp_ns: int, *numbers: float) -> bytes:
+        """Return the CDR bytes of a message with its stamp (ns) and its numbers in the order of `names`."""
+        return self._struct.pack(_CDR, *divmod(stamp_ns, _NANOSECONDS), 1, *numbers)
 
     def unpack(self, messages: list[bytes]) -> NDArray[Any]:
         """Return the numbers of messages of this size as a structured array."""

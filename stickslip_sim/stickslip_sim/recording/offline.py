@@ -6,11 +6,11 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from ..words import Event, EventKind, Instant, Mode, Sample
+from ..words import Event, EventKind, Mode, Sample
 from . import messages, topics
-from .messages import Fields
+from .messages import Packer
 from .run import RunFacts, open_run, receipt_file
-from .schemas import MessageCodec
+from .schemas import MessageCodec, flat_layout
 from .topics import Topic
 
 
@@ -27,7 +27,7 @@ def write_bag(
         waiting = iter(events)
         event = next(waiting, None)
         for step, sample in enumerate(samples):
-            while event is not None and event.instant <= Instant(sample.second, sample.fraction):
+            while event is not None and event.instant <= sample.instant:
                 bag.event(max(step, 1), event)
                 event = next(waiting, None)
             bag.sample(step, sample)
@@ -48,29 +48,32 @@ class OfflineBag:
 
     def __init__(self, folder: Path | str, facts: RunFacts) -> None:
         self._writer = open_run(folder, facts)
-        self._codec = MessageCodec(topic.type for topic in topics.RECORDED)
         self._places = {topic.name: place for place, topic in enumerate(topics.RECORDED)}
+        self._state, self._friction = Packer(topics.SLIDER_STATE), Packer(topics.FRICTION_FORCE)
+        self._event = Packer(topics.MODE_EVENT)
         self._velocity: float | None = None
         self._force: float | None = None
-        self._write(topics.RUN_INFO, messages.run_info(facts, 0, 0, str(self._writer.folder)), 0, 0)
+        info = messages.run_info(facts, 0, 0, str(self._writer.folder))
+        data = MessageCodec([topics.RUN_INFO.type]).encode(topics.RUN_INFO.type, info)
+        self._write(topics.RUN_INFO, data, 0, 0)
 
     def event(self, step: int, event: Event) -> None:
         """Add a transition that fell into a step (counted from 1); knots are left out, as the node does."""
         if event.kind != EventKind.KNOT:
             at = event.instant.nanoseconds
-            self._write(topics.MODE_EVENT, messages.mode_event(step, event, at), at, step)
+            self._write(topics.MODE_EVENT, self._event.pack(at, step, event), at, step)
 
     def sample(self, step: int, sample: Sample) -> None:
         """Add the state at the end of a step (0: the start), and the commands of the next step if they are new."""
-        at = Instant(sample.second, sample.fraction).nanoseconds
-        self._write(topics.SLIDER_STATE, messages.slider_state(step, sample, at), at, step)
-        self._write(topics.FRICTION_FORCE, messages.friction_force(step, sample, at), at, step)
+        at = sample.instant.nanoseconds
+        self._write(topics.SLIDER_STATE, self._state.pack(at, step, sample), at, step)
+        self._write(topics.FRICTION_FORCE, self._friction.pack(at, step, sample), at, step)
         if sample.drive_velocity != self._velocity:
             self._velocity = sample.drive_velocity
-            self._write(topics.DRIVE_VELOCITY, messages.drive_velocity(self._velocity, at), at, step + 1)
+            self._command(topics.DRIVE_VELOCITY, self._velocity, at, step + 1)
         if sample.external_force != self._force:
             self._force = sample.external_force
-            self._write(topics.EXTERNAL_FORCE, messages.external_force(self._force, at), at, step + 1)
+            self._command(topics.EXTERNAL_FORCE, self._force, at, step + 1)
 
     def close(self, receipt: Mapping[str, object]) -> dict[str, int]:
         """Finish the bag; return the number of messages by topic."""
@@ -81,5 +84,8 @@ class OfflineBag:
         """Leave the bag as it is, readable but without an index."""
         self._writer.abandon()
 
-    def _write(self, topic: Topic, fields: Fields, at: int, step: int) -> None:
-        self._writer.write(self._places[topic.name], self._codec.encode(topic.type, fields), at, at, step)
+    def _command(self, topic: Topic, value: float, at: int, step: int) -> None:
+        self._write(topic, flat_layout(topic.type).pack(at, value), at, step)
+
+    def _write(self, topic: Topic, data: bytes, at: int, step: int) -> None:
+        self._writer.write(self._places[topic.name], data, at, at, step)

@@ -15,7 +15,7 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from rosbags.typesys.store import Typestore
 
 from ..errors import RecordingError
-from .layout import layout_of
+from .layout import Layout, numbers_of
 
 _RULE = '=' * 80
 _TYPE_OF_FIELD = re.compile(r'^\s*([A-Za-z]\w*(?:/\w+)*)(?:<=\d+)?(?:\[[^\]]*\])?\s+\w', re.MULTILINE)
@@ -50,22 +50,23 @@ def store_of(definitions: Mapping[str, str]) -> Typestore:
     return store
 
 
+@cache
+def flat_layout(type_name: str) -> Layout:
+    """Return the layout of an installed type that is a header without a frame and numbers."""
+    return Layout(numbers_of(store_of({type_name: schema(type_name).text}), type_name))
+
+
 class MessageCodec:
     """Encodes messages given as mappings, and decodes them; bytes as rclpy makes them (padding zero)."""
 
     def __init__(self, type_names: Iterable[str]) -> None:
-        definitions = {name: schema(name).text for name in type_names}
-        self._store = store_of(definitions)
-        self._layouts = {name: layout_of(self._store, name) for name in definitions}
+        self._store = store_of({name: schema(name).text for name in type_names})
 
     def encode(self, type_name: str, values: Mapping[str, Any]) -> bytes:
         """Return the CDR bytes of a message with all its fields given.
 
         Nested messages are mappings too, lists of numbers numpy arrays.
         """
-        layout = self._layouts[type_name]
-        if layout and values['header']['frame_id'] == '':
-            return layout.pack(values)
         return bytes(self._store.serialize_cdr(self._message(type_name, values), type_name, little_endian=True))
 
     def decode(self, type_name: str, data: bytes) -> Any:

@@ -53,13 +53,18 @@ MODE_EVENT = Topic('mode_event', 'stickslip_msgs/msg/ModeEvent', QosProfile(1000
 DRIVE_VELOCITY = Topic('drive_velocity', 'stickslip_msgs/msg/DriveVelocity', _COMMAND)
 EXTERNAL_FORCE = Topic('external_force', 'stickslip_msgs/msg/ExternalForce', _COMMAND)
 RUN_INFO = Topic('run_info', 'stickslip_msgs/msg/RunInfo', QosProfile(1, durability='transient_local'))
+RIG_EVENT = Topic('rig_event', 'stickslip_msgs/msg/RigEvent', QosProfile(1000))
 TIMING = Topic('timing', 'stickslip_msgs/msg/StepTiming', _STATE)
 PARAMETER_EVENTS = Topic('/parameter_events', 'rcl_interfaces/msg/ParameterEvent', QosProfile(1000))
+CLOCK = Topic('/clock', 'rosgraph_msgs/msg/Clock', QosProfile(1))
+JOINT_STATES = Topic('joint_states', 'sensor_msgs/msg/JointState', _STATE)
+JOINT_COMMANDS = Topic('joint_commands', 'sensor_msgs/msg/JointState', _COMMAND)
 DIAGNOSTICS = Topic('/diagnostics', 'diagnostic_msgs/msg/DiagnosticArray', _STATE)
 
 # What a bag holds; `BagWriter.write` takes the place in this list.
 RECORDED = (
-    SLIDER_STATE, FRICTION_FORCE, MODE_EVENT, DRIVE_VELOCITY, EXTERNAL_FORCE, RUN_INFO, TIMING, PARAMETER_EVENTS,
+    SLIDER_STATE, FRICTION_FORCE, MODE_EVENT, DRIVE_VELOCITY, EXTERNAL_FORCE, RIG_EVENT, RUN_INFO, TIMING,
+    PARAMETER_EVENTS,
 )
 
 

@@ -1,4 +1,4 @@
-"""From the simulator's words to ROS messages.  Existing messages are filled, which costs a fifth of making new ones."""
+"""ROS messages that are sent now and then, to and from plain fields; those of every step are packed by the outlet."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -8,9 +8,7 @@ from builtin_interfaces.msg import Time
 from rcl_interfaces.msg import Parameter as ParameterMessage
 from rcl_interfaces.msg import ParameterEvent
 
-from stickslip_msgs.msg import FrictionForce, ModeEvent, RunInfo, SliderState
-
-from ..words import Event, Sample
+from stickslip_msgs.msg import RunInfo
 
 _NANOSECONDS = 1_000_000_000
 _ARRAYS = {'sequence<boolean>': np.bool_, 'sequence<octet>': np.uint8, 'sequence<int64>': np.int64,
@@ -20,47 +18,6 @@ _ARRAYS = {'sequence<boolean>': np.bool_, 'sequence<octet>': np.uint8, 'sequence
 def set_stamp(stamp: Time, nanoseconds: int) -> None:
     """Set a time stamp, ns since 1970."""
     stamp.sec, stamp.nanosec = divmod(nanoseconds, _NANOSECONDS)
-
-
-def fill_state(message: SliderState, step: int, sample: Sample) -> None:
-    """Fill in all but the header."""
-    message.step = step
-    message.time = sample.time
-    message.position = sample.position
-    message.velocity = sample.velocity
-    message.acceleration = sample.acceleration
-    message.drive_position = sample.drive_position
-    message.drive_velocity = sample.drive_velocity
-    message.drive_force = sample.drive_force
-    message.rest_time = sample.rest_time
-    message.mode = sample.mode
-    message.direction = sample.direction
-
-
-def fill_friction(message: FrictionForce, step: int, sample: Sample) -> None:
-    """Fill in all but the header."""
-    message.step = step
-    message.time = sample.time
-    message.force = sample.friction_force
-    message.coefficient = sample.friction_coefficient
-    message.contact_deflection = sample.contact_deflection
-    message.mode = sample.mode
-    message.direction = sample.direction
-
-
-def fill_event(message: ModeEvent, step: int, event: Event) -> None:
-    """Fill in all but the header."""
-    message.step = step
-    message.time = event.time
-    message.kind = event.kind
-    message.mode = event.mode
-    message.direction = event.direction
-    message.position = event.position
-    message.velocity = event.velocity
-    message.drive_force = event.drive_force
-    message.friction_force = event.friction_force
-    message.static_coefficient = event.static_coefficient
-    message.rest_time = event.rest_time
 
 
 def run_info(fields: Mapping[str, Any]) -> RunInfo:

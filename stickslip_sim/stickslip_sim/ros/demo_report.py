@@ -1,6 +1,5 @@
 """What the demonstration tells about its recorded run: read back from the bag, with nothing else to go by."""
 
-import math
 from pathlib import Path
 from typing import Any
 
@@ -9,8 +8,8 @@ from numpy.typing import NDArray
 
 from ..analysis import Summary, summary
 from ..plots import plot_run
-from ..recording import Run, read_run
-from ..words import Event, EventKind, Mode
+from ..recording import Run, events_of, read_run
+from ..words import Mode
 
 PICTURE = 'run.png'
 _FIGURES = (
@@ -39,17 +38,6 @@ def samples_of(run: Run) -> dict[str, NDArray[Any]]:
         force[states['step'] >= message.sequence] = run.decode(message).force
     return {**states, 'friction_force': friction['force'], 'friction_coefficient': friction['coefficient'],
             'contact_deflection': friction['contact_deflection'], 'external_force': force}
-
-
-def events_of(run: Run) -> list[Event]:
-    """Return the events of a run."""
-    events = []
-    for message in map(run.decode, run.messages(['/mode_event'])):
-        second = math.floor(message.time)
-        events.append(Event(float(second), message.time - second, EventKind(message.kind), Mode(message.mode),
-                            message.direction, message.position, message.velocity, math.nan, message.drive_force,
-                            message.friction_force, message.static_coefficient, message.rest_time))
-    return events
 
 
 def headline(figures: Summary) -> str:

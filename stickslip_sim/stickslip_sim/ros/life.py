@@ -75,7 +75,7 @@ def _wants_help(args: Sequence[str]) -> bool:
 def _spin(signals: 'Signals', files: 'FileParameters') -> int:
     from .node import FeedAxis
 
-    node = FeedAxis(files)
+    node = FeedAxis(files, lambda: signals.stop)
     executor = make_executor()
     executor.add_node(node)
     try:

@@ -1,69 +1,89 @@
-"""The step loop: a thread that brings the axis from step to step on absolute deadlines.  Knows no ROS.
+"""The step loop: a thread that brings the rig from step to step, as its clock says.  Knows no ROS.
 
-Step n ends at n / rate (step 0 is the start); at that instant on the steady clock the loop advances the axis to it,
-hands out the events and the state, then lets the latest commands take effect: they hold from step n + 1 on.
+Step n reaches from (n − 1)/rate to n/rate (step 0 is the start).  In real time it is made when its end is due on the
+steady clock: first the latest commands are taken, which hold from its begin on, then its events and its state go out.
+So a controller that answers a state within a period acts on the very next step, as in lock-step.
 """
 
 import threading
 from collections import deque
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 from ..commands import Command, CommandSlot
 from ..errors import SolverError
-from ..pacing import Grid, Pacer, wake_precisely
-from ..simulator import Simulator
-from ..words import Event, Sample
-from .timing import Window
+from ..pacing import StepClock, wake_precisely
+from ..rig import Product, Rig
+from ..rig.watchdog import Watchdog
+from .ledger import Ledger
 
-_IDLE = 0.01            # s between two looks at the requests while time stands still
+_IDLE = 0.05            # s between two looks at whether to stop while time stands still
 _PATIENCE = 5.0         # s that a request waits for its boundary
 
+class CommandTotals(NamedTuple):
+    """What befell the commands of a run."""
 
-class Output(Protocol):
-    """What takes the products of the steps, in the loop's thread."""
-
-    def event(self, step: int, event: Event) -> None:
-        """Take an event that fell into a step."""
-
-    def sample(self, step: int, sample: Sample) -> None:
-        """Take the state at the end of a step."""
-
-    def command(self, kind: int, step: int, time_ns: int, value: float) -> None:
-        """Take a command that holds from the begin of a step on; `kind` is its place among the inputs."""
+    received: int
+    refused: int
+    lost: int         # to a fault
+    limited: int      # the drive could not follow at once
+    timed_out: int    # times that they stopped coming
 
 
-class Input(NamedTuple):
+Taker = Callable[[Product], None]
+
+
+class _Input(NamedTuple):
     """A slot and what to do with a command in it."""
 
     slot: CommandSlot
-    apply: Callable[[float], None]
+    order: Callable[[float], None]
 
 
 class StepLoop:
-    """Runs the steps in a thread of its own; everything else asks for changes `at_boundary`."""
+    """Runs the steps in a thread of its own; everything else asks for changes `at_boundary`.
 
-    def __init__(self, simulator: Simulator, grid: Grid, pacer: Pacer, slots: Sequence[CommandSlot],
-                 output: Output) -> None:
-        self.simulator = simulator
-        self.step = -1                       # the last one made; step 0 ends at time 0
+    `takers` get each product, in the loop's thread.  With `by_request` time moves with `run_steps` only.
+    """
+
+    def __init__(self, rig: Rig, clock: StepClock, slots: Sequence[CommandSlot], takers: Sequence[Taker],
+                 watchdog: Watchdog, by_request: bool = False) -> None:
+        self.rig = rig
         self.paused = False
+        self.by_request = by_request
         self.failure = ''                    # why the solver gave up; time stands still then
         self.crash: BaseException | None = None
-        self.window = Window()
-        self._grid, self._pacer, self._output = grid, pacer, output
-        self._inputs = [Input(slot, apply) for slot, apply in
-                        zip(slots, (simulator.command_velocity, simulator.command_force))]
+        self.ledger, self.account, self.slots = Ledger(), clock.account, slots
+        self._clock, self._takers, self._watchdog = clock, takers, watchdog
+        self._inputs = [_Input(slot, order) for slot, order in zip(slots, (rig.command_velocity, rig.command_force))]
         self._held: list[Command | None] = [None] * len(self._inputs)
         self._requests: deque[Callable[[], None]] = deque()
-        self._is_over = threading.Event()
+        self._is_over, self._wake = threading.Event(), threading.Event()
         self._thread = threading.Thread(target=self._run, name='steps', daemon=True)
+
+    @property
+    def step(self) -> int:
+        """The last step made; -1 before the start."""
+        return self.rig.step
 
     @property
     def time_ns(self) -> int:
         """Simulation time, ns."""
-        return self.simulator.time.nanoseconds
+        return self.rig.time_ns
+
+    @property
+    def held(self) -> list[float | None]:
+        """The commands in force, by input; None where the course of the scene is."""
+        return [command.value if command else None for command in self._held]
+
+    @property
+    def command_totals(self) -> CommandTotals:
+        """What befell the commands so far."""
+        counts = self.rig.counts
+        return CommandTotals(sum(slot.received for slot in self.slots),
+                             sum(slot.refused for slot in self.slots) + counts.refused,
+                             counts.lost, counts.limited, counts.timed_out)
 
     def start(self) -> None:
         """Begin with step 0, now."""
@@ -72,10 +92,11 @@ class StepLoop:
     def stop(self) -> None:
         """Let the step at hand be the last, and wait for it, but not for ever."""
         self._is_over.set()
+        self._wake.set()
         if self._thread.ident is not None:
             self._thread.join(_PATIENCE)
 
-    def at_boundary(self, action: Callable[[], None]) -> bool:
+    def at_boundary(self, action: Callable[[], object], patience: float = _PATIENCE) -> bool:
         """Have an action done between two steps by the loop's thread; wait for it and return whether it was done."""
         done = threading.Event()
 
@@ -84,16 +105,17 @@ class StepLoop:
             done.set()
 
         self._requests.append(do)
-        if not done.wait(_PATIENCE):
+        self._wake.set()
+        if not done.wait(patience):
             with suppress(ValueError):    # it was begun after all
                 self._requests.remove(do)
                 return False
-        return done.wait(_PATIENCE)
+        return done.wait(patience)
 
     def pause(self, paused: bool) -> None:
         """Let simulation time stand still, or go on from where it stands; at a boundary only."""
         if self.paused and not paused:
-            self._pacer.restart(self.step + 1)
+            self._clock.restart(self.step + 1)
         self.paused = paused
 
     def restart(self) -> None:
@@ -101,20 +123,34 @@ class StepLoop:
         for i, taken in enumerate(self._inputs):
             taken.slot.forget()
             self._held[i] = None
-        self.simulator.reset()
-        self.step = -1
+        self.rig.reset()
+        self._watchdog.forget()
+        self.ledger.forget()
+        self.account.clear()
         self.failure = ''
-        self._pacer.restart(0)
+        self._clock.restart(0)
 
-    def repeat_commands(self) -> None:
-        """Hand out the commands in force once more; at a boundary only."""
-        for kind, command in enumerate(self._held):
-            if command is not None:
-                self._output.command(kind, self.step + 1, self.time_ns, command.value)
+    def run_steps(self, count: int, velocity: float | None, force: float | None, stop: Callable[[], bool]
+                  ) -> list[Product]:
+        """Make steps now, under commands (None: those in force), until `stop`; at a boundary only.
+
+        Returns what came of them; when the solver gives up on the way, `failure` says why.
+        """
+        for taken, value in zip(self._inputs, (velocity, force)):
+            if value is not None:
+                taken.slot.latest = Command(value, self._clock.now())
+        products: list[Product] = []
+        try:
+            while len(products) < count and not stop() and not self._is_over.is_set():
+                self._clock.account.steps += 1
+                products.append(self._make_step(self._clock.now(), 0))
+        except SolverError as error:
+            self.failure = str(error)
+        return products
 
     def _run(self) -> None:
         wake_precisely()
-        self._pacer.restart(0)
+        self._clock.restart(0)
         try:
             while not self._is_over.is_set():
                 self._turn()
@@ -122,36 +158,49 @@ class StepLoop:
             self.crash = error
 
     def _turn(self) -> None:
+        self._wake.clear()
         try:
             while self._requests:
                 self._requests.popleft()()
-            if self.paused or self.failure:
-                self._pacer.idle(_IDLE)
-            elif self._pacer.wait(self.step + 1):
-                self._make_step(self.step + 1)
+            if self._stands_still:
+                self._wake.wait(_IDLE)
+            elif self._clock.wait(self.step + 1):
+                self._make_step(*self._clock.begin(self.step + 1))
         except SolverError as error:
             self.failure = str(error)
 
-    def _make_step(self, step: int) -> None:
-        begin, lateness = self._pacer.begin(step)
-        simulator, output = self.simulator, self._output
-        for event in simulator.advance(self._grid.instant(step)):
-            output.event(max(step, 1), event)
-        output.sample(step, simulator.sample())
-        self.step = step
-        arrival = self._take_commands(step)
-        self.window.add(self._pacer.now() - begin, lateness, begin - arrival if arrival else None)
+    @property
+    def _stands_still(self) -> bool:
+        return self.paused or bool(self.failure) or (self.by_request and self.step >= 0)
 
-    def _take_commands(self, step: int) -> int:
-        """Apply what is new; return when the newest command in force arrived, 0 when there is none."""
-        newest = 0
-        for kind, (slot, apply) in enumerate(self._inputs):
+    def _make_step(self, begin: int, lateness: int) -> Product:
+        age, fresh = self._take_commands(begin)
+        self._watch(begin, lateness)
+        product = self.rig.make_step()
+        for take in self._takers:
+            take(product)
+        end = self._clock.now()
+        self.ledger.add(self.rig.time_ns, end - begin, lateness, age, end - fresh if fresh else None)
+        return product
+
+    def _take_commands(self, now: int) -> tuple[int | None, int]:
+        """Order what is new; return the age of the newest command in force, and when the newest new one arrived."""
+        newest = fresh = 0
+        for kind, (slot, order) in enumerate(self._inputs):
             command = slot.latest
             if command is None:
                 continue
-            if command is not self._held[kind]:
-                apply(command.value)
-                self._held[kind] = command
-                self._output.command(kind, step + 1, self.time_ns, command.value)
             newest = max(newest, command.arrival)
-        return newest
+            if command is not self._held[kind]:
+                order(command.value)
+                self._held[kind] = command
+                fresh = max(fresh, command.arrival)
+        return (now - newest if newest else None), fresh
+
+    def _watch(self, now: int, lateness: int) -> None:
+        """Look for a time-out, unless this loop itself is behind: then commands may wait to be heard."""
+        if lateness > self._clock.period:
+            return
+        silence = self._watchdog.silence(self.rig.counts.heard, self._clock.watch_time(now, self.rig.time_ns))
+        if silence:
+            self.rig.time_out(silence)

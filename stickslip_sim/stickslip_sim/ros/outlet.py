@@ -1,17 +1,19 @@
-"""Where the products of the steps go: each message is filled in place, serialized once, published and recorded."""
+"""Where the products of the steps go: each message is packed once, and its bytes are published and recorded."""
 
 from collections import deque
-from typing import Any, Protocol
+from typing import Protocol
 
 from rclpy.node import Node
-from rclpy.serialization import serialize_message
+from rclpy.serialization import deserialize_message
 
-from stickslip_msgs.msg import DriveVelocity, ExternalForce, FrictionForce, ModeEvent, SliderState
+from stickslip_msgs.msg import FrictionForce, ModeEvent, SliderState
 
+from ..recording import flat_layout
 from ..recording import topics as names
+from ..recording.messages import Packer
 from ..recording.topics import RECORDED, Topic
+from ..rig import Product
 from ..words import Event, EventKind, Mode, Sample
-from . import conversion
 from .topics import publisher
 
 _KEPT_EVENTS = 20_000   # for the figures of a run; an hour of stick-slip at 5 events a second
@@ -32,67 +34,75 @@ class Outlet:
         self.recorder: Recorder | None = None
         self.events: deque[Event] = deque(maxlen=_KEPT_EVENTS)
         self.first_mode = Mode.STICK
-        self._state, self._friction, self._event = SliderState(), FrictionForce(), ModeEvent()
-        self._friction.header = self._state.header    # they always share their stamp
-        self._state_out = _Port(node, names.SLIDER_STATE)
-        self._friction_out = _Port(node, names.FRICTION_FORCE)
-        self._event_out = _Port(node, names.MODE_EVENT)
-        self._commands: list[tuple[Any, str, int]] = [
-            (DriveVelocity(), 'velocity', RECORDED.index(names.DRIVE_VELOCITY)),
-            (ExternalForce(), 'force', RECORDED.index(names.EXTERNAL_FORCE))]
+        self._state = _Port(node, names.SLIDER_STATE)
+        self._friction = _Port(node, names.FRICTION_FORCE)
+        self._event = _Port(node, names.MODE_EVENT)
+        self._time_ns = 0     # of the latest state
+        self._commands = [(RECORDED.index(topic), flat_layout(topic.type))
+                          for topic in (names.DRIVE_VELOCITY, names.EXTERNAL_FORCE)]
 
     def begin_run(self, start_ns: int) -> None:
         """Let simulation time 0 be a ROS time, ns, and forget the events."""
         self.start_ns = start_ns
+        self._time_ns = 0
         self.events.clear()
+
+    def take(self, product: Product) -> None:
+        """Record the commands of a step; publish and record its events, and the state at its end."""
+        for kind, value in enumerate((product.velocity, product.force)):
+            if value is not None and self.recorder is not None:
+                self.command(kind, product.step, self._time_ns, value)
+        for event in product.events:
+            self.event(max(product.step, 1), event)
+        self.sample(product.step, product.sample)
 
     def event(self, step: int, event: Event) -> None:
         """Publish an event that fell into a step; knots of the friction table are nobody's business."""
         if event.kind == EventKind.KNOT:
             return
         self.events.append(event)
-        time_ns = event.instant.nanoseconds
-        message = self._event
-        conversion.set_stamp(message.header.stamp, self.start_ns + time_ns)
-        conversion.fill_event(message, step, event)
-        self._send(self._event_out, message, time_ns, step)
+        self._send(self._event, event.instant.nanoseconds, step, event)
 
     def sample(self, step: int, sample: Sample) -> None:
         """Publish the state at the end of a step."""
         if step == 0:
             self.first_mode = sample.mode
-        time_ns = int(sample.second) * 1_000_000_000 + round(sample.fraction * 1e9)
-        state, friction = self._state, self._friction
-        conversion.set_stamp(state.header.stamp, self.start_ns + time_ns)
-        conversion.fill_state(state, step, sample)
-        conversion.fill_friction(friction, step, sample)
-        self._send(self._state_out, state, time_ns, step)
-        self._send(self._friction_out, friction, time_ns, step)
+        time_ns = self._time_ns = sample.instant.nanoseconds
+        self._send(self._state, time_ns, step, sample)
+        self._send(self._friction, time_ns, step, sample)
+
+    def state_messages(self, step: int, sample: Sample) -> tuple[SliderState, FrictionForce]:
+        """Return the messages of a state."""
+        stamp_ns = self.start_ns + sample.instant.nanoseconds
+        return (deserialize_message(self._state.pack(stamp_ns, step, sample), SliderState),
+                deserialize_message(self._friction.pack(stamp_ns, step, sample), FrictionForce))
+
+    def event_message(self, step: int, event: Event) -> ModeEvent | None:
+        """Return the message of an event that is published."""
+        if event.kind == EventKind.KNOT:
+            return None
+        return deserialize_message(self._event.pack(self.start_ns + event.instant.nanoseconds, step, event), ModeEvent)
 
     def command(self, kind: int, step: int, time_ns: int, value: float) -> None:
         """Record a command that holds from the begin of a step on."""
-        if self.recorder is None:
-            return
-        message, field, index = self._commands[kind]
-        setattr(message, field, value)
-        conversion.set_stamp(message.header.stamp, self.start_ns + time_ns)
-        self.record(index, serialize_message(message), time_ns, step)
+        index, layout = self._commands[kind]
+        self.record(index, layout.pack(self.start_ns + time_ns, value), time_ns, step)
 
     def record(self, index: int, data: bytes, time_ns: int, step: int) -> None:
         """Hand a message to the recorder, if there is one."""
         if self.recorder is not None:
             self.recorder.put(index, data, time_ns, self.start_ns + time_ns, step)
 
-    def _send(self, port: '_Port', message: Any, time_ns: int, step: int) -> None:
-        data = serialize_message(message)
+    def _send(self, port: '_Port', time_ns: int, step: int, word: Sample | Event) -> None:
+        data = port.pack(self.start_ns + time_ns, step, word)
         port.publish(data)
-        if self.recorder is not None:
-            self.recorder.put(port.index, data, time_ns, self.start_ns + time_ns, step)
+        self.record(port.index, data, time_ns, step)
 
 
 class _Port:
-    """A publisher and the place of its topic in a bag."""
+    """A publisher, the packer of its messages and the place of its topic in a bag."""
 
     def __init__(self, node: Node, topic: Topic) -> None:
         self.index = RECORDED.index(topic)
+        self.pack = Packer(topic).pack
         self.publish = publisher(node, topic).publish

@@ -20,7 +20,7 @@ from .environment import refusing, variables
 DEFAULT_SCENE = 'paper_fig8'
 _TYPES = {
     'double': Parameter.Type.DOUBLE, 'double_array': Parameter.Type.DOUBLE_ARRAY, 'string': Parameter.Type.STRING,
-    'bool': Parameter.Type.BOOL, 'integer': Parameter.Type.INTEGER,
+    'bool': Parameter.Type.BOOL, 'integer': Parameter.Type.INTEGER, 'string_array': Parameter.Type.STRING_ARRAY,
 }
 
 

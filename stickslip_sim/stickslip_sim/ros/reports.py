@@ -8,13 +8,12 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
 from stickslip_msgs.msg import StepTiming
 
-from ..commands import CommandSlot
-from ..pacing import Account
 from ..words import Event, EventKind
 from .conversion import set_stamp
+from .ledger import LedgerWindow
 from .loop import StepLoop
 from .recordings import Recordings
-from .timing import Quantiles
+from .verdict import Verdict
 
 OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
 _MANY_OVERRUNS = 0.05    # share of the steps; the odd one is what a desktop kernel does
@@ -23,10 +22,7 @@ _MANY_OVERRUNS = 0.05    # share of the steps; the odd one is what a desktop ker
 class Second(NamedTuple):
     """What happened in the window since the report before."""
 
-    steps: int
-    cost: Quantiles
-    lateness: Quantiles
-    age: Quantiles
+    window: LedgerWindow
     real_time_factor: float
     overruns: int
     caught_up: int
@@ -37,8 +33,8 @@ class Second(NamedTuple):
 class Reporter:
     """Sums up window after window; remembers what it saw last."""
 
-    def __init__(self, loop: StepLoop, account: Account, slots: Sequence[CommandSlot]) -> None:
-        self._loop, self._account, self._slots = loop, account, slots
+    def __init__(self, loop: StepLoop) -> None:
+        self._loop = loop
         self._wall = self._time = 0
         self.forget_counts()
 
@@ -52,24 +48,31 @@ class Reporter:
 
     def look(self, now: int) -> Second:
         """Return what happened since the look before; `now` is ns on the steady clock."""
-        steps, cost, lateness, age = self._loop.window.take()
-        time, account = self._loop.time_ns, self._account
+        window = self._loop.ledger.take()
+        time, account = self._loop.time_ns, self._loop.account
         passed = now - self._wall
         factor = (time - self._time) / passed if passed > 0 and time >= self._time else math.nan
         self._wall, self._time = now, time
-        counts = (account.overruns, account.caught_up, account.skipped, sum(slot.refused for slot in self._slots))
+        counts = (account.overruns, account.caught_up, account.skipped, self._loop.command_totals.refused)
         overruns, caught_up, skipped, refused = (new - old for new, old in zip(counts, self._before))
         self._before = counts
-        return Second(steps, cost, lateness, age, factor, overruns, caught_up, skipped * 1e-9, refused)
+        return Second(window, factor, overruns, caught_up, skipped * 1e-9, refused)
 
 
-def timing_message(second: Second, step: int, period: float, account: Account, stamp_ns: int) -> StepTiming:
-    """Return the message of a window that ends with a step."""
-    message = StepTiming(step=max(step, 0), period=period, real_time_factor=second.real_time_factor,
-                         steps=second.steps, overruns=second.overruns, total_overruns=account.overruns,
-                         caught_up=second.caught_up, total_caught_up=account.caught_up)
+def timing_message(second: Second, loop: StepLoop, period: float, valid: bool, stamp_ns: int) -> StepTiming:
+    """Return the message of a window that ends with the latest step."""
+    account, totals, window = loop.account, loop.command_totals, second.window
+    lateness, latency = loop.ledger.worst('lateness'), loop.ledger.worst('latency')
+    message = StepTiming(
+        step=max(loop.step, 0), period=period, real_time_factor=second.real_time_factor, steps=window.steps,
+        overruns=second.overruns, total_overruns=account.overruns, caught_up=second.caught_up,
+        total_caught_up=account.caught_up, total_received=totals.received, total_refused=totals.refused,
+        total_lost=totals.lost, total_limited=totals.limited, total_timed_out=totals.timed_out,
+        total_skipped=account.skipped * 1e-9, worst_lateness=lateness.value, worst_lateness_time=lateness.time,
+        worst_latency=latency.value, worst_latency_time=latency.time, valid=valid)
     set_stamp(message.header.stamp, stamp_ns)
-    for name, quantiles in (('cost', second.cost), ('lateness', second.lateness), ('command_age', second.age)):
+    for name, quantiles in (('cost', window.cost), ('lateness', window.lateness), ('command_age', window.age),
+                            ('latency', window.latency)):
         for quantile, value in quantiles._asdict().items():
             setattr(message, f'{name}_{quantile}', value)
     return message
@@ -84,44 +87,65 @@ def diagnostics(stamp_ns: int, hardware_id: str, statuses: Sequence[DiagnosticSt
     return message
 
 
-def loop_status(loop: StepLoop, account: Account, second: Second) -> DiagnosticStatus:
+def loop_status(loop: StepLoop, second: Second, verdict: Verdict) -> DiagnosticStatus:
     """Tell whether the steps keep their time."""
-    level, text = OK, 'on time'
-    if loop.paused or loop.failure:
-        text = 'paused: simulation time stands still' if loop.paused else 'stopped by the solver'
-        level = ERROR if loop.failure else OK
-    elif second.steps == 0 and loop.step > 0:
-        level, text = ERROR, 'no step in the last second'
-    elif second.skipped > 0.0:
-        level, text = WARN, f'{second.skipped:.3f} s behind the clock given up: too slow, or suspended'
-    elif second.overruns > _MANY_OVERRUNS * max(second.steps, 1):
-        level, text = WARN, f'{second.overruns} of {second.steps} steps began more than a period late'
+    level, text = _pace(loop, second)
+    account, window = loop.account, second.window
+    worst = {f'worst {name} / s': f'{case.value:.9g} at t = {case.time:.9g} s'
+             for name in ('cost', 'lateness', 'latency') if not math.isnan((case := loop.ledger.worst(name)).value)}
     return _status('step loop', level, text, {
+        'verdict': verdict.text,
         'step': loop.step, 'simulation time / s': loop.time_ns * 1e-9, 'real-time factor': second.real_time_factor,
-        'cost p50 / s': second.cost.p50, 'cost p99 / s': second.cost.p99,
-        'lateness p50 / s': second.lateness.p50, 'lateness p99 / s': second.lateness.p99,
-        'lateness max / s': second.lateness.max, 'overruns': account.overruns, 'caught up': account.caught_up,
+        'cost p50 / s': window.cost.p50, 'cost p99 / s': window.cost.p99,
+        'lateness p50 / s': window.lateness.p50, 'lateness p99 / s': window.lateness.p99,
+        'lateness max / s': window.lateness.max, **worst, 'overruns': account.overruns, 'caught up': account.caught_up,
         'times skipped': account.skips, 'skipped / s': account.skipped * 1e-9})
 
 
-def command_status(slots: Sequence[CommandSlot], second: Second) -> DiagnosticStatus:
+def _pace(loop: StepLoop, second: Second) -> tuple[bytes, str]:
+    steps = second.window.steps
+    if loop.failure:
+        return ERROR, 'stopped by the solver'
+    if loop.paused:
+        return OK, 'paused: simulation time stands still'
+    if loop.by_request:
+        return OK, 'lock-step: time moves with ~/step'
+    if steps == 0 and loop.step > 0:
+        return ERROR, 'no step in the last second'
+    if second.skipped > 0.0:
+        return WARN, f'{second.skipped:.3f} s behind the clock given up: too slow, or suspended'
+    if second.overruns > _MANY_OVERRUNS * max(steps, 1):
+        return WARN, f'{second.overruns} of {steps} steps began more than a period late'
+    return OK, 'on time'
+
+
+def command_status(loop: StepLoop, second: Second) -> DiagnosticStatus:
     """Tell what came in, and what was refused since the report before."""
-    text = 'waiting for the first' if all(slot.latest is None for slot in slots) else 'in force'
+    slots, totals, rig = loop.slots, loop.command_totals, loop.rig
+    level, text = OK, 'waiting for the first' if all(slot.latest is None for slot in slots) else 'in force'
     if second.refused:
-        text = f'{second.refused} refused; ' + '; '.join(slot.last_refusal for slot in slots if slot.last_refusal)
-    values: dict[str, object] = {'age p99 / s': second.age.p99}
+        reasons = '; '.join(slot.last_refusal for slot in slots if slot.last_refusal)
+        level, text = WARN, f'{second.refused} refused; {reasons}'
+    if rig.is_silent:
+        level, text = WARN, 'timed out: no drive velocity comes'
+    if rig.has_failed:
+        level, text = ERROR, 'fault after a time-out: the drive takes no command until ~/clear_faults or ~/reset'
+    values: dict[str, object] = {
+        'age p99 / s': second.window.age.p99, 'latency p50 / s': second.window.latency.p50,
+        'latency p99 / s': second.window.latency.p99, 'lost': totals.lost, 'limited': totals.limited,
+        'timed out': totals.timed_out, 'faults': ', '.join(rig.fault_ids) or 'none'}
     for slot in slots:
         values |= {f'{slot.name} / ({slot.unit})': slot.latest.value if slot.latest else 'none',
                    f'{slot.name} received': slot.received, f'{slot.name} refused': slot.refused,
                    f'{slot.name} last refusal': slot.last_refusal or 'none'}
-    return _status('command', WARN if second.refused else OK, text, values)
+    return _status('command', level, text, values)
 
 
 def solver_status(loop: StepLoop, name: str, counts: Mapping[EventKind, int], last: Event | None) -> DiagnosticStatus:
     """Tell whether the solver goes on, and what it located."""
     return _status('solver', ERROR if loop.failure else OK, loop.failure or 'goes on', {
         'solver': name, **{f'events {kind.name.lower()}': count for kind, count in counts.items()},
-        'root iterations': loop.simulator.root_iterations, 'last event / s': last.time if last else 'none'})
+        'root iterations': loop.rig.simulator.root_iterations, 'last event / s': last.time if last else 'none'})
 
 
 def recorder_status(recordings: Recordings) -> DiagnosticStatus:

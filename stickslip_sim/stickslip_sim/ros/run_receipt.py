@@ -1,28 +1,38 @@
 """The receipt that ends a bag of the node: the figures of the run, its timing and its commands."""
 
-from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
 from ..analysis import summary
-from ..commands import CommandSlot
-from ..pacing import Account
 from ..receipt import receipt_of
 from ..scene.model import Scene
-from ..simulator import Simulator
+from .ledger import Worst
+from .loop import StepLoop
 from .outlet import Outlet
+from .verdict import verdict
 
 
-def run_receipt(scene: Scene, simulator: Simulator, outlet: Outlet, account: Account, slots: Sequence[CommandSlot],
-                dropped: int, cost: tuple[float, float]) -> dict[str, Any]:
+def run_receipt(scene: Scene, loop: StepLoop, outlet: Outlet, dropped: int, cost: tuple[float, float]
+                ) -> dict[str, Any]:
     """Return the receipt of the run up to now; `cost` is CPU and wall time, s."""
+    simulator = loop.rig.simulator
     period = 1.0 / scene.time.rate
     duration = max(simulator.time.seconds, period)
-    events = list(outlet.events)
-    figures = summary(events, duration, outlet.first_mode)
+    figures = summary(list(outlet.events), duration, outlet.first_mode)
     receipt = receipt_of(scene, duration, period, figures, simulator.root_iterations, simulator.sample(),
                          simulator.energy, *cost)
-    timing = asdict(account)
-    timing['skipped'] = timing['skipped'] * 1e-9
-    return {**receipt, 'timing': timing, 'dropped_messages': dropped,
-            'commands': {slot.name: {'received': slot.received, 'refused': slot.refused} for slot in slots}}
+    slots = {slot.name: {'received': slot.received, 'refused': slot.refused} for slot in loop.slots}
+    return {**receipt, 'timing': _timing(scene, loop), 'dropped_messages': dropped,
+            'commands': {**slots, **loop.command_totals._asdict()}}
+
+
+def _timing(scene: Scene, loop: StepLoop) -> dict[str, Any]:
+    judged = verdict(scene, loop)
+    worst = {f'worst_{name}': _plain(loop.ledger.worst(name)) for name in ('cost', 'lateness', 'latency')}
+    return {**asdict(loop.account), 'skipped': loop.account.skipped * 1e-9, **worst, 'valid': judged.valid,
+            'verdict': judged.text}
+
+
+def _plain(worst: Worst) -> dict[str, float] | None:
+    """Return a worst case for JSON, which knows no NaN."""
+    return worst._asdict() if worst.value == worst.value else None

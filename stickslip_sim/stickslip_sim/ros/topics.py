@@ -7,15 +7,26 @@ from diagnostic_msgs.msg import DiagnosticArray
 from rcl_interfaces.msg import ParameterEvent
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import JointState
 
-from stickslip_msgs.msg import DriveVelocity, ExternalForce, FrictionForce, ModeEvent, RunInfo, SliderState, StepTiming
+from stickslip_msgs.msg import (
+    DriveVelocity,
+    ExternalForce,
+    FrictionForce,
+    ModeEvent,
+    RigEvent,
+    RunInfo,
+    SliderState,
+    StepTiming,
+)
 
 from ..recording.topics import QosProfile, Topic
 
 _TYPES = {
     f'{kind.__module__.split(".")[0]}/msg/{kind.__name__}': kind
-    for kind in (DriveVelocity, ExternalForce, FrictionForce, ModeEvent, RunInfo, SliderState, StepTiming,
-                 ParameterEvent, DiagnosticArray)
+    for kind in (DriveVelocity, ExternalForce, FrictionForce, ModeEvent, RigEvent, RunInfo, SliderState, StepTiming,
+                 Clock, JointState, ParameterEvent, DiagnosticArray)
 }
 
 

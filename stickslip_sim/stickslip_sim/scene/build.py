@@ -21,7 +21,8 @@ from ..friction import (
     smooth,
 )
 from ..friction.kinetic import default_excess
-from .model import CommandSettings, RecordSettings, Scene, TimeSettings
+from .model import CommandSettings, RecordSettings, Scene, TimingSettings
+from .rig import rig_settings, time_settings
 from .solver import SolverSettings, method_of
 from .text import scene_text
 from .values import effective_values
@@ -52,8 +53,10 @@ def build_scene(given: Mapping[str, object], summary: str = '') -> Scene:
         drive=_course(values, 'drive', 'velocity', 'acceleration', 'velocities'),
         force=_course(values, 'force', 'constant', 'rate', 'forces'),
         solver=solver,
-        time=TimeSettings(**_section(values, 'time')),
-        command=CommandSettings(**_section(values, 'command')),
+        time=time_settings(values),
+        command=CommandSettings(*(values[f'command.{name}'] for name in ('max_velocity', 'max_force', 'timeout'))),
+        timing=TimingSettings(**_section(values, 'timing')),
+        rig=rig_settings(values),
         record=RecordSettings(**_section(values, 'record')),
         seed=values['seed'],
         values=values,

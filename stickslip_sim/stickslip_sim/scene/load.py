@@ -30,7 +30,7 @@ def load_scene(name_or_path: str, overrides: Mapping[str, object] | None = None)
     InputError, whose text begins with the file.
     """
     with named(name_or_path):
-        text = _read(_find(name_or_path))
+        text = read_text(_find(name_or_path))
         values = parameters_of(read_yaml(text))
         return scene_of_parameters(values, overrides or {}, _first_comment(text))
 
@@ -38,7 +38,7 @@ def load_scene(name_or_path: str, overrides: Mapping[str, object] | None = None)
 def read_parameters(path: str) -> dict[str, object]:
     """Return the unchecked parameters of a file by dotted name; raises InputError, whose text begins with the file."""
     with named(path):
-        return parameters_of(read_yaml(_read(pathlib.Path(path))))
+        return parameters_of(read_yaml(read_text(pathlib.Path(path))))
 
 
 def scene_of_parameters(values: Mapping[str, object], overrides: Mapping[str, object], summary: str = '') -> Scene:
@@ -53,7 +53,7 @@ def scene_of_parameters(values: Mapping[str, object], overrides: Mapping[str, ob
     name = values.get('scene')
     if not describes_an_axis(values) and isinstance(name, str):
         if name in scene_names():
-            values = overridden(parameters_of(read_yaml(_read(_find(name)))), values)
+            values = overridden(parameters_of(read_yaml(read_text(_find(name)))), values)
         elif name.endswith(_ENDINGS):
             raise InputError('scene', name, 'a name in a file', 'give the file of that scene itself')
     return build_scene(overridden(values, overrides), summary)
@@ -93,18 +93,19 @@ def _find(name: str) -> pathlib.Path:
                      f'did you mean {close[0]}?' if close else 'check the name')
 
 
-def _read(path: pathlib.Path) -> str:
+def read_text(path: pathlib.Path, what: str = 'scene') -> str:
+    """Return the text of a file that is to be a scene, or `what`; raises InputError."""
     try:
         with path.open('rb') as file:
             data = file.read(SIZE_LIMIT + 1)
         text = data.decode('utf-8-sig')
     except UnicodeDecodeError as error:
-        raise InputError('scene', path.name, 'text in UTF-8', f'byte {error.start} is none; is it a scene?') from None
+        raise InputError(what, path.name, 'text in UTF-8', f'byte {error.start} is none; is it a {what}?') from None
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-        raise InputError('scene', path.name, 'a readable file', f'{reason}; check path and permissions') from None
+        raise InputError(what, path.name, 'a readable file', f'{reason}; check path and permissions') from None
     if len(data) > SIZE_LIMIT:
-        raise InputError('scene', path.name, f'a file of at most {SIZE_LIMIT} bytes', 'is this a scene file?')
+        raise InputError(what, path.name, f'a file of at most {SIZE_LIMIT} bytes', f'is this a {what}?')
     return text
 
 

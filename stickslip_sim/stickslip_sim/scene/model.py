@@ -1,29 +1,55 @@
 """A scene: everything that decides a run, checked and ready for the simulator."""
 
 from dataclasses import dataclass, field
+from fractions import Fraction
 
 from ..axis import Axis, InitialState
 from ..courses import Course
+from ..pacing import Grid
+from ..rig.rig import Rig
+from ..rig.settings import RigSettings
 from .solver import SolverSettings
 
 
 @dataclass(frozen=True, slots=True)
 class TimeSettings:
-    """How simulation time goes: `rate` in steps per second of it, `factor` in simulation time per real time."""
+    """How simulation time goes: `rate` in steps per second of it, `factor` in simulation time per real time.
+
+    `clock_rate` is that of /clock, Hz.
+    """
 
     mode: str
     rate: float
     factor: float
+    clock_rate: float
+
+    @property
+    def makes_clock(self) -> bool:
+        """Whether simulation time is the time of the ROS graph."""
+        return self.mode != 'realtime'
+
+    @property
+    def step(self) -> Fraction:
+        """Simulation time of a step, s, exactly."""
+        return 1 / Fraction(repr(self.rate))
 
 
 @dataclass(frozen=True, slots=True)
 class CommandSettings:
-    """Commands whose magnitude is beyond `max_velocity` (m/s) or `max_force` (N) are refused; held for ever."""
+    """Commands beyond `max_velocity` (m/s) or `max_force` (N), either way, are refused; `timeout` in s, 0: off."""
 
     max_velocity: float
     max_force: float
     timeout: float
-    on_timeout: str
+
+
+@dataclass(frozen=True, slots=True)
+class TimingSettings:
+    """What a real-time valid run keeps within: `max_lateness` and `max_latency` in s, `max_overruns` a share."""
+
+    max_lateness: float
+    max_overruns: float
+    max_latency: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,8 +76,15 @@ class Scene:
     solver: SolverSettings
     time: TimeSettings
     command: CommandSettings
+    timing: TimingSettings
+    rig: RigSettings
     record: RecordSettings
     seed: int
     values: dict[str, object] = field(hash=False)
     text: str
     hash: str
+
+    def make_rig(self) -> Rig:
+        """Return the axis and its rig at the start."""
+        return Rig(self.axis, self.initial, self.drive, self.force, self.solver.make(self.axis), Grid(self.time.rate),
+                   self.rig)

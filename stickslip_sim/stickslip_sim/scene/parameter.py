@@ -3,7 +3,7 @@
 import math
 import sys
 from array import array
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from ..errors import InputError
@@ -16,6 +16,7 @@ _PLAIN = {
     'integer': 'a whole number',
     'double': 'a number',
     'double_array': 'a list of at least one number',
+    'string_array': f'a list of at least one text, each of 1 to {TEXT_LIMIT} printable characters',
 }
 _SEQUENCES = (list, tuple, array)
 
@@ -44,7 +45,7 @@ class Parameter:
     """
 
     name: str                       # dotted
-    type: str                       # double, double_array, string, bool or integer
+    type: str                       # double, double_array, string, string_array, bool or integer
     default: object
     unit: str
     description: str
@@ -78,7 +79,9 @@ class Parameter:
     def checked(self, value: object) -> object:
         """Return a value as the type of this parameter (lists as tuples); raises InputError when it is none."""
         if self.type == 'double_array':
-            return self._list(value)
+            return tuple(self._double(number, value) for number in self._items(value, '[0.0, 1.0]'))
+        if self.type == 'string_array':
+            return tuple(self._text(text, value) for text in self._items(value, '[one, another]'))
         if self.type == 'double':
             return self._double(value, value)
         if self.type == 'integer':
@@ -89,10 +92,15 @@ class Parameter:
             return value
         return self._string(value)
 
-    def _list(self, value: object) -> tuple[float, ...]:
+    def _items(self, value: object, example: str) -> Sequence[object]:
         if not isinstance(value, _SEQUENCES) or not value:
-            raise InputError(self.name, value, self.allowed, 'write it as [0.0, 1.0]')
-        return tuple(self._double(number, value) for number in value)
+            raise InputError(self.name, value, self.allowed, f'write it as {example}')
+        return value
+
+    def _text(self, value: object, given: object) -> str:
+        if not isinstance(value, str) or not 0 < len(value) <= TEXT_LIMIT or not value.isprintable():
+            raise InputError(self.name, given, self.allowed, 'put each in quotes')
+        return value
 
     def _double(self, value: object, given: object) -> float:
         if isinstance(value, bool) or not isinstance(value, (int, float)):

@@ -11,6 +11,7 @@ import math
 
 from ..courses import FREQUENCIES, MAX_WAVES
 from ..friction.shapes import MAX_EXPONENT, MIN_EXPONENT
+from ..rig.faults import MAX_TIME
 from .parameter import Parameter, When
 
 _MASS = 1e-9, 1e12              # kg
@@ -30,7 +31,8 @@ _FINEST = 1e-12                 # tolerance of a table
 
 _SOLVERS = ('exact', 'fixed_step', 'adaptive')
 _METHODS = ('euler', 'rk4', 'RK45', 'DOP853', 'Radau', 'BDF', 'LSODA')
-_MODES = ('realtime',)
+_MODES = ('realtime', 'lockstep', 'free_run')
+_REACTIONS = ('hold', 'ramp_to_zero', 'fault')
 _LAWS = ('constant', 'exponential', 'kato', 'hyperbolic', 'logarithmic')
 _KINETIC = ('table', 'stribeck', 'exponential', 'hyperbolic')
 _EXCESS = ('table', 'cosine', 'power')
@@ -45,6 +47,8 @@ _KNOTS = When('friction.kinetic.law', ('table',))
 _SMOOTH = When('friction.kinetic.law', _KINETIC[1:])
 _EXCESS_KNOTS = When('friction.excess.law', ('table',))
 _EXCESS_SMOOTH = When('friction.excess.law', _EXCESS[1:])
+_OWN_CLOCK = When('time.mode', _MODES[1:])
+_STOPS = When('command.on_timeout', _REACTIONS[1:])
 
 
 def _number(name: str, default: float | None, unit: str, description: str, *, low: float, high: float,
@@ -55,10 +59,15 @@ def _number(name: str, default: float | None, unit: str, description: str, *, lo
 
 
 def _numbers(name: str, default: tuple[float, ...] | None, unit: str, description: str, *, low: float, high: float,
-             live: bool = False, when: When | None = None, required: bool = True) -> Parameter:
+             infinite: bool = False, live: bool = False, when: When | None = None, required: bool = True) -> Parameter:
     """Return a list of doubles."""
-    return Parameter(name, 'double_array', default, unit, description, low, high, live=live, when=when,
-                     required=required and default is None)
+    return Parameter(name, 'double_array', default, unit, description, low, high, infinite=infinite, live=live,
+                     when=when, required=required and default is None)
+
+
+def _texts(name: str, description: str) -> Parameter:
+    """Return a list of texts that may be left out."""
+    return Parameter(name, 'string_array', None, '', description)
 
 
 def _choice(name: str, default: str, description: str, choices: tuple[str, ...], when: When | None = None) -> Parameter:
@@ -186,21 +195,57 @@ PARAMETERS: tuple[Parameter, ...] = (
     _number('solver.atol', 1e-10, 'm, m/s', 'error of a step in travel and velocity', low=1e-300, high=1.0,
             when=_ADAPTIVE),
 
-    _choice('time.mode', 'realtime', 'realtime: simulation time follows the clock of the machine', _MODES),
+    _choice('time.mode', 'realtime', 'of the node: realtime follows the clock of the machine; lockstep moves with'
+            ' ~/step only; free_run goes at time.factor, or as fast as it can with .inf; the last two publish /clock',
+            _MODES),
     _number('time.rate', 1000.0, 'Hz', 'steps per second of simulation time', low=1.0, high=20_000.0),
-    _number('time.factor', 1.0, '', 'simulation time per real time', low=1e-3, high=1e3),
+    _number('time.factor', 1.0, '', 'simulation time per real time; .inf with free_run only', low=1e-3, high=1e3,
+            infinite=True),
+    Parameter('clock.rate', 'double', None, 'Hz', 'of /clock, per second of simulation time, at most time.rate; left'
+              ' out: with every step', 1e-3, 20_000.0, when=_OWN_CLOCK),
 
     _number('command.max_velocity', 1.0, 'm/s', 'a drive_velocity beyond it, either way, is refused', low=0.0,
             high=_SPEED, above=True, live=True),
     _number('command.max_force', 1.0e5, 'N', 'an external_force beyond it, either way, is refused', low=0.0,
             high=_FORCE, above=True, live=True),
 
-    _number('command.timeout', 0.0, 's', 'silence after which a command is stale; 0: off, and nothing else yet',
-            low=0.0, high=0.0),
-    _choice('command.on_timeout', 'hold', 'what follows a stale command: hold, and nothing else yet', ('hold',)),
+    _number('command.timeout', 0.0, 's', 'silence after the first drive_velocity that counts as a time-out, in real'
+            ' time on the steady clock, else in simulation time; 0: off', low=0.0, high=_TIME),
+    _choice('command.on_timeout', 'hold', 'what follows: the drive holds the velocity; stops until the next command; or'
+            ' stops and takes none until ~/clear_faults or ~/reset', _REACTIONS),
+    _number('command.timeout_deceleration', 1.0, 'm/s²', 'with which the drive stops then', low=1e-9,
+            high=_ACCELERATION, when=_STOPS),
+    _number('command.velocity_limit', math.inf, 'm/s', 'what the drive can do: it follows commands beyond it as far as'
+            ' this, counted as limited', low=0.0, high=_SPEED, above=True, infinite=True),
+    _number('command.acceleration_limit', math.inf, 'm/s²', 'with which the drive can follow commands: a ramp, counted'
+            ' as limited', low=1e-9, high=_ACCELERATION, infinite=True),
 
-    _number('encoder.resolution', 0.0, 'm', 'of the measured position; 0: exact, and nothing else yet', low=0.0,
-            high=0.0),
+    _number('encoder.resolution', 0.0, 'm', 'of the positions on joint_states; 0: none', low=0.0, high=1.0),
+    _number('encoder.offset', 0.0, 'm', 'added to the positions before they are rounded to the resolution', low=-1e3,
+            high=1e3),
+    _number('encoder.noise', 0.0, 'm', 'standard deviation of the noise before rounding, normal, seeded', low=0.0,
+            high=1.0),
+    _number('encoder.delay', 0.0, 's', 'of the measurement: whole steps', low=0.0, high=1.0),
+    Parameter('encoder.velocity_steps', 'integer', 1, '', 'steps over which the measured velocity is the difference of'
+              ' measured positions (with all else 0: the true velocity)', 1, 1000),
+
+    Parameter('joint_interface.enabled', 'bool', False, '', 'whether the node speaks joint_states and joint_commands,'
+              ' with the joints axis_slider and axis_drive as measured (docs/hil.md)'),
+
+    _texts('faults.ids', 'of faults from the start on, as with ~/inject_fault (docs/hil.md)'),
+    _texts('faults.kinds', 'of these faults, like friction_scale or force_pulse'),
+    _numbers('faults.starts', None, 's', 'when they begin', low=0.0, high=MAX_TIME, required=False),
+    _numbers('faults.durations', None, 's', 'how long they last', low=_SHORTEST, high=MAX_TIME, infinite=True,
+             required=False),
+    _numbers('faults.values', None, 'by kind', 'of these faults; left out: 0', low=-_FORCE, high=_FORCE,
+             required=False),
+
+    _number('timing.max_lateness', 0.01, 's', 'a run is real-time valid while no step begins later than this', low=0.0,
+            high=_TIME, above=True, infinite=True),
+    _number('timing.max_overruns', 0.01, '', 'and no larger share of the steps begins more than a period late', low=0.0,
+            high=1.0),
+    _number('timing.max_latency', math.inf, 's', 'and no command takes longer to the first state that it moved',
+            low=0.0, high=_TIME, above=True, infinite=True),
 
     Parameter('record.enabled', 'bool', False, '', 'whether the node records a bag from the start'),
     Parameter('record.folder', 'string', '', '', 'folder of the bag, which must not exist; empty: the node chooses',

@@ -7,7 +7,8 @@ from ..errors import InputError
 NODE = 'feed_axis'
 _ALL_NODES = ('/**', '/*', '/**/' + NODE)
 _PARAMETERS = 'ros__parameters'
-_NOT_OF_THE_AXIS = ('scene', 'record.', 'time.', 'command.', 'seed')
+_NOT_OF_THE_AXIS = ('scene', 'record.', 'time.', 'clock.', 'command.', 'encoder.', 'faults.', 'joint_interface.',
+                    'timing.', 'seed')
 _OF_ROS = ('use_sim_time', 'start_type_description_service', 'qos_overrides.')   # any node has them
 
 

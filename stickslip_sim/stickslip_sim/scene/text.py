@@ -31,7 +31,7 @@ def _indent(depth: int) -> str:
 def yaml_value(entry: Parameter, value: object) -> str:
     """Return an effective value as it is written in a scene file."""
     if isinstance(value, tuple):
-        return '[' + ', '.join(map(_double, value)) + ']'
+        return '[' + ', '.join(yaml_value(entry, item) for item in value) + ']'
     if isinstance(value, float):
         return _double(value)
     if isinstance(value, str) and not entry.choices:

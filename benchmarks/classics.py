@@ -1,0 +1,214 @@
+"""The classical results beside the exact engine: shown in docs/paper.md, kept by tests/test_classics.py."""
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from typing import NamedTuple
+
+from scipy.optimize import brentq
+
+from stickslip_sim.analysis import cycle_figures
+from stickslip_sim.axis import Axis, Friction, InitialState, RigidContact
+from stickslip_sim.courses import Course, Wave, constant
+from stickslip_sim.extremes.runs import instant, make, of_kind, run
+from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind, kinetic_table
+from stickslip_sim.friction.smooth import hyperbolic
+from stickslip_sim.words import Event, EventKind, Sample
+
+from .closed_forms import (
+    Oscillator,
+    coulomb_cycle,
+    critical_feed,
+    den_hartog,
+    healing_stick_time,
+    slip_speed,
+    swing_ratio,
+)
+
+PAPER = Oscillator(350.0, 6e5, 4000.0)
+UNDAMPED = PAPER._replace(damping=0.0)
+UNIT = Oscillator(1.0, 1.0)
+STATIC, KINETIC = 824.0, 412.0   # N
+DROP = STATIC - KINETIC
+FEED = 0.005                     # m/s
+DAMPING_RATIOS = 0.01, 0.1, 0.2
+EXACT = 1e-12                    # where everything is a closed form; the engine's own bound
+
+LEINE_TOLERANCE = 1e-6           # of the table of F_s/(1 + 3 |u|), of F_s
+_LEINE_SPEED = 0.2
+_LEINE = {'slip time': 4.2959995255, 'stick time': 7.7050317694, 'period': 12.0010312948,
+          'largest stretch': 1.1339446764, 'smallest stretch': -0.5554326901}
+
+HEALING = StaticLaw(StaticLawKind.EXPONENTIAL, 0.12, 0.24, 0.2)
+NORMAL = 350 * 9.80665           # N
+
+
+class Result(NamedTuple):
+    """A figure as the literature has it and as the engine has it; they differ by at most `tolerance` · |expected|."""
+
+    name: str
+    unit: str
+    expected: float
+    found: float
+    tolerance: float = EXACT
+
+
+def axis_of(oscillator: Oscillator, friction: Friction, normal_force: float = 1.0) -> Axis:
+    """Return an axis with a rigid contact and the conventional characteristics."""
+    return Axis(*oscillator, normal_force, RigidContact(), friction)
+
+
+def coulomb_axis(oscillator: Oscillator, static: float, kinetic: float) -> Axis:
+    """Return an axis with constant static and kinetic friction in N."""
+    law = StaticLaw(StaticLawKind.CONSTANT, static, static)
+    return axis_of(oscillator, Friction(law, KineticTable((0.0,), (kinetic,)), None))
+
+
+def healing_axis(law: StaticLaw) -> Axis:
+    """Return the undamped axis whose kinetic friction is mu_s(0): only rest makes a drop."""
+    return axis_of(UNDAMPED, Friction(law, KineticTable((0.0,), (law.initial,)), None), NORMAL)
+
+
+def state_at(axis: Axis, feed: float, time: float) -> Sample:
+    """Return the state at a time (s), from prolonged rest."""
+    simulator = make(axis, feed)
+    simulator.advance(instant(time))
+    return simulator.sample()
+
+
+def undamped_cycle() -> list[Result]:
+    """Constant friction without damping: the limit cycle."""
+    events = run(coulomb_axis(UNDAMPED, STATIC, KINETIC), FEED, 3.0)
+    expected, found = coulomb_cycle(UNDAMPED, DROP, FEED), cycle_figures(events)[-1]
+    units = ('s', 's', 's', 'm/s', 'm')
+    return [Result(f'undamped Coulomb cycle: {name.replace("_", " ")}', unit, value, getattr(found, name))
+            for (name, value), unit in zip(expected._asdict().items(), units, strict=True)]
+
+
+def damped_slip() -> list[Result]:
+    """The paper's damper and constant kinetic friction: the speed in the course of a slip."""
+    axis = coulomb_axis(PAPER, STATIC, KINETIC)
+    start = run(axis, FEED, 1.0)[0].time
+    return [Result(f'damped slip: speed after {time * 1e3:g} ms', 'm/s', slip_speed(PAPER, DROP, FEED, time),
+                   state_at(axis, FEED, start + time).velocity) for time in (0.001, 0.01, 0.03, 0.05, 0.07)]
+
+
+def critical_feeds() -> list[Result]:
+    """Constant friction with damping: the feed at which stick-slip ends, by bisection on the engine."""
+    return [Result(f'critical feed, ζ = {zeta:g}', 'm/s', critical_feed(damped(zeta), DROP),
+                   feed_where_sticking_ends(zeta)) for zeta in DAMPING_RATIOS]
+
+
+def damped(zeta: float) -> Oscillator:
+    """Return the paper's oscillator with another damping ratio."""
+    return UNDAMPED._replace(damping=2.0 * zeta * UNDAMPED.impedance)
+
+
+def sticks_again(zeta: float, feed: float) -> bool:
+    """Whether the slider comes to rest after the first break-away, with constant friction."""
+    events = run(coulomb_axis(damped(zeta), STATIC, KINETIC), feed, STATIC / (UNDAMPED.stiffness * feed) + 1.0)
+    return bool(of_kind(events, EventKind.STICK))
+
+
+def feed_where_sticking_ends(zeta: float) -> float:
+    """Return the lowest feed (m/s) without a stick, to the last bit but one."""
+    low, high = 1e-3, 1.0
+    while high - low > 4.0 * math.ulp(high):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if sticks_again(zeta, middle) else (low, middle)
+    return high
+
+
+def healing_cycles() -> list[Result]:
+    """No fall with speed and no damping: the stick time of the cycle that growth at rest alone keeps up."""
+    results = []
+    for law, feed in ((HEALING, 0.0034), (HEALING, 0.0062),
+                      (replace(HEALING, kind=StaticLawKind.KATO, exponent=0.5), 0.07)):
+        expected = healing_stick_time(partial(grown, law), UNDAMPED.stiffness, feed)
+        found = cycle_figures(run(healing_axis(law), feed, 200.0))[-1].stick_time
+        results.append(Result(f'growth at rest ({law.kind.name.lower()}), {feed * 1e3:g} mm/s: stick time', 's',
+                              expected, found))
+    return results
+
+
+def grown(law: StaticLaw, rest: float) -> float:
+    """Return by how much static friction (N) has grown after a rest (s)."""
+    return NORMAL * (law.coefficient(rest) - law.initial)
+
+
+def steady_sliding() -> list[Result]:
+    """The paper's falling mu_k about steady sliding: what each half swing makes of the last; 2000 N is the border."""
+    return [Result(f'steady sliding, N = {normal:g} N: ratio of half swings', '',
+                   swing_ratio(PAPER, normal * (0.12 - 0.05) / 0.035), _swing_ratio(normal))
+            for normal in (1800.0, 2000.0, 2200.0)]
+
+
+def _swing_ratio(normal_force: float) -> float:
+    """Return the mean ratio of neighbouring extremes of ẋ − v, from a start 1 mm/s off; F_e balances the friction."""
+    feed = 0.0175
+    kinetic = KineticTable((0.0, 0.035), (0.12, 0.05))
+    axis = axis_of(PAPER, Friction(HEALING, kinetic, None), normal_force)
+    events = run(axis, feed, 1.0, normal_force * kinetic.coefficient(feed), InitialState(velocity=feed + 1e-3))
+    swings = [abs(event.velocity - feed) for event in events]
+    return math.pow(swings[-1] / swings[0], 1.0 / (len(swings) - 1))
+
+
+def forced_oscillations() -> list[Result]:
+    """Den Hartog's oscillator, from rest: half the distance of the turning points once it is steady."""
+    results = []
+    for ratio, friction in ((0.8, 0.5), (1.5, 0.3), (2.0, 0.2)):
+        turns = turning_points(forced_axis(friction), shaken(ratio, 0.0), 400.0 * math.pi / ratio)
+        results.append(Result(f'Den Hartog, w/ω = {ratio:g}, F/P = {friction:g}: amplitude', 'P/c',
+                              den_hartog(ratio, friction).amplitude, half_range(turns)))
+    return results
+
+
+def forced_axis(friction: float) -> Axis:
+    """Return m = c = 1, h = 0 with constant friction in N."""
+    return coulomb_axis(UNIT, friction, friction)
+
+
+def shaken(ratio: float, phase: float, mean: float = 0.0) -> Course:
+    """Return the force mean + cos(ratio t + phase)."""
+    return replace(constant(mean), waves=(Wave(1.0, ratio / (2.0 * math.pi), phase + 0.5 * math.pi),))
+
+
+def turning_points(axis: Axis, force: Course, duration: float) -> list[Event]:
+    """Return where the slider stops or turns back, its drive standing still."""
+    return [event for event in run(axis, 0.0, duration, force) if event.kind in (EventKind.REVERSE, EventKind.STICK)]
+
+
+def half_range(turns: list[Event]) -> float:
+    """Return half the distance of the last two turning points, m."""
+    return 0.5 * abs(turns[-1].position - turns[-2].position)
+
+
+def leine_axis(tolerance: float) -> Axis:
+    """Return m = c = F_s = 1, h = 0 with F_s/(1 + 3 |u|) as a table."""
+    law = StaticLaw(StaticLawKind.CONSTANT, 1.0, 1.0)
+    return axis_of(UNIT, Friction(law, kinetic_table(hyperbolic(1.0, 0.0, 1.0 / 3.0), tolerance), None))
+
+
+def leine_cycle(tolerance: float = LEINE_TOLERANCE) -> list[Result]:
+    """Leine et al. 1998: the first cycle is the limit cycle; it is off by no more than the table's tolerance."""
+    axis = leine_axis(tolerance)
+    events = run(axis, _LEINE_SPEED, 20.0)
+    cycle, peak = cycle_figures(events)[0], max(events, key=lambda event: event.velocity)
+    moments = (cycle.begin + 1e-3, peak.time), (peak.time, cycle.begin + cycle.slip_time - 1e-3)
+    stretches = [state_at(axis, _LEINE_SPEED, _overtaking(axis, *span)).drive_force for span in moments]
+    found = (cycle.slip_time, cycle.stick_time, cycle.period, *stretches)
+    return [Result(f'Leine 1998: {name}', '', value, figure, tolerance / abs(value))
+            for (name, value), figure in zip(_LEINE.items(), found, strict=True)]
+
+
+def _overtaking(axis: Axis, begin: float, end: float) -> float:
+    """Return when the slider is as fast as the drive: there the spring is longest or shortest."""
+    def lead(time: float) -> float:
+        return state_at(axis, _LEINE_SPEED, time).velocity - _LEINE_SPEED
+
+    return float(brentq(lead, begin, end, xtol=1e-12))
+
+
+GROUPS: tuple[Callable[[], list[Result]], ...] = (
+    undamped_cycle, damped_slip, critical_feeds, healing_cycles, steady_sliding, forced_oscillations, leine_cycle)

@@ -1,0 +1,127 @@
+"""Classical results on stick-slip in closed form: what the engine is held to (`classics`, tests/test_classics.py).
+
+m ẍ = c (v t − x) + h (v − ẋ) − F, with ω = √(c/m), ζ = h/(2 √(cm)) and s = √(1 − ζ²).  Friction drops by ΔF as the slip
+begins; A = ΔF/(v √(cm)) is that drop over what the feed v stands for.
+"""
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+from scipy.optimize import brentq
+
+
+class Oscillator(NamedTuple):
+    """The slider on its drive: mass m kg, stiffness c N/m, damping h N s/m."""
+
+    mass: float
+    stiffness: float
+    damping: float = 0.0
+
+    @property
+    def frequency(self) -> float:
+        """The undamped angular frequency ω, rad/s."""
+        return math.sqrt(self.stiffness / self.mass)
+
+    @property
+    def impedance(self) -> float:
+        """√(cm), N s/m."""
+        return math.sqrt(self.stiffness * self.mass)
+
+    @property
+    def damping_ratio(self) -> float:
+        """The damping over the critical one, ζ."""
+        return 0.5 * self.damping / self.impedance
+
+
+class CoulombCycle(NamedTuple):
+    """The limit cycle of constant static and kinetic friction without damping: times s, speed m/s, jump m."""
+
+    slip_time: float
+    stick_time: float
+    period: float
+    peak_speed: float
+    jump: float
+
+
+def coulomb_cycle(oscillator: Oscillator, drop: float, feed: float) -> CoulombCycle:
+    """Return the cycle for a drop of friction ΔF (N) and a feed v (m/s), h = 0."""
+    a = drop / (feed * oscillator.impedance)
+    slip = 2.0 / oscillator.frequency * (math.pi - math.atan(a))
+    stick = 2.0 * drop / (oscillator.stiffness * feed)
+    return CoulombCycle(slip, stick, slip + stick, feed * (1.0 + math.hypot(1.0, a)), feed * (slip + stick))
+
+
+def slip_speed(oscillator: Oscillator, drop: float, feed: float, time: float) -> float:
+    """Return ẋ (m/s) at a time (s) after the break-away, under constant kinetic friction and 0 <= ζ < 1."""
+    zeta = oscillator.damping_ratio
+    s, a = math.sqrt(1.0 - zeta * zeta), drop / (feed * oscillator.impedance)
+    phase = s * oscillator.frequency * time
+    wave = math.cos(phase) - (a - zeta) / s * math.sin(phase)
+    return feed * (1.0 - math.exp(-zeta * oscillator.frequency * time) * wave)
+
+
+def critical_drop(damping_ratio: float) -> float:
+    """Return A_c, at which the slip only just comes to rest: A above it is stick-slip; 0 < ζ < 1.
+
+    (ζ/s) [2π − asin ζ − atan((A − ζ)/s)] = ½ ln(1 − 2 A ζ + A²).
+    """
+    zeta = damping_ratio
+    s = math.sqrt(1.0 - zeta * zeta)
+
+    def beyond(a: float) -> float:
+        angle = 2.0 * math.pi - math.asin(zeta) - math.atan((a - zeta) / s)
+        return zeta / s * angle - 0.5 * math.log1p(a * a - 2.0 * a * zeta)
+
+    return float(brentq(beyond, zeta, 2.0 * zeta + math.exp(2.0 * math.pi * zeta / s), xtol=1e-16, rtol=1e-15))
+
+
+def critical_feed(oscillator: Oscillator, drop: float) -> float:
+    """Return the feed v_c (m/s) from which on constant friction slides: ΔF/(A_c √(cm))."""
+    return drop / (critical_drop(oscillator.damping_ratio) * oscillator.impedance)
+
+
+def light_damping_feed(oscillator: Oscillator, drop: float) -> float:
+    """Return the usual estimate of v_c (m/s), the limit of small ζ: ΔF/√(4π ζ c m)."""
+    return drop / (math.sqrt(4.0 * math.pi * oscillator.damping_ratio) * oscillator.impedance)
+
+
+def healing_critical_feed(stiffness: float, growth: float) -> float:
+    """Return v_c = 2 S′(0)/c (m/s) of friction that only grows with rest, at `growth` S′(0) N/s from the arrest on.
+
+    For a concave growth S and h = 0.
+    """
+    return 2.0 * growth / stiffness
+
+
+def healing_stick_time(grown: Callable[[float], float], stiffness: float, feed: float) -> float:
+    """Return the stick time t (s) of the cycle, c v t = 2 ΔS(t), h = 0; `grown` is ΔS (N), concave and bounded."""
+    end = 2.0 * grown(math.inf) / (stiffness * feed)
+    return float(brentq(lambda t: 2.0 * grown(t) - stiffness * feed * t, 1e-9 * end, end, xtol=1e-300, rtol=1e-15))
+
+
+def swing_ratio(oscillator: Oscillator, slope: float) -> float:
+    """Return what half a swing about steady sliding leaves of the last one, friction falling by `slope` σ N s/m.
+
+    exp(−π γ/√(ω² − γ²)) with γ = (h − σ)/(2 m): it grows where σ > h.
+    """
+    gamma = 0.5 * (oscillator.damping - slope) / oscillator.mass
+    return math.exp(-math.pi * gamma / math.sqrt(oscillator.frequency ** 2 - gamma * gamma))
+
+
+class Swing(NamedTuple):
+    """A forced oscillation under P cos(w t + phase) that is at +amplitude at t = 0; amplitude in P/c, phase in rad."""
+
+    amplitude: float
+    phase: float
+
+
+def den_hartog(ratio: float, friction: float) -> Swing:
+    """Return the steady oscillation without stops, for r = w/ω and constant friction in P (Den Hartog 1931), h = 0.
+
+    X = √(V² − f² U²), V = 1/(1 − r²), U = sin(π/r)/(r (1 + cos(π/r))).
+    """
+    v = 1.0 / (1.0 - ratio * ratio)
+    u = math.tan(0.5 * math.pi / ratio) / ratio
+    amplitude = math.sqrt(v * v - friction * friction * u * u)
+    return Swing(amplitude, math.atan2(-friction * u / v, amplitude / v))

@@ -1,0 +1,81 @@
+"""What the paper's cycle owes to the choices that the paper leaves open: `python3 -m benchmarks.paper` shows it.
+
+One choice at a time is changed in a shipped scene, from prolonged rest, and the cycle is the mean of the last ten.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+from stickslip_sim.offline import Trajectory, run_offline
+from stickslip_sim.scene import load_scene
+
+Changes = Mapping[str, object]
+
+BASE = 'paper_fig8'
+DURATION = 60.0   # s
+
+_WEIGHT = 350 * 9.80665   # N
+_FIRST, _STATIC, _KINETIC = 'as shipped', 'friction.static', 'friction.kinetic'
+_SMOOTH: Changes = {f'{_KINETIC}.initial': 0.12, f'{_KINETIC}.limit': 0.05, f'{_KINETIC}.tolerance': 1e-5}
+
+
+class Choice(NamedTuple):
+    """One value of one choice."""
+
+    what: str
+    value: str
+    changes: Changes
+
+
+def _numbers(what: str, name: str, values: Sequence[float], unit: str, scale: float = 1.0) -> list[Choice]:
+    return [Choice(what, f'{value * scale:.5g}{unit}', {name: value}) for value in values]
+
+
+CHOICES = [
+    Choice(_FIRST, 'Fig. 8', {}),
+    Choice('contact', 'rigid (Fig. 7)', {'contact.model': 'rigid'}),
+    *_numbers('contact spring c_c', 'contact.stiffness', (2.5e6, 1e7), ' kN/mm', 1e-6),
+    *_numbers('contact damper h_c', 'contact.damping', (0.0, 7500.0, 30000.0), ' Ns/mm', 1e-3),
+    *_numbers('feed v', 'drive.velocity', (0.0005, 0.001, 0.003, 0.004, 0.005, 0.01), ' mm/s', 1e3),
+    *_numbers('normal force N', 'axis.normal_force', (0.5 * _WEIGHT, 0.8 * _WEIGHT, 1.25 * _WEIGHT, 2.0 * _WEIGHT),
+              ' kN', 1e-3),
+    *_numbers('rest-time constant τ', f'{_STATIC}.time_constant', (0.05, 0.1, 0.4, 1.0, 2.0), ' s'),
+    Choice('growth of mu_s', 'Kato, n = 0.5', {f'{_STATIC}.law': 'kato', f'{_STATIC}.initial': 0.12, f'{_STATIC}.limit':
+           0.24, f'{_STATIC}.time_constant': 0.2, f'{_STATIC}.exponent': 0.5}),
+    Choice('growth of mu_s', 'hyperbolic', {f'{_STATIC}.law': 'hyperbolic', f'{_STATIC}.initial': 0.12,
+           f'{_STATIC}.limit': 0.24, f'{_STATIC}.time_constant': 0.2}),
+    Choice('growth of mu_s', 'none (0.24)', {f'{_STATIC}.law': 'constant', f'{_STATIC}.initial': 0.24}),
+    Choice('loop ψ', 'cosine', {'friction.excess.law': 'cosine', 'friction.excess.tolerance': 1e-5}),
+    Choice('loop ψ', '(1 − z)²', {'friction.excess.law': 'power', 'friction.excess.exponent': 2.0,
+           'friction.excess.tolerance': 1e-5}),
+    Choice('loop ψ', 'up to v_gr/2', {'friction.excess.velocities': [0.0, 0.0175],
+           'friction.excess.fractions': [1.0, 0.0]}),
+    Choice('loop ψ', 'none (Fig. 3)', {'friction.acceleration_dependence': False}),
+    Choice('mu_k between its points', 'exponential', {f'{_KINETIC}.law': 'exponential',
+           f'{_KINETIC}.stribeck_velocity': 0.035 / math.log(100.0), **_SMOOTH}),
+    Choice('mu_k between its points', 'Gaussian', {f'{_KINETIC}.law': 'stribeck',
+           f'{_KINETIC}.stribeck_velocity': 0.035 / math.sqrt(math.log(100.0)), **_SMOOTH}),
+    Choice('v_gr = 35', 'read as m/s', {f'{_KINETIC}.velocities': [0.0, 35.0],
+           f'{_KINETIC}.coefficients': [0.12, 0.05]}),
+]
+
+
+def table() -> str:
+    """Return every choice and its limit cycle, as docs/paper.md shows them."""
+    head = ('| choice | value | period / s | stick / s | slip / s | jump / mm | peak speed / (mm/s) | break-away / kN |'
+            '\n|---|---|---|---|---|---|---|---|\n')
+    return head + ''.join(f'| {choice.what} | {choice.value} | {_figures(_run(choice))} |\n' for choice in CHOICES)
+
+
+def _run(choice: Choice) -> Trajectory:
+    return run_offline(load_scene(BASE, choice.changes), DURATION)
+
+
+def _figures(run: Trajectory) -> str:
+    last, cycle = run.summary.last, run.summary.mean
+    if last is None or cycle is None or DURATION - last.begin > 3.0 * last.period:
+        return f'{run.summary.cycles} cycles, then smooth sliding | | | | |'
+    about = '' if run.summary.settled else '≈ '
+    return (f'{about}{cycle.period:.4f} | {cycle.stick_time:.4f} | {cycle.slip_time:.4f} | '
+            f'{cycle.jump * 1e3:.4f} | {cycle.peak_speed * 1e3:.3f} | {cycle.break_away_force * 1e-3:.4f}')

@@ -1,0 +1,23 @@
+"""The outcome as JUnit XML, which CI servers read: one test case for each limit."""
+
+from collections.abc import Sequence
+from xml.etree import ElementTree
+
+from .report import told
+from .verdict import Outcome
+
+
+def junit_text(name: str, outcomes: Sequence[Outcome]) -> str:
+    """Return the file, valid against the schema of Jenkins; the suite has the name of what was checked."""
+    failed = sum(not outcome.passed for outcome in outcomes)
+    suite = ElementTree.Element('testsuite', name=name, tests=str(len(outcomes)), failures=str(failed), errors='0')
+    for outcome in outcomes:
+        case = ElementTree.SubElement(suite, 'testcase', name=outcome.name, classname=f'stickslip.check.{name}')
+        if outcome.passed:
+            ElementTree.SubElement(case, 'system-out').text = told(outcome)
+        else:
+            failure = ElementTree.SubElement(case, 'failure', type='limit', message=told(outcome))
+            failure.text = told(outcome)
+    ElementTree.indent(suite)
+    document: bytes = ElementTree.tostring(suite, encoding='utf-8', xml_declaration=True)
+    return document.decode() + '\n'

@@ -1,0 +1,163 @@
+"""Limits in a file: read strictly, so that a misspelt limit is refused and never passes unseen."""
+
+import difflib
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from ..errors import InputError
+from ..scene import Parameter
+from ..scene.load import named, read_text
+from ..scene.ros_yaml import read_yaml
+from .kinds import FARTHEST, KINDS, TARGET, TIMING, Kind
+from .motion import Reference
+
+_LATEST = 1e15   # s, as in a scene
+_SECTIONS = ('window', 'target', 'reference', 'limits')
+_TIME = Parameter('time', 'double', None, 's', 'of the run', low=0.0, high=_LATEST)
+_TIMES = Parameter('times', 'double_array', None, 's', 'of the run', low=0.0, high=_LATEST)
+_POSITIONS = Parameter('positions', 'double_array', None, 'm', 'at these times', low=-FARTHEST, high=FARTHEST)
+_NAME = Parameter('name', 'string', None, '', 'of a limit')
+_VALID = 'valid'
+
+
+class Window(NamedTuple):
+    """The part of a run that counts, s; None: from its begin, to its end."""
+
+    begin: float | None = None
+    end: float | None = None
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A figure within a window must not be above `maximum` (in the unit of its kind)."""
+
+    name: str
+    kind: Kind
+    maximum: float
+    window: Window
+    settings: Mapping[str, float]   # what the kind asks for beside
+
+
+@dataclass(frozen=True)
+class Limits:
+    """All limits of a file; `timing`: the run must be valid in real time."""
+
+    limits: tuple[Limit, ...]
+    timing: bool = False
+    reference: Reference | None = None
+
+
+def load_limits(path: str) -> Limits:
+    """Return the limits of a file; raises InputError, whose text begins with the file."""
+    with named(path):
+        return limits_of(read_yaml(read_text(Path(path), 'limits file')))
+
+
+def limits_of(document: object) -> Limits:
+    """Return the limits of a document as YAML gives it; raises InputError."""
+    given = _mapping('file', document, _SECTIONS)
+    entries = given.get('limits')
+    if not isinstance(entries, Mapping) or not entries:
+        raise InputError('limits', entries, 'a section with at least one limit', 'for example sticks: {max: 3}')
+    window = _window('window', given.get('window'), Window())
+    defaults = {'target': _checked(TARGET, '', given['target'])} if 'target' in given else {}
+    for name in entries:
+        _NAME.checked(name)
+    return Limits(tuple(_limit(name, entry, window, defaults) for name, entry in entries.items() if name != TIMING),
+                  _timing(entries), _reference(given.get('reference')))
+
+
+def check_fit(limits: Limits, begin: float, end: float, has_timing: bool) -> None:
+    """Raise InputError when a limit is set for what a run from `begin` to `end` (s) does not have."""
+    if limits.timing and not has_timing:
+        raise InputError(TIMING, _VALID, 'left out here: only a run that the node recorded in real time has a verdict',
+                         'drop this limit')
+    for limit in limits.limits:
+        for edge, time in zip(Window._fields, limit.window):
+            if time is not None and not begin <= time <= end:
+                raise InputError(f'{limit.name}.window.{edge}', time, f'within the run, {begin:g} to {end:g} s',
+                                 'change the window, or check a longer run')
+
+
+def _limit(name: str, entry: object, window: Window, defaults: Mapping[str, Any]) -> Limit:
+    if not isinstance(entry, Mapping):
+        raise InputError(name, entry, 'a limit in braces', f'for example {name}: {{max: 1.0e-3}}')
+    kind = _kind(name, entry)
+    given = _mapping(name, entry, ('check', 'max', 'window', *(setting.name for setting in kind.settings)))
+    settings = {setting.name: _setting(setting, name, given, defaults) for setting in kind.settings}
+    own_window = _window(f'{name}.window', given.get('window'), window)
+    return Limit(name, kind, _setting(kind.maximum, name, given, {}), own_window, settings)
+
+
+def _kind(name: str, entry: Mapping[str, object]) -> Kind:
+    """Return what is limited: `check`, or the name itself."""
+    given = entry.get('check', name)
+    if not isinstance(given, str) or given not in KINDS:
+        close = difflib.get_close_matches(str(given), KINDS, 1)
+        fix = f'did you mean {close[0]}?' if close else f'name one: {name}: {{check: sticks, max: 3}}'
+        raise InputError(f'{name}.check' if 'check' in entry else 'limit', given, 'one of ' + ', '.join(KINDS), fix)
+    return KINDS[given]
+
+
+def _setting(entry: Parameter, name: str, given: Mapping[str, object], defaults: Mapping[str, Any]) -> Any:
+    if entry.name in given:
+        return _checked(entry, name, given[entry.name])
+    value = defaults.get(entry.name, entry.default)
+    if value is None:
+        raise InputError(f'{name}.{entry.name}', None, f'given: {entry.allowed}', 'add it')
+    return value
+
+
+def _timing(entries: Mapping[str, object]) -> bool:
+    if TIMING in entries and entries[TIMING] != _VALID:
+        raise InputError(TIMING, entries[TIMING], _VALID, 'the verdict of the node is yes or no')
+    return TIMING in entries
+
+
+def _window(name: str, given: object, default: Window) -> Window:
+    if given is None:
+        return default
+    edges = {edge: _checked(_TIME, name, time, edge) for edge, time in _mapping(name, given, Window._fields).items()}
+    window = default._replace(**edges)
+    if window.begin is not None and not window.begin < (math.inf if window.end is None else window.end):
+        raise InputError(name, [*window], 'begin before end', 'give both in seconds of the run')
+    return window
+
+
+def _reference(given: object) -> Reference | None:
+    if given is None:
+        return None
+    values = _mapping('reference', given, Reference._fields)
+    for name in Reference._fields:
+        if name not in values:
+            raise InputError(f'reference.{name}', None, 'given: times and positions make a course', 'add it')
+    reference = Reference(_checked(_TIMES, 'reference', values['times']),
+                          _checked(_POSITIONS, 'reference', values['positions']))
+    if len(reference.times) != len(reference.positions):
+        raise InputError('reference.positions', values['positions'], f'as many as there are times '
+                         f'({len(reference.times)})', 'give one for every time')
+    if not all(before < after for before, after in pairwise(reference.times)):
+        raise InputError('reference.times', values['times'], 'strictly increasing', 'put them in order')
+    return reference
+
+
+def _mapping(name: str, given: object, known: Iterable[str]) -> Mapping[str, object]:
+    """Return a section of known keys; raises InputError on anything else."""
+    names = [*known]
+    if not isinstance(given, Mapping):
+        raise InputError(name, given, 'a section of ' + ', '.join(names), 'see docs/check.md')
+    for key, value in given.items():
+        if key not in names:
+            close = difflib.get_close_matches(key, names, 1)
+            raise InputError(key if name == 'file' else f'{name}.{key}', value, 'one of ' + ', '.join(names),
+                             f'did you mean {close[0]}?' if close else 'drop it')
+    return given
+
+
+def _checked(entry: Parameter, section: str, value: object, name: str = '') -> Any:
+    """Return a value as the type of a parameter that has its name in a section; raises InputError."""
+    return replace(entry, name='.'.join(filter(None, (section, name or entry.name)))).checked(value)

@@ -1,0 +1,82 @@
+"""`stickslip check`: a recorded run or a fresh simulation against the limits in a file."""
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from .files import STDOUT, check_distinct, check_file, write_text
+
+if TYPE_CHECKING:
+    from ..check.limits import Limits
+    from ..check.sources import Evidence
+
+
+@click.command()
+@click.argument('source', metavar='RUN_OR_SCENE')
+@click.option('--limits', 'limits_file', required=True, metavar='FILE.yaml', help='The limits (docs/check.md).')
+@click.option('--duration', type=float, metavar='S', help='Time to simulate a scene, s.')
+@click.option('--set', 'changes', multiple=True, metavar='A.B=VALUE', help='Change a parameter of a scene.')
+@click.option('--junit', metavar='FILE.xml', help='Write JUnit XML for a CI server ("-": to standard output).')
+@click.option('--json', 'json_file', metavar='FILE.json', help='Write everything measured ("-": to standard output).')
+def check(source: str, limits_file: str, duration: float | None, changes: tuple[str, ...], junit: str | None,
+          json_file: str | None) -> None:
+    """Check RUN_OR_SCENE - a run folder, or a scene to simulate - against limits; exit with 3 when one is not kept."""
+    _check_outputs(junit, json_file)
+    from ..check.junit import junit_text
+    from ..check.limits import load_limits
+    from ..check.report import as_json, failures, verdict_line
+    from ..check.verdict import judge
+    from ..errors import VerdictError
+    from .verdicts import table_lines
+
+    limits = load_limits(limits_file)
+    evidence = _evidence(source, limits, duration, changes)
+    outcomes = judge(limits, evidence)
+    if STDOUT not in (junit, json_file):
+        print('\n'.join([*table_lines(evidence, outcomes), verdict_line(outcomes)]), flush=True)
+    if json_file is not None:
+        write_text(json_file, [json.dumps(as_json(evidence, outcomes), indent=2, allow_nan=False) + '\n'])
+    if junit is not None:
+        write_text(junit, [junit_text(evidence.name, outcomes)])
+    if failed := failures(outcomes):
+        raise VerdictError(f'{evidence.name} does not keep {limits_file}: {", ".join(failed)}')
+
+
+def _check_outputs(junit: str | None, json_file: str | None) -> None:
+    """Raise before the work begins when an output cannot be written."""
+    targets = [(option, path) for option, path in (('--junit', junit), ('--json', json_file)) if path is not None]
+    for option, path in targets:
+        if path != STDOUT:
+            check_file(option, path)
+    check_distinct(targets)
+
+
+def _evidence(source: str, limits: 'Limits', duration: float | None, changes: tuple[str, ...]) -> 'Evidence':
+    from ..check.sources import recorded
+    from ..scene import scene_names
+
+    path = Path(source)
+    if source not in scene_names() and (path.is_dir() or path.suffix == '.mcap'):
+        if duration is not None or changes:
+            raise click.UsageError('--duration and --set are for a scene; a run stays as it was recorded.')
+        return recorded(source)
+    if duration is None:
+        raise click.UsageError('--duration S is needed to simulate a scene.')
+    return _simulated(source, limits, duration, changes)
+
+
+def _simulated(source: str, limits: 'Limits', duration: float, changes: tuple[str, ...]) -> 'Evidence':
+    """Return the motion of a scene with a sample each step, as its node would record it."""
+    from ..check.limits import check_fit
+    from ..check.sources import simulated
+    from ..offline import check_times, run_offline
+    from ..scene import load_scene, parse_override
+    from .progress import progress_bar
+
+    check_times(duration, None)
+    check_fit(limits, 0.0, duration, has_timing=False)
+    scene = load_scene(source, dict(parse_override(change) for change in changes))
+    with progress_bar('simulating') as progress:
+        return simulated(run_offline(scene, duration, scene.time.step, progress))

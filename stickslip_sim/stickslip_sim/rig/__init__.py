@@ -1,0 +1,12 @@
+"""The rig around the axis: command path, drive limits, faults, encoder.  Deterministic; knows no clock and no ROS.
+
+The motion is a function of the scene (with its seed) and of the orders by step, and of nothing else: the same orders
+before the same steps give the same numbers in real time, in lock-step, as fast as possible, and offline.
+"""
+
+from .encoder import Measured
+from .faults import Fault
+from .product import Note, NoteKind, Product
+from .rig import Rig
+
+__all__ = ['Fault', 'Measured', 'Note', 'NoteKind', 'Product', 'Rig']

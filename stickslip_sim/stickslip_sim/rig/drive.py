@@ -1,0 +1,73 @@
+"""The drive: how it follows what it is told, within its limits.
+
+Its course is made of constants and ramps, so that the motion of the axis stays exact.
+"""
+
+import math
+from dataclasses import dataclass
+
+from ..courses import Course, constant
+from ..words import Instant
+
+
+@dataclass(frozen=True, slots=True)
+class DriveLimits:
+    """What the drive can do: m/s and m/s²; inf: anything."""
+
+    velocity: float = math.inf
+    acceleration: float = math.inf
+
+
+class Drive:
+    """The course of the drive velocity from the present instant on; at first that of the scene."""
+
+    def __init__(self, course: Course, limits: DriveLimits) -> None:
+        self._limits = limits
+        self._own = course               # while nothing was commanded
+        self._course = course
+        self._target: float | None = None
+        self._frozen = False
+
+    @property
+    def course(self) -> Course:
+        """What it does: constant, ramps, or the course of the scene."""
+        return _STANDSTILL if self._frozen else self._course
+
+    def can_follow(self, velocity: float, now: Instant) -> bool:
+        """Return whether it would take on a velocity at once."""
+        within = abs(velocity) <= self._limits.velocity
+        return within and (self._limits.acceleration == math.inf or velocity == self._at(now))
+
+    def follow(self, velocity: float, now: Instant, acceleration: float = math.inf) -> None:
+        """Make for a velocity (m/s) within the limits, and within `acceleration` (m/s²) if that is lower."""
+        target = min(max(velocity, -self._limits.velocity), self._limits.velocity)
+        if target == self._target:
+            return
+        self._target = target
+        if not self._frozen:
+            self._course = _ramp(self._at(now), target, now, min(acceleration, self._limits.acceleration))
+
+    def freeze(self, frozen: bool, now: Instant) -> None:
+        """Stand still at once, or make for the latest target again: from standstill, within the limits."""
+        if self._frozen and not frozen:
+            self._course = self._own
+            if self._target is not None:
+                self._course = _ramp(0.0, self._target, now, self._limits.acceleration)
+        self._frozen = frozen
+
+    def _at(self, now: Instant) -> float:
+        return self.course.value_at(now.seconds)
+
+
+_STANDSTILL = constant(0.0)
+
+
+def _ramp(start: float, target: float, now: Instant, acceleration: float) -> Course:
+    begin = now.seconds
+    end = begin + abs(target - start) / acceleration
+    if not end > begin:
+        return constant(target)
+    rate = math.copysign(acceleration, target - start)
+    if begin == 0.0:
+        return Course((0.0, end), (start, target), (rate, 0.0))
+    return Course((0.0, begin, end), (start, start, target), (0.0, rate, 0.0))

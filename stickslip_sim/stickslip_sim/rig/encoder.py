@@ -1,0 +1,120 @@
+"""Position encoders of slider and drive, and the velocity that a drive computes from them.
+
+measured(n) = resolution · round((position(n − delay) + offset + noise) / resolution)
+velocity(n) = (measured(n) − measured(n − k)) · rate / k, k = `velocity_steps`
+"""
+
+import math
+from collections import deque
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from ..words import Sample
+from .faults import Fault
+from .randomness import Stream, stream
+
+_BLOCK = 1024   # random numbers drawn at a time
+
+
+@dataclass(frozen=True, slots=True)
+class EncoderSettings:
+    """`resolution`, `offset` and `noise` (standard deviation) in m, `delay` in s; all 0: the true values."""
+
+    resolution: float = 0.0
+    offset: float = 0.0
+    noise: float = 0.0
+    delay: float = 0.0
+    velocity_steps: int = 1
+
+    @property
+    def is_ideal(self) -> bool:
+        """Whether it measures the truth."""
+        return not (self.resolution or self.offset or self.noise or self.delay)
+
+
+class Measured(NamedTuple):
+    """What the encoders say: m and m/s."""
+
+    slider_position: float
+    slider_velocity: float
+    drive_position: float
+    drive_velocity: float
+
+
+class Encoder:
+    """Measures both positions once a step; faults are those in force, and befall the slider's encoder."""
+
+    def __init__(self, settings: EncoderSettings, rate: float, delay_steps: int, seed: int) -> None:
+        def channel(noise: Stream) -> _Ideal | _Sampled:
+            if settings.is_ideal:
+                return _Ideal()
+            return _Sampled(settings, rate, delay_steps, stream(seed, noise))
+
+        self._slider, self._drive = channel(Stream.SLIDER_NOISE), channel(Stream.DRIVE_NOISE)
+        self._dropout = stream(seed, Stream.DROPOUT)
+
+    def measure(self, sample: Sample, faults: Mapping[str, Fault]) -> Measured | None:
+        """Return the measurement at the end of a step, None when it is lost."""
+        shift, is_frozen, kept = 0.0, False, 1.0
+        for fault in faults.values():
+            if fault.kind == 'encoder_step':
+                shift += fault.value
+            elif fault.kind == 'encoder_freeze':
+                is_frozen = True
+            elif fault.kind == 'encoder_dropout':
+                kept *= 1.0 - fault.value
+        measured = Measured(*self._slider.read(sample.position, sample.velocity, shift, is_frozen),
+                            *self._drive.read(sample.drive_position, sample.drive_velocity))
+        is_lost = kept < 1.0 and self._dropout.random_sample() >= kept
+        return None if is_lost else measured
+
+
+class _Ideal:
+    """Tells the truth, unless a fault is in force."""
+
+    def __init__(self) -> None:
+        self._position = 0.0
+
+    def read(self, position: float, velocity: float, shift: float = 0.0, is_frozen: bool = False
+             ) -> tuple[float, float]:
+        if is_frozen:
+            return self._position, 0.0
+        self._position = position + shift
+        return self._position, velocity
+
+
+class _Sampled:
+    """Counts, and takes the velocity from the difference of counts, as a drive does."""
+
+    def __init__(self, settings: EncoderSettings, rate: float, delay_steps: int, noise: np.random.RandomState) -> None:
+        self._settings = settings
+        self._per_second = rate / settings.velocity_steps
+        self._noise = noise
+        self._waiting_noise: Iterator[float] = iter(())
+        self._delayed: deque[float] = deque(maxlen=delay_steps + 1)
+        self._readings: deque[float] = deque(maxlen=settings.velocity_steps + 1)
+
+    def read(self, position: float, velocity: float, shift: float = 0.0, is_frozen: bool = False
+             ) -> tuple[float, float]:
+        """Return position and velocity; before the first reading all readings were as that."""
+        self._delayed.append(position)
+        reading = self._counted(self._delayed[0] + self._settings.offset + shift + self._next_noise())
+        if is_frozen and self._readings:
+            reading = self._readings[-1]
+        self._readings.append(reading)
+        return reading, (reading - self._readings[0]) * self._per_second
+
+    def _counted(self, position: float) -> float:
+        resolution = self._settings.resolution
+        return resolution * math.floor(position / resolution + 0.5) if resolution else position
+
+    def _next_noise(self) -> float:
+        if not self._settings.noise:
+            return 0.0
+        for number in self._waiting_noise:
+            return self._settings.noise * number
+        self._waiting_noise = iter(self._noise.standard_normal(_BLOCK).tolist())
+        return self._settings.noise * next(self._waiting_noise)

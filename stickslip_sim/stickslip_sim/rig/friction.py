@@ -1,0 +1,17 @@
+"""Friction of an axis scaled as a whole, as when lubrication changes."""
+
+from dataclasses import replace
+
+from ..axis import Axis
+
+
+def with_friction_scaled(axis: Axis, factor: float) -> Axis:
+    """Return the axis with all its friction coefficients times a factor."""
+    if factor == 1.0:
+        return axis
+    static, kinetic = axis.friction.static, axis.friction.kinetic
+    return replace(axis, friction=replace(
+        axis.friction,
+        static=replace(static, initial=factor * static.initial, limit=factor * static.limit),
+        kinetic=replace(kinetic, coefficients=tuple(factor * value for value in kinetic.coefficients),
+                        end_slope=factor * kinetic.end_slope)))

@@ -1,0 +1,219 @@
+"""One axis and its rig, from step to step."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from ..axis import Axis, InitialState
+from ..courses import Course, constant
+from ..errors import InputError
+from ..pacing import Grid
+from ..simulator import Simulator
+from ..solvers import Solver
+from .drive import Drive
+from .encoder import Encoder
+from .faults import Fault, Faults
+from .friction import with_friction_scaled
+from .product import Note, NoteKind, Product
+from .settings import RigSettings
+from .wire import Wire
+
+
+@dataclass(slots=True)
+class Counts:
+    """What befell the drive velocities of a run."""
+
+    heard: int = 0        # reached the drive
+    refused: int = 0      # after a time-out with on_timeout: fault
+    lost: int = 0
+    limited: int = 0      # the drive could not follow at once
+    timed_out: int = 0    # times that they stopped coming
+
+
+class Rig:
+    """Makes one step after the other; an order takes effect with the next step, in the order in which orders come.
+
+    Drive velocities come through the wire and are followed by the drive within its limits; forces act at once.
+    """
+
+    def __init__(self, axis: Axis, initial: InitialState, drive: Course, force: Course, solver: Solver, grid: Grid,
+                 settings: RigSettings) -> None:
+        self.simulator = Simulator(axis, initial, drive, force, solver, accounting=True)
+        self._grid, self._settings = grid, settings
+        self._courses = drive, force
+        self._axis = axis                     # without faults
+        self._begin()
+
+    def reset(self) -> None:
+        """Begin anew with step 0; the parameters of the axis stay as they are."""
+        self._faults = Faults(self._grid, ())
+        self._scale_friction()
+        self.simulator.reset()
+        self._begin()
+
+    def _begin(self) -> None:
+        drive, force = self._courses
+        settings = self._settings
+        self.step = -1                        # the last one made
+        self.counts = Counts()
+        self.has_failed = False               # on_timeout: fault; until cleared
+        self._faults = Faults(self._grid, settings.faults)
+        self._wire = Wire(self._grid, settings.seed)
+        self._drive = Drive(drive, settings.limits)
+        self._course = drive
+        self._force, self._acting_force = force, force
+        self._velocity_order: float | None = None
+        self._force_order: float | None = None
+        self._encoder = Encoder(settings.encoder, self._grid.rate, settings.encoder_delay_steps, settings.seed)
+        self._notes: list[Note] = []
+        self.is_silent = False                # since a command time-out, until the next command
+        self._is_limited = False
+
+    @property
+    def time_ns(self) -> int:
+        """Simulation time, ns."""
+        return self.simulator.time.nanoseconds
+
+    @property
+    def fault_ids(self) -> Sequence[str]:
+        """The faults that are planned or in force."""
+        return self._faults.ids
+
+    # Orders, between two steps
+
+    def command_velocity(self, velocity: float) -> None:
+        """Send the drive a velocity, m/s; of several before one step the last counts."""
+        _check_finite('velocity', velocity, 'm/s')
+        self._velocity_order = velocity
+
+    def command_force(self, force: float) -> None:
+        """Let a force act on the slider, N."""
+        _check_finite('force', force, 'N')
+        self._force_order = force
+
+    def time_out(self, silence: float) -> None:
+        """Do what the scene says when no drive velocity came for `silence` seconds."""
+        self.counts.timed_out += 1
+        self.is_silent = True
+        reaction = self._settings.on_timeout
+        self._notes.append(Note(NoteKind.COMMAND_TIMEOUT, 'velocity', _TIMEOUT.format(silence, _REACTIONS[reaction]),
+                                silence))
+        self.has_failed = reaction == 'fault'
+        if reaction != 'hold':
+            self._drive.follow(0.0, self.simulator.time, self._settings.timeout_deceleration)
+
+    def inject(self, fault: Fault) -> Fault:
+        """Plan a fault from now on; return it with its id.  Raises InputError."""
+        fault = self._faults.inject(fault, self._next)
+        self._notes.append(Note(NoteKind.FAULT_INJECTED, fault.id, f'{fault.kind} planned', fault.value, fault=fault))
+        return fault
+
+    def clear_fault(self, fault_id: str) -> None:
+        """End a fault now, or before it begins; raises InputError when there is none by that id."""
+        fault = self._faults.clear(fault_id)
+        self._notes.append(Note(NoteKind.FAULT_CLEARED, fault.id, f'{fault.kind} cleared', fault.value, fault=fault))
+        self._let_faults_act()
+
+    def clear_faults(self) -> list[str]:
+        """End all faults, that of a command time-out among them; return their ids."""
+        ids = self._faults.ids
+        for fault_id in ids:
+            self.clear_fault(fault_id)
+        if self.has_failed:
+            self.has_failed = False
+            self._notes.append(Note(NoteKind.FAULT_CLEARED, '', 'the drive takes commands again'))
+        return ids
+
+    def change_axis(self, axis: Axis) -> None:
+        """Go on with other parameters."""
+        self._axis = axis
+        self._scale_friction()
+
+    # Steps
+
+    def make_step(self) -> Product:
+        """Make the next step; raises SolverError."""
+        step = self._next
+        if step >= self._faults.next_change and step > 0:
+            self._enter_faults(step)
+        velocity, force = self._velocity_order, self._force_order
+        if velocity is not None or not self._wire.is_empty:
+            self._obey_velocity(velocity, step)
+        if force is not None:
+            self._force, self._force_order = constant(force), None
+            self._apply_force()
+        if self._drive.course is not self._course:
+            self._course = self._drive.course
+            self.simulator.command_drive(self._course)
+        notes, self._notes = self._notes, []
+        events = self.simulator.advance(self._grid.instant(step))
+        sample = self.simulator.sample()
+        self.step = step
+        measured = self._encoder.measure(sample, self._faults.active) if self._settings.measures else None
+        return Product(step, velocity, force, notes, events, sample, measured)
+
+    @property
+    def _next(self) -> int:
+        return self.step + 1
+
+    def _obey_velocity(self, sent: float | None, step: int) -> None:
+        self._velocity_order = None
+        if sent is not None and not self._wire.put(sent, step, self._faults.active):
+            self.counts.lost += 1
+            self._notes.append(Note(NoteKind.COMMAND_LOST, 'velocity', 'a fault ate a command', sent))
+        velocity = self._wire.take(step)
+        if velocity is None:
+            return
+        if self.has_failed:
+            self.counts.refused += 1
+            return
+        self.counts.heard += 1
+        if self.is_silent:
+            self.is_silent = False
+            self._notes.append(Note(NoteKind.COMMAND_RESUMED, 'velocity', 'drive velocities come again', velocity))
+        self._tell_limits(velocity)
+        self._drive.follow(velocity, self.simulator.time)
+
+    def _tell_limits(self, velocity: float) -> None:
+        was_limited, self._is_limited = self._is_limited, not self._drive.can_follow(velocity, self.simulator.time)
+        self.counts.limited += self._is_limited
+        if self._is_limited and not was_limited:
+            self._notes.append(Note(NoteKind.COMMAND_LIMITED, 'velocity',
+                                    'beyond the limits of the drive, which follows within them', velocity))
+
+    def _enter_faults(self, step: int) -> None:
+        ended, begun = self._faults.enter(step)
+        for kind, word, faults in ((NoteKind.FAULT_END, 'ends', ended), (NoteKind.FAULT_BEGIN, 'begins', begun)):
+            self._notes.extend(Note(kind, fault.id, f'{fault.kind} {word}', fault.value, fault=fault)
+                               for fault in faults)
+        self._let_faults_act()
+
+    def _let_faults_act(self) -> None:
+        self._drive.freeze(any(fault.kind == 'drive_freeze' for fault in self._faults.active.values()),
+                           self.simulator.time)
+        self._apply_force()
+        self._scale_friction()
+
+    def _apply_force(self) -> None:
+        pulse = math.fsum(fault.value for fault in self._faults.active.values() if fault.kind == 'force_pulse')
+        course = self._force.plus(pulse) if pulse else self._force
+        if course != self._acting_force:
+            self._acting_force = course
+            self.simulator.command_force(course)
+
+    def _scale_friction(self) -> None:
+        factor = math.prod(fault.value for fault in self._faults.active.values() if fault.kind == 'friction_scale')
+        axis = with_friction_scaled(self._axis, factor)
+        if axis != self.simulator.axis:
+            self.simulator.change_axis(axis)
+
+
+_TIMEOUT = ('no drive velocity for {:.3g} s: {}; a bridge that sends only what differs from the state is silent while'
+            ' they are near (topic-based ros2_control: trigger_joint_command_threshold -1 sends always)')
+_REACTIONS = {'hold': 'the latest is held', 'ramp_to_zero': 'the drive stops until the next',
+              'fault': 'the drive stops and takes none until ~/clear_faults or ~/reset'}
+
+
+def _check_finite(name: str, value: float, unit: str) -> None:
+    if not math.isfinite(value):
+        raise InputError(name, value, f'finite, in {unit}', 'the command before it stays in force')

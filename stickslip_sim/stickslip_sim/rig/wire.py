@@ -1,0 +1,44 @@
+"""The wire on which drive velocities come: it may lose them or keep them for a while when a fault says so."""
+
+from collections import deque
+from collections.abc import Mapping
+
+from ..pacing import Grid
+from .faults import Fault
+from .randomness import Stream, stream
+
+
+class Wire:
+    """Takes commands in and lets them out, before the same step without a fault."""
+
+    def __init__(self, grid: Grid, seed: int) -> None:
+        self._grid = grid
+        self._luck = stream(seed, Stream.LOSS)
+        self._under_way: deque[tuple[int, float]] = deque()
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether no command is under way."""
+        return not self._under_way
+
+    def put(self, velocity: float, step: int, faults: Mapping[str, Fault]) -> bool:
+        """Send a command before a step; return whether it gets through.  What comes undelayed overtakes the rest."""
+        delay, kept = 0.0, 1.0
+        for fault in faults.values():
+            if fault.kind == 'command_delay':
+                delay += fault.value
+            elif fault.kind == 'command_loss':
+                kept *= 1.0 - fault.value
+        if kept < 1.0 and self._luck.random_sample() >= kept:
+            return False
+        if not delay:
+            self._under_way.clear()
+        self._under_way.append((step + self._grid.steps(delay), velocity))
+        return True
+
+    def take(self, step: int) -> float | None:
+        """Return the latest command that has arrived before a step, None without a new one."""
+        arrived = None
+        while self._under_way and self._under_way[0][0] <= step:
+            arrived = self._under_way.popleft()[1]
+        return arrived

@@ -1,0 +1,68 @@
+"""What a scene says of the rig around the axis and of time, checked together."""
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from ..errors import InputError
+from ..pacing import Grid
+from ..rig.drive import DriveLimits
+from ..rig.encoder import EncoderSettings
+from ..rig.faults import Fault, Faults
+from ..rig.settings import RigSettings
+from .model import TimeSettings
+
+_FAULT_LISTS = 'ids', 'kinds', 'starts', 'durations', 'values'
+
+
+def time_settings(values: Mapping[str, Any]) -> TimeSettings:
+    """Return how time goes; raises InputError."""
+    mode, rate, factor = values['time.mode'], values['time.rate'], values['time.factor']
+    if factor == math.inf and mode != 'free_run':
+        raise InputError('time.factor', factor, 'finite', 'only time.mode: free_run goes as fast as it can')
+    clock_rate = values.get('clock.rate', rate)
+    if clock_rate > rate:
+        raise InputError('clock.rate', clock_rate, f'at most time.rate ({rate:g} Hz)',
+                         'time moves with the steps: raise time.rate, or leave it out for a message with every step')
+    return TimeSettings(mode, rate, factor, clock_rate)
+
+
+def rig_settings(values: Mapping[str, Any]) -> RigSettings:
+    """Return the rig; raises InputError."""
+    encoder = EncoderSettings(*(values[f'encoder.{name}'] for name in EncoderSettings.__dataclass_fields__))
+    grid = Grid(values['time.rate'])
+    return RigSettings(
+        seed=values['seed'],
+        measures=values['joint_interface.enabled'],
+        encoder=encoder,
+        encoder_delay_steps=_whole_steps('encoder.delay', encoder.delay, grid),
+        limits=DriveLimits(values['command.velocity_limit'], values['command.acceleration_limit']),
+        on_timeout=values['command.on_timeout'],
+        timeout_deceleration=values.get('command.timeout_deceleration', math.inf),
+        faults=_faults(values, grid))
+
+
+def _whole_steps(name: str, seconds: float, grid: Grid) -> int:
+    count = grid.steps(seconds)
+    if grid.instant(count).seconds != seconds:
+        raise InputError(name, seconds, f'whole steps of {1.0 / grid.rate:g} s',
+                         'choose a multiple, or another time.rate')
+    return count
+
+
+def _faults(values: Mapping[str, Any], grid: Grid) -> tuple[Fault, ...]:
+    given = {name: values[f'faults.{name}'] for name in _FAULT_LISTS if f'faults.{name}' in values}
+    if not given:
+        return ()
+    given.setdefault('values', (0.0,) * len(given.get('ids', ())))
+    for name in _FAULT_LISTS:
+        if name not in given or len(given[name]) != len(given.get('ids', ())):
+            raise InputError(f'faults.{name}', list(given.get(name, ())), 'as many as there are faults.ids',
+                             'give ids, kinds, starts and durations, one of each for every fault')
+    faults = tuple(map(Fault, *(given[name] for name in _FAULT_LISTS)))
+    for fault in faults:
+        try:
+            Faults(grid, faults[:faults.index(fault) + 1])
+        except InputError as error:
+            raise InputError(f'faults ({fault.id}): {error.name}', error.value, error.allowed, error.fix) from None
+    return faults
