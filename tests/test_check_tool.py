@@ -89,14 +89,6 @@ class TestOutcome:
         assert (code, out.splitlines()[-1]) == (3, 'FAILED: 1 of 3: longest_stick')
         assert '0 transitions' in out
 
-    def test_faults_are_told_to_be_left_out(self, tmp_path: Path, capsys: Capture) -> None:
-        fault = ['faults.ids=[pulse]', 'faults.kinds=[force_pulse]', 'faults.starts=[0.1]', 'faults.durations=[0.1]',
-                 'faults.values=[100.0]']
-        sets = [word for change in fault for word in ('--set', change)]
-        _, out, _ = checked(capsys, 'paper_fig7', '--duration', DURATION, *sets, '--limits',
-                            limits_file(tmp_path, LIMITS))
-        assert out.splitlines()[1].startswith('note: the faults of this scene act in the node only')
-
     def test_junit(self, tmp_path: Path, capsys: Capture) -> None:
         path = tmp_path / 'c.xml'
         code, out, _ = checked(capsys, 'paper_fig7', '--duration', DURATION, '--limits', limits_file(tmp_path, FAILING),

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from .analysis import Summary, summary
 from .errors import InputError
 from .receipt import receipt_of
+from .rig import Rig
 from .scene import Scene
-from .simulator import Simulator
 from .words import Event, Instant, Mode, Sample
 
 Columns = dict[str, NDArray[np.float64]]
@@ -51,7 +51,8 @@ def run_offline(scene: Scene, duration: float, sample_period: float | Fraction |
     long to hold, SolverError when the solver gives up.
     """
     check_times(duration, sample_period)
-    simulator = _loaded_simulator(scene)
+    rig = _loaded_rig(scene)
+    simulator = rig.simulator
     start = simulator.sample().mode
     cpu, wall = time.process_time(), time.perf_counter()
     events: list[Event] = []
@@ -61,9 +62,9 @@ def run_offline(scene: Scene, duration: float, sample_period: float | Fraction |
         end = _decimal(duration) * part / _PARTS
         taken = int(end / _decimal(sample_period)) + 1 if sample_period else 0
         for k, instant in zip(range(done, taken), _sample_instants(sample_period, done)):
-            events += simulator.advance(instant)
+            events += rig.advance(instant)
             rows[k] = simulator.sample()
-        events += simulator.advance(_instant(end))
+        events += rig.advance(_instant(end))
         done = taken
         _check_count(events, duration)
         if progress:
@@ -93,18 +94,18 @@ def check_times(duration: float, sample_period: float | Fraction | None) -> None
 
 def warm_up(scene: Scene) -> None:
     """Call every function of the hot path once, so that it is compiled into the cache, or loaded from there."""
-    _loaded_simulator(scene).change_axis(scene.axis)
+    _loaded_rig(scene).simulator.change_axis(scene.axis)
 
 
-def _loaded_simulator(scene: Scene) -> Simulator:
-    """Return a simulator at time 0 whose code was loaded, so that this does not count as the cost of a run."""
-    simulator = Simulator(scene.axis, scene.initial, scene.drive, scene.force, scene.solver.make(scene.axis),
-                          accounting=True)
+def _loaded_rig(scene: Scene) -> Rig:
+    """Return a rig at time 0 whose code was loaded, so that this does not count as the cost of a run."""
+    rig = scene.make_rig()
+    simulator = rig.simulator
     simulator.advance(Instant(0.0, 0.0))
     simulator.command_drive(simulator.sample().drive_velocity)
     _ = simulator.energy
-    simulator.reset()
-    return simulator
+    rig.reset()
+    return rig
 
 
 def _sample_count(duration: float, sample_period: float | Fraction | None) -> int:

@@ -48,6 +48,9 @@ def advise(scene: Scene, tolerance: float, duration: float, rounds: int,
     be run.
     """
     check_tolerance(tolerance)
+    if scene.rig.faults:
+        raise InputError('faults.ids', [fault.id for fault in scene.rig.faults], 'left out for advice',
+                         'what faults do belongs to no part of the model')
     reference = reference_of(scene, duration)
     parts, absent, settings = parts_of(reference.scene), absent_parts(reference.scene), solver_settings(scene)
     tell = _Teller(len(parts) + len(absent) + len(settings) + _MEASURING, progress)

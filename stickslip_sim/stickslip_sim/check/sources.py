@@ -18,7 +18,6 @@ from ..words import EventKind, Mode
 from .motion import Motion
 
 _STATE_FIELDS = ('step', 'time', 'position', 'velocity', 'drive_position', 'mode')
-_NO_FAULTS = 'the faults of this scene act in the node only; this simulation is without them'
 
 
 @dataclass(frozen=True)
@@ -46,7 +45,7 @@ def simulated(run: Trajectory) -> Evidence:
     motion = Motion(
         0.0, run.duration, Mode(int(columns['mode'][0])), columns['time'], columns['position'], columns['velocity'],
         columns['drive_position'], [event for event in run.events if event.kind != EventKind.KNOT])
-    return Evidence(run.scene.name, motion, notes=(_NO_FAULTS,) if run.scene.rig.faults else ())
+    return Evidence(run.scene.name, motion)
 
 
 def recorded(path: str) -> Evidence:

@@ -10,6 +10,7 @@ from ..errors import InputError
 from ..pacing import Grid
 from ..simulator import Simulator
 from ..solvers import Solver
+from ..words import Event, Instant
 from .drive import Drive
 from .encoder import Encoder
 from .faults import Fault, Faults
@@ -142,15 +143,22 @@ class Rig:
         if force is not None:
             self._force, self._force_order = constant(force), None
             self._apply_force()
-        if self._drive.course is not self._course:
-            self._course = self._drive.course
-            self.simulator.command_drive(self._course)
+        self._let_drive_act()
         notes, self._notes = self._notes, []
         events = self.simulator.advance(self._grid.instant(step))
         sample = self.simulator.sample()
         self.step = step
         measured = self._encoder.measure(sample, self._faults.active) if self._settings.measures else None
         return Product(step, velocity, force, notes, events, sample, measured)
+
+    def advance(self, to: Instant) -> list[Event]:
+        """Bring the axis to any time, through the faults of the scene; for runs without steps.  Returns its events."""
+        events: list[Event] = []
+        while (begin := self._grid.instant(int(min(self._faults.next_change, _NEVER)) - 1)) < to:
+            events += self.simulator.advance(begin)
+            self._enter_faults(int(self._faults.next_change))
+            self._let_drive_act()
+        return events + self.simulator.advance(to)
 
     @property
     def _next(self) -> int:
@@ -194,6 +202,11 @@ class Rig:
         self._apply_force()
         self._scale_friction()
 
+    def _let_drive_act(self) -> None:
+        if self._drive.course is not self._course:
+            self._course = self._drive.course
+            self.simulator.command_drive(self._course)
+
     def _apply_force(self) -> None:
         pulse = math.fsum(fault.value for fault in self._faults.active.values() if fault.kind == 'force_pulse')
         course = self._force.plus(pulse) if pulse else self._force
@@ -208,6 +221,7 @@ class Rig:
             self.simulator.change_axis(axis)
 
 
+_NEVER = 2**62    # a step that no run reaches
 _TIMEOUT = ('no drive velocity for {:.3g} s: {}; a bridge that sends only what differs from the state is silent while'
             ' they are near (topic-based ros2_control: trigger_joint_command_threshold -1 sends always)')
 _REACTIONS = {'hold': 'the latest is held', 'ramp_to_zero': 'the drive stops until the next',

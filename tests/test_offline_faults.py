@@ -1,0 +1,21 @@
+"""The faults of a scene act offline as they do step by step."""
+
+import pytest
+
+from stickslip_sim.offline import run_offline
+from stickslip_sim.scene import load_scene
+
+FAULTS = {'faults.ids': ['dry', 'knock', 'stop'], 'faults.kinds': ['friction_scale', 'force_pulse', 'drive_freeze'],
+          'faults.starts': [0.3, 0.7004, 1.2],
+          'faults.durations': [0.5, 0.0125, 0.25], 'faults.values': [1.5, 900.0, 0.0]}
+
+
+@pytest.mark.parametrize('name', ['paper_fig7', 'positioning', 'cutting_force'])
+def test_a_run_from_event_to_event_is_that_of_the_steps(name: str) -> None:
+    scene = load_scene(name, {**FAULTS, 'time.rate': 200.0})
+    run = run_offline(scene, 2.0, 0.005)
+    rig = scene.make_rig()
+    products = [rig.make_step() for _ in range(401)]
+    assert run.events == [event for product in products for event in product.events]
+    assert list(run.sample_rows()) == [product.sample for product in products]
+    assert run.events != run_offline(load_scene(name, {'time.rate': 200.0}), 2.0).events
