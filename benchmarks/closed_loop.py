@@ -6,10 +6,13 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from stickslip_sim.axis import Axis, InitialState
-from stickslip_sim.control import AT_REST, Controller, Measured, Moves, Setpoint
+from stickslip_sim.control import Controller, Following, Moves, Setpoint
 from stickslip_sim.courses import constant
 from stickslip_sim.pacing import Grid
-from stickslip_sim.simulator import Simulator
+from stickslip_sim.rig import Rig
+from stickslip_sim.rig.encoder import EncoderSettings
+from stickslip_sim.rig.settings import RigSettings
+from stickslip_sim.solvers import exact
 from stickslip_sim.words import Event, EventKind, Sample
 
 RATE = 1000.0   # steps a second
@@ -37,30 +40,29 @@ class Figures(NamedTuple):
     end_error: float        # m, at the end of a dwell
 
 
-def measured(sample: Sample) -> Measured:
-    """Return what ideal encoders say."""
-    return Measured(sample.position, sample.velocity, sample.drive_position, sample.drive_velocity)
-
-
-def close_loop(axis: Axis, controller: Controller, moves: Moves, duration: float, delay: int = 0) -> Run:
-    """Let a controller drive an axis from prolonged rest for `duration` s.
+def close_loop(axis: Axis, controller: Controller, moves: Moves, duration: float, delay: int = 0,
+               encoder: EncoderSettings | None = None) -> Run:
+    """Let a controller drive an axis from prolonged rest for `duration` s, with ideal encoders unless told otherwise.
 
     The command made from the state after step n holds over step n + 1, or as many steps later as `delay` says.
     """
-    simulator = Simulator(axis, InitialState(), constant(0.0), constant(0.0))
     grid = Grid(RATE)
-    memory = AT_REST
+    settings = RigSettings(measures=True, encoder=encoder or EncoderSettings())
+    rig = Rig(axis, InitialState(), constant(0.0), constant(0.0), exact.SOLVER, grid, settings)
+    following, progress = Following(controller, moves), None
     run = Run(moves, [], [], [], [])
     waiting = deque([0.0] * delay)
     for step in range(round(duration * RATE)):
-        sample, setpoint = simulator.sample(), moves.at(step / RATE)
-        memory, command = controller.step(memory, setpoint, measured(sample), 1.0 / RATE)
-        waiting.append(command.velocity)
-        simulator.command_velocity(waiting.popleft())
-        run.setpoints.append(setpoint)
-        run.samples.append(sample)
-        run.commands.append(command.velocity)
-        run.events.extend(simulator.advance(grid.instant(step + 1)))
+        product = rig.make_step()
+        assert product.measured is not None
+        answer = following.answer(progress, grid.nanoseconds(step), product.measured)
+        progress = answer.progress
+        waiting.append(answer.command.velocity)
+        rig.command_velocity(waiting.popleft())
+        run.setpoints.append(answer.setpoint)
+        run.samples.append(product.sample)
+        run.commands.append(answer.command.velocity)
+        run.events.extend(product.events)
     return run
 
 

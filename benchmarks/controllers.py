@@ -11,6 +11,7 @@ from dataclasses import replace
 
 from stickslip_sim.axis import Axis
 from stickslip_sim.control import BranchCompensation, Cascade, Controller, Moves
+from stickslip_sim.rig.encoder import EncoderSettings
 from stickslip_sim.scene import load_scene
 
 from .closed_loop import Figures, close_loop, figures
@@ -25,6 +26,7 @@ MOVES = [Moves(travel, feed) for travel, feed in
          ((0.0005, 0.0001), (0.001, 0.0002), (0.002, 0.0005), (0.002, 0.001), (0.005, 0.002), (0.01, 0.01))]
 CREEP = Moves()
 DELAYS = (0, 1, 2, 3)
+RESOLUTIONS = (1e-8, 1e-7, 1e-6)   # m
 GAINS = (2.0, 4.0, 8.0, 16.0, 25.0)
 WRONG = (('as in the model', 1.0, 1.0), ('normal force 20 % less', 0.8, 1.0), ('normal force 20 % more', 1.2, 1.0),
          ('drive stiffness 20 % less', 1.0, 0.8), ('drive stiffness 20 % more', 1.0, 1.2))
@@ -37,9 +39,10 @@ def controllers(gains: Cascade | None = None) -> dict[str, Controller]:
     return {'cascade': Controller(gains), 'compensated': Controller(gains, BranchCompensation(AXIS))}
 
 
-def measure(moves: Moves, delay: int = 0, gains: Cascade | None = None, axis: Axis = AXIS) -> dict[str, Figures]:
+def measure(moves: Moves, delay: int = 0, gains: Cascade | None = None, axis: Axis = AXIS,
+            encoder: EncoderSettings | None = None) -> dict[str, Figures]:
     """Return the figures of one period of the moves with both controllers; their model stays AXIS."""
-    return {name: figures(close_loop(axis, controller, moves, moves.period, delay))
+    return {name: figures(close_loop(axis, controller, moves, moves.period, delay, encoder))
             for name, controller in controllers(gains).items()}
 
 
@@ -73,6 +76,15 @@ def by_delay() -> Iterator[str]:
             yield _row(delay, f'{moves.feed * _MILLI:g} mm/s', *map(_brief, measure(moves, delay).values()))
 
 
+def by_resolution() -> Iterator[str]:
+    """Yield the table over the resolution of both encoders."""
+    yield from _head('resolution', 'feed', 'cascade', 'compensated')
+    for moves in (MOVES[1], CREEP):
+        for resolution in RESOLUTIONS:
+            its = measure(moves, encoder=EncoderSettings(resolution=resolution))
+            yield _row(f'{resolution * _MICRO:g} µm', f'{moves.feed * _MILLI:g} mm/s', *map(_brief, its.values()))
+
+
 def by_model() -> Iterator[str]:
     """Yield the table over what the model gets wrong."""
     yield from _head('the axis', 'cascade', 'compensated')
@@ -85,6 +97,7 @@ SECTIONS: dict[str, Callable[[], Iterator[str]]] = {
     'The same moves with both, from creep to full feed': by_feed,
     'What higher and lower gains do': by_gain,
     'What a delay does': by_delay,
+    'What encoders do that count': by_resolution,
     'What a wrong model does, at 0.5 mm/s': by_model,
 }
 

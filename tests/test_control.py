@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from benchmarks.closed_loop import RATE, close_loop, figures, measured
+from benchmarks.closed_loop import RATE, close_loop, figures
 from benchmarks.controllers import AXIS, CREEP, PAGE, by_model, controllers
 from benchmarks.linear_loop import loop_matrix, most_delay
 from stickslip_sim.control import (
@@ -15,12 +15,14 @@ from stickslip_sim.control import (
     BranchCompensation,
     Cascade,
     Controller,
-    Measured,
+    Following,
     Memory,
     Moves,
+    Progress,
     Setpoint,
     Slide,
 )
+from stickslip_sim.rig import Measured
 from stickslip_sim.scene import load_scene
 
 NO_FRICTION = replace(AXIS, normal_force=0.0)
@@ -71,12 +73,13 @@ class TestLinearLoop:
     def test_step_response(self, gains: Cascade, delay: int) -> None:
         run = close_loop(NO_FRICTION, Controller(gains), Step(), 0.5, delay)
         matrix = loop_matrix(AXIS, gains, delay)
+        first = loop_matrix(AXIS, replace(gains, integral_time=math.inf), delay)   # no time went by before it
         state = np.zeros(len(matrix))
         state[[0, 2]] = -1e-4     # seen from the setpoint
-        for sample in run.samples:
+        for step, sample in enumerate(run.samples):
             assert sample.position == pytest.approx(state[0] + 1e-4, abs=1e-15)
             assert sample.velocity == pytest.approx(state[1], abs=1e-13)
-            state[:] = matrix @ state
+            state[:] = (matrix if step else first) @ state
 
     def test_the_default_gains_stand_four_steps_of_delay(self) -> None:
         assert most_delay(AXIS, Cascade()) == 4
@@ -142,7 +145,7 @@ class TestCompensation:
 
     def test_a_small_error_is_answered_softly(self) -> None:
         slide, there = Slide(1, 2.0 * self.FRICTION), self.moving(1.5 * self.FRICTION)
-        full, tenth = (self.MODEL.drive_velocity(slide, there.velocity + error, there) for error in (1e-4, 1e-5))
+        full, tenth = (self.MODEL.drive_velocity(slide, there.slider_velocity + error, there) for error in (1e-4, 1e-5))
         assert tenth == pytest.approx(0.1 * full)
 
     def test_a_reversal_begins_a_new_slide(self) -> None:
@@ -160,7 +163,34 @@ class TestCompensation:
     def test_two_encoders_measure_the_force_of_the_spring(self) -> None:
         run = close_loop(AXIS, controllers()['compensated'], CREEP, 1.0)
         for sample in run.samples:
-            assert self.MODEL.drive_force(measured(sample)) == pytest.approx(sample.drive_force, abs=1e-6)
+            measured = Measured(sample.position, sample.velocity, sample.drive_position, sample.drive_velocity)
+            assert self.MODEL.drive_force(measured) == pytest.approx(sample.drive_force, abs=1e-6)
+
+
+class TestFollowing:
+    FOLLOWING = Following(Controller(Cascade()), Moves(), max_gap=0.5)
+
+    def after(self, *times: float) -> list[bool]:
+        """Return which of the measurements at these times begin the moves."""
+        progress: Progress | None = None
+        is_new = []
+        for time in times:
+            answer = self.FOLLOWING.answer(progress, round(time * 1e9), STILL)
+            progress = answer.progress
+            is_new.append(answer.is_new)
+        return is_new
+
+    def test_begins_where_the_slider_is_and_when_it_is_heard(self) -> None:
+        there = Measured(0.5, 0.0, 0.5, 0.0)
+        answer = self.FOLLOWING.answer(None, 77_000_000_000, there)
+        assert (answer.setpoint, answer.command.velocity) == (Setpoint(0.5, 0.0), 0.0)
+        later = self.FOLLOWING.answer(answer.progress, 77_400_000_000, there)
+        assert later.setpoint.position == 0.5 + Moves().at(0.4).position
+
+    def test_a_gap_or_time_that_goes_back_begins_anew(self) -> None:
+        assert self.after(10.0, 10.001, 10.5, 10.5) == [True, False, False, False]
+        assert self.after(10.0, 10.6, 10.7) == [True, True, False]
+        assert self.after(10.0, 10.1, 0.0, 0.001) == [True, False, True, False]
 
 
 @pytest.mark.parametrize(('moves', 'delay'), [(CREEP, 0), (CREEP, 1), (Moves(0.001, 0.0002), 0)])

@@ -2,11 +2,11 @@
 
 from .cascade import Cascade
 from .controller import AT_REST, Command, Controller, Memory
+from .following import Answer, Following, Progress
 from .friction_branches import BranchCompensation, Slide
-from .moves import Moves
-from .signals import Measured, Setpoint
+from .moves import Moves, Setpoint
 
 __all__ = [
-    'AT_REST', 'BranchCompensation', 'Cascade', 'Command', 'Controller', 'Measured', 'Memory', 'Moves', 'Setpoint',
-    'Slide',
+    'AT_REST', 'Answer', 'BranchCompensation', 'Cascade', 'Command', 'Controller', 'Following', 'Memory', 'Moves',
+    'Progress', 'Setpoint', 'Slide',
 ]

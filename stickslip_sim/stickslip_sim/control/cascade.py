@@ -11,7 +11,8 @@ ratio.  (Altintas, Verl, Brecher, Uriarte and Pritschow 2011, Machine tool feed 
 import math
 from dataclasses import dataclass
 
-from .signals import Measured, Setpoint
+from ..rig import Measured
+from .moves import Setpoint
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,14 +25,14 @@ class Cascade:
 
     def wanted_velocity(self, setpoint: Setpoint, measured: Measured) -> float:
         """Return w, the velocity that the slider should have, m/s."""
-        return setpoint.velocity + self.position_gain * (setpoint.position - measured.position)
+        return setpoint.velocity + self.position_gain * (setpoint.position - measured.slider_position)
 
     def drive_velocity(self, wanted: float, measured: Measured, integral: float) -> float:
         """Return u, m/s, `integral` (m/s) being the part of it that has been summed up so far."""
-        return wanted + self.velocity_gain * (wanted - measured.velocity) + integral
+        return wanted + self.velocity_gain * (wanted - measured.slider_velocity) + integral
 
     def integrated(self, integral: float, wanted: float, measured: Measured, period: float) -> float:
         """Return the integral part after another `period` (s)."""
         if math.isinf(self.integral_time):
             return integral
-        return integral + self.velocity_gain * (wanted - measured.velocity) * period / self.integral_time
+        return integral + self.velocity_gain * (wanted - measured.slider_velocity) * period / self.integral_time

@@ -3,9 +3,10 @@
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from ..rig import Measured
 from .cascade import Cascade
 from .friction_branches import BranchCompensation, Slide
-from .signals import Measured, Setpoint
+from .moves import Setpoint
 
 
 class Memory(NamedTuple):
@@ -35,7 +36,7 @@ class Controller:
 
     def step(self, memory: Memory, setpoint: Setpoint, measured: Measured,
              period: float) -> tuple[Memory, Command]:
-        """Return the command that holds for `period` (s) from now on, and what to remember.
+        """Return the command from now on, and what to remember; `period` (s) went by since the latest.
 
         The integral part stands still while the limit holds the command back and it would only wind up.
         """
@@ -53,7 +54,7 @@ class Controller:
         """Return how the slide goes on and the velocity that is added, m/s: none while the setpoint rests."""
         if self.compensation is None:
             return slide, 0.0
-        slide = slide.going_on(measured.velocity, self.compensation.drive_force(measured))
+        slide = slide.going_on(measured.slider_velocity, self.compensation.drive_force(measured))
         if setpoint.velocity == 0.0:
             return slide, 0.0
         return slide, self.compensation.drive_velocity(slide, wanted, measured)

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from ..axis import Axis
-from .signals import Measured
+from ..rig import Measured
 
 
 class Slide(NamedTuple):
@@ -47,14 +47,14 @@ class BranchCompensation:
 
     def drive_force(self, measured: Measured) -> float:
         """Return the force of drive spring and damper, N."""
-        return (self.axis.drive_stiffness * (measured.drive_position - measured.position)
-                + self.axis.drive_damping * (measured.drive_velocity - measured.velocity))
+        return (self.axis.drive_stiffness * (measured.drive_position - measured.slider_position)
+                + self.axis.drive_damping * (measured.drive_velocity - measured.slider_velocity))
 
     def drive_velocity(self, slide: Slide, wanted: float, measured: Measured) -> float:
         """Return the velocity to add to the drive's, m/s, when the slider shall move with `wanted` (m/s)."""
         if slide.direction == 0 or self.axis.drive_stiffness == 0.0:
             return 0.0
-        error = slide.direction * (wanted - measured.velocity)
+        error = slide.direction * (wanted - measured.slider_velocity)
         missing = self._missing_force(slide, error > 0.0, measured)
         weight = min(abs(error) / self.threshold, 1.0)
         return slide.direction * weight * self.rate * missing / self.axis.drive_stiffness
@@ -62,7 +62,7 @@ class BranchCompensation:
     def _missing_force(self, slide: Slide, speed_up: bool, measured: Measured) -> float:
         """Return by how much the force must change along the slide to get to the other branch, N."""
         force = slide.direction * self.drive_force(measured)
-        friction = self.axis.friction.kinetic.coefficient(abs(measured.velocity))
+        friction = self.axis.friction.kinetic.coefficient(abs(measured.slider_velocity))
         lower = self.axis.normal_force * friction
         gap = max(slide.peak_force - lower, 0.0)
         if speed_up:

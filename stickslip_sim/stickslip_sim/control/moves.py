@@ -2,8 +2,15 @@
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
-from .signals import Setpoint
+
+class Setpoint(NamedTuple):
+    """Where the slider shall be, and how fast."""
+
+    position: float  # m
+    velocity: float  # m/s
+
 
 
 @dataclass(frozen=True, slots=True)
