@@ -45,7 +45,8 @@ class Drive:
             return
         self._target = target
         if not self._frozen:
-            self._course = _ramp(self._at(now), target, now, min(acceleration, self._limits.acceleration))
+            limit = min(acceleration, self._limits.acceleration)
+            self._course = _ramp(self._at(now), target, now, limit) if limit < math.inf else constant(target)
 
     def freeze(self, frozen: bool, now: Instant) -> None:
         """Stand still at once, or make for the latest target again: from standstill, within the limits."""

@@ -12,6 +12,10 @@ class Watchdog:
         """Begin anew, as if no command had come."""
         self._heard, self._since, self._is_stale = 0, 0.0, False
 
+    def wait_from(self, now: float) -> None:
+        """Measure silence from now on, as after a pause."""
+        self._since = now
+
     def silence(self, heard: int, now: float) -> float:
         """Return how long nothing came when that has just become too long, else 0; `heard` counts the commands."""
         if not self._timeout:

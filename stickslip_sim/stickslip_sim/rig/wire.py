@@ -33,7 +33,7 @@ class Wire:
             return False
         if not delay:
             self._under_way.clear()
-        self._under_way.append((step + self._grid.steps(delay), velocity))
+        self._under_way.append((step + self._grid.steps(delay) if delay else step, velocity))
         return True
 
     def take(self, step: int) -> float | None:

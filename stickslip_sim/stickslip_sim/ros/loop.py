@@ -116,6 +116,7 @@ class StepLoop:
         """Let simulation time stand still, or go on from where it stands; at a boundary only."""
         if self.paused and not paused:
             self._clock.restart(self.step + 1)
+            self._watchdog.wait_from(self._clock.watch_time(self._clock.now(), self.rig.time_ns))
         self.paused = paused
 
     def restart(self) -> None:

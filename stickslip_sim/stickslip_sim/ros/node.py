@@ -28,7 +28,7 @@ from .record_service import RecordService
 from .rig_events import RigEvents
 from .run_receipt import run_receipt
 from .time_services import TimeServices
-from .topics import publisher, subscription
+from .topics import command_subscription, publisher
 from .verdict import verdict
 
 NAME = 'feed_axis'
@@ -117,8 +117,8 @@ class FeedAxis(SceneNode):
         self._run_info_out = publisher(self, names.RUN_INFO)
         self._timing_out = publisher(self, names.TIMING)
         self._diagnostics_out = publisher(self, names.DIAGNOSTICS)
-        subscription(self, names.DRIVE_VELOCITY, lambda message: self._take(self._slots[0], message.velocity))
-        subscription(self, names.EXTERNAL_FORCE, lambda message: self._take(self._slots[1], message.force))
+        command_subscription(self, names.DRIVE_VELOCITY, lambda velocity: self._take(self._slots[0], velocity))
+        command_subscription(self, names.EXTERNAL_FORCE, lambda force: self._take(self._slots[1], force))
         self._record_service: RecordService = RecordService(self, self.loop, self._outlet, self._publish_run_info,
                                                             self._receipt)
         TimeServices(self, self.loop, self._outlet, self._restart, lambda: self._record_service.is_recording,
@@ -162,13 +162,11 @@ class FeedAxis(SceneNode):
         message = reports.timing_message(second, self.loop, period, bool(judged.valid), stamp_ns)
         self._timing_out.publish(message)
         self._record(names.TIMING, message, max(self.loop.step, 0))
-        events, recordings = self._outlet.events, self._record_service.recordings
         self._diagnostics_out.publish(reports.diagnostics(stamp_ns, self.get_fully_qualified_name(), [
             reports.loop_status(self.loop, second, judged),
             reports.command_status(self.loop, second),
-            reports.solver_status(self.loop, self.scene.solver.name, self.loop.rig.simulator.event_counts,
-                                  events[-1] if events else None),
-            reports.recorder_status(recordings)]))
+            reports.solver_status(self.loop, self.scene.solver.name, self._outlet.events.latest_time),
+            reports.recorder_status(self._record_service.recordings)]))
 
     def _tell_troubles(self, second: reports.Second) -> None:
         log = self.get_logger()
