@@ -160,7 +160,7 @@ class StepLoop:
     def _turn(self) -> None:
         self._wake.clear()
         try:
-            while self._requests:
+            while self._requests and (self.step >= 0 or self.failure):    # first of all a run has its start
                 self._requests.popleft()()
             if self._stands_still:
                 self._wake.wait(_IDLE)
@@ -171,7 +171,7 @@ class StepLoop:
 
     @property
     def _stands_still(self) -> bool:
-        return self.paused or bool(self.failure) or (self.by_request and self.step >= 0)
+        return bool(self.failure) or (self.step >= 0 and (self.paused or self.by_request))
 
     def _make_step(self, begin: int, lateness: int) -> Product:
         age, fresh = self._take_commands(begin)
