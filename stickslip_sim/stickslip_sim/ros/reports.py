@@ -1,4 +1,4 @@
-"""What the node tells about itself once a second: StepTiming and the four statuses of /diagnostics."""
+"""What the node tells about itself once a second: StepTiming and the statuses of /diagnostics."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -159,6 +159,11 @@ def recorder_status(recordings: Recordings) -> DiagnosticStatus:
     return _status('recorder', level, text, {
         'folder': recordings.folder or 'none', 'written': recorder.written if recorder else 0,
         'waiting': recorder.waiting if recorder else 0, 'dropped': recordings.total_dropped})
+
+
+def neighbours_status(troubles: Sequence[str]) -> DiagnosticStatus:
+    """Tell who else publishes where one should, and who fell silent."""
+    return _status('neighbours', WARN if troubles else OK, '; '.join(troubles) or 'nobody in the way', {})
 
 
 def _status(name: str, level: bytes, text: str, values: Mapping[str, object]) -> DiagnosticStatus:
