@@ -24,10 +24,10 @@ from ..scene.sections import without_those_of_ros
 from .answers import answer
 from .controller_parameters import COMMON, COMPENSATION, changed_values, following, values_at_start
 from .environment import refusing, variables
+from .joints import DRIVE, SLIDER
 from .parameters import describe, promoted
 from .topics import publisher, subscription
 
-SLIDER, DRIVE = 'axis_slider', 'axis_drive'
 _REPORT_PERIOD = 1.0   # s
 _STOPS, _STOP_PAUSE = 5, 0.02    # s between them
 _NANOSECONDS = 1_000_000_000
