@@ -23,6 +23,7 @@ from .check import check
 from .compare import compare
 from .critical import critical
 from .extremes import extremes
+from .map import map_
 from .scenes import scenes
 from .simulate import simulate
 from .sweep import sweep
@@ -38,7 +39,7 @@ def stickslip() -> None:
     """Stick-slip motion of a feed axis, simulated exactly."""
 
 
-for verb in (advise, bench, check, compare, critical, extremes, scenes, simulate, sweep):
+for verb in (advise, bench, check, compare, critical, extremes, map_, scenes, simulate, sweep):
     stickslip.add_command(verb)
 
 
