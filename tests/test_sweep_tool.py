@@ -241,7 +241,7 @@ def test_a_map_with_picks(swept: Path, tmp_path: Path) -> None:
                 '--pick', '0.002,6e5', '--pick', '0.05,3e5', '--show', 'period']) == 0
     assert pictures[0].read_bytes().startswith(b'\x89PNG')
     text = pictures[1].read_text()
-    for words in ('drive velocity / (mm/s)', 'drive stiffness / (N/m)', 'period / s', 'smooth sliding',
+    for words in ('drive velocity / (mm/s)', 'drive stiffness / (N/µm)', 'period / s', 'smooth sliding',
                   'steady sliding loses stability', 'spring stretch / mm'):
         assert words in text
     assert run(['map', str(swept), '--out', str(tmp_path / 'again.svg'), '--pick', '0.002,6e5', '--pick', '0.05,3e5',
