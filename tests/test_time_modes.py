@@ -135,6 +135,7 @@ class TestTheSameCourse:
                 wait_for_steps(axis, 50)
         free = read_run(tmp_path / 'free')
         assert free.counts['/drive_velocity'] > 3
+        assert free.receipt['dropped_messages'] == 0
         assert_same_states(free, made_again(free, scene))
 
 
