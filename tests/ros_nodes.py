@@ -71,11 +71,12 @@ def executable(name: str) -> str:
 
 
 class NodeProcess:
-    """A sim_node with default signal handling, in a process group of its own, as a terminal starts it."""
+    """A program with default signal handling, in a process group of its own, as a terminal starts it."""
 
-    def __init__(self, *ros_args: str, folder: Path | None = None, prepare: Callable[[], None] | None = None) -> None:
+    def __init__(self, *ros_args: str, folder: Path | None = None, prepare: Callable[[], None] | None = None,
+                 program: str = 'sim_node') -> None:
         self._process = subprocess.Popen(
-            [executable('sim_node'), '--ros-args', *ros_args], cwd=folder, stderr=subprocess.PIPE, text=True,
+            [executable(program), '--ros-args', *ros_args], cwd=folder, stderr=subprocess.PIPE, text=True,
             start_new_session=True, preexec_fn=prepare or restore_interrupt)
 
     @property
@@ -110,9 +111,9 @@ def restore_interrupt() -> None:
 
 
 @contextmanager
-def running(*ros_args: str, folder: Path | None = None,
-            prepare: Callable[[], None] | None = None) -> Iterator[NodeProcess]:
-    process = NodeProcess(*ros_args, folder=folder, prepare=prepare)
+def running(*ros_args: str, folder: Path | None = None, prepare: Callable[[], None] | None = None,
+            program: str = 'sim_node') -> Iterator[NodeProcess]:
+    process = NodeProcess(*ros_args, folder=folder, prepare=prepare, program=program)
     try:
         yield process
     finally:
@@ -175,13 +176,14 @@ class Client:
     def send_force(self, force: float) -> None:
         self._force.publish(ExternalForce(force=force))
 
-    def call(self, kind: Any, name: str, /, **request: Any) -> Any:
-        if name not in self._services:
-            self._services[name] = self.node.create_client(kind, f'feed_axis/{name}')
-        client = self._services[name]
-        assert client.wait_for_service(DEADLINE), name
+    def call(self, kind: Any, name: str, node: str = 'feed_axis', /, **request: Any) -> Any:
+        full = f'{node}/{name}'
+        if full not in self._services:
+            self._services[full] = self.node.create_client(kind, full)
+        client = self._services[full]
+        assert client.wait_for_service(DEADLINE), full
         future = client.call_async(kind.Request(**request))
-        wait_for(future.done, f'the answer of {name}')
+        wait_for(future.done, f'the answer of {full}')
         return future.result()
 
     def trigger(self, name: str) -> Any:

@@ -198,18 +198,6 @@ class TestClock:
         finally:
             clocked.remove(follower)
 
-    def test_of_its_own_is_not_followed(self) -> None:
-        with running('-p', 'time.mode:=lockstep', '-p', 'use_sim_time:=true') as process:
-            code, errors = process.wait()
-        assert (code, len(errors.splitlines())) == (2, 1)
-        assert 'use_sim_time = True is refused: must be false with time.mode' in errors
-
-    def test_of_its_own_is_not_followed_later_either(self, clocked: Client) -> None:
-        answer = clocked.set_parameters(use_sim_time=True)
-        assert not answer.successful
-        assert 'use_sim_time = True is refused' in answer.reason
-        assert clocked.set_parameters(use_sim_time=False).successful
-
 
 class TestFreeRun:
     def test_goes_at_its_factor(self) -> None:

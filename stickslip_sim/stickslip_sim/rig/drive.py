@@ -47,7 +47,8 @@ class Drive:
             return
         self._target, self._acceleration = target, acceleration
         if not self._frozen:
-            self._course = _ramp(self._at(now), target, now, acceleration)
+            self._course = (_ramp(self._at(now), target, now, acceleration) if acceleration < math.inf
+                            else constant(target))
 
     def freeze(self, frozen: bool, now: Instant) -> None:
         """Stand still at once, or make for the latest target again: from standstill, within the limits."""
