@@ -53,6 +53,8 @@ setup(
     extras_require={'bench': ['mpmath'], 'test': ['pytest']},
     entry_points={
         'console_scripts': [
+            'cascade_controller = stickslip_sim.ros.cascade_controller:main',
+            'compensating_controller = stickslip_sim.ros.compensating_controller:main',
             'sim_node = stickslip_sim.ros.sim_node:main',
             'stickslip = stickslip_sim.__main__:main',
         ],

@@ -20,6 +20,7 @@ from ..errors import StickslipError
 from .advise import advise
 from .bench import bench
 from .check import check
+from .compare import compare
 from .extremes import extremes
 from .scenes import scenes
 from .simulate import simulate
@@ -35,7 +36,7 @@ def stickslip() -> None:
     """Stick-slip motion of a feed axis, simulated exactly."""
 
 
-for verb in (advise, bench, check, extremes, scenes, simulate):
+for verb in (advise, bench, check, compare, extremes, scenes, simulate):
     stickslip.add_command(verb)
 
 

@@ -1,7 +1,7 @@
 """Messages that always have their numbers at the same places: packed and unpacked without looking at each field."""
 
 import struct
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -46,6 +46,13 @@ class Layout:
     def pack(self, stamp_ns: int, *numbers: float) -> bytes:
         """Return the CDR bytes of a message with its stamp (ns) and its numbers in the order of `names`."""
         return self._struct.pack(_CDR, *divmod(stamp_ns, _NANOSECONDS), 1, *numbers)
+
+    def numbers(self, data: bytes) -> Sequence[float] | None:
+        """Return the numbers of a message in the order of `names`; None when it has a frame or is not laid out so."""
+        if len(data) != self.size:
+            return None
+        encapsulation, _, _, length, *numbers = self._struct.unpack(data)
+        return numbers if encapsulation == _CDR and length == 1 else None
 
     def unpack(self, messages: list[bytes]) -> NDArray[Any]:
         """Return the numbers of messages of this size as a structured array."""

@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import zstandard
 from mcap.exceptions import McapError
-from mcap.records import Attachment, Channel, Footer, McapRecord, Message, Metadata, Schema
-from mcap.stream_reader import CRCValidationError, StreamReader
+from mcap.records import Attachment, Channel, Chunk, Footer, McapRecord, Message, Metadata, Schema
+from mcap.stream_reader import CRCValidationError, StreamReader, breakup_chunk
 from numpy.typing import NDArray
 from rosbags.typesys.store import Typestore
 
@@ -21,8 +21,9 @@ from ..errors import RecordingError, RecordingWarning
 from .layout import layout_of, numbers_of
 from .schemas import store_of
 
-# What a file that ends anywhere makes the reader stumble over.
-_CUT_OFF = (McapError, CRCValidationError, struct.error, zstandard.ZstdError, UnicodeDecodeError)
+# What a file that ends anywhere makes the reader stumble over (RuntimeError: lz4).
+_CUT_OFF = (McapError, CRCValidationError, struct.error, zstandard.ZstdError, RuntimeError, UnicodeDecodeError)
+_COMPRESSIONS = ('', 'zstd', 'lz4')
 
 
 class RecordedMessage(NamedTuple):
@@ -110,10 +111,11 @@ def read_run(path: Path | str) -> Run:
             run.counts[channels[record.channel_id]] += 1
         elif isinstance(record, Schema):
             names[record.id] = record.name
-            run.schemas[record.name] = record.data.decode()
+            if record.encoding == 'ros2msg':
+                run.schemas[record.name] = record.data.decode(errors='replace')
         elif isinstance(record, Channel) and record.id not in channels:
             channels[record.id] = record.topic
-            run.topics[record.topic] = names[record.schema_id]
+            run.topics[record.topic] = names.get(record.schema_id, '')    # other programs may give none
             run.channel_metadata[record.topic] = record.metadata
             run.counts[record.topic] = 0
         elif isinstance(record, Attachment):
@@ -130,6 +132,9 @@ def read_run(path: Path | str) -> Run:
 
 def _file_of(path: Path) -> Path:
     files = sorted(path.glob('*.mcap')) if path.is_dir() else [path]
+    for foreign in [*path.glob('*.mcap.*'), *path.glob('*.db3*')] if not files else []:
+        raise RecordingError(f'{path}: {foreign.name} is not read, only .mcap is; decompress or convert it first '
+                             '(zstd -d, ros2 bag convert)')
     if not files or not files[0].is_file():
         raise RecordingError(f'{path}: no recorded run there; give the folder of a run or an .mcap file')
     if len(files) > 1:
@@ -143,12 +148,21 @@ def _records(path: Path) -> Iterator[McapRecord]:
         with path.open('rb') as stream:
             begin = True
             try:
-                for record in StreamReader(stream, validate_crcs=True).records:
+                for record in StreamReader(stream, validate_crcs=True, emit_chunks=True).records:
                     begin = False
-                    yield record
+                    yield from _unpacked(path, record)
             except _CUT_OFF as error:
                 if begin:
                     raise RecordingError(f'{path} is not an MCAP file: {error}') from None
     except OSError as error:
         raise RecordingError(f'{path}: {error.strerror}') from None
 
+
+def _unpacked(path: Path, record: McapRecord) -> Iterable[McapRecord]:
+    """Return the records of a chunk, or any other record by itself."""
+    if not isinstance(record, Chunk):
+        return [record]
+    if record.compression not in _COMPRESSIONS:
+        raise RecordingError(f'{path}: its chunks are compressed with {record.compression!r}; zstd, lz4 and none are '
+                             'read: convert it first (mcap compress)')
+    return breakup_chunk(record, validate_crc=True)

@@ -9,7 +9,7 @@ from ..commands import CommandSlot
 from ..errors import InputError
 from ..recording import topics as names
 from .joints import DRIVE, commanded_velocity, disregarded
-from .topics import subscription
+from .topics import command_subscription, subscription
 
 _QUIET = 1_000_000_000   # ns between two warnings of refused commands of a kind
 
@@ -22,8 +22,8 @@ class Inlet:
         self._log, self._now = node.get_logger(), now
         self._velocity = velocity
         self._quiet_until: dict[str, int] = {}   # by kind of command
-        subscription(node, names.DRIVE_VELOCITY, lambda message: self._take(velocity, message.velocity))
-        subscription(node, names.EXTERNAL_FORCE, lambda message: self._take(force, message.force))
+        command_subscription(node, names.DRIVE_VELOCITY, lambda value: self._take(velocity, value))
+        command_subscription(node, names.EXTERNAL_FORCE, lambda value: self._take(force, value))
         if with_joints:
             subscription(node, names.JOINT_COMMANDS, self._take_joints)
 

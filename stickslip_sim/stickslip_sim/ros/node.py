@@ -158,13 +158,11 @@ class FeedAxis(SceneNode):
         message = reports.timing_message(second, self.loop, period, bool(judged.valid), stamp_ns)
         self._timing_out.publish(message)
         self._record(names.TIMING, message, max(self.loop.step, 0))
-        events, recordings = self._outlet.events, self._record_service.recordings
         self._diagnostics_out.publish(reports.diagnostics(stamp_ns, self.get_fully_qualified_name(), [
             reports.loop_status(self.loop, second, judged),
             reports.command_status(self.loop, second),
-            reports.solver_status(self.loop, self.scene.solver.name, self.loop.rig.simulator.event_counts,
-                                  events[-1] if events else None),
-            reports.recorder_status(recordings),
+            reports.solver_status(self.loop, self.scene.solver.name, self._outlet.events.latest_time),
+            reports.recorder_status(self._record_service.recordings),
             reports.neighbours_status(self._neighbours.look())]))
 
     def _tell_troubles(self, second: reports.Second) -> None:

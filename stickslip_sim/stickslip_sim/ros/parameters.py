@@ -82,7 +82,7 @@ class SceneNode(Node):  # type: ignore[misc]
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
         """Set all or none; refused with one line that says what, why and what to do."""
-        wanted = [_promoted(parameter) for parameter in parameter_list]
+        wanted = [promoted(parameter, BY_NAME.get(parameter.name)) for parameter in parameter_list]
         ours = {parameter.name: parameter.value for parameter in wanted
                 if parameter.name in BY_NAME or not self.has_parameter(parameter.name)}
         try:
@@ -147,9 +147,8 @@ def describe(entry: Entry) -> ParameterDescriptor:
     return descriptor
 
 
-def _promoted(parameter: Parameter) -> Parameter:
+def promoted(parameter: Parameter, entry: Entry | None) -> Parameter:
     """Return whole numbers as the doubles that they stand for, as in a scene file."""
-    entry = BY_NAME.get(parameter.name)
     value: Any = parameter.value
     if entry is not None and entry.type == 'double' and parameter.type_ == Parameter.Type.INTEGER:
         return Parameter(parameter.name, Parameter.Type.DOUBLE, float(value))

@@ -9,7 +9,6 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from stickslip_msgs.msg import StepTiming
 
 from ..rig import SILENT_BRIDGE
-from ..words import Event, EventKind
 from .conversion import set_stamp
 from .ledger import LedgerWindow
 from .loop import StepLoop
@@ -142,11 +141,13 @@ def command_status(loop: StepLoop, second: Second) -> DiagnosticStatus:
     return _status('command', level, text, values)
 
 
-def solver_status(loop: StepLoop, name: str, counts: Mapping[EventKind, int], last: Event | None) -> DiagnosticStatus:
+def solver_status(loop: StepLoop, name: str, last_event: float | None) -> DiagnosticStatus:
     """Tell whether the solver goes on, and what it located."""
     return _status('solver', ERROR if loop.failure else OK, loop.failure or 'goes on', {
-        'solver': name, **{f'events {kind.name.lower()}': count for kind, count in counts.items()},
-        'root iterations': loop.rig.simulator.root_iterations, 'last event / s': last.time if last else 'none'})
+        'solver': name,
+        **{f'events {kind.name.lower()}': count for kind, count in loop.rig.simulator.event_counts.items()},
+        'root iterations': loop.rig.simulator.root_iterations,
+        'last event / s': 'none' if last_event is None else last_event})
 
 
 def recorder_status(recordings: Recordings) -> DiagnosticStatus:
