@@ -1,0 +1,6 @@
+"""Pictures.  The only room that imports matplotlib."""
+
+from .run import plot_run
+from .trade import Line, plot_trade
+
+__all__ = ['Line', 'plot_run', 'plot_trade']

@@ -1,0 +1,41 @@
+"""How all pictures look: colours, lines, files.  Without matplotlib's global state, so that no display is needed."""
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from ..words import Mode
+
+Numbers = NDArray[np.float64]
+
+# Okabe and Ito's colours, which stay apart for colour-blind eyes
+BLACK, ORANGE, SKY, GREEN = '#222222', '#E69F00', '#56B4E9', '#009E73'
+BLUE, RED, PURPLE = '#0072B2', '#D55E00', '#CC79A7'
+GREY = '#666666'
+MODE_COLOURS = {Mode.STICK: SKY, Mode.ACCELERATING: ORANGE, Mode.COASTING: GREEN, Mode.DECELERATING: PURPLE}
+MILLI = 1e3          # m to mm
+_POINTS = 8000       # per line: more than a picture can show
+
+
+def save(figure: Figure, path: Path | str) -> None:
+    """Write a picture; the ending of `path` (.png, .svg) says how."""
+    path = Path(path)
+    kind = path.suffix[1:].lower()
+    with rc_context({'svg.hashsalt': 'stickslip'}):   # the same picture is the same file
+        figure.savefig(path, format=kind, metadata={'Date': None} if kind == 'svg' else None)
+
+
+def thinned(time: Numbers, values: Numbers) -> tuple[Numbers, Numbers]:
+    """Keep the lowest and the highest point of each bundle, so that no peak is lost."""
+    size = len(values) // (_POINTS // 2)
+    if size < 3:
+        return time, values
+    whole = len(values) // size * size
+    bundles = values[:whole].reshape(-1, size)
+    first = np.arange(0, whole, size)
+    keep = np.concatenate([[0], first + bundles.argmin(axis=1), first + bundles.argmax(axis=1), [len(values) - 1]])
+    keep = np.unique(keep)
+    return time[keep], values[keep]
