@@ -17,6 +17,7 @@ _NUMBERS = {
 _CDR = b'\0\1\0\0'                  # before the message: CDR, little endian
 _HEADER = 'std_msgs/msg/Header'
 _HEADER_FORMAT, _HEADER_SIZE = '<4siIIx', 13  # sec, nanosec, a text of one byte, which is its end
+_HEADER_PARTS = 4                   # with what is before the message
 _NANOSECONDS = 1_000_000_000
 
 
@@ -47,6 +48,10 @@ class Layout:
         """Return the CDR bytes of a message with its stamp (ns) and its numbers in the order of `names`."""
         return self._struct.pack(_CDR, *divmod(stamp_ns, _NANOSECONDS), 1, *numbers)
 
+    def numbers(self, message: bytes) -> tuple[float, ...]:
+        """Return the numbers of a message; raises struct.error on one of another size."""
+        return self._struct.unpack(message)[_HEADER_PARTS:]
+
     def unpack(self, messages: list[bytes]) -> NDArray[Any]:
         """Return the numbers of messages of this size as a structured array."""
         return np.frombuffer(b''.join(messages), self._dtype)
@@ -59,6 +64,12 @@ def layout_of(store: Typestore, type_name: str) -> Layout | None:
         return None
     numbers = numbers_of(store, type_name)
     return Layout(numbers) if len(numbers) == len(fields) - 1 else None
+
+
+def texts_of(store: Typestore, type_name: str) -> list[str]:
+    """Return the fields of a type that are single texts."""
+    return [name for name, (node, inner) in store.fielddefs[type_name][1]
+            if node == Nodetype.BASE and inner[0] == 'string']
 
 
 def numbers_of(store: Typestore, type_name: str) -> dict[str, str]:

@@ -1,11 +1,12 @@
 """One axis and its rig, from step to step."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from ..axis import Axis, InitialState
-from ..courses import Course, constant
+from ..courses import Course, constant, course_of, plain_of
 from ..errors import InputError
 from ..pacing import Grid
 from ..simulator import Simulator
@@ -61,8 +62,8 @@ class Rig:
         self._faults = Faults(self._grid, settings.faults)
         self._wire = Wire(self._grid, settings.seed)
         self._drive = Drive(drive, settings.limits)
-        self._course = drive
-        self._force, self._acting_force = force, force
+        self._force = force                   # without faults
+        self._is_settled = True               # axis and faults act as they are
         self._velocity_order: float | None = None
         self._force_order: float | None = None
         self._encoder = Encoder(settings.encoder, self._grid.rate, settings.encoder_delay_steps, settings.seed)
@@ -113,7 +114,7 @@ class Rig:
         """End a fault now, or before it begins; raises InputError when there is none by that id."""
         fault = self._faults.clear(fault_id)
         self._notes.append(Note(NoteKind.FAULT_CLEARED, fault.id, f'{fault.kind} cleared', fault.value, fault=fault))
-        self._let_faults_act()
+        self._is_settled = False
 
     def clear_faults(self) -> list[str]:
         """End all faults, that of a command time-out among them; return their ids."""
@@ -126,9 +127,40 @@ class Rig:
         return ids
 
     def change_axis(self, axis: Axis) -> None:
-        """Go on with other parameters."""
+        """Go on with other parameters; before the start, begin with them."""
         self._axis = axis
-        self._scale_friction()
+        self._is_settled = False
+        if self.step < 0:
+            self.simulator.change_axis(axis)
+            self.simulator.reset()
+
+    # Checkpoints
+
+    def checkpoint(self) -> dict[str, Any]:
+        """Return all that the motion from the next step on depends on beside the scene, as plain data.
+
+        The encoders are left out: what they measure moves nothing.
+        """
+        self._settle()
+        self._let_drive_act()
+        return {'step': self.step, 'drive': self._drive.checkpoint(), 'wire': self._wire.checkpoint(),
+                'faults': self._faults.checkpoint(), 'force': plain_of(self._force),
+                'acting_force': plain_of(self.simulator.force), 'has_failed': self.has_failed,
+                'notes': len(self._notes), 'simulator': self.simulator.checkpoint()}
+
+    def restore(self, saved: Mapping[str, Any]) -> None:
+        """Go on from a checkpoint of a rig of the same scene, with the parameters of the axis that held then.
+
+        Raises InputError, KeyError, TypeError or ValueError when it is none; the rig is of no use then.
+        """
+        self._drive.restore(saved['drive'])
+        self._wire.restore(saved['wire'])
+        self._faults.restore(saved['faults'])
+        self._force = course_of(saved['force'])
+        self.step = int(saved['step'])
+        self.has_failed = bool(saved['has_failed'])
+        self.simulator.restore(saved['simulator'], self._scaled_axis, self._drive.course,
+                               course_of(saved['acting_force']))
 
     # Steps
 
@@ -137,6 +169,7 @@ class Rig:
         step = self._next
         if step >= self._faults.next_change and step > 0:
             self._enter_faults(step)
+        self._settle()
         velocity, force = self._velocity_order, self._force_order
         if velocity is not None or not self._wire.is_empty:
             self._obey_velocity(velocity, step)
@@ -157,6 +190,7 @@ class Rig:
         while (begin := self._grid.instant(int(min(self._faults.next_change, _NEVER)) - 1)) < to:
             events += self.simulator.advance(begin)
             self._enter_faults(int(self._faults.next_change))
+            self._settle()
             self._let_drive_act()
         return events + self.simulator.advance(to)
 
@@ -194,31 +228,37 @@ class Rig:
         for kind, word, faults in ((NoteKind.FAULT_END, 'ends', ended), (NoteKind.FAULT_BEGIN, 'begins', begun)):
             self._notes.extend(Note(kind, fault.id, f'{fault.kind} {word}', fault.value, fault=fault)
                                for fault in faults)
-        self._let_faults_act()
+        self._is_settled = False
 
-    def _let_faults_act(self) -> None:
+    def _settle(self) -> None:
+        """Let changed faults and another axis act, all at once: the order in which they came does not matter."""
+        if self._is_settled:
+            return
+        self._is_settled = True
         self._drive.freeze(any(fault.kind == 'drive_freeze' for fault in self._faults.active.values()),
                            self.simulator.time)
         self._apply_force()
         self._scale_friction()
 
     def _let_drive_act(self) -> None:
-        if self._drive.course is not self._course:
-            self._course = self._drive.course
-            self.simulator.command_drive(self._course)
+        if self._drive.course is not self.simulator.drive:
+            self.simulator.command_drive(self._drive.course)
 
     def _apply_force(self) -> None:
         pulse = math.fsum(fault.value for fault in self._faults.active.values() if fault.kind == 'force_pulse')
         course = self._force.plus(pulse) if pulse else self._force
-        if course != self._acting_force:
-            self._acting_force = course
+        if course != self.simulator.force:
             self.simulator.command_force(course)
 
     def _scale_friction(self) -> None:
-        factor = math.prod(fault.value for fault in self._faults.active.values() if fault.kind == 'friction_scale')
-        axis = with_friction_scaled(self._axis, factor)
+        axis = self._scaled_axis
         if axis != self.simulator.axis:
             self.simulator.change_axis(axis)
+
+    @property
+    def _scaled_axis(self) -> Axis:
+        factor = math.prod(fault.value for fault in self._faults.active.values() if fault.kind == 'friction_scale')
+        return with_friction_scaled(self._axis, factor)
 
 
 _NEVER = 2**62    # a step that no run reaches
