@@ -23,6 +23,7 @@ from .check import check
 from .extremes import extremes
 from .scenes import scenes
 from .simulate import simulate
+from .verify import verify
 
 _INTERRUPTED = 130
 _UNWRITABLE = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EBADF, errno.EPIPE)
@@ -35,7 +36,7 @@ def stickslip() -> None:
     """Stick-slip motion of a feed axis, simulated exactly."""
 
 
-for verb in (advise, bench, check, extremes, scenes, simulate):
+for verb in (advise, bench, check, extremes, scenes, simulate, verify):
     stickslip.add_command(verb)
 
 

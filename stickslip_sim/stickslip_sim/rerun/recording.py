@@ -13,9 +13,10 @@ from .. import __version__
 from ..errors import RecordingError, RecordingWarning
 from ..recording import Run, read_run
 from ..recording.bag import METADATA
-from ..recording.run import CHECKPOINT_FILE, SCENE_FILE
+from ..recording.run import CHECKPOINT_FILE, SCENE_FILE, RunFacts
 from ..scene import Scene
 
+_MAKERS = 'version', 'python', 'platform', 'numpy', 'numba'
 _MAGIC = b'\x89MCAP0\r\n'   # with which a finished file ends
 
 
@@ -50,6 +51,14 @@ def open_recording(path: Path | str) -> Recording:
         raise RecordingError(f'{run.path}: it does not say what it was simulated with; give a run that stickslip '
                              'recorded')
     return Recording(run, run.scene, _checkpoint(run), _offline(run, facts), tuple(_notes(run, facts)))
+
+
+def made_with(recording: Recording) -> str:
+    """Return what of the recording's versions and machine is not as here, and what is here instead; for people."""
+    recorded, here = recording.run.metadata[METADATA], RunFacts.of(recording.scene).as_metadata()
+    others = [f'{name} {recorded[name]} (here {here[name]})' for name in _MAKERS
+              if recorded.get(name, here[name]) != here[name]]
+    return ', '.join(others) or 'the same versions on the same kind of machine'
 
 
 def _is_finished(path: Path) -> bool:
