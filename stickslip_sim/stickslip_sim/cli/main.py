@@ -20,6 +20,7 @@ from ..errors import StickslipError
 from .advise import advise
 from .bench import bench
 from .check import check
+from .export import export
 from .extremes import extremes
 from .scenes import scenes
 from .simulate import simulate
@@ -36,7 +37,7 @@ def stickslip() -> None:
     """Stick-slip motion of a feed axis, simulated exactly."""
 
 
-for verb in (advise, bench, check, extremes, scenes, simulate, verify):
+for verb in (advise, bench, check, export, extremes, scenes, simulate, verify):
     stickslip.add_command(verb)
 
 

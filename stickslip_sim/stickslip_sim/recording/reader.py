@@ -156,10 +156,11 @@ def read_run(path: Path | str) -> Run:
             run.counts[channels[record.channel_id]] += 1
         elif isinstance(record, Schema):
             names[record.id] = record.name
-            run.schemas[record.name] = record.data.decode()
+            if record.encoding == 'ros2msg':
+                run.schemas[record.name] = record.data.decode(errors='replace')
         elif isinstance(record, Channel) and record.id not in channels:
             channels[record.id] = record.topic
-            run.topics[record.topic] = names[record.schema_id]
+            run.topics[record.topic] = names.get(record.schema_id, '')    # other programs may give none
             run.channel_metadata[record.topic] = record.metadata
             run.counts[record.topic] = 0
         elif isinstance(record, Attachment):

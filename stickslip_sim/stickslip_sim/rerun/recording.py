@@ -46,6 +46,8 @@ def open_recording(path: Path | str) -> Recording:
     if not run.is_complete and _is_finished(run.path):
         raise RecordingError(f'{run.path}: damaged: it was finished, but only {sum(run.counts.values())} of its '
                              'messages can be read and trusted; fetch the file again')
+    if not run.is_complete and not run.topics:
+        raise RecordingError(f'{run.path}: cut off before its first message was written')
     facts = run.metadata.get(METADATA)
     if facts is None:
         raise RecordingError(f'{run.path}: it does not say what it was simulated with; give a run that stickslip '
