@@ -42,6 +42,7 @@ setup(
         (SHARE, ['package.xml']),
         (f'{SHARE}/scenes', sorted(glob(f'{NAME}/scenes/*.yaml'))),
         (f'{SHARE}/launch', sorted(glob('launch/*.launch.py'))),
+        (f'{SHARE}/ros2_control', sorted(glob('ros2_control/*'))),
     ],
     zip_safe=False,
     python_requires='>=3.10',
@@ -52,6 +53,8 @@ setup(
     extras_require={'bench': ['mpmath'], 'test': ['pytest']},
     entry_points={
         'console_scripts': [
+            'cascade_controller = stickslip_sim.ros.cascade_controller:main',
+            'compensating_controller = stickslip_sim.ros.compensating_controller:main',
             'sim_node = stickslip_sim.ros.sim_node:main',
             'stickslip = stickslip_sim.__main__:main',
         ],

@@ -71,11 +71,12 @@ def executable(name: str) -> str:
 
 
 class NodeProcess:
-    """A sim_node with default signal handling, in a process group of its own, as a terminal starts it."""
+    """A program with default signal handling, in a process group of its own, as a terminal starts it."""
 
-    def __init__(self, *ros_args: str, folder: Path | None = None, prepare: Callable[[], None] | None = None) -> None:
+    def __init__(self, *ros_args: str, folder: Path | None = None, prepare: Callable[[], None] | None = None,
+                 program: str = 'sim_node') -> None:
         self._process = subprocess.Popen(
-            [executable('sim_node'), '--ros-args', *ros_args], cwd=folder, stderr=subprocess.PIPE, text=True,
+            [executable(program), '--ros-args', *ros_args], cwd=folder, stderr=subprocess.PIPE, text=True,
             start_new_session=True, preexec_fn=prepare or restore_interrupt)
 
     def send(self, number: int) -> None:
@@ -106,9 +107,9 @@ def restore_interrupt() -> None:
 
 
 @contextmanager
-def running(*ros_args: str, folder: Path | None = None,
-            prepare: Callable[[], None] | None = None) -> Iterator[NodeProcess]:
-    process = NodeProcess(*ros_args, folder=folder, prepare=prepare)
+def running(*ros_args: str, folder: Path | None = None, prepare: Callable[[], None] | None = None,
+            program: str = 'sim_node') -> Iterator[NodeProcess]:
+    process = NodeProcess(*ros_args, folder=folder, prepare=prepare, program=program)
     try:
         yield process
     finally:
@@ -161,8 +162,8 @@ class Client:
     def send_force(self, force: float) -> None:
         self._force.publish(ExternalForce(force=force))
 
-    def call(self, kind: Any, name: str, /, **request: Any) -> Any:
-        client = self.node.create_client(kind, f'feed_axis/{name}')
+    def call(self, kind: Any, name: str, node: str = 'feed_axis', /, **request: Any) -> Any:
+        client = self.node.create_client(kind, f'{node}/{name}')
         try:
             assert client.wait_for_service(DEADLINE), name
             future = client.call_async(kind.Request(**request))

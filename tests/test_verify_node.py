@@ -121,7 +121,7 @@ def test_in_lock_step_with_what_happened_in_the_same_gap(tmp_path: Path) -> None
 
 
 def test_a_new_run_with_other_parameters(tmp_path: Path) -> None:
-    """What was changed before the start holds from the start: no checkpoint is needed."""
+    """Changed while it pauses at its start, before and after the recording begins."""
     with client() as axis, running(*parameters('time.mode:=free_run', 'time.factor:=3.0'), folder=tmp_path):
         axis.connect()
         assert axis.switch('set_paused', True).success
@@ -134,5 +134,6 @@ def test_a_new_run_with_other_parameters(tmp_path: Path) -> None:
         axis.next('slider_state', lambda state: state.time > 3.0)
         assert axis.switch('record', False).success
     recording = open_recording(folder)
-    assert recording.checkpoint is None
+    assert recording.checkpoint is not None
+    assert recording.checkpoint['step'] == 0
     assert is_identical(verify(recording)), verify(recording)

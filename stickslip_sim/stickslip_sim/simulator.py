@@ -72,16 +72,6 @@ class Simulator:
         return self._axis
 
     @property
-    def drive(self) -> Course:
-        """The course of the drive velocity, m/s, that was given or commanded last."""
-        return self._drive
-
-    @property
-    def force(self) -> Course:
-        """The course of the external force, N, that was given or commanded last."""
-        return self._force
-
-    @property
     def root_iterations(self) -> int:
         """Iterations of all searches for event times so far."""
         return int(self._state[ITERATIONS])

@@ -20,6 +20,7 @@ from ..errors import StickslipError
 from .advise import advise
 from .bench import bench
 from .check import check
+from .compare import compare
 from .export import export
 from .extremes import extremes
 from .scenes import scenes
@@ -37,7 +38,7 @@ def stickslip() -> None:
     """Stick-slip motion of a feed axis, simulated exactly."""
 
 
-for verb in (advise, bench, check, export, extremes, scenes, simulate, verify):
+for verb in (advise, bench, check, compare, export, extremes, scenes, simulate, verify):
     stickslip.add_command(verb)
 
 

@@ -44,7 +44,7 @@ class BagWriter:
         except OSError as error:
             self.folder.rmdir()
             _refuse(self.path, error)
-        self._mcap = Writer(self._file, CHUNK_SIZE, CompressionType.ZSTD)  # type: ignore[arg-type]
+        self._mcap = Writer(self._file, CHUNK_SIZE, CompressionType.ZSTD, enable_data_crcs=True)  # type: ignore[arg-type]
         try:
             self._begin(attachments)
         except OSError as error:

@@ -1,7 +1,7 @@
 """Messages that always have their numbers at the same places: packed and unpacked without looking at each field."""
 
 import struct
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -17,7 +17,6 @@ _NUMBERS = {
 _CDR = b'\0\1\0\0'                  # before the message: CDR, little endian
 _HEADER = 'std_msgs/msg/Header'
 _HEADER_FORMAT, _HEADER_SIZE = '<4siIIx', 13  # sec, nanosec, a text of one byte, which is its end
-_HEADER_PARTS = 4                   # with what is before the message
 _NANOSECONDS = 1_000_000_000
 
 
@@ -48,9 +47,12 @@ class Layout:
         """Return the CDR bytes of a message with its stamp (ns) and its numbers in the order of `names`."""
         return self._struct.pack(_CDR, *divmod(stamp_ns, _NANOSECONDS), 1, *numbers)
 
-    def numbers(self, message: bytes) -> tuple[float, ...]:
-        """Return the numbers of a message; raises struct.error on one of another size."""
-        return self._struct.unpack(message)[_HEADER_PARTS:]
+    def numbers(self, data: bytes) -> Sequence[float] | None:
+        """Return the numbers of a message in the order of `names`; None when it has a frame or is not laid out so."""
+        if len(data) != self.size:
+            return None
+        encapsulation, _, _, length, *numbers = self._struct.unpack(data)
+        return numbers if encapsulation == _CDR and length == 1 else None
 
     def unpack(self, messages: list[bytes]) -> NDArray[Any]:
         """Return the numbers of messages of this size as a structured array."""

@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import zstandard
 from mcap.exceptions import McapError
-from mcap.records import Attachment, Channel, Footer, McapRecord, Message, Metadata, Schema
-from mcap.stream_reader import CRCValidationError, StreamReader
+from mcap.records import Attachment, Channel, Chunk, Footer, McapRecord, Message, Metadata, Schema
+from mcap.stream_reader import CRCValidationError, StreamReader, breakup_chunk
 from numpy.typing import NDArray
 from rosbags.typesys.store import Typestore
 
@@ -25,8 +25,9 @@ from .run import RECEIPT_FILE, SCENE_FILE
 from .schemas import store_of
 from .tables import events_of
 
-# What a file that ends anywhere makes the reader stumble over.
-_CUT_OFF = (McapError, CRCValidationError, struct.error, zstandard.ZstdError, UnicodeDecodeError)
+# What a file that ends anywhere makes the reader stumble over (RuntimeError: lz4).
+_CUT_OFF = (McapError, CRCValidationError, struct.error, zstandard.ZstdError, RuntimeError, UnicodeDecodeError)
+_COMPRESSIONS = ('', 'zstd', 'lz4')
 
 
 class RecordedMessage(NamedTuple):
@@ -177,6 +178,9 @@ def read_run(path: Path | str) -> Run:
 
 def _file_of(path: Path) -> Path:
     files = sorted(path.glob('*.mcap')) if path.is_dir() else [path]
+    for foreign in [*path.glob('*.mcap.*'), *path.glob('*.db3*')] if not files else []:
+        raise RecordingError(f'{path}: {foreign.name} is not read, only .mcap is; decompress or convert it first '
+                             '(zstd -d, ros2 bag convert)')
     if not files or not files[0].is_file():
         raise RecordingError(f'{path}: no recorded run there; give the folder of a run or an .mcap file')
     if len(files) > 1:
@@ -190,12 +194,21 @@ def _records(path: Path) -> Iterator[McapRecord]:
         with path.open('rb') as stream:
             begin = True
             try:
-                for record in StreamReader(stream, validate_crcs=True).records:
+                for record in StreamReader(stream, validate_crcs=True, emit_chunks=True).records:
                     begin = False
-                    yield record
+                    yield from _unpacked(path, record)
             except _CUT_OFF as error:
                 if begin:
                     raise RecordingError(f'{path} is not an MCAP file: {error}') from None
     except OSError as error:
         raise RecordingError(f'{path}: {error.strerror}') from None
 
+
+def _unpacked(path: Path, record: McapRecord) -> Iterable[McapRecord]:
+    """Return the records of a chunk, or any other record by itself."""
+    if not isinstance(record, Chunk):
+        return [record]
+    if record.compression not in _COMPRESSIONS:
+        raise RecordingError(f'{path}: its chunks are compressed with {record.compression!r}; zstd, lz4 and none are '
+                             'read: convert it first (mcap compress)')
+    return breakup_chunk(record, validate_crc=True)

@@ -6,8 +6,8 @@ from threading import Event, Lock, Thread
 
 from .bag import BagWriter
 
-_POLL = 0.01       # s
-_FLUSH_EVERY = 40  # polls; leaves room below the second that a killed process may lose
+_POLL = 0.05       # s
+_FLUSH_EVERY = 8   # polls; leaves room below the second that a killed process may lose
 _SLICE = 32        # messages at a time; between two slices the interpreter is free for the step loop
 _BREATH = 50e-6    # s
 

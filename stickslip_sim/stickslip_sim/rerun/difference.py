@@ -1,6 +1,5 @@
 """Recorded messages beside what was made again: every field, to the last bit."""
 
-import struct
 from typing import NamedTuple
 
 from ..errors import RecordingError
@@ -75,15 +74,16 @@ class _Topic:
         stamp = message.publish_time - message.log_time + word.instant.nanoseconds
         try:
             made = self._packer.pack(stamp, number, word)
-            return None if made == message.data else self._field(message.data, made, number, word.time)
         except AttributeError as error:
-            reason = f'its field {error.name} is unknown here; recorded by another version?'
-        except struct.error:
-            reason = f'{len(message.data)} bytes in a message of {self._layout.size}'
-        raise RecordingError(f'{self._path}: {self.name}: {reason}')
+            raise RecordingError(f'{self._path}: {self.name}: its field {error.name} is unknown here; recorded by '
+                                 'another version?') from None
+        return None if made == message.data else self._field(message.data, made, number, word.time)
 
     def _field(self, recorded: bytes, made: bytes, number: int, time: float) -> Difference:
-        for name, a, b in zip(self._layout.names, self._layout.numbers(recorded), self._layout.numbers(made)):
+        theirs, ours = self._layout.numbers(recorded), self._layout.numbers(made)
+        if theirs is None or ours is None:
+            raise RecordingError(f'{self._path}: {self.name}: {len(recorded)} bytes that are no message of its type')
+        for name, a, b in zip(self._layout.names, theirs, ours):
             if repr(a) != repr(b):     # tells 0.0 and −0.0 apart, and takes NaN for itself
                 return Difference(number, time, self.name, name, a, b)
         a, b = (int.from_bytes(data[4:8], 'little') + 1e-9 * int.from_bytes(data[8:12], 'little')

@@ -10,6 +10,7 @@ from ..pacing import Grid
 MAX_FAULTS = 1000      # planned or in force
 MAX_TIME = 1e9         # s
 _ID_LENGTH = 64        # characters
+_TOLD = 10             # ids in a refusal
 
 
 class Fault(NamedTuple):
@@ -85,6 +86,10 @@ class Faults:
         """The ids in use."""
         return [*self.active, *(planned.fault.id for planned in self._planned)]
 
+    def values(self, kind: str) -> list[float]:
+        """Return the values of the faults of a kind that are in force."""
+        return [fault.value for fault in self.active.values() if fault.kind == kind]
+
     def inject(self, fault: Fault, step: int) -> Fault:
         """Plan a fault whose start counts from the begin of a step; return it with its id.  Raises InputError."""
         fault = fault if fault.id else fault._replace(id=self._free_id(fault.kind))
@@ -103,8 +108,8 @@ class Faults:
     def clear(self, fault_id: str) -> Fault:
         """Forget a fault, planned or in force, at once; raises InputError when there is none by that id."""
         if fault_id not in self.ids:
-            known = ', '.join(self.ids) or 'none at the moment'
-            raise InputError('id', fault_id, f'the id of a fault: {known}', 'see the ids that ~/inject_fault answered')
+            raise InputError('id', fault_id, f'the id of a fault: {_listed(self.ids)}',
+                             'see the ids that ~/inject_fault answered')
         fault = self.active.pop(fault_id, None)
         for planned in self._planned:
             if planned.fault.id == fault_id:
@@ -159,3 +164,8 @@ class Faults:
             self._chosen += 1
             if f'{kind}_{self._chosen}' not in self.ids:
                 return f'{kind}_{self._chosen}'
+
+
+def _listed(ids: Sequence[str]) -> str:
+    more = f' and {len(ids) - _TOLD} more' if len(ids) > _TOLD else ''
+    return ', '.join(ids[:_TOLD]) + more or 'none at the moment'

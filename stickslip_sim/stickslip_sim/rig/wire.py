@@ -23,18 +23,18 @@ class Wire:
         return not self._under_way
 
     def put(self, velocity: float, step: int, faults: Mapping[str, Fault]) -> bool:
-        """Send a command before a step; return whether it gets through.  What comes undelayed overtakes the rest."""
-        delay, kept = 0.0, 1.0
+        """Send a command before a step; return whether it gets through.  Those that it overtakes never arrive."""
+        arrival, kept = step, 1.0
         for fault in faults.values():
             if fault.kind == 'command_delay':
-                delay += fault.value
+                arrival += self._grid.steps(fault.value)
             elif fault.kind == 'command_loss':
                 kept *= 1.0 - fault.value
         if kept < 1.0 and self._luck.random_sample() >= kept:
             return False
-        if not delay:
-            self._under_way.clear()
-        self._under_way.append((step + self._grid.steps(delay), velocity))
+        while self._under_way and self._under_way[-1][0] >= arrival:
+            self._under_way.pop()
+        self._under_way.append((arrival, velocity))
         return True
 
     def checkpoint(self) -> list[Any]:

@@ -1,96 +1,53 @@
-"""The life of the process around the node, from its arguments to the exit code."""
+"""The life of the process around a node, from its arguments to the exit code."""
 
 import sys
-from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
-    from .parameters import FileParameters
     from .sim_node import Signals
 
-_USAGE = """\
-usage: sim_node [--help] [--ros-args [--params-file SCENE.yaml] [-p NAME:=VALUE]... [-r __ns:=/NAMESPACE]]
-
-Simulates a feed axis with stick-slip friction in real time (node feed_axis).  Without a file it runs the scene
-paper_fig8; -p scene:=NAME takes another shipped one, -p record.enabled:=true records a bag from the start.
-"""
 _POLL = 0.1                # s: how soon a signal is acted on
-_SWITCH_INTERVAL = 2e-4    # s that a callback may keep the interpreter from the step loop (the default is 5 ms)
+_SWITCH_INTERVAL = 2e-4    # s that a callback may keep the interpreter from a step loop (the default is 5 ms)
 
 
-def live(args: Sequence[str], signals: 'Signals') -> int:
-    """Bring the node up and down; return the exit code.  ROS and numba are imported in here, where errors are met."""
+class Program(NamedTuple):
+    """An executable: `read` looks at the arguments before ROS does, `run` runs its node with what that returned."""
+
+    name: str
+    usage: str
+    read: Callable[[Sequence[str]], Any]
+    run: Callable[[Any, 'Signals'], str]    # returns why it crashed, or an empty text
+
+
+def live(args: Sequence[str], signals: 'Signals', program: Program) -> int:
+    """Bring a node up and down; return the exit code.  ROS and numba are imported in here, where errors are met."""
     from ..errors import StickslipError
     from .environment import check_environment
 
     sys.setswitchinterval(_SWITCH_INTERVAL)
     try:
         check_environment()
-        return _with_ros(args, signals)
+        crash = _with_ros(args, signals, program)
+        return _refuse(program, f'internal error {crash}', 1) if crash else 0
     except StickslipError as error:
-        return _refuse(str(error), error.exit_code)
+        return _refuse(program, str(error), error.exit_code)
 
 
-def _with_ros(args: Sequence[str], signals: 'Signals') -> int:
-    import rclpy
-    from rclpy.executors import ExternalShutdownException
-
-    from .parameters import FileParameters
-
-    files = FileParameters.read(list(params_files(args)))
-    try:
-        _init_ros(args)
-        if _wants_help(args):
-            sys.stdout.write(_USAGE)
-            return 0
-        return _spin(signals, files)
-    except ExternalShutdownException:
-        return 0
-    finally:
-        rclpy.try_shutdown()
-
-
-def params_files(args: Sequence[str]) -> Iterator[str]:
-    """Yield the parameter files among arguments, which stand between --ros-args and --."""
-    is_of_ros = False
-    for word, following in zip(args, [*args[1:], '']):
-        if word in ('--ros-args', '--'):
-            is_of_ros = word == '--ros-args'
-        elif is_of_ros and word == '--params-file' and following:
-            yield following
-
-
-def _wants_help(args: Sequence[str]) -> bool:
-    """Return whether help is asked for; raises InputError on words that are none of ROS's."""
-    from rclpy.utilities import remove_ros_args
-
-    from ..errors import InputError
-
-    words = remove_ros_args(['sim_node', *args])[1:]
-    if words and words[0] not in ('-h', '--help'):
-        raise InputError('argument', words[0], 'one of -h, --help, or behind --ros-args', 'see sim_node --help')
-    return bool(words)
-
-
-def _spin(signals: 'Signals', files: 'FileParameters') -> int:
-    from .node import FeedAxis
-
-    node = FeedAxis(files, lambda: signals.stop)
+def spin(node: Any, signals: 'Signals', is_over: Callable[[], bool] = lambda: False) -> None:
+    """Let a node begin, hear, and end with a signal or when it is over."""
     executor = make_executor()
     executor.add_node(node)
     try:
         signals.is_starting = False
         if not signals.stop:
             node.begin()
-        while not signals.stop and node.loop.crash is None:
+        while not signals.stop and not is_over():
             executor.spin_once(timeout_sec=_POLL)
     finally:
         node.end()
         executor.remove_node(node)
         node.destroy_node()
-    if node.loop.crash is not None:
-        return _refuse(f'internal error in the step loop: {node.loop.crash!r}', 1)
-    return 0
 
 
 def make_executor() -> Any:
@@ -101,6 +58,35 @@ def make_executor() -> Any:
         from rclpy.executors import SingleThreadedExecutor
         return SingleThreadedExecutor()
     return EventsExecutor()
+
+
+def _with_ros(args: Sequence[str], signals: 'Signals', program: Program) -> str:
+    import rclpy
+    from rclpy.executors import ExternalShutdownException
+
+    given = program.read(args)
+    try:
+        _init_ros(args)
+        if _wants_help(args, program):
+            sys.stdout.write(program.usage)
+            return ''
+        return program.run(given, signals)
+    except ExternalShutdownException:
+        return ''
+    finally:
+        rclpy.try_shutdown()
+
+
+def _wants_help(args: Sequence[str], program: Program) -> bool:
+    """Return whether help is asked for; raises InputError on words that are none of ROS's."""
+    from rclpy.utilities import remove_ros_args
+
+    from ..errors import InputError
+
+    words = remove_ros_args([program.name, *args])[1:]
+    if words and words[0] not in ('-h', '--help'):
+        raise InputError('argument', words[0], 'one of -h, --help, or behind --ros-args', f'see {program.name} --help')
+    return bool(words)
 
 
 def _init_ros(args: Sequence[str]) -> None:
@@ -117,6 +103,6 @@ def _init_ros(args: Sequence[str]) -> None:
     set_logger_level('rcl', LoggingSeverity.UNSET)
 
 
-def _refuse(text: str, code: int) -> int:
-    sys.stderr.write('sim_node: ' + ' '.join(text.split()) + '\n')
+def _refuse(program: Program, text: str, code: int) -> int:
+    sys.stderr.write(f'{program.name}: ' + ' '.join(text.split()) + '\n')
     return code

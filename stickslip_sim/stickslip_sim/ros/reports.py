@@ -1,4 +1,4 @@
-"""What the node tells about itself once a second: StepTiming and the four statuses of /diagnostics."""
+"""What the node tells about itself once a second: StepTiming and the statuses of /diagnostics."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -8,7 +8,6 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
 from stickslip_msgs.msg import StepTiming
 
-from ..words import Event, EventKind
 from .conversion import set_stamp
 from .ledger import LedgerWindow
 from .loop import StepLoop
@@ -141,11 +140,13 @@ def command_status(loop: StepLoop, second: Second) -> DiagnosticStatus:
     return _status('command', level, text, values)
 
 
-def solver_status(loop: StepLoop, name: str, counts: Mapping[EventKind, int], last: Event | None) -> DiagnosticStatus:
+def solver_status(loop: StepLoop, name: str, last_event: float | None) -> DiagnosticStatus:
     """Tell whether the solver goes on, and what it located."""
     return _status('solver', ERROR if loop.failure else OK, loop.failure or 'goes on', {
-        'solver': name, **{f'events {kind.name.lower()}': count for kind, count in counts.items()},
-        'root iterations': loop.rig.simulator.root_iterations, 'last event / s': last.time if last else 'none'})
+        'solver': name,
+        **{f'events {kind.name.lower()}': count for kind, count in loop.rig.simulator.event_counts.items()},
+        'root iterations': loop.rig.simulator.root_iterations,
+        'last event / s': 'none' if last_event is None else last_event})
 
 
 def recorder_status(recordings: Recordings) -> DiagnosticStatus:
@@ -158,6 +159,11 @@ def recorder_status(recordings: Recordings) -> DiagnosticStatus:
     return _status('recorder', level, text, {
         'folder': recordings.folder or 'none', 'written': recorder.written if recorder else 0,
         'waiting': recorder.waiting if recorder else 0, 'dropped': recordings.total_dropped})
+
+
+def neighbours_status(troubles: Sequence[str]) -> DiagnosticStatus:
+    """Tell who else publishes where one should, and who fell silent."""
+    return _status('neighbours', WARN if troubles else OK, '; '.join(troubles) or 'nobody in the way', {})
 
 
 def _status(name: str, level: bytes, text: str, values: Mapping[str, object]) -> DiagnosticStatus:

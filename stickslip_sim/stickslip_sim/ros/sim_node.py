@@ -24,8 +24,9 @@ class Signals:
 def main(args: Sequence[str] | None = None) -> int:
     """Run until SIGINT or SIGTERM; return the exit code: 0 ended, 1 internal error, 2 refused start."""
     signals = Signals()
+    from .axis_program import PROGRAM
     from .life import live
-    return live(sys.argv[1:] if args is None else args, signals)
+    return live(sys.argv[1:] if args is None else args, signals, PROGRAM)
 
 
 if __name__ == '__main__':

@@ -1,0 +1,44 @@
+"""The executable `sim_node` as a program: its arguments, and its node."""
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from .life import Program, spin
+
+if TYPE_CHECKING:
+    from .parameters import FileParameters
+    from .sim_node import Signals
+
+_USAGE = """\
+usage: sim_node [--help] [--ros-args [--params-file SCENE.yaml] [-p NAME:=VALUE]... [-r __ns:=/NAMESPACE]]
+
+Simulates a feed axis with stick-slip friction in real time (node feed_axis).  Without a file it runs the scene
+paper_fig8; -p scene:=NAME takes another shipped one, -p record.enabled:=true records a bag from the start.
+"""
+
+
+def params_files(args: Sequence[str]) -> Iterator[str]:
+    """Yield the parameter files among arguments, which stand between --ros-args and --."""
+    is_of_ros = False
+    for word, following in zip(args, [*args[1:], '']):
+        if word in ('--ros-args', '--'):
+            is_of_ros = word == '--ros-args'
+        elif is_of_ros and word == '--params-file' and following:
+            yield following
+
+
+def _read(args: Sequence[str]) -> 'FileParameters':
+    from .parameters import FileParameters
+
+    return FileParameters.read(list(params_files(args)))
+
+
+def _run(files: 'FileParameters', signals: 'Signals') -> str:
+    from .node import FeedAxis
+
+    node = FeedAxis(files, lambda: signals.stop)
+    spin(node, signals, lambda: node.loop.crash is not None)
+    return '' if node.loop.crash is None else f'in the step loop: {node.loop.crash!r}'
+
+
+PROGRAM = Program('sim_node', _USAGE, _read, _run)
