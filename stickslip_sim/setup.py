@@ -52,6 +52,7 @@ setup(
     extras_require={'bench': ['mpmath'], 'test': ['pytest']},
     entry_points={
         'console_scripts': [
+            'replay_node = stickslip_sim.ros.replay_node:main',
             'sim_node = stickslip_sim.ros.sim_node:main',
             'stickslip = stickslip_sim.__main__:main',
         ],
