@@ -2,13 +2,14 @@
 # `make help` lists the rest.  PYTHON=python3.12 sets up with another Python than python3.
 
 DISTRO ?= jazzy
+MINUTES ?= 10
 export DISTRO
 
 SHELL := /bin/bash
 HERE := ros2_ws/on_this_machine
 TOOLS := ros2_ws/.venv/bin
 
-.PHONY: help build run test check extremes bench clean
+.PHONY: help build run test check extremes bench hil soak clean
 
 help:  ## list the targets
 	@sed -nE 's/^([a-z]+):.*## (.*)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 14
@@ -36,6 +37,14 @@ bench: build  ## measure every solver beside its peers, and the loop of the node
 	@$(HERE) --own-domain python3 benchmarks/tick.py --json runs/bench/bench.json
 	@$(HERE) python3 -m benchmarks.accuracy runs/bench
 	@$(HERE) --own-domain python3 benchmarks/loop.py
+	@$(HERE) python3 -m benchmarks.paper
+	@$(HERE) python3 -m benchmarks.controllers
+
+hil: build  ## the node with a controller beside it: against a bare rclpy node, and the highest rate; writes docs/
+	@$(HERE) --own-domain python3 -m benchmarks.hil
+
+soak: build  ## the node, recording, with a controller beside it for MINUTES=10; writes docs/, fails when a limit is missed
+	@$(HERE) --own-domain python3 -m benchmarks.soak --minutes $(MINUTES)
 
 clean:  ## remove everything that was set up, built or cached in this tree
 	rm -rf ros2_ws/{.venv,build,install,log} runs .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache

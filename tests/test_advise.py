@@ -14,12 +14,12 @@ from stickslip_sim.advise.duration import default_duration
 from stickslip_sim.advise.figures import Difference, difference, event_difference
 from stickslip_sim.advise.parts import parts_of, without_idle_waves
 from stickslip_sim.advise.report import as_json, is_needed, text_lines
-from stickslip_sim.advise.runs import Reference, Trial, changed, costs, reference_of, try_changes
+from stickslip_sim.advise.runs import Reference, Trial, costs, reference_of, try_changes
 from stickslip_sim.advise.settings import solver_settings
 from stickslip_sim.advise.verdict import best_trial, least_scene
 from stickslip_sim.bench.measure import Cost
 from stickslip_sim.cli.main import run
-from stickslip_sim.scene import Scene, load_scene, scene_from_values
+from stickslip_sim.scene import Scene, changed, load_scene, scene_from_values
 
 Capture = pytest.CaptureFixture[str]
 DURATION = 2.0   # s; the second break-away of paper_fig7 comes at 1.33 s

@@ -161,7 +161,8 @@ class TestTopics:
 
     def test_diagnostics(self, axis: Client) -> None:
         message = axis.next('/diagnostics')
-        assert [status.name for status in message.status] == ['step loop', 'command', 'solver', 'recorder']
+        assert [status.name for status in message.status] == [
+            'step loop', 'command', 'solver', 'recorder', 'neighbours']
         assert {status.hardware_id for status in message.status} == {'/feed_axis'}
         status, values = axis.status('solver')
         assert (status.level, values['solver']) == (b'\0', 'exact')

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from stickslip_sim.offline import Columns, run_offline
-from stickslip_sim.plots import Numbers, _thinned, plot_run
+from stickslip_sim.plots import plot_run
+from stickslip_sim.plots.look import Numbers, thinned
 from stickslip_sim.scene import load_scene
 
 PNG = b'\x89PNG\r\n\x1a\n'
@@ -54,7 +55,7 @@ def test_thinning_keeps_the_peaks() -> None:
     time = np.linspace(0.0, 1.0, 100_003, dtype=np.float64)
     values: Numbers = np.sin(7.0 * time)
     values[12_345], values[54_321] = 9.0, -9.0
-    thin_time, thin = _thinned(time, values)
+    thin_time, thin = thinned(time, values)
     assert len(thin) < 10_000
     assert (thin.max(), thin.min()) == (9.0, -9.0)
     assert (thin_time[0], thin_time[-1]) == (0.0, 1.0)

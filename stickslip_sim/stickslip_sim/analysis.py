@@ -10,9 +10,9 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
+from .solvers.exact.cycles import SETTLED
 from .words import Event, EventKind, Mode
 
-SETTLED = 1e-6   # relative change of the period from one cycle to the next
 AVERAGED = 10    # cycles at the end of the run that the means are taken over
 
 
@@ -75,10 +75,10 @@ def mode_spans(events: Sequence[Event], begin: float, end: float, mode: Mode) ->
     return [*spans, Span(begin, end, mode)]
 
 
-def summary(events: Sequence[Event], duration: float, start: Mode = Mode.STICK) -> Summary:
-    """Sum up a run of `duration` seconds that began in the mode `start`."""
+def summary(events: Sequence[Event], duration: float, start: Mode = Mode.STICK, begin: float = 0.0) -> Summary:
+    """Sum up a run of `duration` seconds that began in the mode `start` at the time `begin` (s)."""
     cycles = cycle_figures(events)
-    spans = mode_spans(events, 0.0, duration, start)
+    spans = mode_spans(events, begin, begin + duration, start)
     latest = cycles[-AVERAGED:]
     counts = Counter(event.kind for event in events)
     return Summary(

@@ -27,14 +27,19 @@ class CommandSlot:
 
     def offer(self, value: float, arrival: int) -> str:
         """Take a value that arrived; return why it is refused, or an empty text.  The one before stays then."""
-        self.received += 1
         refusal = self.refusal(value)
         if refusal:
-            self.refused += 1
-            self.last_refusal = f'{refusal}; the previous command stays'
-            return self.last_refusal
+            return self.refuse(refusal)
+        self.received += 1
         self.latest = Command(value, arrival)
         return ''
+
+    def refuse(self, reason: str) -> str:
+        """Count what arrived and is no command, for a reason; return what to tell.  The one before stays."""
+        self.received += 1
+        self.refused += 1
+        self.last_refusal = f'{reason}; the previous command stays'
+        return self.last_refusal
 
     def refusal(self, value: float) -> str:
         """Return why a value would be refused, or an empty text."""

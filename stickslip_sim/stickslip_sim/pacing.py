@@ -66,8 +66,8 @@ class StepClock(Protocol):
     def now(self) -> int:
         """Return the time on the steady clock."""
 
-    def watch_time(self, now: int, time: int) -> float:
-        """Return the time, s, by which silence is measured: `now` on the steady clock, or simulation `time`."""
+    def watch_time(self, time: int) -> int:
+        """Return the time by which silence is measured: on the steady clock, or simulation `time`."""
 
 
 class Grid:
@@ -109,7 +109,8 @@ class Account:
 class Pacer:
     """Says when each step is due on the steady clock, and accounts for lateness.
 
-    `factor` is simulation time per wall time.  Silence is measured on the steady clock, or in simulation time.
+    `factor` is simulation time per wall time.  Silence is measured on the steady clock, or in simulation time; on the
+    steady clock only while steps keep their time: commands may wait to be heard while this loop itself is behind.
     """
 
     def __init__(self, grid: Grid, factor: float = 1.0, clock: Clock | None = None,
@@ -121,13 +122,14 @@ class Pacer:
         self._watches_steady = watches_steady
         self._backlog = max(_MAX_BACKLOG, 2 * self.period)
         self._clock: Clock = clock or SteadyClock()
-        self._origin = 0
+        self._origin = self._latest = self._watched = 0
         self._waited = False
         self.restart(0)
 
     def restart(self, step: int) -> None:
         """Let a step be due now, and those after it follow."""
-        self._origin = self._clock.now() - self._offset(step)
+        self._latest = self._clock.now()
+        self._origin = self._latest - self._offset(step)
 
     def due(self, step: int) -> int:
         """Return when a step is due, ns on the steady clock."""
@@ -155,15 +157,17 @@ class Pacer:
             account.skipped += lateness
             self._origin += lateness
         self._waited = False
+        self._watched += now - self._latest if lateness <= self.period else 0
+        self._latest = now
         return now, lateness
 
     def now(self) -> int:
         """Return the time, ns on the steady clock."""
         return self._clock.now()
 
-    def watch_time(self, now: int, time: int) -> float:
-        """Return the time, s, by which silence is measured."""
-        return (now if self._watches_steady else time) / NANOSECONDS
+    def watch_time(self, time: int) -> int:
+        """Return the time by which silence is measured."""
+        return self._watched if self._watches_steady else time
 
     def _offset(self, step: int) -> int:
         return step * self._numerator // self._denominator
@@ -189,9 +193,9 @@ class Unpaced:
         self.account.steps += 1
         return self.now(), 0
 
-    def watch_time(self, now: int, time: int) -> float:
-        """Return simulation time, s."""
-        return time / NANOSECONDS
+    def watch_time(self, time: int) -> int:
+        """Return simulation time."""
+        return time
 
 
 def step_clock(grid: Grid, mode: str, factor: float) -> StepClock:

@@ -37,7 +37,7 @@ def receipt_of(scene: Scene, duration: float, sample_period: float | None, figur
         'cost': {'cpu_time_s': cpu_time, 'cpu_time_per_simulated_second': cpu_time / duration,
                  'wall_time_s': wall_time},
     }
-    result: dict[str, Any] = _plain(receipt)
+    result: dict[str, Any] = plain(receipt)
     return result
 
 
@@ -47,14 +47,16 @@ def versions() -> dict[str, str]:
             'hot_path': hot_path()}
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
     """Turn named tuples into mappings, words and infinities into text."""
     if isinstance(value, Enum):
         return value.name if isinstance(value, Mode) else value.name.lower()
     if isinstance(value, tuple) and hasattr(value, '_asdict'):
         value = value._asdict()
     if isinstance(value, Mapping):
-        return {_plain(key): _plain(item) for key, item in value.items()}
+        return {plain(key): plain(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [plain(item) for item in value]
     if isinstance(value, float) and not math.isfinite(value):
         return str(value)
     return value

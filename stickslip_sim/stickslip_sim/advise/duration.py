@@ -2,8 +2,8 @@
 
 from ..errors import InputError
 from ..offline import run_offline
-from ..scene import Scene
-from .runs import BY_EXACT, changed
+from ..scene import Scene, changed
+from .runs import BY_EXACT
 
 _CYCLES = 20
 _SHORTEST, _LONGEST = 10.0, 320.0   # s

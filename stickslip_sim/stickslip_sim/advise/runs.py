@@ -12,8 +12,7 @@ from ..bench.peers.peer import EXACT
 from ..bench.problem import Outcome, Problem
 from ..errors import InputError, SolverError
 from ..offline import Trajectory, run_offline
-from ..scene import Scene, scene_from_values
-from ..scene.values import overridden
+from ..scene import Scene, changed
 from ..simulator import Simulator
 from ..solvers import Solver
 from ..words import Event, Instant, Sample
@@ -58,11 +57,6 @@ class Trial(NamedTuple):
     identical: bool = False
     note: str = ''
     cost: Cost | None = None
-
-
-def changed(base: Scene, changes: Changes) -> Scene:
-    """Return a scene with changes; raises InputError."""
-    return scene_from_values(overridden(base.values, changes)) if changes else base
 
 
 def changes_between(base: Scene, other: Scene) -> Changes:

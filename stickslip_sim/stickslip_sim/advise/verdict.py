@@ -3,8 +3,9 @@
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from ..scene import changed
 from .part import Changes, Part, Variant
-from .runs import Reference, Trial, changed, changes_between, try_changes
+from .runs import Reference, Trial, changes_between, try_changes
 from .settings import EXACT
 
 _WORTH = 0.9   # a solver must cost less than this share of the exact one, which is right at any tolerance

@@ -1,6 +1,7 @@
 """Where results go: checked before the work begins, and written whole or not at all."""
 
 import os
+import shutil
 import sys
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
@@ -38,6 +39,24 @@ def check_distinct(targets: Iterable[tuple[str, str]]) -> None:
         if place in seen and (path == STDOUT or not _is_special(place)):
             raise InputError(option, path, f'another place than that of {seen[place]}', 'name a file of its own')
         seen[place] = option
+
+
+@contextmanager
+def new_folder(option: str, path: str) -> Iterator[Path]:
+    """Yield a temporary folder that becomes the new folder `path` at the end, or vanishes on an error.
+
+    Raises InputError when the disk refuses, or somebody else has made `path` meanwhile.
+    """
+    place = Path(os.path.abspath(path))
+    temporary = place.with_name(f'.{os.getpid()}.{place.name}')
+    try:
+        with _refusing(path):
+            temporary.mkdir()
+            yield temporary
+            check_new_folder(option, path)
+            temporary.rename(place)
+    finally:
+        shutil.rmtree(temporary, ignore_errors=True)
 
 
 @contextmanager

@@ -1,7 +1,7 @@
 """Messages that always have their numbers at the same places: packed and unpacked without looking at each field."""
 
 import struct
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -47,6 +47,13 @@ class Layout:
         """Return the CDR bytes of a message with its stamp (ns) and its numbers in the order of `names`."""
         return self._struct.pack(_CDR, *divmod(stamp_ns, _NANOSECONDS), 1, *numbers)
 
+    def numbers(self, data: bytes) -> Sequence[float] | None:
+        """Return the numbers of a message in the order of `names`; None when it has a frame or is not laid out so."""
+        if len(data) != self.size:
+            return None
+        encapsulation, _, _, length, *numbers = self._struct.unpack(data)
+        return numbers if encapsulation == _CDR and length == 1 else None
+
     def unpack(self, messages: list[bytes]) -> NDArray[Any]:
         """Return the numbers of messages of this size as a structured array."""
         return np.frombuffer(b''.join(messages), self._dtype)
@@ -59,6 +66,12 @@ def layout_of(store: Typestore, type_name: str) -> Layout | None:
         return None
     numbers = numbers_of(store, type_name)
     return Layout(numbers) if len(numbers) == len(fields) - 1 else None
+
+
+def texts_of(store: Typestore, type_name: str) -> list[str]:
+    """Return the fields of a type that are single texts."""
+    return [name for name, (node, inner) in store.fielddefs[type_name][1]
+            if node == Nodetype.BASE and inner[0] == 'string']
 
 
 def numbers_of(store: Typestore, type_name: str) -> dict[str, str]:

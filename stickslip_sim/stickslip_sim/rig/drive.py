@@ -4,9 +4,11 @@ Its course is made of constants and ramps, so that the motion of the axis stays 
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
-from ..courses import Course, constant
+from ..courses import Course, constant, course_of, plain_of
 from ..words import Instant
 
 
@@ -26,6 +28,7 @@ class Drive:
         self._own = course               # while nothing was commanded
         self._course = course
         self._target: float | None = None
+        self._acceleration = math.inf    # with which it makes for it
         self._frozen = False
 
     @property
@@ -41,19 +44,32 @@ class Drive:
     def follow(self, velocity: float, now: Instant, acceleration: float = math.inf) -> None:
         """Make for a velocity (m/s) within the limits, and within `acceleration` (m/s²) if that is lower."""
         target = min(max(velocity, -self._limits.velocity), self._limits.velocity)
-        if target == self._target:
+        acceleration = min(acceleration, self._limits.acceleration)
+        if target == self._target and acceleration == self._acceleration:
             return
-        self._target = target
+        self._target, self._acceleration = target, acceleration
         if not self._frozen:
-            self._course = _ramp(self._at(now), target, now, min(acceleration, self._limits.acceleration))
+            self._course = (_ramp(self._at(now), target, now, acceleration) if acceleration < math.inf
+                            else constant(target))
 
     def freeze(self, frozen: bool, now: Instant) -> None:
         """Stand still at once, or make for the latest target again: from standstill, within the limits."""
         if self._frozen and not frozen:
             self._course = self._own
             if self._target is not None:
-                self._course = _ramp(0.0, self._target, now, self._limits.acceleration)
+                self._course = _ramp(0.0, self._target, now, self._acceleration)
         self._frozen = frozen
+
+    def checkpoint(self) -> list[Any]:
+        """Return what it does and what it was told, as plain data."""
+        return [plain_of(self._course), self._target, self._acceleration, self._frozen]
+
+    def restore(self, saved: Sequence[Any]) -> None:
+        """Go on from a checkpoint."""
+        course, target, acceleration, frozen = saved
+        self._course = course_of(course)
+        self._target = None if target is None else float(target)
+        self._acceleration, self._frozen = float(acceleration), bool(frozen)
 
     def _at(self, now: Instant) -> float:
         return self.course.value_at(now.seconds)

@@ -1,8 +1,8 @@
 """Faults: what may go wrong, how it is checked, and when it begins and ends."""
 
 import math
-from collections.abc import Sequence
-from typing import NamedTuple
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
 
 from ..errors import InputError
 from ..pacing import Grid
@@ -10,6 +10,7 @@ from ..pacing import Grid
 MAX_FAULTS = 1000      # planned or in force
 MAX_TIME = 1e9         # s
 _ID_LENGTH = 64        # characters
+_TOLD = 10             # ids in a refusal
 
 
 class Fault(NamedTuple):
@@ -85,6 +86,10 @@ class Faults:
         """The ids in use."""
         return [*self.active, *(planned.fault.id for planned in self._planned)]
 
+    def values(self, kind: str) -> list[float]:
+        """Return the values of the faults of a kind that are in force."""
+        return [fault.value for fault in self.active.values() if fault.kind == kind]
+
     def inject(self, fault: Fault, step: int) -> Fault:
         """Plan a fault whose start counts from the begin of a step; return it with its id.  Raises InputError."""
         fault = fault if fault.id else fault._replace(id=self._free_id(fault.kind))
@@ -103,8 +108,8 @@ class Faults:
     def clear(self, fault_id: str) -> Fault:
         """Forget a fault, planned or in force, at once; raises InputError when there is none by that id."""
         if fault_id not in self.ids:
-            known = ', '.join(self.ids) or 'none at the moment'
-            raise InputError('id', fault_id, f'the id of a fault: {known}', 'see the ids that ~/inject_fault answered')
+            raise InputError('id', fault_id, f'the id of a fault: {_listed(self.ids)}',
+                             'see the ids that ~/inject_fault answered')
         fault = self.active.pop(fault_id, None)
         for planned in self._planned:
             if planned.fault.id == fault_id:
@@ -128,6 +133,28 @@ class Faults:
         self._look_ahead()
         return ended, [planned.fault for planned in begun]
 
+    def checkpoint(self) -> dict[str, Any]:
+        """Return what is planned and in force, as plain data."""
+        return {'active': [[list(fault), self._ends[name]] for name, fault in self.active.items()],
+                'planned': [[planned.first, planned.end, list(planned.fault)] for planned in self._planned],
+                'chosen': self._chosen}
+
+    def restore(self, saved: Mapping[str, Any]) -> None:
+        """Go on from a checkpoint; raises InputError on a fault without a meaning."""
+        active = [(self._checked(fault), float(end)) for fault, end in saved['active']]
+        self.active = {fault.id: fault for fault, _ in active}
+        self._ends = {fault.id: end for fault, end in active}
+        self._planned = [_Planned(int(first), float(end), self._checked(fault))
+                         for first, end, fault in saved['planned']]
+        self._chosen = int(saved['chosen'])
+        self._look_ahead()
+
+    def _checked(self, saved: Sequence[Any]) -> Fault:
+        name, kind, *numbers = saved
+        fault = Fault(str(name), str(kind), *map(float, numbers))
+        check(fault, 1.0 / self._grid.rate)
+        return fault
+
     def _look_ahead(self) -> None:
         self.next_change = min([*self._ends.values(), *(planned.first for planned in self._planned[:1])],
                                default=math.inf)
@@ -137,3 +164,8 @@ class Faults:
             self._chosen += 1
             if f'{kind}_{self._chosen}' not in self.ids:
                 return f'{kind}_{self._chosen}'
+
+
+def _listed(ids: Sequence[str]) -> str:
+    more = f' and {len(ids) - _TOLD} more' if len(ids) > _TOLD else ''
+    return ', '.join(ids[:_TOLD]) + more or 'none at the moment'

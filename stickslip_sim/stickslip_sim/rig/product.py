@@ -1,5 +1,6 @@
-"""What a step brings forth."""
+"""What a step brings forth, and what a run counts."""
 
+from dataclasses import dataclass
 from enum import IntEnum
 from typing import NamedTuple
 
@@ -44,3 +45,14 @@ class Product(NamedTuple):
     events: list[Event]
     sample: Sample               # at its end
     measured: Measured | None    # at its end; None without encoders, or when the measurement was lost
+
+
+@dataclass(slots=True)
+class Counts:
+    """What befell the drive velocities of a run."""
+
+    heard: int = 0        # reached the drive
+    refused: int = 0      # after a time-out with on_timeout: fault
+    lost: int = 0
+    limited: int = 0      # the drive could not follow at once
+    timed_out: int = 0    # times that they stopped coming

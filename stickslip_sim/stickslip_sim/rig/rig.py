@@ -1,11 +1,11 @@
 """One axis and its rig, from step to step."""
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 from ..axis import Axis, InitialState
-from ..courses import Course, constant
+from ..courses import Course, constant, course_of, plain_of
 from ..errors import InputError
 from ..pacing import Grid
 from ..simulator import Simulator
@@ -15,24 +15,13 @@ from .drive import Drive
 from .encoder import Encoder
 from .faults import Fault, Faults
 from .friction import with_friction_scaled
-from .product import Note, NoteKind, Product
+from .product import Counts, Note, NoteKind, Product
 from .settings import RigSettings
 from .wire import Wire
 
 
-@dataclass(slots=True)
-class Counts:
-    """What befell the drive velocities of a run."""
-
-    heard: int = 0        # reached the drive
-    refused: int = 0      # after a time-out with on_timeout: fault
-    lost: int = 0
-    limited: int = 0      # the drive could not follow at once
-    timed_out: int = 0    # times that they stopped coming
-
-
 class Rig:
-    """Makes one step after the other; an order takes effect with the next step, in the order in which orders come.
+    """Makes one step after the other; orders take effect with the next step, all that came before it at once.
 
     Drive velocities come through the wire and are followed by the drive within its limits; forces act at once.
     """
@@ -47,8 +36,7 @@ class Rig:
 
     def reset(self) -> None:
         """Begin anew with step 0; the parameters of the axis stay as they are."""
-        self._faults = Faults(self._grid, ())
-        self._scale_friction()
+        self._change_axis(1.0)
         self.simulator.reset()
         self._begin()
 
@@ -63,6 +51,8 @@ class Rig:
         self._drive = Drive(drive, settings.limits)
         self._course = drive
         self._force, self._acting_force = force, force
+        self._friction_scale = 1.0
+        self._is_changed = False              # axis, force or faults, since they last took effect
         self._velocity_order: float | None = None
         self._force_order: float | None = None
         self._encoder = Encoder(settings.encoder, self._grid.rate, settings.encoder_delay_steps, settings.seed)
@@ -105,7 +95,7 @@ class Rig:
 
     def inject(self, fault: Fault) -> Fault:
         """Plan a fault from now on; return it with its id.  Raises InputError."""
-        fault = self._faults.inject(fault, self._next)
+        fault = self._faults.inject(fault, max(self._next, 1))
         self._notes.append(Note(NoteKind.FAULT_INJECTED, fault.id, f'{fault.kind} planned', fault.value, fault=fault))
         return fault
 
@@ -113,7 +103,7 @@ class Rig:
         """End a fault now, or before it begins; raises InputError when there is none by that id."""
         fault = self._faults.clear(fault_id)
         self._notes.append(Note(NoteKind.FAULT_CLEARED, fault.id, f'{fault.kind} cleared', fault.value, fault=fault))
-        self._let_faults_act()
+        self._is_changed = True
 
     def clear_faults(self) -> list[str]:
         """End all faults, that of a command time-out among them; return their ids."""
@@ -128,7 +118,35 @@ class Rig:
     def change_axis(self, axis: Axis) -> None:
         """Go on with other parameters."""
         self._axis = axis
-        self._scale_friction()
+        self._is_changed = True
+
+    # Checkpoints
+
+    def checkpoint(self) -> dict[str, Any]:
+        """Return all that the motion from the next step on depends on beside the scene, as plain data.
+
+        The encoders are left out: what they measure moves nothing.
+        """
+        self._act()
+        return {'step': self.step, 'drive': self._drive.checkpoint(), 'wire': self._wire.checkpoint(),
+                'faults': self._faults.checkpoint(), 'force': plain_of(self._force),
+                'acting_force': plain_of(self._acting_force), 'friction_scale': self._friction_scale,
+                'has_failed': self.has_failed, 'notes': len(self._notes), 'simulator': self.simulator.checkpoint()}
+
+    def restore(self, saved: Mapping[str, Any]) -> None:
+        """Go on from a checkpoint of a rig of the same scene, with the parameters of the axis that held then.
+
+        Raises InputError, KeyError, TypeError or ValueError when it is none; the rig is of no use then.
+        """
+        self._drive.restore(saved['drive'])
+        self._wire.restore(saved['wire'])
+        self._faults.restore(saved['faults'])
+        self._course = self._drive.course
+        self._force, self._acting_force = course_of(saved['force']), course_of(saved['acting_force'])
+        self._friction_scale = float(saved['friction_scale'])
+        self.step, self.has_failed = int(saved['step']), bool(saved['has_failed'])
+        axis = with_friction_scaled(self._axis, self._friction_scale)
+        self.simulator.restore(saved['simulator'], axis, self._course, self._acting_force)
 
     # Steps
 
@@ -141,9 +159,8 @@ class Rig:
         if velocity is not None or not self._wire.is_empty:
             self._obey_velocity(velocity, step)
         if force is not None:
-            self._force, self._force_order = constant(force), None
-            self._apply_force()
-        self._let_drive_act()
+            self._force, self._force_order, self._is_changed = constant(force), None, True
+        self._act()
         notes, self._notes = self._notes, []
         events = self.simulator.advance(self._grid.instant(step))
         sample = self.simulator.sample()
@@ -157,7 +174,7 @@ class Rig:
         while (begin := self._grid.instant(int(min(self._faults.next_change, _NEVER)) - 1)) < to:
             events += self.simulator.advance(begin)
             self._enter_faults(int(self._faults.next_change))
-            self._let_drive_act()
+            self._act()
         return events + self.simulator.advance(to)
 
     @property
@@ -194,36 +211,46 @@ class Rig:
         for kind, word, faults in ((NoteKind.FAULT_END, 'ends', ended), (NoteKind.FAULT_BEGIN, 'begins', begun)):
             self._notes.extend(Note(kind, fault.id, f'{fault.kind} {word}', fault.value, fault=fault)
                                for fault in faults)
-        self._let_faults_act()
+        self._is_changed = True
 
-    def _let_faults_act(self) -> None:
-        self._drive.freeze(any(fault.kind == 'drive_freeze' for fault in self._faults.active.values()),
-                           self.simulator.time)
-        self._apply_force()
-        self._scale_friction()
+    def _act(self) -> None:
+        """Let all that changed take effect at once."""
+        if not self._is_changed:
+            self._command_drive()
+            return
+        self._is_changed = False
+        scale = math.prod(self._faults.values('friction_scale'))
+        falls, self._friction_scale = scale < self._friction_scale, scale
+        self._drive.freeze(bool(self._faults.values('drive_freeze')), self.simulator.time)
+        if not falls:
+            self._change_axis(scale)
+        self._command_force()
+        self._command_drive()
+        if falls:    # last: what held before and holds afterwards must not break away in between
+            self._change_axis(scale)
 
-    def _let_drive_act(self) -> None:
-        if self._drive.course is not self._course:
-            self._course = self._drive.course
-            self.simulator.command_drive(self._course)
+    def _change_axis(self, friction_scale: float) -> None:
+        axis = with_friction_scaled(self._axis, friction_scale)
+        if axis != self.simulator.axis:
+            self.simulator.change_axis(axis)
 
-    def _apply_force(self) -> None:
-        pulse = math.fsum(fault.value for fault in self._faults.active.values() if fault.kind == 'force_pulse')
+    def _command_force(self) -> None:
+        pulse = math.fsum(self._faults.values('force_pulse'))
         course = self._force.plus(pulse) if pulse else self._force
         if course != self._acting_force:
             self._acting_force = course
             self.simulator.command_force(course)
 
-    def _scale_friction(self) -> None:
-        factor = math.prod(fault.value for fault in self._faults.active.values() if fault.kind == 'friction_scale')
-        axis = with_friction_scaled(self._axis, factor)
-        if axis != self.simulator.axis:
-            self.simulator.change_axis(axis)
+    def _command_drive(self) -> None:
+        if self._drive.course is not self._course:
+            self._course = self._drive.course
+            self.simulator.command_drive(self._course)
 
 
 _NEVER = 2**62    # a step that no run reaches
-_TIMEOUT = ('no drive velocity for {:.3g} s: {}; a bridge that sends only what differs from the state is silent while'
-            ' they are near (topic-based ros2_control: trigger_joint_command_threshold -1 sends always)')
+SILENT_BRIDGE = ('a bridge that sends only what differs from the state is silent while they are near (topic-based'
+                 ' ros2_control: trigger_joint_command_threshold -1 sends always)')
+_TIMEOUT = f'no drive velocity for {{:.3g}} s: {{}}; {SILENT_BRIDGE}'
 _REACTIONS = {'hold': 'the latest is held', 'ramp_to_zero': 'the drive stops until the next',
               'fault': 'the drive stops and takes none until ~/clear_faults or ~/reset'}
 

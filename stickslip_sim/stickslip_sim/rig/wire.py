@@ -1,11 +1,12 @@
 """The wire on which drive velocities come: it may lose them or keep them for a while when a fault says so."""
 
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 from ..pacing import Grid
 from .faults import Fault
-from .randomness import Stream, stream
+from .randomness import Stream, restore, state_of, stream
 
 
 class Wire:
@@ -22,19 +23,29 @@ class Wire:
         return not self._under_way
 
     def put(self, velocity: float, step: int, faults: Mapping[str, Fault]) -> bool:
-        """Send a command before a step; return whether it gets through.  What comes undelayed overtakes the rest."""
-        delay, kept = 0.0, 1.0
+        """Send a command before a step; return whether it gets through.  Those that it overtakes never arrive."""
+        arrival, kept = step, 1.0
         for fault in faults.values():
             if fault.kind == 'command_delay':
-                delay += fault.value
+                arrival += self._grid.steps(fault.value)
             elif fault.kind == 'command_loss':
                 kept *= 1.0 - fault.value
         if kept < 1.0 and self._luck.random_sample() >= kept:
             return False
-        if not delay:
-            self._under_way.clear()
-        self._under_way.append((step + self._grid.steps(delay), velocity))
+        while self._under_way and self._under_way[-1][0] >= arrival:
+            self._under_way.pop()
+        self._under_way.append((arrival, velocity))
         return True
+
+    def checkpoint(self) -> list[Any]:
+        """Return what is under way and the luck to come, as plain data."""
+        return [[list(command) for command in self._under_way], state_of(self._luck)]
+
+    def restore(self, saved: Sequence[Any]) -> None:
+        """Go on from a checkpoint."""
+        under_way, luck = saved
+        self._under_way = deque((int(step), float(velocity)) for step, velocity in under_way)
+        restore(self._luck, luck)
 
     def take(self, step: int) -> float | None:
         """Return the latest command that has arrived before a step, None without a new one."""

@@ -3,9 +3,11 @@
 from rclpy.node import Node
 from rosgraph_msgs.msg import Clock
 
+from ..errors import InputError
 from ..pacing import Grid
 from ..recording.topics import CLOCK
 from ..rig import Product
+from ..scene.model import TimeSettings
 from .conversion import set_stamp
 from .topics import publisher
 
@@ -29,3 +31,13 @@ class ClockOut:
             self._publish(self._message)
             while self._ticks.instant(self._next) <= now:
                 self._next += 1
+
+
+def check_sim_time(time: TimeSettings, wanted: object) -> str:
+    """Return what to warn of with this `use_sim_time`; raises InputError where the node would follow its own clock."""
+    if not wanted:
+        return ''
+    if time.makes_clock:
+        raise InputError('use_sim_time', wanted, f'false on this node with time.mode: {time.mode}',
+                         'it publishes /clock itself: set use_sim_time on the nodes that shall follow')
+    return 'use_sim_time with time.mode: realtime: stamps start from the /clock of another node, then keep real time'

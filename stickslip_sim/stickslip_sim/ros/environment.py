@@ -26,13 +26,14 @@ def check_environment() -> None:
 
 
 @contextmanager
-def refusing(name: str, value: object) -> Iterator[None]:
-    """Turn what ROS does not accept at the start into an InputError about `name`."""
+def refusing(name: str, value: object, *others: type[Exception]) -> Iterator[None]:
+    """Turn what ROS does not accept at the start, and `others`, into an InputError about `name`."""
+    refused: tuple[type[Exception], ...] = (RuntimeError, *others)    # the base of nearly all that rclpy raises there
     try:
         with warnings.catch_warnings():
             warnings.simplefilter('ignore', RuntimeWarning)    # rclpy warns of what it could not take back then
             yield
-    except RuntimeError as error:    # the base of all that rclpy raises there
+    except refused as error:
         reason = re.sub(r',? at /\S+', '', str(error))
         raise InputError(name, value, 'accepted by ROS', reason) from None
 

@@ -1,6 +1,7 @@
 """The timing ledger: how each step kept its time, summed up once a second, and the worst of the run with its time."""
 
 import math
+from collections import deque
 from typing import NamedTuple
 
 import numpy as np
@@ -43,7 +44,7 @@ class Ledger:
 
     def forget(self) -> None:
         """Begin anew."""
-        self._rows: list[tuple[int, int, int | None, int | None]] = []
+        self._rows: deque[tuple[int, int, int | None, int | None]] = deque()
         self._worst: dict[str, tuple[int, int]] = {}
 
     def add(self, time: int, cost: int, lateness: int, age: int | None, latency: int | None) -> None:
@@ -55,7 +56,7 @@ class Ledger:
 
     def take(self) -> LedgerWindow:
         """Begin a new window; return the one until now."""
-        rows, self._rows = self._rows, []
+        rows = [self._rows.popleft() for _ in range(len(self._rows))]    # none is lost to a step that ends meanwhile
         columns = ([row[i] for row in rows] for i in range(4))
         return LedgerWindow(len(rows), *map(quantiles, columns))
 

@@ -116,7 +116,6 @@ class StepLoop:
         """Let simulation time stand still, or go on from where it stands; at a boundary only."""
         if self.paused and not paused:
             self._clock.restart(self.step + 1)
-            self._watchdog.wait_from(self._clock.watch_time(self._clock.now(), self.rig.time_ns))
         self.paused = paused
 
     def restart(self) -> None:
@@ -161,7 +160,7 @@ class StepLoop:
     def _turn(self) -> None:
         self._wake.clear()
         try:
-            while self._requests:
+            while self._requests and (self.step >= 0 or self.failure):    # first of all a run has its start
                 self._requests.popleft()()
             if self._stands_still:
                 self._wake.wait(_IDLE)
@@ -172,11 +171,11 @@ class StepLoop:
 
     @property
     def _stands_still(self) -> bool:
-        return self.paused or bool(self.failure) or (self.by_request and self.step >= 0)
+        return bool(self.failure) or (self.step >= 0 and (self.paused or self.by_request))
 
     def _make_step(self, begin: int, lateness: int) -> Product:
         age, fresh = self._take_commands(begin)
-        self._watch(begin, lateness)
+        self._watch()
         product = self.rig.make_step()
         for take in self._takers:
             take(product)
@@ -198,10 +197,8 @@ class StepLoop:
                 fresh = max(fresh, command.arrival)
         return (now - newest if newest else None), fresh
 
-    def _watch(self, now: int, lateness: int) -> None:
-        """Look for a time-out, unless this loop itself is behind: then commands may wait to be heard."""
-        if lateness > self._clock.period:
-            return
-        silence = self._watchdog.silence(self.rig.counts.heard, self._clock.watch_time(now, self.rig.time_ns))
+    def _watch(self) -> None:
+        """Look for a time-out."""
+        silence = self._watchdog.silence(self.rig.counts.heard, self._clock.watch_time(self.rig.time_ns))
         if silence:
             self.rig.time_out(silence)

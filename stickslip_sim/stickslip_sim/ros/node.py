@@ -21,19 +21,21 @@ from ..scene.model import Scene
 from . import conversion, reports
 from .clock import ClockOut
 from .fault_services import FaultServices
+from .inlet import Inlet
+from .joints import JointStates
 from .loop import StepLoop, Taker
+from .neighbours import Neighbours
 from .outlet import Outlet
 from .parameters import FileParameters, SceneNode
 from .record_service import RecordService
 from .rig_events import RigEvents
 from .run_receipt import run_receipt
 from .time_services import TimeServices
-from .topics import publisher, subscription
+from .topics import publisher
 from .verdict import verdict
 
 NAME = 'feed_axis'
 _REPORT_PERIOD = 1.0     # s
-_QUIET = 1_000_000_000   # ns between two warnings of refused commands of a topic
 
 
 class FeedAxis(SceneNode):
@@ -60,7 +62,6 @@ class FeedAxis(SceneNode):
         self.loop = StepLoop(scene.make_rig(), self._step_clock, self._slots, self._takers(grid),
                              Watchdog(scene.command.timeout), by_request=scene.time.mode == 'lockstep')
         self._reporter = reports.Reporter(self.loop)
-        self._quiet_until: dict[str, int] = {}   # by kind of command
         self._told = ''          # the failure of the solver that was logged
         self._wall, self._cpu = time.monotonic(), time.process_time()
         self._open_endpoints(is_stopping)
@@ -109,6 +110,8 @@ class FeedAxis(SceneNode):
 
     def _takers(self, grid: Grid) -> list[Taker]:
         takers: list[Taker] = [self._rig_events.take, self._outlet.take]
+        if self.scene.rig.measures:
+            takers.append(JointStates(self, self._outlet).take)
         if self.scene.time.makes_clock:
             takers.append(ClockOut(self, grid, self.scene.time.clock_rate).take)
         return takers
@@ -117,21 +120,14 @@ class FeedAxis(SceneNode):
         self._run_info_out = publisher(self, names.RUN_INFO)
         self._timing_out = publisher(self, names.TIMING)
         self._diagnostics_out = publisher(self, names.DIAGNOSTICS)
-        subscription(self, names.DRIVE_VELOCITY, lambda message: self._take(self._slots[0], message.velocity))
-        subscription(self, names.EXTERNAL_FORCE, lambda message: self._take(self._slots[1], message.force))
+        Inlet(self, *self._slots, self._step_clock.now, with_joints=self.scene.rig.measures)
+        self._neighbours = Neighbours(self, self.scene, self.loop)
         self._record_service: RecordService = RecordService(self, self.loop, self._outlet, self._publish_run_info,
                                                             self._receipt)
         TimeServices(self, self.loop, self._outlet, self._restart, lambda: self._record_service.is_recording,
                      is_stopping)
         FaultServices(self, self.loop)
         self.create_timer(_REPORT_PERIOD, self._report, clock=Clock(clock_type=ClockType.STEADY_TIME))
-
-    def _take(self, slot: CommandSlot, value: float) -> None:
-        now = self._step_clock.now()
-        refusal = slot.offer(value, now)
-        if refusal and now >= self._quiet_until.get(slot.name, now):
-            self._quiet_until[slot.name] = now + _QUIET
-            self.get_logger().warning(refusal)
 
     def _restart(self) -> bool:
         def restart() -> None:
@@ -162,13 +158,12 @@ class FeedAxis(SceneNode):
         message = reports.timing_message(second, self.loop, period, bool(judged.valid), stamp_ns)
         self._timing_out.publish(message)
         self._record(names.TIMING, message, max(self.loop.step, 0))
-        events, recordings = self._outlet.events, self._record_service.recordings
         self._diagnostics_out.publish(reports.diagnostics(stamp_ns, self.get_fully_qualified_name(), [
             reports.loop_status(self.loop, second, judged),
             reports.command_status(self.loop, second),
-            reports.solver_status(self.loop, self.scene.solver.name, self.loop.rig.simulator.event_counts,
-                                  events[-1] if events else None),
-            reports.recorder_status(recordings)]))
+            reports.solver_status(self.loop, self.scene.solver.name, self._outlet.events.latest_time),
+            reports.recorder_status(self._record_service.recordings),
+            reports.neighbours_status(self._neighbours.look())]))
 
     def _tell_troubles(self, second: reports.Second) -> None:
         log = self.get_logger()

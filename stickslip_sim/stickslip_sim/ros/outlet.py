@@ -1,6 +1,5 @@
 """Where the products of the steps go: each message is packed once, and its bytes are published and recorded."""
 
-from collections import deque
 from typing import Protocol
 
 from rclpy.node import Node
@@ -14,9 +13,8 @@ from ..recording.messages import Packer
 from ..recording.topics import RECORDED, Topic
 from ..rig import Product
 from ..words import Event, EventKind, Mode, Sample
+from .kept_events import KeptEvents
 from .topics import publisher
-
-_KEPT_EVENTS = 20_000   # for the figures of a run; an hour of stick-slip at 5 events a second
 
 
 class Recorder(Protocol):
@@ -32,7 +30,7 @@ class Outlet:
     def __init__(self, node: Node) -> None:
         self.start_ns = 0
         self.recorder: Recorder | None = None
-        self.events: deque[Event] = deque(maxlen=_KEPT_EVENTS)
+        self.events = KeptEvents()
         self.first_mode = Mode.STICK
         self._state = _Port(node, names.SLIDER_STATE)
         self._friction = _Port(node, names.FRICTION_FORCE)

@@ -6,6 +6,7 @@ from contextlib import nullcontext
 from typing import Any, NamedTuple
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor, SetParametersResult
+from rclpy.exceptions import ParameterException
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
@@ -15,8 +16,10 @@ from ..scene.model import Scene
 from ..scene.parameter import Parameter as Entry
 from ..scene.schema import BY_NAME, PARAMETERS
 from ..scene.sections import describes_an_axis, without_those_of_ros
+from .clock import check_sim_time
 from .environment import refusing, variables
 
+_SIM_TIME = 'use_sim_time'
 DEFAULT_SCENE = 'paper_fig8'
 _TYPES = {
     'double': Parameter.Type.DOUBLE, 'double_array': Parameter.Type.DOUBLE_ARRAY, 'string': Parameter.Type.STRING,
@@ -48,7 +51,7 @@ class SceneNode(Node):  # type: ignore[misc]
     scene: Scene
 
     def __init__(self, name: str, files: FileParameters) -> None:
-        with refusing('ROS environment', variables()):
+        with refusing('ROS parameters or environment', variables(), ParameterException):
             super().__init__(name)
         # rclpy has no public way to see what was given but never declared
         given = without_those_of_ros({name: parameter.value for name, parameter in self._parameter_overrides.items()})
@@ -58,6 +61,7 @@ class SceneNode(Node):  # type: ignore[misc]
         if files.values and not describes_an_axis(given) and self.scene.name not in scene_names():
             self.get_logger().warning('the parameters say nothing of an axis: it stands still, without friction')
         declare(self, PARAMETERS, self.scene.values)
+        self._warn(check_sim_time(self.scene.time, self.get_parameter(_SIM_TIME).value))
 
     def _check_addressed(self, files: FileParameters, given: Mapping[str, object]) -> None:
         """Raise InputError when a section of the files is for a node by another name, which ROS passes over."""
@@ -83,13 +87,21 @@ class SceneNode(Node):  # type: ignore[misc]
                 if parameter.name in BY_NAME or not self.has_parameter(parameter.name)}
         try:
             scene = changed_scene(self.scene, ours)
+            warnings = [check_sim_time(scene.time, parameter.value) for parameter in wanted
+                        if parameter.name == _SIM_TIME]
         except InputError as error:
             return SetParametersResult(successful=False, reason=str(error))
         result = super().set_parameters_atomically(wanted)
+        if result.successful:
+            self._warn(*warnings)
         if result.successful and ours:
             self.scene = scene
             self.scene_changed(scene, [parameter for parameter in wanted if parameter.name in ours])
         return result
+
+    def _warn(self, *texts: str) -> None:
+        for text in filter(None, texts):
+            self.get_logger().warning(text)
 
 
 def scene_at_start(given: Mapping[str, object], in_files: Mapping[str, object]) -> Scene:

@@ -1,4 +1,4 @@
-"""What the node tells about itself once a second: StepTiming and the four statuses of /diagnostics."""
+"""What the node tells about itself once a second: StepTiming and the statuses of /diagnostics."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -8,7 +8,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
 from stickslip_msgs.msg import StepTiming
 
-from ..words import Event, EventKind
+from ..rig import SILENT_BRIDGE
 from .conversion import set_stamp
 from .ledger import LedgerWindow
 from .loop import StepLoop
@@ -127,7 +127,7 @@ def command_status(loop: StepLoop, second: Second) -> DiagnosticStatus:
         reasons = '; '.join(slot.last_refusal for slot in slots if slot.last_refusal)
         level, text = WARN, f'{second.refused} refused; {reasons}'
     if rig.is_silent:
-        level, text = WARN, 'timed out: no drive velocity comes'
+        level, text = WARN, f'timed out: no drive velocity comes; {SILENT_BRIDGE}'
     if rig.has_failed:
         level, text = ERROR, 'fault after a time-out: the drive takes no command until ~/clear_faults or ~/reset'
     values: dict[str, object] = {
@@ -141,11 +141,13 @@ def command_status(loop: StepLoop, second: Second) -> DiagnosticStatus:
     return _status('command', level, text, values)
 
 
-def solver_status(loop: StepLoop, name: str, counts: Mapping[EventKind, int], last: Event | None) -> DiagnosticStatus:
+def solver_status(loop: StepLoop, name: str, last_event: float | None) -> DiagnosticStatus:
     """Tell whether the solver goes on, and what it located."""
     return _status('solver', ERROR if loop.failure else OK, loop.failure or 'goes on', {
-        'solver': name, **{f'events {kind.name.lower()}': count for kind, count in counts.items()},
-        'root iterations': loop.rig.simulator.root_iterations, 'last event / s': last.time if last else 'none'})
+        'solver': name,
+        **{f'events {kind.name.lower()}': count for kind, count in loop.rig.simulator.event_counts.items()},
+        'root iterations': loop.rig.simulator.root_iterations,
+        'last event / s': 'none' if last_event is None else last_event})
 
 
 def recorder_status(recordings: Recordings) -> DiagnosticStatus:
@@ -158,6 +160,11 @@ def recorder_status(recordings: Recordings) -> DiagnosticStatus:
     return _status('recorder', level, text, {
         'folder': recordings.folder or 'none', 'written': recorder.written if recorder else 0,
         'waiting': recorder.waiting if recorder else 0, 'dropped': recordings.total_dropped})
+
+
+def neighbours_status(troubles: Sequence[str]) -> DiagnosticStatus:
+    """Tell who else publishes where one should, and who fell silent."""
+    return _status('neighbours', WARN if troubles else OK, '; '.join(troubles) or 'nobody in the way', {})
 
 
 def _status(name: str, level: bytes, text: str, values: Mapping[str, object]) -> DiagnosticStatus:

@@ -18,7 +18,7 @@ def run_receipt(scene: Scene, loop: StepLoop, outlet: Outlet, dropped: int, cost
     simulator = loop.rig.simulator
     period = 1.0 / scene.time.rate
     duration = max(simulator.time.seconds, period)
-    figures = summary(list(outlet.events), duration, outlet.first_mode)
+    figures = summary(outlet.events.all(), duration, outlet.first_mode)
     receipt = receipt_of(scene, duration, period, figures, simulator.root_iterations, simulator.sample(),
                          simulator.energy, *cost)
     slots = {slot.name: {'received': slot.received, 'refused': slot.refused} for slot in loop.slots}

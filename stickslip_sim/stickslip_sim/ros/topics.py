@@ -7,6 +7,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from rcl_interfaces.msg import ParameterEvent
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.serialization import deserialize_message
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 
@@ -21,6 +22,7 @@ from stickslip_msgs.msg import (
     StepTiming,
 )
 
+from ..recording import flat_layout
 from ..recording.topics import QosProfile, Topic
 
 _TYPES = {
@@ -51,3 +53,18 @@ def publisher(node: Node, topic: Topic) -> Any:
 def subscription(node: Node, topic: Topic, callback: Callable[[Any], None]) -> Any:
     """Create a subscription of a topic."""
     return node.create_subscription(message_type(topic), topic.name, callback, qos(topic.qos))
+
+
+def command_subscription(node: Node, topic: Topic, callback: Callable[[float], None]) -> Any:
+    """Create a subscription of a topic of commands, a header and one number; the callback gets the number.
+
+    It is read from the bytes, so that rclpy need not make an object of each message.
+    """
+    kind, layout = message_type(topic), flat_layout(topic.type)
+    field, = layout.names
+
+    def take(data: bytes) -> None:
+        numbers = layout.numbers(data)
+        callback(numbers[0] if numbers else getattr(deserialize_message(data, kind), field))
+
+    return node.create_subscription(kind, topic.name, take, qos(topic.qos), raw=True)

@@ -1,6 +1,6 @@
 """Scenes: everything that decides a run, as a ROS 2 parameter file that is read without ROS.  The only YAML door."""
 
-from .load import load_scene, parse_override, scene_from_values, scene_names
+from .load import changed, load_scene, parse_override, parse_scene, scene_from_values, scene_names
 from .model import CommandSettings, RecordSettings, Scene, TimeSettings
 from .parameter import Parameter, When
 from .schema import PARAMETERS
@@ -8,5 +8,5 @@ from .solver import SolverSettings
 
 __all__ = [
     'PARAMETERS', 'CommandSettings', 'Parameter', 'RecordSettings', 'Scene', 'SolverSettings', 'TimeSettings', 'When',
-    'load_scene', 'parse_override', 'scene_from_values', 'scene_names',
+    'changed', 'load_scene', 'parse_override', 'parse_scene', 'scene_from_values', 'scene_names',
 ]

@@ -30,9 +30,12 @@ def load_scene(name_or_path: str, overrides: Mapping[str, object] | None = None)
     InputError, whose text begins with the file.
     """
     with named(name_or_path):
-        text = read_text(_find(name_or_path))
-        values = parameters_of(read_yaml(text))
-        return scene_of_parameters(values, overrides or {}, _first_comment(text))
+        return parse_scene(read_text(_find(name_or_path)), overrides)
+
+
+def parse_scene(text: str, overrides: Mapping[str, object] | None = None) -> Scene:
+    """Return the scene that the text of a file describes, with other values by dotted name; raises InputError."""
+    return scene_of_parameters(parameters_of(read_yaml(text)), overrides or {}, _first_comment(text))
 
 
 def read_parameters(path: str) -> dict[str, object]:
@@ -65,6 +68,11 @@ def scene_from_values(values: Mapping[str, object], name: str = 'unnamed') -> Sc
     `name` is for values without a `scene`.  Raises InputError.
     """
     return build_scene({'scene': name, **{key: value for key, value in values.items() if value is not None}})
+
+
+def changed(scene: Scene, changes: Mapping[str, object]) -> Scene:
+    """Return a scene with changes by dotted name; what belonged to a changed choice goes.  Raises InputError."""
+    return scene_from_values(overridden(scene.values, changes)) if changes else scene
 
 
 def parse_override(text: str) -> tuple[str, object]:

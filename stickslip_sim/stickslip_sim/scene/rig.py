@@ -13,6 +13,7 @@ from ..rig.settings import RigSettings
 from .model import TimeSettings
 
 _FAULT_LISTS = 'ids', 'kinds', 'starts', 'durations', 'values'
+_FINEST = 1e-15    # m, of an encoder: the counts of any position are numbers then
 
 
 def time_settings(values: Mapping[str, Any]) -> TimeSettings:
@@ -30,7 +31,10 @@ def time_settings(values: Mapping[str, Any]) -> TimeSettings:
 def rig_settings(values: Mapping[str, Any]) -> RigSettings:
     """Return the rig; raises InputError."""
     encoder = EncoderSettings(*(values[f'encoder.{name}'] for name in EncoderSettings.__dataclass_fields__))
+    if 0.0 < encoder.resolution < _FINEST:
+        raise InputError('encoder.resolution', encoder.resolution, f'0, or at least {_FINEST:g} m', '0 does not round')
     grid = Grid(values['time.rate'])
+    _check_timeout(values['command.timeout'], grid)
     return RigSettings(
         seed=values['seed'],
         measures=values['joint_interface.enabled'],
@@ -40,6 +44,12 @@ def rig_settings(values: Mapping[str, Any]) -> RigSettings:
         on_timeout=values['command.on_timeout'],
         timeout_deceleration=values.get('command.timeout_deceleration', math.inf),
         faults=_faults(values, grid))
+
+
+def _check_timeout(timeout: float, grid: Grid) -> None:
+    if 0.0 < timeout < 1.0 / grid.rate:
+        raise InputError('command.timeout', timeout, f'0, or at least a step ({1.0 / grid.rate:g} s)',
+                         'commands are taken once a step: make it longer, or raise time.rate')
 
 
 def _whole_steps(name: str, seconds: float, grid: Grid) -> int:
@@ -60,9 +70,10 @@ def _faults(values: Mapping[str, Any], grid: Grid) -> tuple[Fault, ...]:
             raise InputError(f'faults.{name}', list(given.get(name, ())), 'as many as there are faults.ids',
                              'give ids, kinds, starts and durations, one of each for every fault')
     faults = tuple(map(Fault, *(given[name] for name in _FAULT_LISTS)))
+    plan = Faults(grid, ())
     for fault in faults:
         try:
-            Faults(grid, faults[:faults.index(fault) + 1])
+            plan.inject(fault, 1)
         except InputError as error:
             raise InputError(f'faults ({fault.id}): {error.name}', error.value, error.allowed, error.fix) from None
     return faults

@@ -1,0 +1,134 @@
+"""The two example controllers on the axis of the scene `positioning`: tables and picture of docs/controllers.md.
+
+    python3 -m benchmarks.controllers
+
+Everything is measured with the exact engine in lock-step at 1 kHz, and is the same on every machine.
+"""
+
+import pathlib
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+from stickslip_sim.axis import Axis
+from stickslip_sim.control import BranchCompensation, Cascade, Controller, Moves
+from stickslip_sim.rig.encoder import EncoderSettings
+from stickslip_sim.scene import load_scene
+
+from .closed_loop import Figures, close_loop, figures
+from .controllers_picture import draw
+from .linear_loop import most_delay
+
+PAGE = pathlib.Path('docs/controllers.md')
+PICTURE = pathlib.Path('docs/images/controllers.png')
+BEGIN, END = '<!-- generated: begin -->', '<!-- generated: end -->'
+AXIS = load_scene('positioning').axis
+MOVES = [Moves(travel, feed) for travel, feed in
+         ((0.0005, 0.0001), (0.001, 0.0002), (0.002, 0.0005), (0.002, 0.001), (0.005, 0.002), (0.01, 0.01))]
+CREEP = Moves()
+DELAYS = (0, 1, 2, 3)
+RESOLUTIONS = (1e-8, 1e-7, 1e-6)   # m
+GAINS = (2.0, 4.0, 8.0, 16.0, 25.0)
+WRONG = (('as in the model', 1.0, 1.0), ('normal force 20 % less', 0.8, 1.0), ('normal force 20 % more', 1.2, 1.0),
+         ('drive stiffness 20 % less', 1.0, 0.8), ('drive stiffness 20 % more', 1.0, 1.2))
+_MICRO, _MILLI = 1e6, 1e3
+
+
+def controllers(gains: Cascade | None = None) -> dict[str, Controller]:
+    """Return both controllers, with the same gains."""
+    gains = gains or Cascade()
+    return {'cascade': Controller(gains), 'compensated': Controller(gains, BranchCompensation(AXIS))}
+
+
+def measure(moves: Moves, delay: int = 0, gains: Cascade | None = None, axis: Axis = AXIS,
+            encoder: EncoderSettings | None = None) -> dict[str, Figures]:
+    """Return the figures of one period of the moves with both controllers; their model stays AXIS."""
+    return {name: figures(close_loop(axis, controller, moves, moves.period, delay, encoder))
+            for name, controller in controllers(gains).items()}
+
+
+def by_feed() -> Iterator[str]:
+    """Yield the table over the feed."""
+    yield from _head('travel', 'feed', 'controller', 'sticks', 'largest error', 'speed at constant feed', 'overshoot',
+                     'error after the dwell')
+    for moves in MOVES:
+        for name, its in measure(moves).items():
+            yield _row(f'{moves.travel * _MILLI:g} mm', f'{moves.feed * _MILLI:g} mm/s', name, its.sticks,
+                       f'{its.largest_error * _MICRO:.0f} µm', _speeds(its), f'{its.overshoot * _MICRO:.0f} µm',
+                       f'{its.end_error * _MICRO:.1f} µm')
+
+
+def by_gain() -> Iterator[str]:
+    """Yield the table over the velocity gain."""
+    yield from _head('K_p', 'damping ratio', 'stable up to a delay of / steps', 'feed', 'cascade', 'compensated')
+    damping = AXIS.drive_damping / (2.0 * (AXIS.drive_stiffness * AXIS.mass) ** 0.5)
+    for gain in GAINS:
+        gains = Cascade(velocity_gain=gain)
+        for moves in (MOVES[1], CREEP):
+            yield _row(f'{gain:g}', f'{damping * (1.0 + gain) ** 0.5:.2f}', most_delay(AXIS, gains),
+                       f'{moves.feed * _MILLI:g} mm/s', *map(_brief, measure(moves, gains=gains).values()))
+
+
+def by_delay() -> Iterator[str]:
+    """Yield the table over the delay."""
+    yield from _head('delay / steps', 'feed', 'cascade', 'compensated')
+    for moves in (MOVES[1], CREEP):
+        for delay in DELAYS:
+            yield _row(delay, f'{moves.feed * _MILLI:g} mm/s', *map(_brief, measure(moves, delay).values()))
+
+
+def by_resolution() -> Iterator[str]:
+    """Yield the table over the resolution of both encoders."""
+    yield from _head('resolution', 'feed', 'cascade', 'compensated')
+    for moves in (MOVES[1], CREEP):
+        for resolution in RESOLUTIONS:
+            its = measure(moves, encoder=EncoderSettings(resolution=resolution))
+            yield _row(f'{resolution * _MICRO:g} µm', f'{moves.feed * _MILLI:g} mm/s', *map(_brief, its.values()))
+
+
+def by_model() -> Iterator[str]:
+    """Yield the table over what the model gets wrong."""
+    yield from _head('the axis', 'cascade', 'compensated')
+    for name, force, stiffness in WRONG:
+        axis = replace(AXIS, normal_force=force * AXIS.normal_force, drive_stiffness=stiffness * AXIS.drive_stiffness)
+        yield _row(name, *map(_brief, measure(CREEP, axis=axis).values()))
+
+
+SECTIONS: dict[str, Callable[[], Iterator[str]]] = {
+    'The same moves with both, from creep to full feed': by_feed,
+    'What higher and lower gains do': by_gain,
+    'What a delay does': by_delay,
+    'What encoders do that count': by_resolution,
+    'What a wrong model does, at 0.5 mm/s': by_model,
+}
+
+
+def main() -> None:
+    """Replace the generated part of the page, and the picture."""
+    before, begin, rest = PAGE.read_text(encoding='utf-8').partition(BEGIN)
+    _, end, after = rest.partition(END)
+    if not begin or not end:
+        raise SystemExit(f'{PAGE} lacks {BEGIN} or {END}')
+    text = '\n\n'.join(f'### {heading}\n\n' + '\n'.join(table()) for heading, table in SECTIONS.items())
+    PAGE.write_text(f'{before}{BEGIN}\n\n{text}\n\n{END}{after}', encoding='utf-8')
+    draw({name: close_loop(AXIS, controller, CREEP, CREEP.period) for name, controller in controllers().items()},
+         AXIS, PICTURE)
+
+
+def _head(*cells: str) -> tuple[str, str]:
+    return _row(*cells), _row(*['---'] * len(cells))
+
+
+def _row(*cells: object) -> str:
+    return f'| {" | ".join(map(str, cells))} |'
+
+
+def _speeds(its: Figures) -> str:
+    return f'{its.slowest * _MILLI:.2f} to {its.fastest * _MILLI:.2f} mm/s'
+
+
+def _brief(its: Figures) -> str:
+    return f'{its.sticks} sticks, {its.largest_error * _MICRO:.0f} µm'
+
+
+if __name__ == '__main__':
+    main()

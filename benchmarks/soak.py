@@ -1,0 +1,130 @@
+"""Let the recording node and a controller run for minutes: memory flat, no drift, nothing lost; write the table.
+
+    python3 -m benchmarks.soak [--minutes 10] [--out docs/soak.md]
+
+Exit code 1 when a limit is missed.
+"""
+
+import argparse
+import sys
+import tempfile
+import threading
+from collections.abc import Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from .hil.measure import bag_figures, node_figures
+from .hil.process import SCENE, control, node_command, resident, running
+from .loop import machine
+
+RATE = 1000.0    # 1/s
+PERIOD = 1.0     # s between two looks at the memory
+
+
+class Limit(NamedTuple):
+    """A figure, the most that its magnitude may be, and how both are shown."""
+
+    title: str
+    name: str
+    most: float
+    form: str
+
+
+LIMITS = (
+    Limit('memory, growth in the second half, KiB/min', 'growth', 512.0, '.1f'),
+    Limit('simulation time against the steady clock, drift, ms', 'drift_ms', 1.0, '.3f'),
+    Limit('steps that the controller did not hear', 'unheard', 0.0, '.0f'),
+    Limit('steps that are not in the bag', 'unrecorded', 0.0, '.0f'),
+    Limit('messages that the recorder dropped', 'dropped', 0.0, '.0f'),
+)
+FACTS = (
+    Limit('steps', 'steps', np.inf, '.0f'),
+    Limit('memory at the end, MiB', 'resident', np.inf, '.1f'),
+    Limit('steps that began more than a period late, %', 'overruns_percent', np.inf, '.3f'),
+    Limit('lateness, p99, median of the seconds, ms', 'lateness_p99_ms', np.inf, '.3f'),
+    Limit('lateness, maximum, ms', 'lateness_max_ms', np.inf, '.1f'),
+)
+
+
+class MemoryWatch:
+    """Looks at the memory of a process once a period, in a thread."""
+
+    def __init__(self, pid: int) -> None:
+        self.samples: list[int] = []    # bytes
+        self._pid = pid
+        self._is_over = threading.Event()
+        self._thread = threading.Thread(target=self._watch)
+
+    def __enter__(self) -> 'MemoryWatch':
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._is_over.set()
+        self._thread.join()
+
+    def _watch(self) -> None:
+        while not self._is_over.wait(PERIOD):
+            self.samples.append(resident(self._pid))
+
+    def growth(self) -> float:
+        """Return the slope of the second half by least squares, KiB/min."""
+        half = self.samples[len(self.samples) // 2:]
+        slope, _ = np.polyfit(np.arange(len(half)) * PERIOD, half, 1)
+        return float(slope) * 60.0 / 1024.0
+
+
+def soak(minutes: float) -> dict[str, float]:
+    """Return the figures of a run."""
+    with tempfile.TemporaryDirectory() as parent:
+        folder = Path(parent, 'run')
+        with running(node_command(RATE, folder)) as process, MemoryWatch(process.pid) as memory:
+            figures = control(process.pid, minutes * 60.0)
+        figures |= {**node_figures(folder), **bag_figures(folder)}
+    return {**figures, 'growth': memory.growth(), 'resident': memory.samples[-1] / 2**20,
+            'drift_ms': figures['drift'] * 1e3, 'overruns_percent': figures['overruns'] * 1e2,
+            'lateness_p99_ms': figures['lateness_p99'] * 1e3, 'lateness_max_ms': figures['lateness_max'] * 1e3}
+
+
+def missed(figures: Mapping[str, float]) -> list[str]:
+    """Return the limits that the figures miss, a NaN among them."""
+    return [limit.title for limit in LIMITS if not abs(figures[limit.name]) <= limit.most]
+
+
+def page(minutes: float, figures: Mapping[str, float]) -> str:
+    """Return the page."""
+    rows = [f'| {limit.title} | {figures[limit.name]:{limit.form}} | '
+            f'{f"{limit.most:g}" if np.isfinite(limit.most) else "–"} |' for limit in (*LIMITS, *FACTS)]
+    failures = missed(figures)
+    return '\n'.join([
+        '# The soak', '',
+        f'Written by `python3 -m benchmarks.soak --minutes {minutes:g}` (`make soak`) on',
+        f'{machine()}.', '',
+        f'`sim_node` on `{SCENE}` at {RATE:g} steps a second with its recording, for {minutes:g} minutes; a',
+        'controller in a process of its own answers every state with a drive velocity.  What grows while the node',
+        'records: the index of the bag, which MCAP writes at its end, and the events that the figures of the run are',
+        'made of (the last 20 000 at most).', '',
+        '| figure | measured | at most |', '|---|---|---|', *rows, '',
+        'Missed: ' + '; '.join(failures) + '.' if failures else 'Everything within its limits.', ''])
+
+
+def main() -> int:
+    """Soak, write the page, return the exit code."""
+    parser = argparse.ArgumentParser(prog='python3 -m benchmarks.soak', description=__doc__.splitlines()[0])
+    parser.add_argument('--minutes', type=float, default=10.0, help='[%(default)g]')
+    parser.add_argument('--out', type=Path, default=Path('docs/soak.md'), help='[%(default)s]')
+    options = parser.parse_args()
+    if not 0.2 <= options.minutes <= 1e4:
+        parser.error(f'argument --minutes: {options.minutes:g}; give 0.2 to 10000')
+    figures = soak(options.minutes)
+    text = page(options.minutes, figures)
+    options.out.parent.mkdir(parents=True, exist_ok=True)
+    options.out.write_text(text, encoding='utf-8')
+    sys.stdout.write(text)
+    return 1 if missed(figures) else 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -1,0 +1,54 @@
+"""Starts the axis and ros2_control with a controller on it.
+
+ros2 launch stickslip_sim ros2_control.launch.py scene:=positioning controller:=position_controller record:=true
+
+Needs controller_manager, robot_state_publisher, xacro, joint_state_topic_hardware_interface and the controllers of
+ros2_control/controllers.yaml (docs/ros2_control.md).
+"""
+
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch.substitutions import Command, LaunchConfiguration, PathJoinSubstitution
+from launch_ros.actions import Node
+from launch_ros.parameter_descriptions import ParameterValue
+from launch_ros.substitutions import FindPackageShare
+
+FOLDER = [FindPackageShare('stickslip_sim'), 'ros2_control']
+
+
+def generate_launch_description() -> LaunchDescription:
+    """Return the axis in a namespace of its own, so that its joint_states are not those of the broadcaster."""
+    controllers = PathJoinSubstitution([*FOLDER, 'controllers.yaml'])
+    return LaunchDescription([
+        DeclareLaunchArgument('scene', default_value='positioning', description='shipped scene, or a parameter file'),
+        DeclareLaunchArgument('namespace', default_value='machine', description='namespace of the axis and its topics'),
+        DeclareLaunchArgument('controller', default_value='velocity_controller',
+                              description='velocity_controller or position_controller'),
+        DeclareLaunchArgument('record', default_value='false', description='whether to record a bag from the start'),
+        axis(),
+        Node(package='robot_state_publisher', executable='robot_state_publisher', output='screen',
+             parameters=[{'robot_description': ParameterValue(description(), value_type=str)}]),
+        Node(package='controller_manager', executable='ros2_control_node', output='screen', parameters=[controllers],
+             remappings=[('~/robot_description', '/robot_description')]),
+        *(Node(package='controller_manager', executable='spawner', output='screen',
+               arguments=[name, '--param-file', controllers])
+          for name in ('joint_state_broadcaster', LaunchConfiguration('controller'))),
+    ])
+
+
+def axis() -> Node:
+    """Return the simulated axis, with its joints."""
+    return Node(
+        package='stickslip_sim', executable='sim_node', name='feed_axis', namespace=LaunchConfiguration('namespace'),
+        # Not as `parameters`: launch makes a file of those, and in a file `scene` is no file.
+        arguments=['--ros-args', '-p', ['scene:=', LaunchConfiguration('scene')],
+                   '-p', ['record.enabled:=', LaunchConfiguration('record')], '-p', 'joint_interface.enabled:=true'],
+        output='screen')
+
+
+def description() -> Command:
+    """Return the robot description, on the topics of the axis."""
+    namespace = LaunchConfiguration('namespace')
+    return Command(['xacro ', PathJoinSubstitution([*FOLDER, 'feed_axis.ros2_control.xacro']),
+                    ' joint_states_topic:=/', namespace, '/joint_states',
+                    ' joint_commands_topic:=/', namespace, '/joint_commands'])

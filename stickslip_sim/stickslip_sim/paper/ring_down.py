@@ -1,0 +1,71 @@
+"""The ring-down of a compliant contact after each slip: identified from the motion, and in closed form.
+
+In stick m ẍ = c (s − x) + h (v − ẋ) − c_c δ − h_c ẋ + F_e; the difference to the standstill, under constant inputs,
+
+    ẍ − ẍ₀ = −2 ζ ω₀ (ẋ − ẋ₀) − ω₀² (x − x₀) + r (t − t₀)        ω₀² = (c + c_c)/m,  2 ζ ω₀ = (h + h_c)/m
+
+is linear in what is sought: least squares find it from the recorded motion, without a first guess.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..axis import Axis, CompliantContact
+from .history import History, sticks
+
+_LEAST_SAMPLES = 8
+_PERIODS = 4.0      # of the ring-down: what comes later is too small to add anything
+
+
+class RingDown(NamedTuple):
+    """How the contact rings."""
+
+    frequency: float          # Hz, undamped
+    damped_frequency: float   # Hz; 0 when it does not swing
+    damping_ratio: float
+    decay: float              # 1/s, of the envelope
+
+
+def closed_form(axis: Axis) -> RingDown | None:
+    """Return √((c + c_c)/m)/2π and (h + h_c)/(2 √((c + c_c) m)); None without a compliant contact."""
+    if not isinstance(axis.contact, CompliantContact):
+        return None
+    stiffness = axis.drive_stiffness + axis.contact.stiffness
+    return _ring_down(stiffness / axis.mass, (axis.drive_damping + axis.contact.damping) / axis.mass)
+
+
+def identified(history: History) -> RingDown | None:
+    """Return the ring-down of the last complete stick with constant inputs, None when there is none to see."""
+    form = closed_form(history.scene.axis)
+    if form is None:
+        return None
+    for begin, end in reversed(sticks(history)):
+        until = min(end.time, begin.time + _PERIODS / form.frequency)
+        if history.steady_inputs(begin.time, until):
+            return _fitted(history, begin.time, until)
+    return None
+
+
+def _fitted(history: History, begin: float, end: float) -> RingDown | None:
+    samples = history.samples
+    first, last = np.searchsorted(samples['time'], (begin, end))
+    if last - first < _LEAST_SAMPLES:
+        return None
+    a, u, x, t = (samples[name][first:last] - samples[name][first]
+                  for name in ('acceleration', 'velocity', 'position', 'time'))
+    columns = np.stack([-u, -x, t], axis=1)
+    scales = np.abs(columns).max(axis=0)
+    if not np.all(scales > 0.0):
+        return None
+    damping, stiffness, _ = np.linalg.lstsq(columns / scales, a, rcond=None)[0] / scales
+    return _ring_down(float(stiffness), float(damping)) if stiffness > 0.0 else None
+
+
+def _ring_down(stiffness: float, damping: float) -> RingDown:
+    """Return the figures of ÿ + damping ẏ + stiffness y = 0."""
+    omega = math.sqrt(stiffness)
+    ratio = damping / (2.0 * omega)
+    damped = omega * math.sqrt(max(1.0 - ratio * ratio, 0.0))
+    return RingDown(omega / math.tau, damped / math.tau, ratio, 0.5 * damping)

@@ -1,0 +1,41 @@
+"""What the paper says, as something to be judged on a run."""
+
+from collections.abc import Callable
+from enum import Enum
+from typing import NamedTuple
+
+from .history import History
+
+
+class Outcome(Enum):
+    """What comes of a statement."""
+
+    HOLDS = 'holds'
+    FAILS = 'does not hold'
+    NOT_APPLICABLE = 'not applicable'
+
+
+class Finding(NamedTuple):
+    """What was found: the outcome, why in one line, and the numbers (SI)."""
+
+    outcome: Outcome
+    text: str
+    figures: dict[str, float]
+
+
+class Statement(NamedTuple):
+    """One statement of the paper, in our words, and who judges it."""
+
+    name: str
+    text: str
+    judge: Callable[[History], Finding]
+
+
+def found(holds: bool, text: str, **figures: float) -> Finding:
+    """Return the finding on a statement that applies."""
+    return Finding(Outcome.HOLDS if holds else Outcome.FAILS, text, figures)
+
+
+def not_applicable(reason: str, **figures: float) -> Finding:
+    """Return the finding on a statement that this run has nothing to say about."""
+    return Finding(Outcome.NOT_APPLICABLE, reason, figures)

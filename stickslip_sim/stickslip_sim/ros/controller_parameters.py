@@ -1,0 +1,78 @@
+"""The parameters of the example controllers: their list, and what they make."""
+
+import difflib
+from collections.abc import Mapping
+
+from ..control import BranchCompensation, Cascade, Controller, Following, Moves
+from ..errors import InputError
+from ..scene import load_scene
+from ..scene.load import named
+from ..scene.parameter import Parameter
+
+_LEAST = 1e-12       # of what must not be zero
+_MOVES, _GAINS = Moves(), Cascade()
+_FIELDS = BranchCompensation.__dataclass_fields__
+
+COMMON = (
+    Parameter('moves.travel', 'double', _MOVES.travel, 'm', 'of a move out, and back', _LEAST, 1e3),
+    Parameter('moves.feed', 'double', _MOVES.feed, 'm/s', 'of the moves', _LEAST, 1e3),
+    Parameter('moves.acceleration', 'double', _MOVES.acceleration, 'm/s²', 'up to the feed, and down', 1e-9, 1e6),
+    Parameter('moves.dwell', 'double', _MOVES.dwell, 's', 'at rest after each move', 0.0, 1e6),
+    Parameter('position_gain', 'double', _GAINS.position_gain, '1/s', 'K_v of the position loop', 0.0, 1e4, live=True),
+    Parameter('velocity_gain', 'double', _GAINS.velocity_gain, '', 'K_p of the velocity loop', 0.0, 1e4, live=True),
+    Parameter('integral_time', 'double', _GAINS.integral_time, 's', 'T_n of the velocity loop; .inf: no integral part',
+              1e-6, 1e6, infinite=True, live=True),
+    Parameter('max_velocity', 'double', 1.0, 'm/s', 'of the drive; commands stay within it, and the integral part does'
+              ' not wind up', 1e-9, 1e6),
+    Parameter('max_gap', 'double', 0.5, 's', 'between two measurements; after a longer one the moves begin anew', 1e-6,
+              1e6),
+)
+COMPENSATION = (
+    Parameter('compensation.model', 'string', 'positioning', '', 'scene, shipped or a file, whose axis is the model of'
+              ' spring and friction'),
+    Parameter('compensation.share', 'double', _FIELDS['share'].default, '', 'of the gap between the branches of'
+              ' friction that is crossed', 0.0, 1.0, live=True),
+    Parameter('compensation.rate', 'double', _FIELDS['rate'].default, '1/s', 'at which it is crossed', 0.0, 1e4,
+              live=True),
+    Parameter('compensation.threshold', 'double', _FIELDS['threshold'].default, 'm/s', 'error of the velocity from'
+              ' which on it acts in full', _LEAST, 1e3, live=True),
+)
+
+
+def values_at_start(entries: Mapping[str, Parameter], given: Mapping[str, object]) -> dict[str, object]:
+    """Return the value of every parameter, given or default; raises InputError."""
+    for name, value in given.items():
+        if name not in entries:
+            close = difflib.get_close_matches(name, entries, 1, cutoff=0.5)
+            raise InputError(name, value, 'one of ' + ', '.join(entries),
+                             f'did you mean {close[0]}?' if close else 'drop it')
+    return {name: entry.checked(given[name]) if name in given else entry.default for name, entry in entries.items()}
+
+
+def changed_values(entries: Mapping[str, Parameter], values: Mapping[str, object],
+                   changes: Mapping[str, object]) -> dict[str, object]:
+    """Return values with changes; raises InputError on those that are wrong, or may not change while it runs."""
+    checked = {name: entries[name].checked(value) for name, value in changes.items()}
+    for name, value in checked.items():
+        if not entries[name].live and value != values[name]:
+            raise InputError(name, value, f'{values[name]!r} as at the start',
+                             'it cannot change while the controller runs: start it anew')
+    return {**values, **checked}
+
+
+def following(values: Mapping[str, object]) -> Following:
+    """Return the controller and its moves; raises InputError when the model is no scene."""
+    of = {name: value for name, value in values.items() if isinstance(value, float)}
+    moves = Moves(of['moves.travel'], of['moves.feed'], of['moves.acceleration'], of['moves.dwell'])
+    cascade = Cascade(of['position_gain'], of['velocity_gain'], of['integral_time'])
+    controller = Controller(cascade, _compensation(values, of), of['max_velocity'])
+    return Following(controller, moves, of['max_gap'])
+
+
+def _compensation(values: Mapping[str, object], of: Mapping[str, float]) -> BranchCompensation | None:
+    model = values.get('compensation.model')
+    if model is None:
+        return None
+    with named('compensation.model'):
+        axis = load_scene(str(model)).axis
+    return BranchCompensation(axis, of['compensation.share'], of['compensation.rate'], of['compensation.threshold'])

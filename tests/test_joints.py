@@ -1,0 +1,86 @@
+"""The joints of the axis: what goes out on joint_states, what is taken from joint_commands."""
+
+import math
+
+import numpy as np
+import pytest
+
+pytest.importorskip('rclpy')
+
+from rclpy.serialization import deserialize_message
+from sensor_msgs.msg import JointState
+
+from stickslip_sim.commands import CommandSlot
+from stickslip_sim.errors import InputError
+from stickslip_sim.recording import MessageCodec
+from stickslip_sim.recording.messages import header
+from stickslip_sim.rig import Measured
+from stickslip_sim.ros.joints import JOINTS, JointStatePacker, commanded_velocity, disregarded
+
+# lark, which rosidl's Python brings in, imports modules that Python wants to rename.
+pytestmark = pytest.mark.filterwarnings("ignore:module 'sre_:DeprecationWarning")
+
+NAMES = list(JOINTS)
+
+
+def test_bytes_are_those_of_the_message() -> None:
+    measured = Measured(slider_position=1.5, slider_velocity=-0.0, drive_position=math.pi, drive_velocity=1e-300)
+    stamp_ns = 1_700_000_000_123_456_789
+    message = JointState(name=NAMES, position=[1.5, math.pi], velocity=[-0.0, 1e-300], effort=[0.0, -732.25])
+    message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp_ns, 10**9)
+    data = JointStatePacker().pack(stamp_ns, measured, -732.25)
+    assert deserialize_message(data, JointState) == message
+    arrays = {field: np.array(getattr(message, field)) for field in ('position', 'velocity', 'effort')}
+    kind = 'sensor_msgs/msg/JointState'
+    assert data == MessageCodec([kind]).encode(kind, {'header': header(stamp_ns), 'name': NAMES, **arrays})
+
+
+class TestCommandedVelocity:
+    @pytest.mark.parametrize('names', [['axis_drive'], NAMES, NAMES[::-1]])
+    def test_one_velocity_is_that_of_the_drive(self, names: list[str]) -> None:
+        assert commanded_velocity(JointState(name=names, velocity=[0.25])) == 0.25
+
+    def test_as_many_as_names_go_by_name(self) -> None:
+        assert commanded_velocity(JointState(name=NAMES, velocity=[0.5, 0.25])) == 0.25
+        assert commanded_velocity(JointState(name=NAMES[::-1], velocity=[0.25, 0.5])) == 0.25
+
+    def test_none_yet(self) -> None:
+        assert math.isnan(commanded_velocity(JointState(name=NAMES, velocity=[math.nan])))
+
+    @pytest.mark.parametrize(('message', 'told'), [
+        (JointState(), 'joint_commands.name = [] is refused: must be axis_drive'),
+        (JointState(velocity=[0.1]), 'joint_commands.name = []'),
+        (JointState(name=['axis_x', 'axis_drive'], velocity=[0.1]), "name = ['axis_x'] is refused: must be of axis_sl"),
+        (JointState(name=['axis_slider'], velocity=[0.1]), "name = ['axis_slider']"),
+        (JointState(name=['axis_drive'] * 2, velocity=[0.1, 0.2]), 'each once'),
+        (JointState(name=NAMES), 'nothing came instead'),
+        (JointState(name=NAMES, position=[0.1]), 'position came instead'),
+        (JointState(name=NAMES, position=[0.1], effort=[2.0]), 'position and effort came instead'),
+        (JointState(name=NAMES, velocity=[0.1] * 3), 'one for each of axis_slider, axis_drive'),
+        (JointState(name=['axis_drive'], velocity=[0.1] * 2), 'one for each of axis_drive'),
+        (JointState(name=['x' * 10_000] * 100, velocity=[0.1]), 'name the joints of this axis only'),
+    ])
+    def test_refused(self, message: JointState, told: str) -> None:
+        with pytest.raises(InputError) as refusal:
+            commanded_velocity(message)
+        assert told in str(refusal.value)
+        assert len(str(refusal.value)) < 300
+
+    @pytest.mark.parametrize(('message', 'told'), [
+        (JointState(name=NAMES, velocity=[0.1]), ''),
+        (JointState(name=NAMES, velocity=[0.0, 0.1]), ''),
+        (JointState(name=NAMES, velocity=[math.nan, 0.1], position=[math.nan]), ''),
+        (JointState(name=NAMES, velocity=[0.2, 0.1]), 'velocity of axis_slider'),
+        (JointState(name=NAMES[::-1], velocity=[0.2, 0.1], position=[0.0]), 'position and velocity of axis_slider'),
+    ])
+    def test_what_is_disregarded(self, message: JointState, told: str) -> None:
+        assert disregarded(message) == told
+
+
+def test_a_refused_message_counts_and_leaves_the_command() -> None:
+    slot = CommandSlot('velocity', 'm/s', 1.0)
+    slot.offer(0.5, 1)
+    assert slot.refuse('no such joint') == slot.last_refusal == 'no such joint; the previous command stays'
+    assert (slot.received, slot.refused) == (2, 1)
+    assert slot.latest is not None
+    assert slot.latest.value == 0.5
