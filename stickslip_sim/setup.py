@@ -42,6 +42,7 @@ setup(
         (SHARE, ['package.xml']),
         (f'{SHARE}/scenes', sorted(glob(f'{NAME}/scenes/*.yaml'))),
         (f'{SHARE}/launch', sorted(glob('launch/*.launch.py'))),
+        (f'{SHARE}/layouts', sorted(glob('layouts/*'))),
         (f'{SHARE}/ros2_control', sorted(glob('ros2_control/*'))),
     ],
     zip_safe=False,

@@ -3,6 +3,7 @@
 import threading
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -85,7 +86,7 @@ class Counting:
 
     def acts(self) -> Iterator[Act]:
         for number, at in enumerate(self.times):
-            yield Act(at, lambda number=number: self.done.append(number))
+            yield Act(at, partial(self.done.append, number))
 
 
 @pytest.fixture
@@ -126,7 +127,7 @@ class TestPlayer:
         for number in range(3):
             assert script.done == list(range(number))
             assert player.play_next()
-            wait_for(lambda number=number: script.done == list(range(number + 1)))
+            wait_for(partial(script.done.__contains__, number))
         wait_for(lambda: player.is_over)
         assert not player.play_next()
 
@@ -244,17 +245,17 @@ class TestOtherRecorders:
         assert [message.data for message in recording.messages(['/chatter'], 0, 9)] == [b'\0\1\0\0\0'] * 3
 
     def test_without_a_summary(self, tmp_path: Path) -> None:
-        recording = Recording(foreign(tmp_path, {}, use_statistics=False, use_summary_offsets=False))
+        recording = Recording(foreign(tmp_path, {}, use_statistics=False))
         assert recording.is_complete
         assert [m.log_time for m in recording.messages(['/chatter'], recording.begin, recording.end)] == [1, 2, 3]
 
 
 def foreign(folder: Path, metadata: dict[str, str], name: str = 'foreign.mcap', messages: int = 3,
-            compression: CompressionType = CompressionType.ZSTD, **options: bool) -> Path:
+            compression: CompressionType = CompressionType.ZSTD, use_statistics: bool = True) -> Path:
     """Write a bag as another program might: messages at 1, 2, ... ns, the later ones first."""
     path = folder / name
     with path.open('wb') as stream:
-        writer = Writer(stream, compression=compression, **options)
+        writer = Writer(stream, compression=compression, use_statistics=use_statistics)
         writer.start('ros2', 'another')
         schema = writer.register_schema('std_msgs/msg/Empty', 'ros2msg', b'')
         channel = writer.register_channel('/chatter', 'cdr', schema, metadata)

@@ -47,7 +47,7 @@ class Commands:
                              'start it so')
         if self._settings.start_offset:
             raise InputError('start_offset', self._settings.start_offset, '0 in lock-step', 'a run has its begin')
-        return InLockStep(self._axis, self._recording, self._orders, self._span, rate,
+        return InLockStep(self._node, self._axis, self._recording, self._orders, self._span, rate,
                           _STRIDE * max(1.0, self._settings.rate))
 
     def _recorded_axis(self) -> str:

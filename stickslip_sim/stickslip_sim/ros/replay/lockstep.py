@@ -7,6 +7,8 @@ import math
 from collections.abc import Iterator, Mapping
 from functools import partial
 
+from rcl_interfaces.msg import Parameter
+from rclpy.node import Node
 from rclpy.serialization import deserialize_message
 
 from ...errors import InputError, RecordingError
@@ -16,7 +18,7 @@ from ...recording.playback import Recording
 from ...recording.topics import DRIVE_VELOCITY, EXTERNAL_FORCE
 from ..topics import message_type
 from .axis import Axis
-from .orders import COMMANDS, refusal_in, request_of, state_topic
+from .orders import COMMANDS, Request, is_timeout, refusal_in, request_of, state_topic
 from .player import Act
 from .span import Span
 
@@ -26,16 +28,20 @@ _MOST = 1000    # steps at a time, so that a call takes no longer than people wa
 class InLockStep:
     """The script of orders by step; `stride` is the simulation time, s, that passes with one call of ~/step."""
 
-    def __init__(self, axis: Axis, recording: Recording, orders: Mapping[str, Topic], span: Span, rate: float,
-                 stride: float) -> None:
+    def __init__(self, node: Node, axis: Axis, recording: Recording, orders: Mapping[str, Topic], span: Span,
+                 rate: float, stride: float) -> None:
         self.begin = span.begin
+        self._log = node.get_logger()
         self._axis, self._recording, self._orders, self._span = axis, recording, orders, span
         self._states = state_topic(recording)
         self._grid = Grid(rate)
+        self._before: dict[str, Parameter] = {}    # parameters that the recording changes, as they were
         self._most = max(1, min(_MOST, round(stride * rate)))
 
     def prepare(self) -> None:
-        """Bring the axis to its step 0."""
+        """Bring the axis to its step 0, with the parameters that it had before it was played into."""
+        if self._before:
+            self._obey(Request('set_parameters_atomically', {'parameters': list(self._before.values())}))
         self._axis.rewind()
 
     def acts(self) -> Iterator[Act]:
@@ -83,6 +89,20 @@ class InLockStep:
             command = deserialize_message(message.data, message_type(kind))
             self._commands[kind] = command.velocity if kind is DRIVE_VELOCITY else command.force
         elif request := request_of(kind, message.data):
-            refusal = refusal_in(self._axis.ask(request.service, **request.fields))
-            if refusal:
-                raise RecordingError(f'{self._axis.name} refused a recorded order: {refusal}')
+            self._remember(request)
+            self._obey(request)
+        elif is_timeout(kind, message.data):
+            self._log.warning(f'a command time-out at {message.log_time * 1e-9:g} s is left to the axis, which counts'
+                              ' silence in simulation time: recorded in real time, it may come a step apart')
+
+    def _remember(self, request: Request) -> None:
+        """Keep the values of parameters that are to be changed for the first time."""
+        names = {parameter.name for parameter in request.fields.get('parameters', ())}
+        if new := sorted(names - self._before.keys()):
+            values = self._axis.ask('get_parameters', names=new).values
+            self._before |= {name: Parameter(name=name, value=value) for name, value in zip(new, values)}
+
+    def _obey(self, request: Request) -> None:
+        refusal = refusal_in(self._axis.ask(request.service, **request.fields))
+        if refusal:
+            raise RecordingError(f'{self._axis.name} refused a recorded order: {refusal}')

@@ -60,6 +60,11 @@ def request_of(kind: Topic, data: bytes) -> Request | None:
     return None
 
 
+def is_timeout(kind: Topic, data: bytes) -> bool:
+    """Return whether a recorded message tells of a command time-out."""
+    return kind is RIG_EVENT and deserialize_message(data, message_type(kind)).kind == NoteKind.COMMAND_TIMEOUT
+
+
 def refusal_in(response: Any) -> str:
     """Return why an axis did not do as it was told; empty when it did."""
     if hasattr(response, 'result'):
