@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -65,7 +66,7 @@ def runs_alone(values: Values, names: Sequence[str], points: Numbers, duration: 
             row = {'complete': False}
         for name, value in {'duration': duration, **row}.items():
             getattr(runs, name)[k] = value
-    return runs
+    return replace(runs, settled=runs.settled | runs.slides_on)
 
 
 def _inputs(scene: Scene, names: Sequence[str], points: Numbers) -> dict[str, Numbers]:

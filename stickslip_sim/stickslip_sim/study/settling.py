@@ -31,7 +31,8 @@ def run_settled(axis: Axis, initial: InitialState, inputs: Mapping[str, Numbers]
     """Run an axis under `inputs` as of `batch.run_batch`, of one length, for `duration` s or until it settles."""
     count = len(inputs['drive_velocity'])
     if duration is not None:
-        return _runs(axis, initial, inputs, duration)
+        runs = _runs(axis, initial, inputs, duration)
+        return replace(runs, settled=np.where(runs.slides_on, sliding_slope(axis, inputs) >= 0.0, runs.settled))
     runs = no_runs(count)
     exponents = _first_exponents(axis, inputs)
     last = exponents + _DOUBLINGS
