@@ -113,7 +113,7 @@ class FeedAxis(SceneNode):
         if self.scene.rig.measures:
             takers.append(JointStates(self, self._outlet).take)
         if self.scene.time.makes_clock:
-            takers.append(ClockOut(self, grid, self.scene.time.clock_rate).take)
+            takers += [ClockOut(self, grid, self.scene.time.clock_rate).take, self._outlet.keep_pace]
         return takers
 
     def _open_endpoints(self, is_stopping: Callable[[], bool]) -> None:
