@@ -37,6 +37,8 @@ bench: build  ## measure every solver beside its peers, and the loop of the node
 	@$(HERE) --own-domain python3 benchmarks/tick.py --json runs/bench/bench.json
 	@$(HERE) python3 -m benchmarks.accuracy runs/bench
 	@$(HERE) --own-domain python3 benchmarks/loop.py
+	@$(HERE) python3 -m benchmarks.paper
+	@$(HERE) python3 -m benchmarks.controllers
 
 hil: build  ## the node with a controller beside it: against a bare rclpy node, and the highest rate; writes docs/
 	@$(HERE) --own-domain python3 -m benchmarks.hil
