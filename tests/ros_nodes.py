@@ -149,6 +149,7 @@ class Client:
         self._context.try_shutdown()
         self._executor.shutdown()
         self.node.destroy_node()
+        self._context.try_shutdown()
 
     def connect(self, is_moving: bool = True) -> None:
         """Wait until a node hears the commands and is heard; without states while its time stands still."""
