@@ -28,8 +28,8 @@ from .schemas import store_of
 from .tables import events_of
 
 # What a file that ends anywhere makes the reader stumble over (RuntimeError: lz4).
-_CUT_OFF = (McapError, CRCValidationError, struct.error, zstandard.ZstdError, RuntimeError, UnicodeDecodeError)
-_COMPRESSIONS = ('', 'zstd', 'lz4')
+CUT_OFF = (McapError, CRCValidationError, struct.error, zstandard.ZstdError, RuntimeError, UnicodeDecodeError)
+COMPRESSIONS = ('', 'zstd', 'lz4')
 
 
 class RecordedMessage(NamedTuple):
@@ -159,7 +159,7 @@ def read_run(path: Path | str) -> Run:
     A run without an end (its process was killed, its disk was full, or it is still being written) is read as far as it
     goes, with a RecordingWarning.
     """
-    run = Run(_file_of(Path(path)))
+    run = Run(file_of(Path(path)))
     names: dict[int, str] = {}
     channels: dict[int, str] = {}
     for record in _records(run.path):
@@ -186,7 +186,8 @@ def read_run(path: Path | str) -> Run:
     return run
 
 
-def _file_of(path: Path) -> Path:
+def file_of(path: Path) -> Path:
+    """Return the MCAP file of a bag, given by its folder or by itself; raises RecordingError when there is no one."""
     files = sorted(path.glob('*.mcap')) if path.is_dir() else [path]
     for foreign in [*path.glob('*.mcap.*'), *path.glob('*.db3*')] if not files else []:
         raise RecordingError(f'{path}: {foreign.name} is not read, only .mcap is; decompress or convert it first '
@@ -207,7 +208,7 @@ def _records(path: Path) -> Iterator[McapRecord]:
                 for record in StreamReader(stream, validate_crcs=True, emit_chunks=True).records:
                     begin = False
                     yield from _unpacked(path, record)
-            except _CUT_OFF as error:
+            except CUT_OFF as error:
                 if begin:
                     raise RecordingError(f'{path} is not an MCAP file: {error}') from None
     except OSError as error:
@@ -218,7 +219,7 @@ def _unpacked(path: Path, record: McapRecord) -> Iterable[McapRecord]:
     """Return the records of a chunk, or any other record by itself."""
     if not isinstance(record, Chunk):
         return [record]
-    if record.compression not in _COMPRESSIONS:
+    if record.compression not in COMPRESSIONS:
         raise RecordingError(f'{path}: its chunks are compressed with {record.compression!r}; zstd, lz4 and none are '
                              'read: convert it first (mcap compress)')
     return breakup_chunk(record, validate_crc=True)
