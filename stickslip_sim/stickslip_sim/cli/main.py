@@ -21,9 +21,11 @@ from .advise import advise
 from .bench import bench
 from .check import check
 from .compare import compare
+from .export import export
 from .extremes import extremes
 from .scenes import scenes
 from .simulate import simulate
+from .verify import verify
 
 _INTERRUPTED = 130
 _UNWRITABLE = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EBADF, errno.EPIPE)
@@ -36,7 +38,7 @@ def stickslip() -> None:
     """Stick-slip motion of a feed axis, simulated exactly."""
 
 
-for verb in (advise, bench, check, compare, extremes, scenes, simulate):
+for verb in (advise, bench, check, compare, export, extremes, scenes, simulate, verify):
     stickslip.add_command(verb)
 
 

@@ -17,9 +17,13 @@ from mcap.stream_reader import CRCValidationError, StreamReader, breakup_chunk
 from numpy.typing import NDArray
 from rosbags.typesys.store import Typestore
 
-from ..errors import RecordingError, RecordingWarning
-from .layout import layout_of, numbers_of
+from ..errors import InputError, RecordingError, RecordingWarning
+from ..scene import Scene, parse_scene
+from ..words import Event
+from .layout import Layout, layout_of, numbers_of, texts_of
+from .run import RECEIPT_FILE, SCENE_FILE
 from .schemas import store_of
+from .tables import events_of
 
 # What a file that ends anywhere makes the reader stumble over (RuntimeError: lz4).
 _CUT_OFF = (McapError, CRCValidationError, struct.error, zstandard.ZstdError, RuntimeError, UnicodeDecodeError)
@@ -53,7 +57,22 @@ class Run:
     @property
     def receipt(self) -> dict[str, Any]:
         """The final figures; empty when the run was cut off."""
-        return dict(json.loads(self.attachments.get('receipt.json', b'{}')))
+        return dict(json.loads(self.attachments.get(RECEIPT_FILE, b'{}')))
+
+    @cached_property
+    def scene(self) -> Scene:
+        """The scene that travels in the run; raises RecordingError when there is none that this version can read."""
+        if SCENE_FILE not in self.attachments:
+            raise RecordingError(f'{self.path}: no {SCENE_FILE} travels in it; give a run that stickslip recorded')
+        try:
+            return parse_scene(self.attachments[SCENE_FILE].decode(errors='replace'))
+        except InputError as error:
+            raise RecordingError(f'{self.path}: its {SCENE_FILE} is none of this version: {error}') from None
+
+    @property
+    def events(self) -> list[Event]:
+        """The transitions in the order of time; the drive position is not recorded with them (NaN)."""
+        return events_of(self)
 
     def messages(self, topics: Iterable[str] | None = None) -> Iterator[RecordedMessage]:
         """Yield the messages of some topics (None: all)."""
@@ -71,17 +90,41 @@ class Run:
         return self._store.deserialize_cdr(message.data, message.type)
 
     def columns(self, topic: str) -> dict[str, NDArray[Any]]:
-        """Return the numbers of a topic as one array for each field, with `log_time`, `publish_time` and `sequence`."""
-        type_name = self.topics.get(topic)
-        if type_name is None:
-            raise RecordingError(f'{self.path}: no topic {topic}; there are {", ".join(self.topics)}')
+        """Return a topic as one array for each field that is a number or a text.
+
+        `log_time` (simulation time) and `publish_time` are in ns; `sequence` is the step.  A name without a slash at
+        its begin is that of the one topic that ends so.  Raises RecordingError when there is none.
+        """
+        topic = self._resolved(topic)
         messages = list(self.messages([topic]))
-        columns = self._numbers(type_name, [message.data for message in messages])
+        columns = self._fields(self.topics[topic], [message.data for message in messages])
         for name in ('log_time', 'publish_time', 'sequence'):
             columns[name] = np.array([getattr(message, name) for message in messages], dtype=np.int64)
         return columns
 
-    def _numbers(self, type_name: str, data: list[bytes]) -> dict[str, NDArray[Any]]:
+    def layout(self, topic: str) -> Layout:
+        """Return where a topic has its numbers; raises RecordingError when they have no fixed places."""
+        layout = layout_of(self._store, self.topics[topic])
+        if layout is None:
+            raise RecordingError(f'{self.path}: {topic} has other fields than a step; recorded by another version?')
+        return layout
+
+    def frame(self, topic: str) -> Any:
+        """Return `columns` as a pandas.DataFrame; raises RecordingError without pandas."""
+        try:
+            import pandas
+        except ImportError:
+            raise RecordingError('a frame needs pandas: pip install pandas; columns() needs nothing') from None
+        return pandas.DataFrame(self.columns(topic))
+
+    def _resolved(self, topic: str) -> str:
+        names = [name for name in self.topics if name == topic or name.endswith(f'/{topic}')]
+        if len(names) == 1 or topic in names:
+            return topic if topic in names else names[0]
+        found = f'{len(names)} topics' if names else 'no topic'
+        raise RecordingError(f'{self.path}: {found} {topic}; there are {", ".join(self.topics) or "none"}')
+
+    def _fields(self, type_name: str, data: list[bytes]) -> dict[str, NDArray[Any]]:
         layout = layout_of(self._store, type_name)
         if layout and all(len(item) == layout.size for item in data):
             rows = layout.unpack(data)
@@ -90,6 +133,9 @@ class Run:
         return {
             name: np.array([getattr(message, name) for message in decoded], dtype=kind)
             for name, kind in numbers_of(self._store, type_name).items()
+        } | {
+            name: np.array([getattr(message, name) for message in decoded], dtype=object)
+            for name in texts_of(self._store, type_name)
         }
 
     @cached_property
