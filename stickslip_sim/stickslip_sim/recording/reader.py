@@ -15,6 +15,8 @@ from mcap.exceptions import McapError
 from mcap.records import Attachment, Channel, Chunk, Footer, McapRecord, Message, Metadata, Schema
 from mcap.stream_reader import CRCValidationError, StreamReader, breakup_chunk
 from numpy.typing import NDArray
+from rosbags.serde import SerdeError
+from rosbags.typesys import TypesysError
 from rosbags.typesys.store import Typestore
 
 from ..errors import InputError, RecordingError, RecordingWarning
@@ -86,8 +88,12 @@ class Run:
                                       record.publish_time, record.data)
 
     def decode(self, message: RecordedMessage) -> Any:
-        """Return the message as an object with its fields as attributes."""
-        return self._store.deserialize_cdr(message.data, message.type)
+        """Return the message as an object with its fields as attributes; raises RecordingError when it is damaged."""
+        try:
+            return self._store.deserialize_cdr(message.data, message.type)
+        except (SerdeError, struct.error, ValueError, IndexError) as error:
+            raise RecordingError(f'{self.path}: {message.topic}: no {message.type} at {message.log_time} ns: {error}'
+                                 ) from None
 
     def columns(self, topic: str) -> dict[str, NDArray[Any]]:
         """Return a topic as one array for each field that is a number or a text.
@@ -140,7 +146,11 @@ class Run:
 
     @cached_property
     def _store(self) -> Typestore:
-        return store_of(self.schemas)
+        try:
+            return store_of(self.schemas)
+        except TypesysError as error:
+            reason, *_ = str(error).splitlines()
+            raise RecordingError(f'{self.path}: a definition of messages in it cannot be read: {reason}') from None
 
 
 def read_run(path: Path | str) -> Run:
@@ -155,7 +165,7 @@ def read_run(path: Path | str) -> Run:
     for record in _records(run.path):
         if isinstance(record, Message):
             run.counts[channels[record.channel_id]] += 1
-        elif isinstance(record, Schema):
+        elif isinstance(record, Schema) and record.id not in names:    # the index repeats them
             names[record.id] = record.name
             if record.encoding == 'ros2msg':
                 run.schemas[record.name] = record.data.decode(errors='replace')

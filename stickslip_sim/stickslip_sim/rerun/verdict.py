@@ -30,7 +30,7 @@ def verify(recording: Recording, progress: Progress = None) -> Verdict:
     """
     maker = maker_of(recording, recording.scene, progress=progress)
     look = _Look(recording, maker, None if recording.offline else progress)
-    for step in steps_of(recording.run, maker.start):
+    for step in steps_of(recording, maker.start):
         look.at(step)
         if look.difference:
             break

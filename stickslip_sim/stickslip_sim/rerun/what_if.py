@@ -61,7 +61,7 @@ def other_side(recording: Recording, scene: Scene, changes: Mapping[str, object]
     maker = maker_of(recording, scene, changes.keys(), progress)
     samples: list[Sample] = []
     events: list[Event] = []
-    for step in steps_of(recording.run, maker.start):
+    for step in steps_of(recording, maker.start):
         for made in maker.make(step):
             samples.append(made.sample)
             events += made.events
