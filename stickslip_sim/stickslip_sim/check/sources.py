@@ -86,7 +86,7 @@ def _timing(run: Run) -> Timing | None:
         return Timing(False, 'the run has no end, no verdict')
     try:
         timing = run.receipt.get('timing')
-    except (TypeError, ValueError):   # an attachment of somebody else
+    except RecordingError:   # an attachment of somebody else
         return None
     if not isinstance(timing, dict) or timing.get('valid') is None:   # None: not in real time
         return None
