@@ -64,7 +64,8 @@ def made_with(recording: Recording) -> str:
 
 def _is_finished(path: Path) -> bool:
     with path.open('rb') as file:
-        return file.read()[-len(_MAGIC):] == _MAGIC
+        file.seek(max(0, path.stat().st_size - len(_MAGIC)))
+        return file.read() == _MAGIC
 
 
 def _checkpoint(run: Run) -> Mapping[str, Any] | None:
