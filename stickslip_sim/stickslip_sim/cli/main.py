@@ -22,11 +22,13 @@ from .bench import bench
 from .check import check
 from .compare import compare
 from .critical import critical
+from .export import export
 from .extremes import extremes
 from .map import map_
 from .scenes import scenes
 from .simulate import simulate
 from .sweep import sweep
+from .verify import verify
 
 _INTERRUPTED = 130
 _UNWRITABLE = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EBADF, errno.EPIPE)
@@ -39,7 +41,7 @@ def stickslip() -> None:
     """Stick-slip motion of a feed axis, simulated exactly."""
 
 
-for verb in (advise, bench, check, compare, critical, extremes, map_, scenes, simulate, sweep):
+for verb in (advise, bench, check, compare, critical, export, extremes, map_, scenes, simulate, sweep, verify):
     stickslip.add_command(verb)
 
 
