@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from contextlib import AbstractContextManager
-from functools import partial
 from pathlib import Path
 
 import pytest
@@ -10,10 +9,11 @@ import pytest
 from stickslip_sim.recording import RECORDED, Run, flat_layout, open_run, read_run
 from stickslip_sim.recording.messages import Packer
 from stickslip_sim.recording.topics import DRIVE_VELOCITY, SLIDER_STATE
+from tests.eventful_runs import eventful_run, recording_into
 from tests.recorded_runs import FACTS, samples
 from tests.ros_nodes import Client, NodeProcess, client, running, wait_for
 
-from stickslip_msgs.srv import InjectFault, Step  # isort: skip
+from stickslip_msgs.srv import Step  # isort: skip
 
 pytestmark = pytest.mark.ros
 
@@ -21,35 +21,12 @@ SAME = ('/slider_state', '/friction_force', '/mode_event')
 LOCKSTEP = ('-p', 'time.mode:=lockstep')
 
 
-def recording_into(folder: Path) -> list[str]:
-    return ['-p', 'record.enabled:=true', '-p', f'record.folder:={folder}']
-
-
 @pytest.fixture(scope='module')
 def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A run of the node in real time under commands, faults and changed parameters."""
     folder = tmp_path_factory.mktemp('recorded') / 'run'
-    with running(*recording_into(folder)) as process, client() as axis:
-        axis.connect()
-        for velocity in (0.004, -0.003, 0.002):
-            axis.send_velocity(velocity)
-            wait_for(partial(axis_follows, axis, velocity), 'the command in force')
-        assert axis.call(InjectFault, 'inject_fault', id='dry', kind='friction_scale', start=0.05, duration=9.0,
-                         value=1.5).success
-        assert axis.call(InjectFault, 'inject_fault', kind='force_pulse', start=0.2, duration=0.1, value=500.0).success
-        axis.send_force(300.0)
-        assert axis.set_parameters(axis__mass=300.0).successful
-        axis.next('mode_event')
-        assert axis.call(InjectFault, 'inject_fault', id='dry', kind='clear').success
-        assert axis.trigger('clear_faults').success
-        axis.send_force(0.0)
-        axis.next('timing')
-        assert process.end()[0] == 0
+    with eventful_run(folder):
+        pass
     return folder
-
-
-def axis_follows(axis: Client, velocity: float) -> bool:
-    return bool(axis.latest('slider_state').drive_velocity == velocity)
 
 
 def replaying(folder: Path, *arguments: str) -> AbstractContextManager[NodeProcess]:
@@ -73,8 +50,10 @@ def assert_same(one: Run, other: Run) -> None:
 
 class TestLockStep:
     def test_the_same_run_to_the_last_bit(self, recorded: Path, tmp_path: Path) -> None:
-        again = tmp_path / 'again'
-        with running(*LOCKSTEP, *recording_into(again)) as axis, replaying(recorded, '-p', 'rate:=50') as process:
+        again, scene = tmp_path / 'again', tmp_path / 'scene.yaml'
+        scene.write_bytes(read_run(recorded).attachments['scene.yaml'])
+        arguments = ['--params-file', str(scene), *LOCKSTEP, *recording_into(again)]
+        with running(*arguments) as axis, replaying(recorded, '-p', 'rate:=50') as process:
             ended(process)
             assert axis.end()[0] == 0
         assert_same(read_run(recorded), read_run(again))
