@@ -8,7 +8,7 @@ import threading
 import time
 import warnings
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -139,8 +139,11 @@ class Client:
         self._thread.start()
 
     def _spin(self) -> None:
-        with suppress(ExternalShutdownException):
+        try:
             self._executor.spin()
+        except (ExternalShutdownException, RuntimeError):
+            if self._context.ok():    # else it went between two looks of the executor
+                raise
 
     def close(self) -> None:
         self._context.try_shutdown()

@@ -1,18 +1,22 @@
 """replay_node with mode: commands: what an axis was told, into a live one."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
+from types import MappingProxyType
 
 import pytest
 
 from stickslip_sim.recording import RECORDED, Run, flat_layout, open_run, read_run
 from stickslip_sim.recording.messages import Packer
-from stickslip_sim.recording.topics import DRIVE_VELOCITY, SLIDER_STATE
+from stickslip_sim.recording.topics import DRIVE_VELOCITY, RIG_EVENT, SLIDER_STATE, Topic
 from tests.eventful_runs import eventful_run, recording_into
 from tests.recorded_runs import FACTS, samples
 from tests.ros_nodes import Client, NodeProcess, client, running, wait_for
 
+from rclpy.serialization import serialize_message  # isort: skip
+
+from stickslip_msgs.msg import RigEvent  # isort: skip
 from stickslip_msgs.srv import Step  # isort: skip
 
 pytestmark = pytest.mark.ros
@@ -97,6 +101,25 @@ class TestLockStep:
     def test_orders_that_the_axis_refuses(self, tmp_path: Path) -> None:
         assert '/feed_axis gave up: velocity = 5.0 is refused' in refused(commanded(tmp_path / 'fast', velocity=5.0))
 
+    def test_a_time_out_is_left_to_the_axis_and_told(self, tmp_path: Path) -> None:
+        timeout = RigEvent(kind=RigEvent.KIND_COMMAND_TIMEOUT, step=20, value=0.5)
+        folder = commanded(tmp_path / 'silent', {20: (RIG_EVENT, serialize_message(timeout))})
+        with running(*LOCKSTEP) as axis, replaying(folder) as process:
+            code, errors = process.wait()
+            assert axis.end()[0] == 0
+        assert code == 0
+        assert 'a command time-out at 0.019 s is left to the axis' in errors
+
+    def test_in_namespaces(self, tmp_path: Path) -> None:
+        """The axis is that of the recording, wherever the replay itself is."""
+        folder = commanded(tmp_path / 'run', namespace='/cell')
+        with running(*LOCKSTEP, '-r', '__ns:=/cell') as axis, client('/cell') as viewer:
+            viewer.connect(is_moving=False)
+            with replaying(folder, '-r', '__ns:=/elsewhere') as process:
+                ended(process)
+            wait_for(lambda: positions_by_step(viewer, 50), 'the last step')
+            assert axis.end()[0] == 0
+
     def test_a_recording_axis_that_is_not_at_its_begin(self, recorded: Path, tmp_path: Path) -> None:
         with running(*LOCKSTEP, *recording_into(tmp_path / 'run')) as axis, client() as viewer:
             viewer.connect(is_moving=False)
@@ -126,14 +149,17 @@ def positions_by_step(viewer: Client, count: int) -> list[float]:
     return positions if len(positions) == count else []
 
 
-def commanded(folder: Path, first: int = 0, velocity: float = 0.002) -> Path:
-    """Write a run of 50 steps with one command, before its second step."""
-    states, commands = Packer(SLIDER_STATE), flat_layout(DRIVE_VELOCITY.type)
-    writer = open_run(folder, FACTS)
+def commanded(folder: Path, others: Mapping[int, tuple[Topic, bytes]] = MappingProxyType({}), first: int = 0,
+              velocity: float = 0.002, namespace: str = '/') -> Path:
+    """Write a run of 50 steps with one command, before its second step, and `others` by step."""
+    states, command = Packer(SLIDER_STATE), flat_layout(DRIVE_VELOCITY.type).pack(0, velocity)
+    messages = {first + 1: (DRIVE_VELOCITY, command), **others}
+    writer = open_run(folder, FACTS, namespace)
     for step, sample in enumerate(samples(50, first), first):
+        if step in messages:
+            topic, data = messages[step]
+            writer.write(RECORDED.index(topic), data, (step - 1) * 1_000_000, 0, step)
         writer.write(RECORDED.index(SLIDER_STATE), states.pack(0, step, sample), step * 1_000_000, 0, step)
-        if step == first:
-            writer.write(RECORDED.index(DRIVE_VELOCITY), commands.pack(0, velocity), step * 1_000_000, 0, step + 1)
     writer.close()
     return folder
 
