@@ -6,10 +6,12 @@ from pathlib import Path
 
 import pytest
 
+from stickslip_sim.cli.main import run as tool
 from stickslip_sim.recording import read_run
 from stickslip_sim.rerun.recording import open_recording
 from stickslip_sim.rerun.verdict import Verdict, verify
 from stickslip_sim.rig import NoteKind
+from tests.rewritten_bags import rewritten
 from tests.ros_nodes import Client, client, running
 
 pytestmark = pytest.mark.ros
@@ -57,7 +59,7 @@ def is_identical(verdict: Verdict) -> bool:
     return verdict.difference is None and verdict.missing == 0 and verdict.steps > 100 and verdict.events > 2
 
 
-def test_from_the_start_then_in_mid_run_then_killed(tmp_path: Path) -> None:
+def test_from_the_start_then_in_mid_run_then_killed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Three recordings of one node, each run again by itself."""
     with client('/cell') as axis, running(*parameters(*SETTINGS, 'record.enabled:=true'), '-r', '__ns:=/cell',
                                           folder=tmp_path) as process:
@@ -88,6 +90,35 @@ def test_from_the_start_then_in_mid_run_then_killed(tmp_path: Path) -> None:
     killed = open_recording(last)
     assert killed.notes == ('the recording has no end: cut off, or still being written',)
     assert is_identical(verify(killed)), verify(killed)
+    every_order_counts(whole, tmp_path)
+    what_if(whole, middle, capsys)
+
+
+def every_order_counts(bag: Path, tmp_path: Path) -> None:
+    """Leave out a single order of each kind: the run comes out different."""
+    run = read_run(bag)
+    for topic in ('/cell/drive_velocity', '/cell/external_force', '/cell/rig_event', '/parameter_events'):
+        last = [message.sequence for message in run.messages([topic]) if '/rig_event' not in topic
+                or run.decode(message).kind == NoteKind.COMMAND_TIMEOUT][-1]
+        difference = verify(open_recording(without(bag, topic, last, tmp_path))).difference
+        assert difference is not None, topic
+        assert difference.step >= last
+
+
+def without(bag: Path, topic: str, step: int, tmp_path: Path) -> Path:
+    """Return a copy of a bag without what was recorded on a topic before a step."""
+    return rewritten(bag, tmp_path / topic.replace('/', '_'), message=lambda name, number, data: (
+        None if (name, number) == (topic, step) else data))
+
+
+def what_if(whole: Path, middle: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for bag, change, code, told in (
+            (whole, 'initial.rest_time=0.5', 0, 'motion '), (whole, 'contact.model=rigid', 0, 'motion '),
+            (middle, 'axis.mass=100.0', 0, 'motion '), (whole, 'time.rate=500.0', 2, 'its orders are counted in steps'),
+            (middle, 'initial.rest_time=0.5', 2, 'this recording begins in mid-run')):
+        capsys.readouterr()
+        assert tool(['verify', str(bag), '--set', change]) == code
+        assert told in ''.join(capsys.readouterr())
 
 
 def begun(axis: Client) -> Path:

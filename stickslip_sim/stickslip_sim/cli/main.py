@@ -24,6 +24,7 @@ from .compare import compare
 from .critical import critical
 from .export import export
 from .extremes import extremes
+from .map import map_
 from .scenes import scenes
 from .simulate import simulate
 from .sweep import sweep
@@ -40,7 +41,7 @@ def stickslip() -> None:
     """Stick-slip motion of a feed axis, simulated exactly."""
 
 
-for verb in (advise, bench, check, compare, critical, export, extremes, scenes, simulate, sweep, verify):
+for verb in (advise, bench, check, compare, critical, export, extremes, map_, scenes, simulate, sweep, verify):
     stickslip.add_command(verb)
 
 

@@ -11,7 +11,8 @@ from rosbags.rosbag2 import ReaderError
 from rosbags.rosbag2.metadata import parse_qos
 
 from ..errors import RecordingError
-from .reader import COMPRESSIONS, CUT_OFF, RecordedMessage, file_of
+from .reader import RecordedMessage, file_of
+from .records import COMPRESSIONS, CUT_OFF
 from .topics import QosProfile
 
 _DEFAULT_QOS = QosProfile(10)    # as rosbag2 plays what has none, or several

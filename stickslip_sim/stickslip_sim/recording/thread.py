@@ -56,6 +56,11 @@ class RecorderThread:
         """Have attachments written before the first message is handed over."""
         self._first = attachments
 
+    def wait_for_room(self) -> None:
+        """Wait while the queue is more than half full; for those who can."""
+        while self._is_open and len(self._queue) > self._capacity // 2:
+            self._end.wait(_POLL)
+
     def close(self, attachments: Mapping[str, bytes] | None = None, timeout: float | None = None) -> bool:
         """Write all that waits, finish the bag; return whether it ended well within `timeout` (s, None: any time)."""
         self._is_open = False

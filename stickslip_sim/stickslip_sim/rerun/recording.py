@@ -1,7 +1,6 @@
 """A recorded run that is to be run again: what it began from, and what is doubtful about it."""
 
 import hashlib
-import json
 import warnings
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -65,17 +64,12 @@ def made_with(recording: Recording) -> str:
 
 def _is_finished(path: Path) -> bool:
     with path.open('rb') as file:
-        return file.read()[-len(_MAGIC):] == _MAGIC
+        file.seek(max(0, path.stat().st_size - len(_MAGIC)))
+        return file.read() == _MAGIC
 
 
 def _checkpoint(run: Run) -> Mapping[str, Any] | None:
-    if CHECKPOINT_FILE not in run.attachments:
-        return None
-    try:
-        checkpoint: Mapping[str, Any] = json.loads(run.attachments[CHECKPOINT_FILE])
-    except ValueError as error:
-        raise RecordingError(f'{run.path}: damaged: its {CHECKPOINT_FILE} is no JSON: {error}') from None
-    return checkpoint
+    return run.values(CHECKPOINT_FILE) if CHECKPOINT_FILE in run.attachments else None
 
 
 def _offline(run: Run, facts: Mapping[str, str]) -> Offline | None:
