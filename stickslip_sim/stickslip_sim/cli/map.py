@@ -39,7 +39,7 @@ def map_(folder: str, pictures: tuple[str, ...], show: str, picks: tuple[str, ..
     work.check_drawable(study, show)
     _check_picks(study, picks)
     _check_complete(sweep)
-    columns = read_columns(sweep.path / TABLE, study.names)
+    columns = read_columns(sweep.path / TABLE, study)
     with progress_bar('drawing') as progress, ExitStack() as files:
         motions = [_pick(study, text) for text in picks]
         paths = [str(files.enter_context(whole(path))) for path in pictures]

@@ -77,7 +77,7 @@ def _tell(study: 'Study', folder: 'Folder', ran: int) -> None:
     from ..study.folder import TABLE
     from ..study.table import read_columns
 
-    columns = read_columns(folder.path / TABLE, study.names)
+    columns = read_columns(folder.path / TABLE, study)
     counts = Counter(MOTIONS[Motion(int(motion))] for motion in columns['motion'])
     motions = ', '.join(f'{count} {word}' for word, count in counts.most_common())
     unsettled = int((columns['settled'] == 0.0).sum())

@@ -11,10 +11,10 @@ from rosbags.rosbag2 import ReaderError
 from rosbags.rosbag2.metadata import parse_qos
 
 from ..errors import RecordingError
-from .reader import _CUT_OFF, RecordedMessage, _file_of
+from .reader import RecordedMessage, file_of
+from .records import COMPRESSIONS, CUT_OFF
 from .topics import QosProfile
 
-_COMPRESSIONS = {'', 'zstd', 'lz4'}
 _DEFAULT_QOS = QosProfile(10)    # as rosbag2 plays what has none, or several
 
 
@@ -36,7 +36,7 @@ class Recording:
     """
 
     def __init__(self, path: Path | str) -> None:
-        self.path = _file_of(Path(path))
+        self.path = file_of(Path(path))
         self.topics: dict[str, RecordedTopic] = {}
         self.is_complete = True
         with self._reading() as stream:
@@ -61,7 +61,7 @@ class Recording:
                     time = message.log_time
                     yield RecordedMessage(channel.topic, self.topics[channel.topic].type, message.sequence, time,
                                           message.publish_time, message.data)
-            except _CUT_OFF as error:
+            except CUT_OFF as error:
                 if self.is_complete:
                     raise RecordingError(f'{self.path}: damaged behind {time * 1e-9:g} s: {error}') from None
 
@@ -77,13 +77,12 @@ class Recording:
         """Take the topics from the end of the file; return first and last time, None where that does not tell."""
         try:
             summary = SeekingReader(stream).get_summary()
-        except (*_CUT_OFF, OSError, StopIteration):    # there is no end, or the file is shorter than one
+        except (*CUT_OFF, OSError, StopIteration):    # there is no end, or the file is shorter than one
             return None
         if summary is None or summary.statistics is None or not summary.statistics.message_count:
             return None
-        unknown = {chunk.compression for chunk in summary.chunk_indexes} - _COMPRESSIONS
-        if unknown:
-            raise RecordingError(f'{self.path}: compressed with {", ".join(unknown)}; only zstd and lz4 can be read')
+        for unknown in {chunk.compression for chunk in summary.chunk_indexes}.difference(COMPRESSIONS):
+            raise RecordingError(f'{self.path}: its chunks are compressed with {unknown!r}; zstd and lz4 can be read')
         for channel in summary.channels.values():
             self._add(channel, summary.schemas.get(channel.schema_id))
         return summary.statistics.message_start_time, summary.statistics.message_end_time
@@ -98,7 +97,7 @@ class Recording:
                 self._add(channel, schema)
                 time = message.log_time
                 span = (min(span[0], time), max(span[1], time)) if span else (time, time)
-        except _CUT_OFF as error:
+        except CUT_OFF as error:
             self.is_complete = False
             if span is None:
                 raise RecordingError(f'{self.path}: no message can be read: {error}') from None

@@ -27,6 +27,8 @@ _MOST_HELD = 4 << 30    # bytes of a topic in memory at once
 _OVERHEAD = 300         # bytes of a message there beside its own
 _MOST_TOLD = 64 << 20   # bytes of all that a file holds beside messages
 
+
+
 class RecordedMessage(NamedTuple):
     """One message as it stands in the file; times in ns."""
 
@@ -178,7 +180,7 @@ def read_run(path: Path | str) -> Run:
     A run without an end (its process was killed, its disk was full, or it is still being written) is read as far as it
     goes, with a RecordingWarning.
     """
-    run = Run(_file_of(Path(path)))
+    run = Run(file_of(Path(path)))
     names: dict[int, str] = {}
     channels: dict[int, str] = {}
     told = 0
@@ -226,7 +228,8 @@ def _size(record: McapRecord) -> int:
     return 0
 
 
-def _file_of(path: Path) -> Path:
+def file_of(path: Path) -> Path:
+    """Return the MCAP file of a bag, given by its folder or by itself; raises RecordingError when there is no one."""
     files = sorted(path.glob('*.mcap')) if path.is_dir() else [path]
     for foreign in [*path.glob('*.mcap.*'), *path.glob('*.db3*')] if not files else []:
         raise RecordingError(f'{path}: {foreign.name} is not read, only .mcap is; decompress or convert it first '

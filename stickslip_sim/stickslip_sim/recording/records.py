@@ -16,10 +16,10 @@ from mcap.stream_reader import CRCValidationError, StreamReader, breakup_chunk
 from ..errors import RecordingError
 
 SIZE_LIMIT = 32 << 20   # bytes of a record, and of what a chunk unpacks to; rosbag2 makes chunks of 1 to 4 MiB
-_COMPRESSIONS = ('', 'zstd', 'lz4')
+COMPRESSIONS = ('', 'zstd', 'lz4')
 
 # What a file that ends or is damaged anywhere makes the libraries stumble over (RuntimeError: lz4).
-_CUT_OFF = (McapError, CRCValidationError, struct.error, zstandard.ZstdError, RuntimeError, UnicodeDecodeError,
+CUT_OFF = (McapError, CRCValidationError, struct.error, zstandard.ZstdError, RuntimeError, UnicodeDecodeError,
             OverflowError)
 
 
@@ -36,7 +36,7 @@ def records(path: Path) -> Iterator[McapRecord]:
                                            emit_chunks=True).records:
                     begin = False
                     yield from _unpacked(path, record)
-            except _CUT_OFF as error:
+            except CUT_OFF as error:
                 if begin:
                     raise RecordingError(f'{path} is not an MCAP file: {error}') from None
     except OSError as error:
@@ -59,7 +59,7 @@ def _unpacked(path: Path, record: McapRecord) -> Iterable[McapRecord]:
     """Return the records of a chunk, or any other record by itself."""
     if not isinstance(record, Chunk):
         return [record]
-    if record.compression not in _COMPRESSIONS:
+    if record.compression not in COMPRESSIONS:
         raise RecordingError(f'{path}: its chunks are compressed with {record.compression!r}; zstd, lz4 and none are '
                              'read: convert it first (mcap compress)')
     if record.uncompressed_size > SIZE_LIMIT:

@@ -1,13 +1,16 @@
 """All points of a study, chunk by chunk and in their order, by one process or several."""
 
+import os
 import signal
+import threading
 from collections import deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from itertools import islice
-from multiprocessing import get_context
+from multiprocessing import get_context, parent_process
+from typing import NoReturn
 
 from ..errors import StickslipError
 from .folder import Folder
@@ -55,13 +58,26 @@ def _results(study: Study, starts: range, workers: int) -> Iterator[Iterator[byt
 @contextmanager
 def _pool(workers: int) -> Iterator[Executor]:
     """Yield processes; on any error what waits for them is dropped and what they are at is waited for."""
-    pool = ProcessPoolExecutor(workers, get_context('spawn'), signal.signal, (signal.SIGINT, signal.SIG_IGN))
+    pool = ProcessPoolExecutor(workers, get_context('spawn'), _be_a_worker)
     try:
         yield pool
     except BrokenProcessPool:
         raise WorkerError('a worker process was killed; what is done is kept, --resume goes on') from None
     finally:
         pool.shutdown(cancel_futures=True)
+
+
+def _be_a_worker() -> None:
+    """Leave Ctrl-C to the parent, and go when it is gone, however it went: nothing else would end this process."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_go_with_the_parent, daemon=True).start()
+
+
+def _go_with_the_parent() -> NoReturn:
+    parent = parent_process()
+    if parent is not None:
+        parent.join()
+    os._exit(1)
 
 
 def _in_order(pool: Executor, chunks: Iterator[tuple[Study, int, int]], ahead: int) -> Iterator[bytes]:
