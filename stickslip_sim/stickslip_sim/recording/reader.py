@@ -74,11 +74,11 @@ class Run:
         return events_of(self)
 
     def values(self, attachment: str) -> dict[str, Any]:
-        """Return what a JSON file in the run says by name, nothing without it; raises RecordingError."""
+        """Return what a JSON file in the run says by name, nothing without the file; raises RecordingError."""
         try:
             return dict(json.loads(self.attachments.get(attachment, b'{}')))
         except (ValueError, TypeError, RecursionError) as error:
-            raise RecordingError(f'{self.path}: damaged: its {attachment} holds no values by name: {error}') from None
+            raise RecordingError(f'{self.path}: damaged: its {attachment} is no JSON object: {error}') from None
 
     def messages(self, topics: Iterable[str] | None = None) -> Iterator[RecordedMessage]:
         """Yield the messages of some topics (None: all)."""
