@@ -14,17 +14,10 @@ from stickslip_sim.courses import Course, Wave, constant
 from stickslip_sim.extremes.runs import instant, make, of_kind, run
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind, kinetic_table
 from stickslip_sim.friction.smooth import hyperbolic
+from stickslip_sim.study.theory import Oscillator, critical_feed
 from stickslip_sim.words import Event, EventKind, Sample
 
-from .closed_forms import (
-    Oscillator,
-    coulomb_cycle,
-    critical_feed,
-    den_hartog,
-    healing_stick_time,
-    slip_speed,
-    swing_ratio,
-)
+from .closed_forms import coulomb_cycle, den_hartog, healing_stick_time, slip_speed, swing_ratio
 
 PAPER = Oscillator(350.0, 6e5, 4000.0)
 UNDAMPED = PAPER._replace(damping=0.0)

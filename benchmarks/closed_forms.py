@@ -10,28 +10,7 @@ from typing import NamedTuple
 
 from scipy.optimize import brentq
 
-
-class Oscillator(NamedTuple):
-    """The slider on its drive: mass m kg, stiffness c N/m, damping h N s/m."""
-
-    mass: float
-    stiffness: float
-    damping: float = 0.0
-
-    @property
-    def frequency(self) -> float:
-        """The undamped angular frequency ω, rad/s."""
-        return math.sqrt(self.stiffness / self.mass)
-
-    @property
-    def impedance(self) -> float:
-        """√(cm), N s/m."""
-        return math.sqrt(self.stiffness * self.mass)
-
-    @property
-    def damping_ratio(self) -> float:
-        """The damping over the critical one, ζ."""
-        return 0.5 * self.damping / self.impedance
+from stickslip_sim.study.theory import Oscillator
 
 
 class CoulombCycle(NamedTuple):
@@ -61,37 +40,9 @@ def slip_speed(oscillator: Oscillator, drop: float, feed: float, time: float) ->
     return feed * (1.0 - math.exp(-zeta * oscillator.frequency * time) * wave)
 
 
-def critical_drop(damping_ratio: float) -> float:
-    """Return A_c, at which the slip only just comes to rest: A above it is stick-slip; 0 < ζ < 1.
-
-    (ζ/s) [2π − asin ζ − atan((A − ζ)/s)] = ½ ln(1 − 2 A ζ + A²).
-    """
-    zeta = damping_ratio
-    s = math.sqrt(1.0 - zeta * zeta)
-
-    def beyond(a: float) -> float:
-        angle = 2.0 * math.pi - math.asin(zeta) - math.atan((a - zeta) / s)
-        return zeta / s * angle - 0.5 * math.log1p(a * a - 2.0 * a * zeta)
-
-    return float(brentq(beyond, zeta, 2.0 * zeta + math.exp(2.0 * math.pi * zeta / s), xtol=1e-16, rtol=1e-15))
-
-
-def critical_feed(oscillator: Oscillator, drop: float) -> float:
-    """Return the feed v_c (m/s) from which on constant friction slides: ΔF/(A_c √(cm))."""
-    return drop / (critical_drop(oscillator.damping_ratio) * oscillator.impedance)
-
-
 def light_damping_feed(oscillator: Oscillator, drop: float) -> float:
     """Return the usual estimate of v_c (m/s), the limit of small ζ: ΔF/√(4π ζ c m)."""
     return drop / (math.sqrt(4.0 * math.pi * oscillator.damping_ratio) * oscillator.impedance)
-
-
-def healing_critical_feed(stiffness: float, growth: float) -> float:
-    """Return v_c = 2 S′(0)/c (m/s) of friction that only grows with rest, at `growth` S′(0) N/s from the arrest on.
-
-    For a concave growth S and h = 0.
-    """
-    return 2.0 * growth / stiffness
 
 
 def healing_stick_time(grown: Callable[[float], float], stiffness: float, feed: float) -> float:

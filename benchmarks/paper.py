@@ -2,9 +2,11 @@
 
 import pathlib
 
+from stickslip_sim.study.theory import critical_drop, critical_feed
+
 from . import naive_switching, sensitivity
 from .classics import DAMPING_RATIOS, DROP, EXACT, GROUPS, PAPER, Result, damped
-from .closed_forms import critical_drop, critical_feed, light_damping_feed
+from .closed_forms import light_damping_feed
 from .page import replace_generated
 
 PAGE = pathlib.Path('docs/paper.md')

@@ -42,6 +42,7 @@ setup(
         (SHARE, ['package.xml']),
         (f'{SHARE}/scenes', sorted(glob(f'{NAME}/scenes/*.yaml'))),
         (f'{SHARE}/launch', sorted(glob('launch/*.launch.py'))),
+        (f'{SHARE}/layouts', sorted(glob('layouts/*'))),
         (f'{SHARE}/ros2_control', sorted(glob('ros2_control/*'))),
     ],
     zip_safe=False,
@@ -50,12 +51,13 @@ setup(
         'setuptools', 'numpy', 'scipy', 'numba', 'PyYAML', 'mcap', 'zstandard', 'lz4', 'rosbags',
         'matplotlib', 'click',
     ],
-    extras_require={'bench': ['mpmath'], 'test': ['pytest']},
+    extras_require={'bench': ['mpmath'], 'tables': ['pandas', 'fastparquet'], 'test': ['pytest']},
     entry_points={
         'console_scripts': [
             'cascade_controller = stickslip_sim.ros.cascade_controller:main',
             'compensating_controller = stickslip_sim.ros.compensating_controller:main',
             'health = stickslip_sim.ros.health:main',
+            'replay_node = stickslip_sim.ros.replay_node:main',
             'sim_node = stickslip_sim.ros.sim_node:main',
             'stickslip = stickslip_sim.__main__:main',
         ],

@@ -1,9 +1,13 @@
 """Runs to record: made-up samples and events that differ in every field."""
 
 import math
+import os
 import time
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
+
+from mcap.reader import make_reader
 
 from stickslip_sim.recording.messages import Fields, header
 from stickslip_sim.recording.run import RunFacts
@@ -50,6 +54,18 @@ def mode_event(step: int, event: Event, stamp_ns: int) -> Fields:
     names = ('time', 'kind', 'mode', 'direction', 'position', 'velocity', 'drive_force', 'friction_force',
              'static_coefficient', 'rest_time')
     return {'header': header(stamp_ns), 'step': step, **{name: getattr(event, name) for name in names}}
+
+
+def damage(file: Path) -> None:
+    """Turn a bit in the middle of the messages of a bag."""
+    with file.open('r+b') as stream:
+        summary = make_reader(stream).get_summary()
+        assert summary is not None
+        chunk = summary.chunk_indexes[len(summary.chunk_indexes) // 2]
+        stream.seek(chunk.chunk_start_offset + chunk.chunk_length // 2)
+        byte, = stream.read(1)
+        stream.seek(-1, os.SEEK_CUR)
+        stream.write(bytes([byte ^ 1]))
 
 
 def wait_for(look: Any, timeout: float = 10.0) -> Any:

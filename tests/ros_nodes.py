@@ -79,6 +79,10 @@ class NodeProcess:
             [executable(program), '--ros-args', *ros_args], cwd=folder, stderr=subprocess.PIPE, text=True,
             start_new_session=True, preexec_fn=prepare or restore_interrupt)
 
+    @property
+    def pid(self) -> int:
+        return self._process.pid
+
     def send(self, number: int) -> None:
         self._process.send_signal(number)
 
@@ -128,6 +132,7 @@ class Client:
             self.node.create_subscription(kind, name, self.heard[name].append, qos)
         self._velocity = self.node.create_publisher(DriveVelocity, 'drive_velocity', _COMMAND)
         self._force = self.node.create_publisher(ExternalForce, 'external_force', _COMMAND)
+        self._services: dict[str, Any] = {}
         self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self.node)
         self._thread = threading.Thread(target=self._spin, daemon=True)
@@ -148,6 +153,15 @@ class Client:
         wait_for(lambda: self._velocity.get_subscription_count() and self._force.get_subscription_count()
                  and (self.heard['slider_state'] or not is_moving) and self.heard['run_info'], 'the node')
 
+    def add(self, node: Node) -> None:
+        """Let the callbacks of another node of this context run too."""
+        self._executor.add_node(node)
+
+    def remove(self, node: Node) -> None:
+        """End another node."""
+        self._executor.remove_node(node)
+        node.destroy_node()
+
     def latest(self, topic: str) -> Any:
         return self.heard[topic][-1]
 
@@ -163,14 +177,14 @@ class Client:
         self._force.publish(ExternalForce(force=force))
 
     def call(self, kind: Any, name: str, node: str = 'feed_axis', /, **request: Any) -> Any:
-        client = self.node.create_client(kind, f'{node}/{name}')
-        try:
-            assert client.wait_for_service(DEADLINE), name
-            future = client.call_async(kind.Request(**request))
-            wait_for(future.done, f'the answer of {name}')
-            return future.result()
-        finally:
-            self.node.destroy_client(client)
+        full = f'{node}/{name}'
+        if full not in self._services:
+            self._services[full] = self.node.create_client(kind, full)
+        client = self._services[full]
+        assert client.wait_for_service(DEADLINE), full
+        future = client.call_async(kind.Request(**request))
+        wait_for(future.done, f'the answer of {full}')
+        return future.result()
 
     def trigger(self, name: str) -> Any:
         return self.call(Trigger, name)

@@ -274,7 +274,7 @@ class TestRefusals:
         limits = limits_file(tmp_path, LIMITS)
         BagWriter(tmp_path / 'other', [topics.DIAGNOSTICS, topics.TIMING], {}, {}).close()
         line = refused(capsys, tmp_path / 'other', '--limits', limits)
-        assert '0 topics of type stickslip_msgs/msg/SliderState' in line
+        assert 'no topic of type stickslip_msgs/msg/SliderState' in line
         cells = [*topics.recorded('/a'), *topics.recorded('/b')]
         BagWriter(tmp_path / 'two', [topic for topic in cells if topic is not topics.PARAMETER_EVENTS], {}, {}).close()
         assert '2 topics of type' in refused(capsys, tmp_path / 'two', '--limits', limits)

@@ -29,13 +29,14 @@ from benchmarks.classics import (
     sticks_again,
     turning_points,
 )
-from benchmarks.closed_forms import coulomb_cycle, critical_drop, critical_feed, den_hartog, healing_critical_feed
+from benchmarks.closed_forms import coulomb_cycle, den_hartog
 from benchmarks.naive_switching import exact_slip, naive_slip
 from benchmarks.paper import PAGE, tables
 from stickslip_sim.analysis import cycle_figures
 from stickslip_sim.axis import InitialState
 from stickslip_sim.courses import constant
 from stickslip_sim.friction import StaticLawKind
+from stickslip_sim.study.theory import critical_drop, critical_feed, healing_critical_feed
 from stickslip_sim.words import EventKind
 from tests.axes import RIGID, of_kind, paper_axis, run
 

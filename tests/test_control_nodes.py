@@ -178,7 +178,7 @@ def test_parameters_and_restart_while_it_runs() -> None:
         assert set_one('velocity_gain', 6.0).successful
         assert set_one('integral_time', math.inf).successful
         assert 'compensation.share = 1.5' in set_one('compensation.share', 1.5).reason
-        assert 'cannot change while the controller runs' in set_one('moves.feed', 0.01).reason
+        assert 'cannot change while the node runs' in set_one('moves.feed', 0.01).reason
         assert axis.call(Trigger, 'restart', NAMES['compensated']).success
         code, errors = controller.end()
     assert code == 0, errors

@@ -9,7 +9,7 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from stickslip_sim.errors import StickslipError
 from tests.ros_nodes import client, executable, running
 
-from stickslip_sim.ros.health_program import judge  # isort: skip  # after ros_nodes, which skips without ROS
+from stickslip_sim.ros.health_node import judge  # isort: skip  # after ros_nodes, which skips without ROS
 
 pytestmark = pytest.mark.ros
 

@@ -10,10 +10,14 @@ from tests.launch_files import FILES, LAUNCH, Started, launched
 from tests.ros_nodes import client, executable, running
 
 from stickslip_sim.ros.controller_parameters import COMMON, COMPENSATION  # isort: skip  # after ros_nodes, which skips
+from stickslip_sim.ros.replay.settings import PARAMETERS  # isort: skip
 
 pytestmark = pytest.mark.ros
 
-OF_CONTROLLERS = {entry.name for entry in (*COMMON, *COMPENSATION)}
+CONTROLLER = {entry.name for entry in (*COMMON, *COMPENSATION)}
+KNOWN = {'sim_node': set(BY_NAME), 'replay_node': {entry.name for entry in PARAMETERS},
+         'cascade_controller': CONTROLLER, 'compensating_controller': CONTROLLER}
+NEEDED = {'replay': {'bag': 'runs/a'}}    # what has no default
 OF_SIM = {'scene', 'namespace', 'mode', 'rate', 'record'}
 
 
@@ -32,15 +36,14 @@ def test_all_of_them_are_looked_at() -> None:
 @pytest.mark.parametrize('name', FILES)
 class TestEach:
     def test_arguments_are_told_of(self, name: str) -> None:
-        declared = launched(name).arguments
+        declared = launched(name, **NEEDED.get(name, {})).arguments
         assert all(len(argument.description) > 10 for argument in declared)
         assert name == 'replay' or {argument.name for argument in declared} >= OF_SIM
 
     def test_names_exist(self, name: str) -> None:
-        for process in launched(name).ours:
+        for process in launched(name, **NEEDED.get(name, {})).ours:
             assert executable(process.executable)
-            known = BY_NAME if process.executable == 'sim_node' else OF_CONTROLLERS
-            assert set(parameters_of(process)) <= set(known)
+            assert set(parameters_of(process)) <= KNOWN[process.executable]
 
     def test_its_head_shows_how_to_start_it(self, name: str) -> None:
         head = FILES[name].read_text(encoding='utf-8').split('"""')[1]

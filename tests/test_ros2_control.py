@@ -9,6 +9,7 @@ import pytest
 import yaml
 from sensor_msgs.msg import JointState
 
+from stickslip_msgs.msg import RigEvent
 from stickslip_msgs.srv import InjectFault
 from stickslip_sim.recording import read_run
 from tests.ros2_control_client import (
@@ -156,13 +157,16 @@ class TestCommands:
 class TestSilence:
     def test_a_command_near_the_state_is_not_sent_and_the_time_out_says_why(self) -> None:
         with running(*ON, '-p', 'command.timeout:=0.3') as process, client() as axis:
+            notes: list[RigEvent] = []
+            axis.node.create_subscription(RigEvent, 'rig_event', notes.append, 10)
             axis.connect()
             with hardware_interface(always(0.003), near_is_silent(), Rule.ALL_COMMANDED):
                 axis.next('slider_state', lambda state: state.drive_velocity == 0.003)
                 status, _ = axis.status('command', lambda values: int(values['timed out']) == 1)
             _, errors = process.end()
+        (note,) = (note for note in notes if note.kind == RigEvent.KIND_COMMAND_TIMEOUT)
         assert status.level == b'\1'
-        assert THRESHOLD in errors
+        assert all(THRESHOLD in text for text in (status.message, note.text, errors))
 
     def test_sent_always_with_what_is_shipped(self) -> None:
         with running(*ON, '-p', 'command.timeout:=0.3') as process, client() as axis:

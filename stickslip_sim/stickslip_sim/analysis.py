@@ -10,9 +10,9 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
+from .solvers.exact.cycles import SETTLED
 from .words import Event, EventKind, Mode
 
-SETTLED = 1e-6   # relative change of the period from one cycle to the next
 AVERAGED = 10    # cycles at the end of the run that the means are taken over
 
 

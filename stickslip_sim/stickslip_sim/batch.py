@@ -16,7 +16,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .analysis import SETTLED
 from .axis import Axis, InitialState, check_start, pack
 from .axis.layout import (
     COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, EVENT_SIZE, MASS, NORMAL, STATE_SIZE, STATIC_EXPONENT,
@@ -64,9 +63,9 @@ COLUMNS: Mapping[str, _Column] = {
 
 @dataclass(frozen=True, slots=True)
 class BatchFigures:
-    """Arrays with one entry an axis; those from `direction` on are of the last complete cycle, NaN without one.
+    """Arrays with one entry an axis; units and meaning are those of `analysis.Cycle` and `analysis.Summary`.
 
-    Units and meaning are those of `analysis.Cycle` and `analysis.Summary`.
+    Those from `direction` to `static_coefficient` are of the last complete cycle, NaN without one.
     """
 
     events: Numbers
@@ -86,6 +85,8 @@ class BatchFigures:
     peak_speed: Numbers          # m/s
     break_away_force: Numbers    # N
     static_coefficient: Numbers
+    last_break_away: Numbers     # s, of the slip that goes on or was the last
+    settling_time: Numbers       # s, the break-away from which on the periods settle, see `settled`
 
 
 def run_batch(axis: Axis, duration: float, *, drive_velocity: ArrayLike, external_force: ArrayLike = 0.0,
@@ -132,7 +133,7 @@ def _figures(out: Numbers) -> BatchFigures:
     columns: dict[str, Any] = {name: out[:, getattr(cycles, name.upper())].copy() for name in BatchFigures.__slots__
                                if name != 'settled'}
     before = out[:, cycles.PERIOD_BEFORE]
-    columns['settled'] = np.abs(columns['period'] - before) < SETTLED * columns['period']
+    columns['settled'] = np.abs(columns['period'] - before) < cycles.SETTLED * columns['period']
     columns['complete'] = columns['complete'] == 1.0
     return BatchFigures(**columns)
 

@@ -5,7 +5,7 @@ from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from .errors import InputError
 
@@ -85,6 +85,21 @@ class Course:
         return piece.value + piece.rate * (time - piece.start) + sum(wave.at(time) for wave in self.waves)
 
 
+def plain_of(course: Course) -> list[Any]:
+    """Return a course as numbers in lists, for `course_of`."""
+    return [list(course.starts), list(course.values), list(course.rates), course.period,
+            [list(wave) for wave in course.waves]]
+
+
+def course_of(plain: Sequence[Any]) -> Course:
+    """Return the course that `plain_of` made these of; raises TypeError or ValueError on anything else."""
+    starts, values, rates, period, waves = plain
+    if not starts or not len(starts) == len(values) == len(rates):
+        raise ValueError('a course needs as many values and rates as times')
+    return Course(_floats(starts), _floats(values), _floats(rates), float(period),
+                  tuple(Wave(*map(float, wave)) for wave in waves))
+
+
 def constant(value: float) -> Course:
     """Return a course that never changes."""
     return Course((0.0,), (value,), (0.0,))
@@ -128,6 +143,10 @@ def waves(name: str, amplitudes: Sequence[float], frequencies: Sequence[float],
     if len(amplitudes) > MAX_WAVES:
         raise InputError(f'{name}.amplitudes', len(amplitudes), f'at most {MAX_WAVES} waves', 'leave the weakest out')
     return tuple(map(Wave, amplitudes, frequencies, phases))
+
+
+def _floats(numbers: Sequence[Any]) -> tuple[float, ...]:
+    return tuple(map(float, numbers))
 
 
 def _check_times(name: str, times: Sequence[float], values: Sequence[float], period: float) -> None:

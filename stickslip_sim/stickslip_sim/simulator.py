@@ -1,13 +1,14 @@
 """One axis through time: advance, sample, command.  Deterministic; knows no clock, no file and no ROS."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from .axis import Axis, InitialState, check_start, pack
 from .axis.layout import (
     ACCOUNTING, ENERGY_SIZE, EVENT_SIZE, FRACTION, ITERATIONS, SAMPLE_SIZE, SECOND, STATE_SIZE, WAVE_SIZE,
 )
+from .checkpoints import event_of, state_of
 from .compiled import IS_COMPILED
 from .courses import Course, constant
 from .energy import EnergyBalance
@@ -139,6 +140,27 @@ class Simulator:
             raise SolverError(f'the state leaves the range of numbers at t = {second + fraction!r} s; '
                               f'{self._solver.advice}')
         return Sample(second, fraction, _MODES[int(mode)], int(direction), *rest)
+
+    def checkpoint(self) -> dict[str, Any]:
+        """Return the state as plain data, from which a simulator of the same scene goes on to the last bit."""
+        self._obey()
+        return {'time': list(self._time), 'until': self._until, 'state': [float(number) for number in self._state],
+                'waiting': [[*map(float, event)] for event in self._waiting]}
+
+    def restore(self, saved: Mapping[str, Any], axis: Axis, drive: Course, force: Course) -> None:
+        """Go on from a checkpoint that was taken with this axis and these courses in force.
+
+        Raises InputError on impossible courses; KeyError, TypeError or ValueError when it is no checkpoint.
+        """
+        drive, force = (_command(name, course, '', first) for name, course, first in
+                        zip(('velocity', 'force'), (drive, force), self._courses))
+        parameters = _numbers(pack(axis))
+        state = state_of(saved['state'], len(self._state), parameters)
+        second, fraction = map(float, saved['time'])
+        self._until, self._waiting = float(saved['until']), [event_of(event) for event in saved['waiting']]
+        self._axis, self._parameters, self._state = axis, parameters, _numbers(state)
+        self._drive, self._force, self._waves = drive, force, _waves(drive, force)
+        self._time, self._commanded = Instant(second, fraction), False
 
     def _obey(self) -> None:
         """Let the commands of this instant take effect, all at once: their order does not matter."""

@@ -39,6 +39,18 @@ def summary_lines(figures: Summary) -> list[str]:
     return [f'{"events":22} {counts or "none"}', f'{"motion":22} {_motion(figures)}', *_cycle_lines(figures)]
 
 
+def beside_lines(recorded: Summary, other: Summary) -> list[str]:
+    """Return the figures of two runs beside each other: kind of motion, break-aways, means of the last cycles."""
+    both = recorded, other
+    rows = [('', ['recorded', 'what if']), ('motion', [figures.motion for figures in both]),
+            ('time in stick', [f'{100.0 * figures.stick_share:.4g} %' for figures in both]),
+            ('break-aways', [str(figures.events[EventKind.BREAKAWAY]) for figures in both]),
+            ('complete cycles', [str(figures.cycles) for figures in both])]
+    rows += [(name, [quantity(getattr(figures.mean, field), unit) if figures.mean else '–' for figures in both])
+             for name, field, unit in _LINES if recorded.mean or other.mean]
+    return [f'{name:22} {a:>14} {b:>14}'.rstrip() for name, (a, b) in rows]
+
+
 def _motion(figures: Summary) -> str:
     text = f'{figures.motion}, {100.0 * figures.stick_share:.4g} % of the time in stick'
     if figures.cycles:

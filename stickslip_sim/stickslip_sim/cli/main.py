@@ -21,9 +21,14 @@ from .advise import advise
 from .bench import bench
 from .check import check
 from .compare import compare
+from .critical import critical
+from .export import export
 from .extremes import extremes
+from .map import map_
 from .scenes import scenes
 from .simulate import simulate
+from .sweep import sweep
+from .verify import verify
 
 _INTERRUPTED = 130
 _UNWRITABLE = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EBADF, errno.EPIPE)
@@ -36,7 +41,7 @@ def stickslip() -> None:
     """Stick-slip motion of a feed axis, simulated exactly."""
 
 
-for verb in (advise, bench, check, compare, extremes, scenes, simulate):
+for verb in (advise, bench, check, compare, critical, export, extremes, map_, scenes, simulate, sweep, verify):
     stickslip.add_command(verb)
 
 
@@ -75,8 +80,8 @@ def _invoked(arguments: Sequence[str]) -> int:
         return _refuse(_usage(error), error.exit_code)
     except StickslipError as error:
         return _refuse(str(error), error.exit_code)
-    except KeyboardInterrupt:
-        return _refuse('interrupted', _INTERRUPTED)
+    except KeyboardInterrupt as stop:
+        return _refuse(str(stop) or 'interrupted', _INTERRUPTED)
     except Exception as error:
         if _is_of_output(error):
             raise

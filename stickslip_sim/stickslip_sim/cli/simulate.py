@@ -125,9 +125,10 @@ def _write_bag(folder: str, run: 'Trajectory') -> None:
     from ..recording.run import RunFacts
 
     run = _sampled(run, run.scene.time.step)
+    facts = RunFacts.of(run.scene, run.duration, run.sample_period)
     check_new_folder('--bag', folder)
     try:
-        write_bag(folder, RunFacts.of(run.scene), run.sample_rows(), run.events, run.receipt)
+        write_bag(folder, facts, run.sample_rows(), run.events, run.receipt)
     except BaseException:
         shutil.rmtree(folder, ignore_errors=True)
         raise

@@ -49,6 +49,12 @@ class KineticTable:
         """Return mu_k at a speed >= 0 m/s."""
         return _interpolate(self.velocities, self.coefficients, speed, self.end_slope)
 
+    def slope(self, speed: float) -> float:
+        """Return dmu_k/dw in s/m at a speed >= 0 m/s, at a knot that above it; of the smooth law if there is one."""
+        if self.law is not None:
+            return self.law.slope(speed)
+        return _slope_above(self.velocities, self.coefficients, speed, self.end_slope)
+
 
 @dataclass(frozen=True, slots=True)
 class ExcessTable:

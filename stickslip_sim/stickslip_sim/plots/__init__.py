@@ -1,6 +1,7 @@
 """Pictures.  The only room that imports matplotlib."""
 
+from .beside import plot_beside
 from .run import plot_run
 from .trade import Line, plot_trade
 
-__all__ = ['Line', 'plot_run', 'plot_trade']
+__all__ = ['Line', 'plot_beside', 'plot_run', 'plot_trade']

@@ -51,7 +51,7 @@ def plot_motion(motion: Motion, path: Path | str) -> None:
         forces(panels[2], slip, label)
         _speed_and_acceleration(panels[3], slip, label)
         friction_loop(panels[4], motion)
-        _phase_plane(panels[5], motion)
+        phase_plane(panels[5], motion)
         for panel, name in zip(panels, 'abcdef'):
             letter(panel, name)
         legend_below(figure, panels[4])
@@ -110,7 +110,7 @@ def _speed_and_acceleration(panel: Axes, columns: Mapping[str, Numbers], label: 
     panel.legend(handles=[*panel.get_lines(), *twin.get_lines()], **_ABOVE)
 
 
-def _phase_plane(panel: Axes, motion: Motion) -> None:
+def phase_plane(panel: Axes, motion: Motion) -> None:
     """Draw the velocity over the stretch of the drive spring, which closes where the position would run away."""
     stretch = (motion.columns['drive_position'] - motion.columns['position']) * MILLI
     _orbit(panel, motion, stretch, motion.columns['velocity'] * MILLI)

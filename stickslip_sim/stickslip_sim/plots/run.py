@@ -15,7 +15,7 @@ from ..words import Event, EventKind, Mode
 from .look import BLACK, BLUE, GREEN, GREY, MILLI, MODE_COLOURS, RED, Numbers, save, thinned
 
 _CROWD = 50          # break-aways that are marked smaller
-_KILO_FROM = 1e4     # N: forces beyond are told in kN
+KILO_FROM = 1e4     # N: forces beyond are told in kN
 
 
 def plot_run(samples: Mapping[str, Numbers], events: Sequence[Event], title: str, path: Path | str) -> None:
@@ -31,36 +31,36 @@ def plot_run(samples: Mapping[str, Numbers], events: Sequence[Event], title: str
     _forces(panels[2], samples, events)
     _modes(panels[3], samples, events)
     for panel in panels:
-        _dress(panel)
+        dress(panel)
     panels[-1].grid(visible=False, axis='y')
     panels[-1].set_xlabel('time / s')
     if len(samples['time']) > 1:
         panels[-1].set_xlim(samples['time'][0], samples['time'][-1])
     figure.align_ylabels(panels[:3])
-    _head(panels[0], title)
+    head(panels[0], title)
     save(figure, path)
 
 
 def _position(panel: Axes, samples: Mapping[str, Numbers]) -> None:
-    _line(panel, samples, 'drive_position', MILLI, 'drive', color=GREY, linewidth=1.0, linestyle=(0, (5, 2)))
-    _line(panel, samples, 'position', MILLI, 'slider', color=BLUE, linewidth=1.6)
+    line(panel, samples, 'drive_position', MILLI, 'drive', color=GREY, linewidth=1.0, linestyle=(0, (5, 2)))
+    line(panel, samples, 'position', MILLI, 'slider', color=BLUE, linewidth=1.6)
     panel.set_ylabel('position / mm')
 
 
 def _velocity(panel: Axes, samples: Mapping[str, Numbers]) -> None:
-    _line(panel, samples, 'velocity', MILLI, 'slider', color=BLUE, linewidth=1.4)
-    _line(panel, samples, 'drive_velocity', MILLI, 'drive', color=GREY, linewidth=1.0, linestyle=(0, (5, 2)))
+    line(panel, samples, 'velocity', MILLI, 'slider', color=BLUE, linewidth=1.4)
+    line(panel, samples, 'drive_velocity', MILLI, 'drive', color=GREY, linewidth=1.0, linestyle=(0, (5, 2)))
     panel.set_ylabel('velocity / (mm/s)')
 
 
 def _forces(panel: Axes, samples: Mapping[str, Numbers], events: Sequence[Event]) -> None:
     names = ['drive_force', 'friction_force', 'external_force']
     largest = max(np.abs(samples[name]).max() for name in names)
-    scale, unit = (1e-3, 'kN') if largest >= _KILO_FROM else (1.0, 'N')
+    scale, unit = (1e-3, 'kN') if largest >= KILO_FROM else (1.0, 'N')
     if np.any(samples['external_force'] != 0.0):
-        _line(panel, samples, 'external_force', scale, 'external', color=GREEN, linewidth=1.1)
-    _line(panel, samples, 'friction_force', scale, 'friction', color=RED, linewidth=2.2)
-    _line(panel, samples, 'drive_force', scale, 'drive', color=BLACK, linewidth=1.1)
+        line(panel, samples, 'external_force', scale, 'external', color=GREEN, linewidth=1.1)
+    line(panel, samples, 'friction_force', scale, 'friction', color=RED, linewidth=2.2)
+    line(panel, samples, 'drive_force', scale, 'drive', color=BLACK, linewidth=1.1)
     marks = [event for event in events if event.kind == EventKind.BREAKAWAY]
     if marks:
         panel.plot([event.time for event in marks], [event.friction_force * scale for event in marks], 'o',
@@ -81,12 +81,14 @@ def _modes(panel: Axes, samples: Mapping[str, Numbers], events: Sequence[Event])
     panel.tick_params(axis='y', length=0)
 
 
-def _line(panel: Axes, samples: Mapping[str, Numbers], name: str, scale: float, label: str, **look: Any) -> None:
+def line(panel: Axes, samples: Mapping[str, Numbers], name: str, scale: float, label: str, **look: Any) -> None:
+    """Draw a column over time."""
     time, values = thinned(samples['time'], samples[name])
     panel.plot(time, values * scale, label=label, **look)
 
 
-def _dress(panel: Axes) -> None:
+def dress(panel: Axes) -> None:
+    """Give a panel over time its grid, ticks and legend."""
     panel.spines[['top', 'right']].set_visible(False)
     panel.grid(axis='both', color='#dddddd', linewidth=0.6)
     panel.set_axisbelow(True)
@@ -97,7 +99,8 @@ def _dress(panel: Axes) -> None:
                      borderaxespad=0.0, handlelength=2.2)
 
 
-def _head(first: Axes, title: str) -> None:
+def head(first: Axes, title: str) -> None:
+    """Write a title above the first panel; its first line is the heading."""
     heading, _, rest = title.partition('\n')
     first.set_title(heading, loc='left', fontsize=14, fontweight='bold', pad=42 if rest else 22)
     first.annotate(rest, (0.0, 1.0), xytext=(0.0, 25.0), xycoords='axes fraction', textcoords='offset points',

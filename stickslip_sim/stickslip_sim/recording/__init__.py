@@ -3,9 +3,9 @@
 from .bag import BagWriter
 from .offline import OfflineBag, samples_of, write_bag
 from .reader import RecordedMessage, Run, read_run
-from .run import RunFacts, open_run, receipt_file
+from .run import RunFacts, checkpoint_file, open_run, receipt_file
 from .schemas import MessageCodec, Schema, flat_layout, schema
-from .tables import columns_of, events_of
+from .tables import columns_of, events_of, name_of
 from .thread import RecorderThread
 from .topics import DIAGNOSTICS, RECORDED, QosProfile, Topic, recorded
 
@@ -22,9 +22,11 @@ __all__ = [
     'RunFacts',
     'Schema',
     'Topic',
+    'checkpoint_file',
     'columns_of',
     'events_of',
     'flat_layout',
+    'name_of',
     'open_run',
     'read_run',
     'receipt_file',

@@ -15,6 +15,7 @@ from .schemas import schema
 from .topics import Topic
 
 CHUNK_SIZE = 64 * 1024  # a larger chunk takes longer to close than a step may wait
+METADATA = 'stickslip'  # the record that tells what simulated the run
 _MEDIA = {'.yaml': 'application/yaml', '.json': 'application/json'}
 _SEQUENCE_MASK = 0xFFFFFFFF  # MCAP has 32 bits for it; the message itself has the whole step
 
@@ -43,7 +44,7 @@ class BagWriter:
         except OSError as error:
             self.folder.rmdir()
             _refuse(self.path, error)
-        self._mcap = Writer(self._file, CHUNK_SIZE, CompressionType.ZSTD)  # type: ignore[arg-type]
+        self._mcap = Writer(self._file, CHUNK_SIZE, CompressionType.ZSTD, enable_data_crcs=True)  # type: ignore[arg-type]
         try:
             self._begin(attachments)
         except OSError as error:
@@ -70,6 +71,13 @@ class BagWriter:
         self._tally.add(topic_index, log_time_ns)
         if self._file.size != self._size:  # that closed a chunk
             self._note_on_disk()
+
+    def attach(self, attachments: Mapping[str, bytes]) -> None:
+        """Add attachments by file name while the run goes on."""
+        try:
+            self._attach(attachments, self._tally.last)
+        except OSError as error:
+            _refuse(self.path, error)
 
     def flush(self) -> None:
         """Hand everything to the operating system: a process that is killed afterwards loses nothing of it."""
@@ -99,7 +107,7 @@ class BagWriter:
 
     def _begin(self, attachments: Mapping[str, bytes]) -> None:
         self._mcap.start(profile='ros2', library=f'stickslip_sim {__version__}')
-        self._mcap.add_metadata('stickslip', self._metadata)
+        self._mcap.add_metadata(METADATA, self._metadata)
         self._attach(attachments, 0)
         ids = {
             name: self._mcap.register_schema(name, 'ros2msg', known.text.encode())

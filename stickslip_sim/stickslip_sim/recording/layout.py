@@ -68,6 +68,12 @@ def layout_of(store: Typestore, type_name: str) -> Layout | None:
     return Layout(numbers) if len(numbers) == len(fields) - 1 else None
 
 
+def texts_of(store: Typestore, type_name: str) -> list[str]:
+    """Return the fields of a type that are single texts."""
+    return [name for name, (node, inner) in store.fielddefs[type_name][1]
+            if node == Nodetype.BASE and inner[0] == 'string']
+
+
 def numbers_of(store: Typestore, type_name: str) -> dict[str, str]:
     """Return the fields of a type that are single numbers, with their types."""
     return {

@@ -4,6 +4,7 @@ from operator import attrgetter
 
 from .. import __version__
 from ..words import Event, Sample
+from .layout import Layout
 from .run import RunFacts
 from .schemas import flat_layout
 from .topics import Topic
@@ -16,11 +17,11 @@ _WORDS = {'force': 'friction_force', 'coefficient': 'friction_coefficient'}   # 
 class Packer:
     """Makes the bytes of a type of message with the number of a step, then fields that are named as in Sample or Event.
 
-    The order of the fields is that of the installed definition.
+    The order of the fields is that of `layout`, by default the installed definition.
     """
 
-    def __init__(self, topic: Topic) -> None:
-        self._layout = flat_layout(topic.type)
+    def __init__(self, topic: Topic, layout: Layout | None = None) -> None:
+        self._layout = layout or flat_layout(topic.type)
         _, *names = self._layout.names
         self._numbers = attrgetter(*(_WORDS.get(name, name) for name in names))
 

@@ -15,11 +15,17 @@ from mcap.exceptions import McapError
 from mcap.records import Attachment, Channel, Chunk, Footer, McapRecord, Message, Metadata, Schema
 from mcap.stream_reader import CRCValidationError, StreamReader, breakup_chunk
 from numpy.typing import NDArray
+from rosbags.serde import SerdeError
+from rosbags.typesys import TypesysError
 from rosbags.typesys.store import Typestore
 
-from ..errors import RecordingError, RecordingWarning
-from .layout import layout_of, numbers_of
+from ..errors import InputError, RecordingError, RecordingWarning
+from ..scene import Scene, parse_scene
+from ..words import Event
+from .layout import Layout, layout_of, numbers_of, texts_of
+from .run import RECEIPT_FILE, SCENE_FILE
 from .schemas import store_of
+from .tables import events_of
 
 # What a file that ends anywhere makes the reader stumble over (RuntimeError: lz4).
 _CUT_OFF = (McapError, CRCValidationError, struct.error, zstandard.ZstdError, RuntimeError, UnicodeDecodeError)
@@ -53,7 +59,22 @@ class Run:
     @property
     def receipt(self) -> dict[str, Any]:
         """The final figures; empty when the run was cut off."""
-        return dict(json.loads(self.attachments.get('receipt.json', b'{}')))
+        return dict(json.loads(self.attachments.get(RECEIPT_FILE, b'{}')))
+
+    @cached_property
+    def scene(self) -> Scene:
+        """The scene that travels in the run; raises RecordingError when there is none that this version can read."""
+        if SCENE_FILE not in self.attachments:
+            raise RecordingError(f'{self.path}: no {SCENE_FILE} travels in it; give a run that stickslip recorded')
+        try:
+            return parse_scene(self.attachments[SCENE_FILE].decode(errors='replace'))
+        except InputError as error:
+            raise RecordingError(f'{self.path}: its {SCENE_FILE} is none of this version: {error}') from None
+
+    @property
+    def events(self) -> list[Event]:
+        """The transitions in the order of time; the drive position is not recorded with them (NaN)."""
+        return events_of(self)
 
     def messages(self, topics: Iterable[str] | None = None) -> Iterator[RecordedMessage]:
         """Yield the messages of some topics (None: all)."""
@@ -67,21 +88,49 @@ class Run:
                                       record.publish_time, record.data)
 
     def decode(self, message: RecordedMessage) -> Any:
-        """Return the message as an object with its fields as attributes."""
-        return self._store.deserialize_cdr(message.data, message.type)
+        """Return the message as an object with its fields as attributes; raises RecordingError when it is damaged."""
+        try:
+            return self._store.deserialize_cdr(message.data, message.type)
+        except (SerdeError, struct.error, ValueError, IndexError) as error:
+            raise RecordingError(f'{self.path}: {message.topic}: no {message.type} at {message.log_time} ns: {error}'
+                                 ) from None
 
     def columns(self, topic: str) -> dict[str, NDArray[Any]]:
-        """Return the numbers of a topic as one array for each field, with `log_time`, `publish_time` and `sequence`."""
-        type_name = self.topics.get(topic)
-        if type_name is None:
-            raise RecordingError(f'{self.path}: no topic {topic}; there are {", ".join(self.topics)}')
+        """Return a topic as one array for each field that is a number or a text.
+
+        `log_time` (simulation time) and `publish_time` are in ns; `sequence` is the step.  A name without a slash at
+        its begin is that of the one topic that ends so.  Raises RecordingError when there is none.
+        """
+        topic = self._resolved(topic)
         messages = list(self.messages([topic]))
-        columns = self._numbers(type_name, [message.data for message in messages])
+        columns = self._fields(self.topics[topic], [message.data for message in messages])
         for name in ('log_time', 'publish_time', 'sequence'):
             columns[name] = np.array([getattr(message, name) for message in messages], dtype=np.int64)
         return columns
 
-    def _numbers(self, type_name: str, data: list[bytes]) -> dict[str, NDArray[Any]]:
+    def layout(self, topic: str) -> Layout:
+        """Return where a topic has its numbers; raises RecordingError when they have no fixed places."""
+        layout = layout_of(self._store, self.topics[topic])
+        if layout is None:
+            raise RecordingError(f'{self.path}: {topic} has other fields than a step; recorded by another version?')
+        return layout
+
+    def frame(self, topic: str) -> Any:
+        """Return `columns` as a pandas.DataFrame; raises RecordingError without pandas."""
+        try:
+            import pandas
+        except ImportError:
+            raise RecordingError('a frame needs pandas: pip install pandas; columns() needs nothing') from None
+        return pandas.DataFrame(self.columns(topic))
+
+    def _resolved(self, topic: str) -> str:
+        names = [name for name in self.topics if name == topic or name.endswith(f'/{topic}')]
+        if len(names) == 1 or topic in names:
+            return topic if topic in names else names[0]
+        found = f'{len(names)} topics' if names else 'no topic'
+        raise RecordingError(f'{self.path}: {found} {topic}; there are {", ".join(self.topics) or "none"}')
+
+    def _fields(self, type_name: str, data: list[bytes]) -> dict[str, NDArray[Any]]:
         layout = layout_of(self._store, type_name)
         if layout and all(len(item) == layout.size for item in data):
             rows = layout.unpack(data)
@@ -90,11 +139,18 @@ class Run:
         return {
             name: np.array([getattr(message, name) for message in decoded], dtype=kind)
             for name, kind in numbers_of(self._store, type_name).items()
+        } | {
+            name: np.array([getattr(message, name) for message in decoded], dtype=object)
+            for name in texts_of(self._store, type_name)
         }
 
     @cached_property
     def _store(self) -> Typestore:
-        return store_of(self.schemas)
+        try:
+            return store_of(self.schemas)
+        except TypesysError as error:
+            reason, *_ = str(error).splitlines()
+            raise RecordingError(f'{self.path}: a definition of messages in it cannot be read: {reason}') from None
 
 
 def read_run(path: Path | str) -> Run:
@@ -109,7 +165,7 @@ def read_run(path: Path | str) -> Run:
     for record in _records(run.path):
         if isinstance(record, Message):
             run.counts[channels[record.channel_id]] += 1
-        elif isinstance(record, Schema):
+        elif isinstance(record, Schema) and record.id not in names:    # the index repeats them
             names[record.id] = record.name
             if record.encoding == 'ros2msg':
                 run.schemas[record.name] = record.data.decode(errors='replace')

@@ -4,11 +4,13 @@ import json
 import platform
 from collections.abc import Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .. import __version__
+from ..receipt import plain
 from .bag import BagWriter
 from .metadata import ros_distro
 from .topics import recorded
@@ -18,12 +20,17 @@ if TYPE_CHECKING:
 
 SCENE_FILE = 'scene.yaml'
 RECEIPT_FILE = 'receipt.json'
+CHECKPOINT_FILE = 'checkpoint.json'
 _LIBRARIES = ('numpy', 'numba', 'mcap', 'rosbags')
 
 
 @dataclass(frozen=True)
 class RunFacts:
-    """What is needed to run a recorded run again; `scene_text` is the whole effective scene."""
+    """What is needed to run a recorded run again; `scene_text` is the whole effective scene.
+
+    An offline run follows the courses of its scene for `duration` s, with a sample every `sample_period` s; a node
+    (None) follows the recorded orders.
+    """
 
     scene: str
     scene_text: str
@@ -31,11 +38,14 @@ class RunFacts:
     solver: str
     seed: int
     rate: float  # 1/s
+    duration: float | None = None
+    sample_period: Fraction | None = None
 
     @classmethod
-    def of(cls, scene: 'Scene') -> 'RunFacts':
-        """Return the facts of a scene."""
-        return cls(scene.name, scene.text, scene.hash, scene.solver.name, scene.seed, scene.time.rate)
+    def of(cls, scene: 'Scene', duration: float | None = None, sample_period: Fraction | None = None) -> 'RunFacts':
+        """Return the facts of a run of a scene: of a node, or offline with a duration and a sample period."""
+        return cls(scene.name, scene.text, scene.hash, scene.solver.name, scene.seed, scene.time.rate, duration,
+                   sample_period)
 
     def as_metadata(self) -> dict[str, str]:
         """Return the facts and the versions of all that takes part in the numbers."""
@@ -46,11 +56,17 @@ class RunFacts:
             'solver': self.solver,
             'seed': str(self.seed),
             'rate': repr(self.rate),
+            **self._origin(),
             'python': platform.python_version(),
             'platform': platform.platform(),
             'ros_distro': ros_distro(),
             **{name: _version(name) for name in _LIBRARIES},
         }
+
+    def _origin(self) -> dict[str, str]:
+        if self.sample_period is None:
+            return {'origin': 'node'}
+        return {'origin': 'offline', 'duration': repr(self.duration), 'sample_period': str(self.sample_period)}
 
 
 def open_run(folder: Path | str, facts: RunFacts, namespace: str = '/') -> BagWriter:
@@ -61,6 +77,11 @@ def open_run(folder: Path | str, facts: RunFacts, namespace: str = '/') -> BagWr
 def receipt_file(receipt: Mapping[str, object]) -> dict[str, bytes]:
     """Return the receipt as the attachment that ends a run."""
     return {RECEIPT_FILE: (json.dumps(receipt, indent=2) + '\n').encode()}
+
+
+def checkpoint_file(checkpoint: Mapping[str, object]) -> dict[str, bytes]:
+    """Return the checkpoint of a rig as the attachment of a recording that begins in mid-run."""
+    return {CHECKPOINT_FILE: (json.dumps(plain(checkpoint), allow_nan=False) + '\n').encode()}
 
 
 def _version(package: str) -> str:

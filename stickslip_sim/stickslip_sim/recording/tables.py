@@ -2,33 +2,43 @@
 
 import math
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import RecordingError
 from ..words import Event, EventKind, Mode
-from .reader import Run
 from .topics import MODE_EVENT, Topic
+
+if TYPE_CHECKING:
+    from .reader import Run
 
 _EVENT_FIELDS = ('time', 'kind', 'mode', 'direction', 'position', 'velocity', 'drive_force', 'friction_force',
                  'static_coefficient', 'rest_time')
 
 
-def columns_of(run: Run, topic: Topic, fields: Sequence[str]) -> dict[str, NDArray[Any]]:
-    """Return fields of the one topic of this type; raises RecordingError when topic or fields are not there."""
+def name_of(run: 'Run', topic: Topic) -> str:
+    """Return the name of the one topic of this type; raises RecordingError when there is none, or more than one."""
     names = [name for name, type_name in run.topics.items() if type_name == topic.type]
-    if len(names) != 1:
+    if not names:
+        raise RecordingError(f'{run.path}: no topic of type {topic.type}; there are {", ".join(run.topics) or "none"}')
+    if len(names) > 1:
         raise RecordingError(f'{run.path}: {len(names)} topics of type {topic.type}; give a recording of one axis')
-    columns = run.columns(names[0])
+    return names[0]
+
+
+def columns_of(run: 'Run', topic: Topic, fields: Sequence[str]) -> dict[str, NDArray[Any]]:
+    """Return fields of the one topic of this type; raises RecordingError when topic or fields are not there."""
+    name = name_of(run, topic)
+    columns = run.columns(name)
     missing = [field for field in fields if field not in columns]
     if missing:
-        raise RecordingError(f'{run.path}: {names[0]} has no {", ".join(missing)}; recorded by another version?')
+        raise RecordingError(f'{run.path}: {name} has no {", ".join(missing)}; recorded by another version?')
     return {field: columns[field] for field in fields}
 
 
-def events_of(run: Run) -> list[Event]:
+def events_of(run: 'Run') -> list[Event]:
     """Return the transitions of a run; the drive position is not recorded with them (NaN).  Raises RecordingError."""
     columns = columns_of(run, MODE_EVENT, _EVENT_FIELDS)
     if not (np.isin(columns['kind'], list(EventKind)).all() and np.isin(columns['mode'], list(Mode)).all()):

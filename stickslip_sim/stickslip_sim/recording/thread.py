@@ -29,6 +29,7 @@ class RecorderThread:
         self._dropped = 0
         self._is_open = True
         self._end = Event()
+        self._first: Mapping[str, bytes] = {}
         self._last: Mapping[str, bytes] = {}
         self._lock = Lock()
         self._thread = Thread(target=self._run, name='recorder', daemon=True)
@@ -50,6 +51,15 @@ class RecorderThread:
             self._queue.append((topic_index, data, log_time_ns, publish_time_ns, sequence))
         else:
             self._drop(1)
+
+    def begin(self, attachments: Mapping[str, bytes]) -> None:
+        """Have attachments written before the first message is handed over."""
+        self._first = attachments
+
+    def wait_for_room(self) -> None:
+        """Wait while the queue is more than half full; for those who can."""
+        while self._is_open and len(self._queue) > self._capacity // 2:
+            self._end.wait(_POLL)
 
     def close(self, attachments: Mapping[str, bytes] | None = None, timeout: float | None = None) -> bool:
         """Write all that waits, finish the bag; return whether it ended well within `timeout` (s, None: any time)."""
@@ -83,6 +93,9 @@ class RecorderThread:
 
     def _write_waiting(self) -> None:
         """Write in slices; a message leaves the queue when it is written."""
+        if self._first:
+            self._writer.attach(self._first)
+            self._first = {}
         while self._queue:
             for _ in range(min(_SLICE, len(self._queue))):
                 self._writer.write(*self._queue[0])

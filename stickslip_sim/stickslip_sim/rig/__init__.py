@@ -7,6 +7,6 @@ before the same steps give the same numbers in real time, in lock-step, as fast 
 from .encoder import Measured
 from .faults import Fault
 from .product import Note, NoteKind, Product
-from .rig import Rig
+from .rig import SILENT_BRIDGE, Rig
 
-__all__ = ['Fault', 'Measured', 'Note', 'NoteKind', 'Product', 'Rig']
+__all__ = ['SILENT_BRIDGE', 'Fault', 'Measured', 'Note', 'NoteKind', 'Product', 'Rig']

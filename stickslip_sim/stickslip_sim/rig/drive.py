@@ -4,9 +4,11 @@ Its course is made of constants and ramps, so that the motion of the axis stays 
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
-from ..courses import Course, constant
+from ..courses import Course, constant, course_of, plain_of
 from ..words import Instant
 
 
@@ -57,6 +59,17 @@ class Drive:
             if self._target is not None:
                 self._course = _ramp(0.0, self._target, now, self._acceleration)
         self._frozen = frozen
+
+    def checkpoint(self) -> list[Any]:
+        """Return what it does and what it was told, as plain data."""
+        return [plain_of(self._course), self._target, self._acceleration, self._frozen]
+
+    def restore(self, saved: Sequence[Any]) -> None:
+        """Go on from a checkpoint."""
+        course, target, acceleration, frozen = saved
+        self._course = course_of(course)
+        self._target = None if target is None else float(target)
+        self._acceleration, self._frozen = float(acceleration), bool(frozen)
 
     def _at(self, now: Instant) -> float:
         return self.course.value_at(now.seconds)

@@ -1,8 +1,8 @@
 """Faults: what may go wrong, how it is checked, and when it begins and ends."""
 
 import math
-from collections.abc import Sequence
-from typing import NamedTuple
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
 
 from ..errors import InputError
 from ..pacing import Grid
@@ -132,6 +132,28 @@ class Faults:
             self._ends[planned.fault.id] = planned.end
         self._look_ahead()
         return ended, [planned.fault for planned in begun]
+
+    def checkpoint(self) -> dict[str, Any]:
+        """Return what is planned and in force, as plain data."""
+        return {'active': [[list(fault), self._ends[name]] for name, fault in self.active.items()],
+                'planned': [[planned.first, planned.end, list(planned.fault)] for planned in self._planned],
+                'chosen': self._chosen}
+
+    def restore(self, saved: Mapping[str, Any]) -> None:
+        """Go on from a checkpoint; raises InputError on a fault without a meaning."""
+        active = [(self._checked(fault), float(end)) for fault, end in saved['active']]
+        self.active = {fault.id: fault for fault, _ in active}
+        self._ends = {fault.id: end for fault, end in active}
+        self._planned = [_Planned(int(first), float(end), self._checked(fault))
+                         for first, end, fault in saved['planned']]
+        self._chosen = int(saved['chosen'])
+        self._look_ahead()
+
+    def _checked(self, saved: Sequence[Any]) -> Fault:
+        name, kind, *numbers = saved
+        fault = Fault(str(name), str(kind), *map(float, numbers))
+        check(fault, 1.0 / self._grid.rate)
+        return fault
 
     def _look_ahead(self) -> None:
         self.next_change = min([*self._ends.values(), *(planned.first for planned in self._planned[:1])],

@@ -1,10 +1,11 @@
 """One axis and its rig, from step to step."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 from ..axis import Axis, InitialState
-from ..courses import Course, constant
+from ..courses import Course, constant, course_of, plain_of
 from ..errors import InputError
 from ..pacing import Grid
 from ..simulator import Simulator
@@ -119,6 +120,34 @@ class Rig:
         self._axis = axis
         self._is_changed = True
 
+    # Checkpoints
+
+    def checkpoint(self) -> dict[str, Any]:
+        """Return all that the motion from the next step on depends on beside the scene, as plain data.
+
+        The encoders are left out: what they measure moves nothing.
+        """
+        self._act()
+        return {'step': self.step, 'drive': self._drive.checkpoint(), 'wire': self._wire.checkpoint(),
+                'faults': self._faults.checkpoint(), 'force': plain_of(self._force),
+                'acting_force': plain_of(self._acting_force), 'friction_scale': self._friction_scale,
+                'has_failed': self.has_failed, 'notes': len(self._notes), 'simulator': self.simulator.checkpoint()}
+
+    def restore(self, saved: Mapping[str, Any]) -> None:
+        """Go on from a checkpoint of a rig of the same scene, with the parameters of the axis that held then.
+
+        Raises InputError, KeyError, TypeError or ValueError when it is none; the rig is of no use then.
+        """
+        self._drive.restore(saved['drive'])
+        self._wire.restore(saved['wire'])
+        self._faults.restore(saved['faults'])
+        self._course = self._drive.course
+        self._force, self._acting_force = course_of(saved['force']), course_of(saved['acting_force'])
+        self._friction_scale = float(saved['friction_scale'])
+        self.step, self.has_failed = int(saved['step']), bool(saved['has_failed'])
+        axis = with_friction_scaled(self._axis, self._friction_scale)
+        self.simulator.restore(saved['simulator'], axis, self._course, self._acting_force)
+
     # Steps
 
     def make_step(self) -> Product:
@@ -219,8 +248,9 @@ class Rig:
 
 
 _NEVER = 2**62    # a step that no run reaches
-_TIMEOUT = ('no drive velocity for {:.3g} s: {}; a bridge that sends only what differs from the state is silent while'
-            ' they are near (topic-based ros2_control: trigger_joint_command_threshold -1 sends always)')
+SILENT_BRIDGE = ('a bridge that sends only what differs from the state is silent while they are near (topic-based'
+                 ' ros2_control: trigger_joint_command_threshold -1 sends always)')
+_TIMEOUT = f'no drive velocity for {{:.3g}} s: {{}}; {SILENT_BRIDGE}'
 _REACTIONS = {'hold': 'the latest is held', 'ramp_to_zero': 'the drive stops until the next',
               'fault': 'the drive stops and takes none until ~/clear_faults or ~/reset'}
 

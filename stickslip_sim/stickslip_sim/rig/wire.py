@@ -1,11 +1,12 @@
 """The wire on which drive velocities come: it may lose them or keep them for a while when a fault says so."""
 
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 from ..pacing import Grid
 from .faults import Fault
-from .randomness import Stream, stream
+from .randomness import Stream, restore, state_of, stream
 
 
 class Wire:
@@ -35,6 +36,16 @@ class Wire:
             self._under_way.pop()
         self._under_way.append((arrival, velocity))
         return True
+
+    def checkpoint(self) -> list[Any]:
+        """Return what is under way and the luck to come, as plain data."""
+        return [[list(command) for command in self._under_way], state_of(self._luck)]
+
+    def restore(self, saved: Sequence[Any]) -> None:
+        """Go on from a checkpoint."""
+        under_way, luck = saved
+        self._under_way = deque((int(step), float(velocity)) for step, velocity in under_way)
+        restore(self._luck, luck)
 
     def take(self, step: int) -> float | None:
         """Return the latest command that has arrived before a step, None without a new one."""

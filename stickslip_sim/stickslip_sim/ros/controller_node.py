@@ -9,10 +9,7 @@ import time
 from collections.abc import Sequence
 from typing import Any
 
-from rcl_interfaces.msg import SetParametersResult
 from rclpy.clock import Clock, ClockType
-from rclpy.node import Node
-from rclpy.parameter import Parameter
 from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
 
@@ -20,12 +17,10 @@ from ..control import Progress
 from ..errors import InputError
 from ..recording.topics import JOINT_COMMANDS, JOINT_STATES
 from ..rig import Measured
-from ..scene.sections import without_those_of_ros
 from .answers import answer
-from .controller_parameters import COMMON, COMPENSATION, changed_values, following, values_at_start
-from .environment import refusing, variables
+from .controller_parameters import COMMON, COMPENSATION, following
 from .joints import DRIVE, SLIDER
-from .parameters import describe, promoted
+from .listed_parameters import ListedNode
 from .topics import publisher, subscription
 
 _REPORT_PERIOD = 1.0   # s
@@ -33,18 +28,12 @@ _STOPS, _STOP_PAUSE = 5, 0.02    # s between them
 _NANOSECONDS = 1_000_000_000
 
 
-class ControllerNode(Node):  # type: ignore[misc]
+class ControllerNode(ListedNode):
     """Follows its moves with the drive of the bench; raises InputError when its parameters are wrong."""
 
     def __init__(self, name: str, compensates: bool) -> None:
-        with refusing('ROS environment', variables()):
-            super().__init__(name)
-        self._entries = {entry.name: entry for entry in (*COMMON, *(COMPENSATION if compensates else ()))}
-        given = {name: parameter.value for name, parameter in self._parameter_overrides.items()}
-        self._values = values_at_start(self._entries, without_those_of_ros(given))
-        self._following = following(self._values)
-        for entry in self._entries.values():
-            self.declare_parameter(entry.name, self._values[entry.name], describe(entry), ignore_override=True)
+        super().__init__(name, (*COMMON, *(COMPENSATION if compensates else ())))
+        self.values_changed()
         self._progress: Progress | None = None
         self._heard = self._refused = self._limited = 0    # measurements and commands since the last report
         self._refusal = ''
@@ -67,18 +56,9 @@ class ControllerNode(Node):  # type: ignore[misc]
                 self._send(0.0)
                 time.sleep(_STOP_PAUSE)
 
-    def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
-        """Set all or none; refused with one line that says what, why and what to do."""
-        wanted = [promoted(parameter, self._entries.get(parameter.name)) for parameter in parameter_list]
-        ours = {parameter.name: parameter.value for parameter in wanted if parameter.name in self._entries}
-        try:
-            values = changed_values(self._entries, self._values, ours)
-        except InputError as error:
-            return SetParametersResult(successful=False, reason=str(error))
-        result = super().set_parameters_atomically(wanted)
-        if result.successful and ours:
-            self._values, self._following = values, following(values)
-        return result
+    def values_changed(self) -> None:
+        """Go on with other gains and moves."""
+        self._following = following(self.values)
 
     def _hear(self, message: JointState) -> None:
         self._heard += 1

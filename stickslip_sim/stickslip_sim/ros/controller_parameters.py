@@ -1,10 +1,8 @@
 """The parameters of the example controllers: their list, and what they make."""
 
-import difflib
 from collections.abc import Mapping
 
 from ..control import BranchCompensation, Cascade, Controller, Following, Moves
-from ..errors import InputError
 from ..scene import load_scene
 from ..scene.load import named
 from ..scene.parameter import Parameter
@@ -37,27 +35,6 @@ COMPENSATION = (
     Parameter('compensation.threshold', 'double', _FIELDS['threshold'].default, 'm/s', 'error of the velocity from'
               ' which on it acts in full', _LEAST, 1e3, live=True),
 )
-
-
-def values_at_start(entries: Mapping[str, Parameter], given: Mapping[str, object]) -> dict[str, object]:
-    """Return the value of every parameter, given or default; raises InputError."""
-    for name, value in given.items():
-        if name not in entries:
-            close = difflib.get_close_matches(name, entries, 1, cutoff=0.5)
-            raise InputError(name, value, 'one of ' + ', '.join(entries),
-                             f'did you mean {close[0]}?' if close else 'drop it')
-    return {name: entry.checked(given[name]) if name in given else entry.default for name, entry in entries.items()}
-
-
-def changed_values(entries: Mapping[str, Parameter], values: Mapping[str, object],
-                   changes: Mapping[str, object]) -> dict[str, object]:
-    """Return values with changes; raises InputError on those that are wrong, or may not change while it runs."""
-    checked = {name: entries[name].checked(value) for name, value in changes.items()}
-    for name, value in checked.items():
-        if not entries[name].live and value != values[name]:
-            raise InputError(name, value, f'{values[name]!r} as at the start',
-                             'it cannot change while the controller runs: start it anew')
-    return {**values, **checked}
 
 
 def following(values: Mapping[str, object]) -> Following:

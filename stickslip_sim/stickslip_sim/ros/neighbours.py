@@ -9,6 +9,7 @@ from rclpy.node import Node
 
 from ..commands import CommandSlot
 from ..recording import topics as names
+from ..rig import SILENT_BRIDGE
 from ..scene.model import Scene
 from .loop import StepLoop
 
@@ -127,8 +128,7 @@ class _Bridge:
         self._silent = self._silent + 1 if nodes and not self._slot.received else 0
         if self._silent < _PATIENCE:
             return ''
-        trouble = (f'{", ".join(nodes)} sends nothing on {names.JOINT_COMMANDS.name}: topic-based ros2_control keeps'
-                   ' silent while command and state are near, unless its trigger_joint_command_threshold is -1')
+        trouble = f'{", ".join(nodes)} sends nothing on {names.JOINT_COMMANDS.name}: {SILENT_BRIDGE}'
         if self._silent == _PATIENCE:
             self._log.warning(trouble)
         return trouble

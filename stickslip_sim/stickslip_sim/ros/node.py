@@ -30,6 +30,7 @@ from .parameters import FileParameters, SceneNode
 from .record_service import RecordService
 from .rig_events import RigEvents
 from .run_receipt import run_receipt
+from .standard_services import offer_standard_services
 from .time_services import TimeServices
 from .topics import publisher
 from .verdict import verdict
@@ -113,7 +114,7 @@ class FeedAxis(SceneNode):
         if self.scene.rig.measures:
             takers.append(JointStates(self, self._outlet).take)
         if self.scene.time.makes_clock:
-            takers.append(ClockOut(self, grid, self.scene.time.clock_rate).take)
+            takers += [ClockOut(self, grid, self.scene.time.clock_rate).take, self._outlet.keep_pace]
         return takers
 
     def _open_endpoints(self, is_stopping: Callable[[], bool]) -> None:
@@ -124,8 +125,9 @@ class FeedAxis(SceneNode):
         self._neighbours = Neighbours(self, self.scene, self.loop)
         self._record_service: RecordService = RecordService(self, self.loop, self._outlet, self._publish_run_info,
                                                             self._receipt)
-        TimeServices(self, self.loop, self._outlet, self._restart, lambda: self._record_service.is_recording,
-                     is_stopping)
+        times = TimeServices(self, self.loop, self._outlet, self._restart,
+                             lambda: self._record_service.is_recording, is_stopping)
+        offer_standard_services(self, self.loop, times)
         FaultServices(self, self.loop)
         self.create_timer(_REPORT_PERIOD, self._report, clock=Clock(clock_type=ClockType.STEADY_TIME))
 

@@ -18,10 +18,13 @@ from .topics import publisher
 
 
 class Recorder(Protocol):
-    """What takes the messages of a bag; never waits."""
+    """What takes the messages of a bag; waits only when asked to."""
 
     def put(self, topic_index: int, data: bytes, log_time_ns: int, publish_time_ns: int, sequence: int) -> None:
         """Take a message."""
+
+    def wait_for_room(self) -> None:
+        """Wait while too many messages wait to be written."""
 
 
 class Outlet:
@@ -53,6 +56,11 @@ class Outlet:
         for event in product.events:
             self.event(max(product.step, 1), event)
         self.sample(product.step, product.sample)
+
+    def keep_pace(self, _: Product) -> None:
+        """Let time that nothing else drives wait for the bag, so that nothing is missing from it."""
+        if (recorder := self.recorder) is not None:
+            recorder.wait_for_room()
 
     def event(self, step: int, event: Event) -> None:
         """Publish an event that fell into a step; knots of the friction table are nobody's business."""

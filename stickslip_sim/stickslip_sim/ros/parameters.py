@@ -60,7 +60,7 @@ class SceneNode(Node):  # type: ignore[misc]
             self.scene = scene_at_start(given, files.values)
         if files.values and not describes_an_axis(given) and self.scene.name not in scene_names():
             self.get_logger().warning('the parameters say nothing of an axis: it stands still, without friction')
-        self._declare(self.scene.values)
+        declare(self, PARAMETERS, self.scene.values)
         self._warn(check_sim_time(self.scene.time, self.get_parameter(_SIM_TIME).value))
 
     def _check_addressed(self, files: FileParameters, given: Mapping[str, object]) -> None:
@@ -103,12 +103,6 @@ class SceneNode(Node):  # type: ignore[misc]
         for text in filter(None, texts):
             self.get_logger().warning(text)
 
-    def _declare(self, values: Mapping[str, object]) -> None:
-        for entry in PARAMETERS:
-            value = _plain(values.get(entry.name))
-            self.declare_parameter(entry.name, _TYPES[entry.type] if value in (None, []) else value, describe(entry),
-                                   ignore_override=True)
-
 
 def scene_at_start(given: Mapping[str, object], in_files: Mapping[str, object]) -> Scene:
     """Return the scene of the parameters given at the start, of which some are in files; raises InputError.
@@ -130,6 +124,14 @@ def changed_scene(scene: Scene, changes: Mapping[str, object]) -> Scene:
             raise InputError(name, value, f'{scene.values.get(name)!r} as at the start',
                              'it cannot change while the node runs: start it with another parameter file')
     return scene_from_values({**scene.values, **changes}) if changes else scene
+
+
+def declare(node: Node, entries: Sequence[Entry], values: Mapping[str, object]) -> None:
+    """Declare the parameters of a list with their descriptions; one without a value has its type only."""
+    for entry in entries:
+        value = _plain(values.get(entry.name))
+        node.declare_parameter(entry.name, _TYPES[entry.type] if value in (None, []) else value, describe(entry),
+                               ignore_override=True)
 
 
 def describe(entry: Entry) -> ParameterDescriptor:

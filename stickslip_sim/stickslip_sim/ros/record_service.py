@@ -80,11 +80,13 @@ class RecordService:
             self._tell()
 
     def _attach(self) -> None:
+        if self._loop.step >= 0:
+            self.recordings.continue_from(self._loop.rig.checkpoint())
         self._outlet.recorder = self.recordings.recorder
         self._tell()
         for kind, value in enumerate(self._loop.held):
             if value is not None:
-                self._outlet.command(kind, self._loop.step + 1, self._loop.time_ns, value)
+                self._outlet.command(kind, self._loop.step, self._loop.time_ns, value)   # since then, or before
 
     def _set_recording(self, request: Any, response: Any) -> Any:
         folder = self.recordings.folder

@@ -7,7 +7,16 @@ from typing import Any
 
 from ..errors import RecordingError
 from ..pacing import utc_stamp
-from ..recording import RECORDED, MessageCodec, RecorderThread, RunFacts, open_run, receipt_file, schema
+from ..recording import (
+    RECORDED,
+    MessageCodec,
+    RecorderThread,
+    RunFacts,
+    checkpoint_file,
+    open_run,
+    receipt_file,
+    schema,
+)
 from ..recording.topics import PARAMETER_EVENTS
 from ..scene.model import Scene
 
@@ -43,6 +52,11 @@ class Recordings:
             self.failure = f'record.folder = {scene.record.folder!r}: {error}'
             raise RecordingError(self.failure) from None
         self.recorder, self.folder, self.failure = RecorderThread(writer), str(writer.folder), ''
+
+    def continue_from(self, checkpoint: Mapping[str, object]) -> None:
+        """Let the recording that has just begun tell what the axis goes on from."""
+        if self.recorder is not None:
+            self.recorder.begin(checkpoint_file(checkpoint))
 
     def end(self, receipt: Mapping[str, object]) -> None:
         """Finish the bag; raises RecordingError when it could not be written to its end."""

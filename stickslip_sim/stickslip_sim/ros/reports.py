@@ -8,6 +8,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
 from stickslip_msgs.msg import StepTiming
 
+from ..rig import SILENT_BRIDGE
 from .conversion import set_stamp
 from .ledger import LedgerWindow
 from .loop import StepLoop
@@ -126,7 +127,7 @@ def command_status(loop: StepLoop, second: Second) -> DiagnosticStatus:
         reasons = '; '.join(slot.last_refusal for slot in slots if slot.last_refusal)
         level, text = WARN, f'{second.refused} refused; {reasons}'
     if rig.is_silent:
-        level, text = WARN, 'timed out: no drive velocity comes'
+        level, text = WARN, f'timed out: no drive velocity comes; {SILENT_BRIDGE}'
     if rig.has_failed:
         level, text = ERROR, 'fault after a time-out: the drive takes no command until ~/clear_faults or ~/reset'
     values: dict[str, object] = {

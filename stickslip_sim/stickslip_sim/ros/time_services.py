@@ -24,18 +24,19 @@ class TimeServices:
                  is_recording: Callable[[], bool], is_stopping: Callable[[], bool]) -> None:
         self._loop, self._outlet, self._restart = loop, outlet, restart
         self._is_recording, self._is_stopping = is_recording, is_stopping
-        node.create_service(Trigger, '~/reset', self._reset)
-        node.create_service(SetBool, '~/set_paused', self._set_paused)
-        node.create_service(Step, '~/step', self._step)
+        node.create_service(Trigger, '~/reset', self.reset)
+        node.create_service(SetBool, '~/set_paused', self.set_paused)
+        node.create_service(Step, '~/step', self.step)
 
-    def _reset(self, _: Any, response: Any) -> Any:
+    def reset(self, _: Any, response: Any) -> Any:
         """Begin anew at simulation time 0; a bag would then hold two runs, hence not while recording."""
         if self._is_recording():
             return answer(response, False, 'refused while recording: a bag holds one run; stop it with ~/record first')
         done = self._restart()
         return answer(response, done, 'simulation time and steps begin anew at 0' if done else BUSY)
 
-    def _set_paused(self, request: Any, response: Any) -> Any:
+    def set_paused(self, request: Any, response: Any) -> Any:
+        """Let time stand still or go on."""
         loop = self._loop
         if loop.by_request:
             return answer(response, False, 'refused with time.mode: lockstep: time moves with ~/step only')
@@ -45,7 +46,8 @@ class TimeServices:
         word = 'paused' if request.data else 'running'
         return answer(response, done, f'{word} at simulation time {loop.time_ns * 1e-9:g} s' if done else BUSY)
 
-    def _step(self, request: Any, response: Any) -> Any:
+    def step(self, request: Any, response: Any) -> Any:
+        """Make steps while time does not move by itself."""
         refusal = self._refusal(request)
         if refusal:
             return answer(response, False, refusal)

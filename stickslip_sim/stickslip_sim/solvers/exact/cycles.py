@@ -15,15 +15,18 @@ from ...compiled import compiled, compiled_without_lock
 from .. import DONE, FULL
 from .engine import advance, start
 
+SETTLED = 1e-6   # relative change of the period from one cycle to the next
+
 # a row of figures; `batch.BatchFigures` names the same
 (EVENTS, CYCLES, COMPLETE, FINAL_MODE, FIRST_BREAK_AWAY, STICK_SHARE, PERIOD_BEFORE, DIRECTION, REST_TIME, SLIP_TIME,
- STICK_TIME, PERIOD, SLIP_TRAVEL, JUMP, PEAK_SPEED, BREAK_AWAY_FORCE, STATIC_COEFFICIENT) = range(17)
+ STICK_TIME, PERIOD, SLIP_TRAVEL, JUMP, PEAK_SPEED, BREAK_AWAY_FORCE, STATIC_COEFFICIENT, LAST_BREAK_AWAY,
+ SETTLING_TIME) = range(19)
 # behind it what is not told: since when the mode holds; the slip that goes on or was the last, whether it goes on,
 # whether it ended at standstill, where it began and ended, and its figures so far
 (SINCE_SECOND, SINCE_FRACTION, SLIPS, IS_OVER, BEGIN_SECOND, BEGIN_FRACTION, BEGIN_POSITION, STOP_SECOND, STOP_FRACTION,
- STOP_POSITION, PEAK, FORCE, REST, STATIC, WAY) = range(17, 32)
-FIGURES = 17
-ROW_SIZE = 32
+ STOP_POSITION, PEAK, FORCE, REST, STATIC, WAY) = range(19, 34)
+FIGURES = 19
+ROW_SIZE = 34
 
 
 @compiled_without_lock
@@ -86,6 +89,8 @@ def _end_cycle(row, e):
     row[CYCLES] += 1.0
     row[PERIOD_BEFORE] = row[PERIOD]
     row[PERIOD] = (e[EVENT_SECOND] - row[BEGIN_SECOND]) + (e[EVENT_FRACTION] - row[BEGIN_FRACTION])
+    if not abs(row[PERIOD] - row[PERIOD_BEFORE]) < SETTLED * row[PERIOD]:   # also after the first
+        row[SETTLING_TIME] = row[BEGIN_SECOND] + row[BEGIN_FRACTION]
     row[SLIP_TIME] = (row[STOP_SECOND] - row[BEGIN_SECOND]) + (row[STOP_FRACTION] - row[BEGIN_FRACTION])
     row[STICK_TIME] = (e[EVENT_SECOND] - row[STOP_SECOND]) + (e[EVENT_FRACTION] - row[STOP_FRACTION])
     row[DIRECTION] = row[WAY]
@@ -99,6 +104,7 @@ def _end_cycle(row, e):
 def _begin_slip(row, e):
     if math.isnan(row[FIRST_BREAK_AWAY]):
         row[FIRST_BREAK_AWAY] = e[EVENT_SECOND] + e[EVENT_FRACTION]
+    row[LAST_BREAK_AWAY] = e[EVENT_SECOND] + e[EVENT_FRACTION]
     row[SLIPS], row[IS_OVER] = 1.0, 0.0
     row[BEGIN_SECOND], row[BEGIN_FRACTION], row[BEGIN_POSITION] = e[EVENT_SECOND], e[EVENT_FRACTION], e[EVENT_POSITION]
     row[PEAK] = abs(e[EVENT_VELOCITY])

@@ -1,0 +1,37 @@
+"""Plays a recorded run back onto its topics.
+
+ros2 launch stickslip_sim replay.launch.py bag:=runs/paper_fig8_20260101T120000Z rate:=0.5 clock:=100.0
+"""
+
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+
+ARGUMENTS = {
+    'bag': (None, 'folder of the run, or an .mcap file'),
+    'mode': ('states', 'states: all that was recorded; commands: what the axis was told, into a live one'),
+    'rate': ('1.0', 'seconds of the recording per second'),
+    'loop': ('false', 'whether to begin anew at the end'),
+    'start_offset': ('0.0', 's of the recording that are left out at its begin'),
+    'playback_duration': ('-1.0', 's of the recording that are played; -1: to its end'),
+    'delay': ('0.0', 's before it is played, each time'),
+    'start_paused': ('false', 'whether to wait for ~/resume at the begin'),
+    'clock': ('0.0', 'Hz: how often /clock is published; 0: not at all'),
+}
+
+
+def generate_launch_description() -> LaunchDescription:
+    """Return the node with its arguments."""
+    return LaunchDescription([
+        *(DeclareLaunchArgument(name, default_value=value, description=text)
+          for name, (value, text) in ARGUMENTS.items()),
+        Node(
+            package='stickslip_sim',
+            executable='replay_node',
+            name='replay',
+            arguments=['--ros-args', *(word for name in ARGUMENTS
+                                       for word in ('-p', [f'{name}:=', LaunchConfiguration(name)]))],
+            output='screen',
+        ),
+    ])

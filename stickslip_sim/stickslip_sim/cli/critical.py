@@ -1,0 +1,72 @@
+"""`stickslip critical`: the value of a parameter at which stick-slip begins or ends."""
+
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    from ..scene import Scene
+    from ..study.critical import Critical
+    from ..study.transitions import Course, Transition
+    from ..study.variation import Variation
+
+_ACCURACY = 1e-9
+
+
+@click.command()
+@click.argument('scene', metavar='SCENE')
+@click.option('--of', 'name', required=True, metavar='A.B', help='The parameter, or an element of a list: A.B[1].')
+@click.option('--between', metavar='LOW:HIGH', help='Where to look [default: 1/100 to 100 times its value].')
+@click.option('--accuracy', type=float, default=_ACCURACY, metavar='REL',
+              help=f'Relative width of what is left open [default: {_ACCURACY:g}].')
+@click.option('--set', 'changes', multiple=True, metavar='A.B=VALUE', help='Change a parameter of the scene.')
+def critical(scene: str, name: str, between: str | None, accuracy: float, changes: tuple[str, ...]) -> None:
+    """Find where SCENE goes over from stick-slip to sliding: from rest, and from sliding."""
+    from ..scene import load_scene, parse_override
+    from ..study import critical as work
+    from .progress import progress_bar
+
+    loaded = load_scene(scene, dict(parse_override(change) for change in changes))
+    over = _range(loaded, name, between)
+    with progress_bar('narrowing') as progress:
+        found = work.critical(loaded, over, accuracy, progress)
+    print('\n'.join(_lines(loaded, found)))
+
+
+def _range(scene: 'Scene', name: str, between: str | None) -> 'Variation':
+    from ..study.critical import default_range
+    from ..study.variation import parameter_of, range_of
+
+    parameter_of(name)
+    return default_range(scene, name) if between is None else range_of('--between', name, between)
+
+
+def _lines(scene: 'Scene', found: 'Critical') -> list[str]:
+    from ..study.theory import feed_of_theory
+
+    over = found.over
+    unit = f' {over.unit}'.rstrip()
+    lines = [f'{scene.name}: {over.name} from {over.low:g} to {over.high:g}{unit}, to {found.accuracy:g} of the value',
+             *_told('from rest', found.from_rest, unit, 'stick-slip', 'no stick-slip'),
+             *_told('from sliding', found.from_sliding, unit, 'sliding is lost', 'sliding lasts')]
+    lines += [f'{"bistable":14} from {low:.10g} to {high:.10g}{unit} both go on: the start decides'
+              for low, high in found.both]
+    theory = feed_of_theory(scene.axis) if over.name == 'drive.velocity' else None
+    return lines if theory is None else [*lines, f'{"closed form":14} {theory:.10g}{unit}, from rest']
+
+
+def _told(start: str, course: 'Course', unit: str, yes: str, no: str) -> list[str]:
+    """Return a line for each transition of a course, or one that there is none."""
+    from ..study.transitions import OPEN, YES
+
+    if not course.transitions:
+        all_over = 'it cannot be told' if course.first == OPEN else yes if course.first == YES else no
+        return [f'{start:14} no transition: {all_over} all over the range']
+    return [f'{start:14} {_value(one, unit)}: {no if one.rises else yes} below, {yes if one.rises else no} above'
+            for one in course.transitions]
+
+
+def _value(one: 'Transition', unit: str) -> str:
+    if one.resolved:
+        return f'{one.value:.12g}{unit}'
+    return f'between {one.low:.12g} and {one.high:.12g}{unit}, in between it settles too slowly to tell'

@@ -1,0 +1,80 @@
+"""`stickslip export`: a topic of a recorded run as a table."""
+
+import csv
+import io
+import sys
+import warnings
+from collections.abc import Iterator
+from importlib.util import find_spec
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from .files import STDOUT, check_distinct, check_file, whole, write_text
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+_BLOCK = 10_000   # rows
+
+
+@click.command()
+@click.argument('run', metavar='RUN')
+@click.option('--csv', 'csv_file', metavar='FILE.csv', help='Write numbers with 17 digits ("-": to standard output).')
+@click.option('--parquet', metavar='FILE.parquet', help='Write a typed, compressed table.')
+@click.option('--topic', default='slider_state', metavar='T', help='What to export [default: slider_state].')
+def export(run: str, csv_file: str | None, parquet: str | None, topic: str) -> None:
+    """Write a topic of the recorded RUN as a table: a row for each message, a column for each number and text.
+
+    log_time is simulation time, publish_time is that of the message's stamp, both in ns; sequence is the step.
+    """
+    _check(csv_file, parquet)
+    from ..recording import read_run
+
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter('always')
+        recorded = read_run(run)
+    for warning in told:
+        print(f'note: {warning.message}', file=sys.stderr)
+    if parquet is not None:
+        with whole(parquet) as temporary:
+            recorded.frame(topic).to_parquet(temporary, index=False)
+    if csv_file is not None:
+        write_text(csv_file, csv_lines(recorded.columns(topic)))
+
+
+def csv_lines(columns: 'dict[str, NDArray[Any]]') -> Iterator[str]:
+    """Yield a line of names, then a line for each row; 17 digits give the same floats back."""
+    yield ','.join(columns) + '\n'
+    count = min(map(len, columns.values()))
+    for begin in range(0, count, _BLOCK):
+        text = io.StringIO()
+        block = (_cells(column[begin:begin + _BLOCK]) for column in columns.values())
+        csv.writer(text, lineterminator='\n').writerows(zip(*block, strict=True))
+        yield text.getvalue()
+
+
+def _check(csv_file: str | None, parquet: str | None) -> None:
+    """Raise before the work begins when an output cannot be written."""
+    targets = [(option, path) for option, path in (('--csv', csv_file), ('--parquet', parquet)) if path is not None]
+    if not targets:
+        raise click.UsageError('Give --csv FILE.csv or --parquet FILE.parquet.')
+    for option, path in targets:
+        if path != STDOUT or option == '--parquet':
+            check_file(option, path)
+    check_distinct(targets)
+    if parquet is not None:
+        _check_parquet(parquet)
+
+
+def _cells(column: 'NDArray[Any]') -> list[object]:
+    values: list[object] = column.tolist()
+    return [f'{value:.17g}' for value in values] if column.dtype.kind == 'f' else values
+
+
+def _check_parquet(path: str) -> None:
+    from ..errors import InputError
+
+    if not (find_spec('pandas') and (find_spec('fastparquet') or find_spec('pyarrow'))):
+        raise InputError('--parquet', path, 'written by pandas with fastparquet or pyarrow, which are not installed',
+                         'pip install pandas fastparquet, or choose --csv')

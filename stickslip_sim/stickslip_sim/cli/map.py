@@ -1,0 +1,88 @@
+"""`stickslip map`: a sweep as a picture - a map of two parameters, or a bifurcation diagram of one."""
+
+from contextlib import ExitStack
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from .files import check_distinct, check_file, whole
+
+if TYPE_CHECKING:
+    from ..plots.stability import Pick
+    from ..study import Study
+    from ..study.folder import Folder
+
+_MOST_PICKS = 6
+_MOST_EVENTS = 10_000   # that a phase plane shows
+_SHOWN = 'amplitude'
+
+
+@click.command('map')
+@click.argument('folder', metavar='FOLDER')
+@click.option('--out', 'pictures', multiple=True, required=True, metavar='FILE.png|FILE.svg',
+              help='Write the picture; may be given again.')
+@click.option('--show', default=_SHOWN, metavar='FIGURE', help=f'What a map has in colours [default: {_SHOWN}].')
+@click.option('--pick', 'picks', multiple=True, metavar='A,B',
+              help='Draw the phase plane at these values of the two parameters, too.')
+def map_(folder: str, pictures: tuple[str, ...], show: str, picks: tuple[str, ...]) -> None:
+    """Draw the sweep in FOLDER: a map of two parameters, or a bifurcation diagram of one."""
+    _check_pictures(pictures)
+    from ..study import pictures as work
+    from ..study.description import study_of
+    from ..study.folder import TABLE, Folder
+    from ..study.table import read_columns
+    from .progress import progress_bar
+
+    sweep = Folder(folder)
+    study = study_of(sweep.described())
+    work.check_drawable(study, show)
+    _check_picks(study, picks)
+    _check_complete(sweep)
+    columns = read_columns(sweep.path / TABLE, study.names)
+    with progress_bar('drawing') as progress, ExitStack() as files:
+        motions = [_pick(study, text) for text in picks]
+        paths = [str(files.enter_context(whole(path))) for path in pictures]
+        if len(study.names) == 1:
+            work.draw_bifurcation(study, columns, paths, progress)
+        else:
+            work.draw_map(study, columns, show, motions, paths)
+
+
+def _check_pictures(pictures: tuple[str, ...]) -> None:
+    from ..errors import InputError
+
+    for path in pictures:
+        if Path(path).suffix.lower() not in ('.png', '.svg'):
+            raise InputError('--out', path, 'a file ending in .png or .svg', 'name it so')
+        check_file('--out', path)
+    check_distinct([('--out', path) for path in pictures])
+
+
+def _check_picks(study: 'Study', picks: tuple[str, ...]) -> None:
+    from ..errors import InputError
+
+    if picks and len(study.names) != 2:
+        raise click.UsageError('--pick is for a map of two parameters.')
+    if len(picks) > _MOST_PICKS:
+        raise InputError('--pick', f'{len(picks)} times', f'given at most {_MOST_PICKS} times', 'pick fewer points')
+
+
+def _check_complete(sweep: 'Folder') -> None:
+    from ..errors import InputError
+
+    if not sweep.is_complete:
+        raise InputError('folder', str(sweep.path), 'that of a complete sweep', 'run the sweep again with --resume')
+
+
+def _pick(study: 'Study', text: str) -> 'Pick':
+    """Return a point of the map with its motion, simulated as long as the study would."""
+    from ..paper.fresh import simulate
+    from ..paper.windows import motion_of
+    from ..plots.stability import Pick
+    from ..study.pictures import pick, point_of
+
+    point = point_of(study, text)
+    runs = study.runs(point[None, :])
+    duration = float(runs.duration[0]) * min(1.0, _MOST_EVENTS / max(float(runs.events[0]), 1.0))
+    return Pick(*pick(study, point), motion_of(simulate(study.scene_at(point), duration)))

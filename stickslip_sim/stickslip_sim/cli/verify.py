@@ -1,0 +1,100 @@
+"""`stickslip verify`: run a recorded run again, and compare; or ask what would have been."""
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from .files import check_new_folder, new_folder
+
+if TYPE_CHECKING:
+    from ..rerun.recording import Recording
+    from ..rerun.verdict import Verdict
+    from ..rerun.what_if import Side
+    from ..scene import Scene
+
+
+@click.command()
+@click.argument('run', metavar='RUN')
+@click.option('--set', 'changes', multiple=True, metavar='A.B=VALUE', help='What if this parameter had been another?')
+@click.option('--out', metavar='FOLDER', help='With --set: new folder for figures, picture and scene of what if.')
+def verify(run: str, changes: tuple[str, ...], out: str | None) -> None:
+    """Simulate the recorded RUN again from its scene and its orders, without ROS, and compare every bit.
+
+    "identical", or exit code 3 and the first difference.  With --set, the same orders under another scene are set
+    beside it.
+    """
+    _check(changes, out)
+    from ..errors import VerdictError
+    from ..rerun.recording import open_recording
+    from ..rerun.verdict import verify as judge
+    from ..rerun.what_if import other_scene
+    from ..scene import parse_override
+    from .progress import progress_bar
+
+    recording = open_recording(run)
+    given = dict(parse_override(change) for change in changes)
+    scene = other_scene(recording, given)
+    for note in recording.notes:
+        print(f'note: {note}')
+    with progress_bar('verifying') as progress:
+        verdict = judge(recording, progress)
+    _tell(recording, verdict)
+    if given:
+        _what_if(recording, scene, given, out)
+    if verdict.difference:
+        raise VerdictError(f'{run} differs from its re-simulation at {verdict.difference}')
+
+
+def _check(changes: tuple[str, ...], out: str | None) -> None:
+    """Raise before the work begins when the output cannot be written or an option has no effect."""
+    if out is None:
+        return
+    if not changes:
+        raise click.UsageError('--out is of no use alone: give --set A.B=VALUE too.')
+    check_new_folder('--out', out)
+
+
+def _tell(recording: 'Recording', verdict: 'Verdict') -> None:
+    from ..rerun.recording import made_with
+
+    if verdict.missing:
+        print(f'note: {verdict.missing} steps have no recorded state')
+    if verdict.difference:
+        print(f'differs after {_amount(verdict)} that are identical')
+        print(f'      recorded with {made_with(recording)}')
+        return
+    extent = 'identical' if recording.run.is_complete else 'identical as far as it goes'
+    print(f'{extent}, {_amount(verdict)}, up to t = {verdict.end:.9g} s', flush=True)
+
+
+def _amount(verdict: 'Verdict') -> str:
+    return f'{verdict.steps} steps, {verdict.events} events'
+
+
+def _what_if(recording: 'Recording', scene: 'Scene', changes: dict[str, object], out: str | None) -> None:
+    from ..rerun.what_if import other_side, recorded_side
+    from .format import beside_lines
+    from .progress import progress_bar
+
+    recorded = recorded_side(recording)
+    with progress_bar('what if') as progress:
+        other = other_side(recording, scene, changes, progress)
+    print('\n'.join(beside_lines(recorded.figures, other.figures)), flush=True)
+    if out is not None:
+        with new_folder('--out', out) as folder:
+            _write(folder, scene, changes, recorded, other)
+        print(f'written: {out}')
+
+
+def _write(folder: Path, scene: 'Scene', changes: dict[str, object], recorded: 'Side', other: 'Side') -> None:
+    from ..plots import plot_beside
+    from ..receipt import plain
+
+    told = ', '.join(f'{name} = {value}' for name, value in changes.items())
+    plot_beside(recorded.columns, other.columns, f'{scene.name}\nwhat if {told}', folder / 'what_if.png')
+    figures = {'scene': scene.name, 'changes': changes, 'recorded': recorded.figures, 'what_if': other.figures}
+    text = json.dumps(plain(figures), indent=2, allow_nan=False) + '\n'
+    (folder / 'what_if.json').write_text(text, encoding='utf-8')
+    (folder / 'scene.yaml').write_text(scene.text, encoding='utf-8')

@@ -1,0 +1,33 @@
+"""An axis of a picture for any parameter: in the unit that people use, named as in a scene file."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .look import MILLI, Numbers
+
+_SHOWN = {'m': (MILLI, 'mm'), 'm/s': (MILLI, 'mm/s')}
+
+
+class Scale(NamedTuple):
+    """A parameter or a figure: its name, its SI unit, whether its axis is logarithmic."""
+
+    name: str
+    unit: str
+    log: bool = False
+
+    def shown(self, values: Numbers | float) -> Numbers:
+        """Return SI values in the unit of the picture."""
+        return np.asarray(values) * _SHOWN.get(self.unit, (1.0, ''))[0]
+
+    @property
+    def label(self) -> str:
+        """What stands at the axis."""
+        unit = _SHOWN.get(self.unit, (1.0, self.unit))[1]
+        words = self.name.removeprefix('axis.').replace('.', ' ').replace('_', ' ')
+        return f'{words} / ({unit})' if '/' in unit or ' ' in unit else f'{words} / {unit}' if unit else words
+
+    @property
+    def kind(self) -> str:
+        """The name of matplotlib for the scale."""
+        return 'log' if self.log else 'linear'

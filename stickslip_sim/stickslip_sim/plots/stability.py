@@ -1,0 +1,137 @@
+"""A map of the motion over two parameters, with what the theory says, and the phase planes of points picked from it."""
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from string import ascii_uppercase
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap, LogNorm, Normalize
+from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.patheffects import Normal, Stroke
+from matplotlib.ticker import LogLocator
+from numpy.typing import NDArray
+
+from .look import BLACK, DOUBLE_COLUMN, GREY, JOURNAL, RED, SINGLE_COLUMN, Numbers, save
+from .motion import Motion, phase_plane
+from .scale import Scale
+
+MOST_PICKS = 6
+PLAIN = ('smooth sliding', 'sliding that swings on', 'no motion that lasts', 'unsolved')
+_PLAIN_COLOURS = ('#f2f2f2', '#c4c4c4', '#56B4E9', '#222222')
+_LOST = (0, (4.0, 2.0))
+_DECADE = 10.0
+_HEIGHT, _PORTRAIT_HEIGHT = 3.3, 1.6   # in
+
+
+class Field(NamedTuple):
+    """The colours of a map at every `x` (columns) and `y` (rows): `values` of a figure, NaN where `plain` has a colour.
+
+    Numbers in `plain` are places in `PLAIN`.
+    """
+
+    x: Numbers
+    y: Numbers
+    values: Numbers
+    plain: NDArray[np.int64]
+
+
+class Lines(NamedTuple):
+    """What the theory says, over y: the critical feed; and for each x of `feeds` whether steady sliding is lost."""
+
+    y: Numbers
+    critical_feed: Numbers
+    feeds: Numbers
+    is_lost: NDArray[np.bool_]
+
+
+class Pick(NamedTuple):
+    """A point of a map, and the motion there."""
+
+    x: float
+    y: float
+    motion: Motion
+
+
+def plot_stability(scales: tuple[Scale, Scale, Scale], field: Field, lines: Lines | None, picks: Sequence[Pick],
+                   path: Path | str) -> None:
+    """Draw a map over x and y (`scales`: x, y and the figure in colours), SI units, and the phase planes of picks."""
+    with rc_context(JOURNAL):
+        rows = -(-len(picks) // 2)
+        width = DOUBLE_COLUMN if picks else SINGLE_COLUMN + 1.0
+        figure = Figure(figsize=(width, max(_HEIGHT, _PORTRAIT_HEIGHT * rows + 0.4)),
+                        layout=ConstrainedLayoutEngine(w_pad=0.05, h_pad=0.05))
+        left, *right = figure.subfigures(1, 2, width_ratios=(1.15, 1.0)) if picks else (figure,)
+        _map(left.subplots(), scales, field, lines, picks)
+        if picks:
+            _portraits(right[0].subplots(rows, 2, squeeze=False).ravel().tolist(), picks)
+        save(figure, path)
+
+
+def _map(panel: Axes, scales: tuple[Scale, Scale, Scale], field: Field, lines: Lines | None,
+         picks: Sequence[Pick]) -> None:
+    x, y, colour = scales
+    handles: list[Artist] = []
+    at = (x.shown(field.x), y.shown(field.y))
+    bar = panel.pcolormesh(*at, colour.shown(field.values), norm=_norm(field.values, colour), cmap='cividis',
+                           shading='nearest', rasterized=True)
+    plain = np.where(np.isnan(field.values), field.plain, np.nan)
+    panel.pcolormesh(*at, plain, cmap=ListedColormap(_PLAIN_COLOURS), vmin=-0.5, vmax=len(PLAIN) - 0.5,
+                     shading='nearest', rasterized=True)
+    handles += [Patch(facecolor=_PLAIN_COLOURS[k], edgecolor=GREY, linewidth=0.4, label=PLAIN[k])
+                for k in range(len(PLAIN)) if (plain == k).any()]
+    if not np.isnan(field.values).all():
+        ticks = LogLocator(subs=(1.0, 2.0, 5.0)) if isinstance(bar.norm, LogNorm) else None
+        panel.figure.colorbar(bar, ax=panel, label=colour.label, pad=0.02, ticks=ticks, format='%g').minorticks_off()
+    panel.set(xlabel=x.label, ylabel=y.label, xscale=x.kind, yscale=y.kind)
+    panel.grid(visible=False)
+    panel.set(xlim=(at[0][0], at[0][-1]), ylim=(at[1][0], at[1][-1]))
+    if lines is not None:
+        handles += _theory(panel, x, y, lines)
+    for pick, letter in zip(picks, ascii_uppercase):
+        _mark(panel, x.shown(pick.x), y.shown(pick.y), letter)
+    panel.figure.legend(handles=handles, loc='outside upper left', ncols=2)
+
+
+def _norm(values: Numbers, scale: Scale) -> Normalize:
+    """Return a logarithmic scale of colours for values that go over more than one decade."""
+    known = scale.shown(values[np.isfinite(values)])
+    if len(known) and known.min() > 0.0 and known.max() > _DECADE * known.min():
+        return LogNorm(known.min(), known.max())
+    return Normalize(known.min(initial=0.0), known.max(initial=0.0))
+
+
+def _theory(panel: Axes, x: Scale, y: Scale, lines: Lines) -> Iterator[Artist]:
+    """Draw the lines of the theory and yield what explains them."""
+    known = np.isfinite(lines.critical_feed) & (lines.critical_feed > 0.0)
+    if known.any():
+        feed = np.where(known, lines.critical_feed, np.nan)
+        yield from panel.plot(x.shown(feed), y.shown(lines.y), color=RED, linewidth=1.6,
+                              label='critical feed, closed form')
+    if lines.is_lost.any() and not lines.is_lost.all():
+        panel.contour(x.shown(lines.feeds), y.shown(lines.y), lines.is_lost.astype(float), levels=[0.5],
+                      colors=[BLACK], linestyles=[_LOST], linewidths=1.2)
+        yield Line2D([], [], color=BLACK, linestyle=_LOST, linewidth=1.2, label='steady sliding loses stability')
+
+
+def _mark(panel: Axes, x: Numbers, y: Numbers, letter: str) -> None:
+    panel.plot([x], [y], marker='o', markersize=3.5, markerfacecolor='white', markeredgecolor=BLACK, zorder=5)
+    panel.annotate(letter, (float(x), float(y)), xytext=(4.0, 3.0), textcoords='offset points', fontweight='bold',
+                   path_effects=[Stroke(linewidth=2.0, foreground='white'), Normal()])
+
+
+def _portraits(panels: list[Axes], picks: Sequence[Pick]) -> None:
+    for panel, pick, letter in zip(panels, picks, ascii_uppercase):
+        phase_plane(panel, pick.motion)
+        panel.set_xlabel('spring stretch / mm')
+        panel.set_title(letter, loc='left', fontsize=8.0, fontweight='bold')
+    for panel in panels[len(picks):]:
+        panel.set_visible(False)
+    labels = {label: line for panel in panels for line, label in zip(*panel.get_legend_handles_labels())}
+    panels[0].figure.legend(labels.values(), labels.keys(), loc='outside upper left', ncols=3)

@@ -1,0 +1,102 @@
+"""A recorded run that is to be run again: what it began from, and what is doubtful about it."""
+
+import hashlib
+import json
+import warnings
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from .. import __version__
+from ..errors import RecordingError, RecordingWarning
+from ..recording import Run, read_run
+from ..recording.bag import METADATA
+from ..recording.run import CHECKPOINT_FILE, SCENE_FILE, RunFacts
+from ..scene import Scene
+
+_MAKERS = 'version', 'python', 'platform', 'numpy', 'numba'
+_MAGIC = b'\x89MCAP0\r\n'   # with which a finished file ends
+
+
+class Offline(NamedTuple):
+    """How long an offline run was, and how often it was sampled."""
+
+    duration: float            # s
+    sample_period: Fraction    # s
+
+
+@dataclass(frozen=True)
+class Recording:
+    """A run, its scene, and what it began from: a checkpoint, or the start (None); `offline` is None for a node's."""
+
+    run: Run
+    scene: Scene
+    checkpoint: Mapping[str, Any] | None
+    offline: Offline | None
+    notes: tuple[str, ...]   # for people
+
+
+def open_recording(path: Path | str) -> Recording:
+    """Return the recording in a run folder or an MCAP file; raises RecordingError when it cannot be run again."""
+    with warnings.catch_warnings():
+        warnings.simplefilter('ignore', RecordingWarning)   # told by the notes
+        run = read_run(path)
+    if not run.is_complete and _is_finished(run.path):
+        raise RecordingError(f'{run.path}: damaged: it was finished, but only {sum(run.counts.values())} of its '
+                             'messages can be read and trusted; fetch the file again')
+    if not run.is_complete and not run.topics:
+        raise RecordingError(f'{run.path}: cut off before its first message was written')
+    facts = run.metadata.get(METADATA)
+    if facts is None:
+        raise RecordingError(f'{run.path}: it does not say what it was simulated with; give a run that stickslip '
+                             'recorded')
+    return Recording(run, run.scene, _checkpoint(run), _offline(run, facts), tuple(_notes(run, facts)))
+
+
+def made_with(recording: Recording) -> str:
+    """Return what of the recording's versions and machine is not as here, and what is here instead; for people."""
+    recorded, here = recording.run.metadata[METADATA], RunFacts.of(recording.scene).as_metadata()
+    others = [f'{name} {recorded[name]} (here {here[name]})' for name in _MAKERS
+              if recorded.get(name, here[name]) != here[name]]
+    return ', '.join(others) or 'the same versions on the same kind of machine'
+
+
+def _is_finished(path: Path) -> bool:
+    with path.open('rb') as file:
+        file.seek(max(0, path.stat().st_size - len(_MAGIC)))
+        return file.read() == _MAGIC
+
+
+def _checkpoint(run: Run) -> Mapping[str, Any] | None:
+    if CHECKPOINT_FILE not in run.attachments:
+        return None
+    try:
+        checkpoint: Mapping[str, Any] = json.loads(run.attachments[CHECKPOINT_FILE])
+    except ValueError as error:
+        raise RecordingError(f'{run.path}: damaged: its {CHECKPOINT_FILE} is no JSON: {error}') from None
+    return checkpoint
+
+
+def _offline(run: Run, facts: Mapping[str, str]) -> Offline | None:
+    if facts.get('origin') == 'node':
+        return None
+    try:
+        return Offline(float(facts['duration']), Fraction(facts['sample_period']))
+    except (KeyError, ValueError, ZeroDivisionError):
+        raise RecordingError(f'{run.path}: it does not say whether a node or the tool made it; recorded by another '
+                             'version?') from None
+
+
+def _notes(run: Run, facts: Mapping[str, str]) -> Iterator[str]:
+    if facts.get('version') != __version__:
+        yield f'recorded by stickslip {facts.get("version")}, this is {__version__}: the numbers may differ'
+    if hashlib.sha256(run.attachments[SCENE_FILE]).hexdigest() != facts.get('scene_hash'):
+        yield f'{SCENE_FILE} was changed after the recording'
+    elif run.scene.hash != facts.get('scene_hash'):
+        yield f'{SCENE_FILE} means something else in this version'
+    if not run.is_complete:
+        yield 'the recording has no end: cut off, or still being written'
+    if dropped := run.receipt.get('dropped_messages'):
+        yield f'{dropped} messages were dropped while recording'

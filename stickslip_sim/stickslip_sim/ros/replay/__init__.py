@@ -1,0 +1,1 @@
+"""Recorded runs back onto topics, or their commands into a live node."""

@@ -1,0 +1,55 @@
+"""Recorded orders into a live axis: by time or by step, as the clock of the axis wants it."""
+
+from collections.abc import Iterator
+from threading import Event
+
+from rclpy.node import Node
+
+from ...errors import InputError
+from ...recording.playback import Recording
+from .axis import Axis
+from .lockstep import InLockStep
+from .orders import COMMANDS, order_topics
+from .player import Act, Script
+from .realtime import InRealTime
+from .settings import Settings
+from .span import Span, chosen_topics
+
+_AXIS = 'feed_axis'
+_STRIDE = 0.02    # s of the steady clock that pass with one call of ~/step
+
+
+class Commands:
+    """The script of all orders."""
+
+    def __init__(self, node: Node, recording: Recording, settings: Settings, span: Span, stop: Event) -> None:
+        self.begin = span.begin
+        self._node, self._recording, self._settings, self._span, self._stop = node, recording, settings, span, stop
+        self._orders = order_topics(recording, chosen_topics(recording, settings.topics))
+        self._axis = Axis(node, settings.axis or self._recorded_axis(), stop)
+        self._script: Script | None = None
+
+    def prepare(self) -> None:
+        """Ask the axis for its clock the first time; raises InputError when it is not there or goes its own way."""
+        if self._script is None:
+            self._script = self._make_script(*self._axis.parameters('time.mode', 'time.rate'))
+        self._script.prepare()
+
+    def acts(self) -> Iterator[Act]:
+        """Yield what happens, in the order of time."""
+        return self._script.acts() if self._script else iter(())
+
+    def _make_script(self, mode: str, rate: float) -> Script:
+        if mode == 'realtime':
+            return InRealTime(self._node, self._axis, self._recording, self._orders, self._span, self._stop)
+        if mode != 'lockstep':
+            raise InputError('time.mode', mode, 'realtime or lockstep for an axis that takes recorded commands',
+                             'start it so')
+        if self._settings.start_offset:
+            raise InputError('start_offset', self._settings.start_offset, '0 in lock-step', 'a run has its begin')
+        return InLockStep(self._node, self._axis, self._recording, self._orders, self._span, rate,
+                          _STRIDE * max(1.0, self._settings.rate))
+
+    def _recorded_axis(self) -> str:
+        command = next(name for name, kind in self._orders.items() if kind in COMMANDS)
+        return f'{command.rpartition("/")[0]}/{_AXIS}'

@@ -1,0 +1,78 @@
+"""What a recording says of the orders that its axis got: commands, faults, parameters."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+from rclpy.serialization import deserialize_message
+
+from ...errors import InputError, RecordingError
+from ...recording import Topic
+from ...recording.playback import Recording
+from ...recording.topics import DRIVE_VELOCITY, EXTERNAL_FORCE, PARAMETER_EVENTS, RIG_EVENT, SLIDER_STATE
+from ...rig import NoteKind
+from ...scene.schema import BY_NAME
+from ..topics import message_type
+
+COMMANDS = (DRIVE_VELOCITY, EXTERNAL_FORCE)
+_CLEAR = 'clear'    # what ~/inject_fault calls the end of a fault
+
+
+class Request(NamedTuple):
+    """A call of a service of the axis."""
+
+    service: str
+    fields: Mapping[str, Any]
+
+
+def order_topics(recording: Recording, wanted: Sequence[str]) -> dict[str, Topic]:
+    """Return which recorded topics hold orders, among those wanted; raises RecordingError without commands."""
+    kinds = {kind.type: kind for kind in (*COMMANDS, RIG_EVENT, PARAMETER_EVENTS)}
+    found = {name: kinds[recording.topics[name].type] for name in wanted if recording.topics[name].type in kinds}
+    if not any(kind in COMMANDS for kind in found.values()):
+        raise RecordingError(f'{recording.path}: no drive velocities and no forces in it; give a recording of an axis')
+    for kind in kinds.values():
+        _check_single(kind, [name for name, its in found.items() if its is kind])
+    return found
+
+
+def state_topic(recording: Recording) -> str:
+    """Return the one topic of states; raises RecordingError when there are none, InputError when there are more."""
+    names = [name for name, topic in recording.topics.items() if topic.type == SLIDER_STATE.type]
+    if not names:
+        raise RecordingError(f'{recording.path}: no states in it, so nobody knows its steps; replay it in real time')
+    _check_single(SLIDER_STATE, names)
+    return names[0]
+
+
+def request_of(kind: Topic, data: bytes) -> Request | None:
+    """Return how an order other than a command is given to an axis; None where it follows from the others."""
+    message = deserialize_message(data, message_type(kind))
+    if kind is PARAMETER_EVENTS:
+        changed = [parameter for parameter in message.changed_parameters if parameter.name in BY_NAME]
+        return Request('set_parameters_atomically', {'parameters': changed}) if changed else None
+    if message.kind == NoteKind.FAULT_INJECTED:
+        return Request('inject_fault', {'id': message.id, 'kind': message.fault, 'start': message.start,
+                                        'duration': message.duration, 'value': message.value})
+    if message.kind == NoteKind.FAULT_CLEARED and message.id:
+        return Request('inject_fault', {'id': message.id, 'kind': _CLEAR})
+    if message.kind == NoteKind.FAULT_CLEARED:
+        return Request('clear_faults', {})
+    return None
+
+
+def is_timeout(kind: Topic, data: bytes) -> bool:
+    """Return whether a recorded message tells of a command time-out."""
+    return kind is RIG_EVENT and deserialize_message(data, message_type(kind)).kind == NoteKind.COMMAND_TIMEOUT
+
+
+def refusal_in(response: Any) -> str:
+    """Return why an axis did not do as it was told; empty when it did."""
+    if hasattr(response, 'result'):
+        return '' if response.result.successful else str(response.result.reason)
+    return '' if response.success else str(response.message)
+
+
+def _check_single(kind: Topic, names: Sequence[str]) -> None:
+    if len(names) > 1:
+        raise InputError('topics', list(names), f'one of type {kind.type}', 'the recording is of several axes: name'
+                         ' the topics of one')

@@ -1,0 +1,31 @@
+"""The executable `replay_node` as a program."""
+
+from typing import TYPE_CHECKING
+
+from ..life import Program, read_nothing, spin
+
+if TYPE_CHECKING:
+    from ..sim_node import Signals
+
+_USAGE = """\
+usage: replay_node [--help] --ros-args -p bag:=RUN_FOLDER [-p NAME:=VALUE]... [-r TOPIC:=OTHER]...
+
+Plays a recorded run (node replay): all its topics for viewers, or with -p mode:=commands what the axis was told, into
+a live sim_node.  The other parameters are named as the flags of ros2 bag play: rate, loop, start_offset,
+playback_duration, clock, delay, start_paused, topics.
+"""
+
+
+def _run(_: None, signals: 'Signals') -> str:
+    from ...errors import StickslipError
+    from .node import Replay
+
+    node = Replay()
+    spin(node, signals, lambda: node.player.is_over)
+    crash = node.player.crash
+    if isinstance(crash, StickslipError):
+        raise crash
+    return '' if crash is None else f'in the player: {crash!r}'
+
+
+PROGRAM = Program('replay_node', _USAGE, read_nothing, _run)

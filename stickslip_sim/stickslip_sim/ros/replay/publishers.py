@@ -1,0 +1,32 @@
+"""Publishers of recorded topics: types as installed, quality of service as recorded, bytes as they are."""
+
+from importlib import import_module
+from typing import Any
+
+from rclpy.node import Node
+
+from ...errors import InputError
+from ...recording import schema
+from ...recording.playback import RecordedTopic
+from ..topics import qos
+
+
+def publisher_of(node: Node, topic: RecordedTopic) -> Any:
+    """Create the publisher of a topic; raises InputError or RecordingError when its bytes mean nothing here."""
+    if topic.encoding != 'cdr' or topic.type.count('/') != 2:
+        raise InputError(topic.name, f'{topic.type} in {topic.encoding}', 'a ROS 2 message in CDR',
+                         'name those to be played with topics')
+    installed = schema(topic.type)
+    if topic.type_hash not in ('', installed.hash):
+        raise InputError(topic.name, topic.type_hash, f'{installed.hash}, the hash of {topic.type} here',
+                         'it was recorded with another definition: use the version of then')
+    return node.create_publisher(message_class(topic.type), topic.name, qos(topic.qos))
+
+
+def message_class(type_name: str) -> Any:
+    """Return the class of 'package/msg/Name'; raises InputError when its Python package is not installed."""
+    package, kind, name = type_name.split('/')
+    try:
+        return getattr(import_module(f'{package}.{kind}'), name)
+    except (ImportError, AttributeError):
+        raise InputError('type', type_name, 'installed with its Python package', 'source its workspace') from None

@@ -1,0 +1,54 @@
+"""The parameters of the replay, in the words of `ros2 bag play`, and what they make."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+
+from ...errors import InputError
+from ...scene.parameter import Parameter
+
+STATES, COMMANDS = 'states', 'commands'
+
+PARAMETERS = (
+    Parameter('bag', 'string', '', '', 'folder of the run, or an .mcap file'),
+    Parameter('mode', 'string', STATES, '', 'states: all that was recorded, onto its topics; commands: what the axis'
+              ' was told, into a live one', choices=(STATES, COMMANDS)),
+    Parameter('rate', 'double', 1.0, '', 'seconds of the recording per second', 0.0, 1e6, low_open=True, live=True),
+    Parameter('loop', 'bool', False, '', 'whether to begin anew at the end'),
+    Parameter('start_offset', 'double', 0.0, 's', 'of the recording that are left out at its begin', 0.0, 1e9),
+    Parameter('playback_duration', 'double', -1.0, 's', 'of the recording that are played; -1: to its end', -1.0, 1e9),
+    Parameter('delay', 'double', 0.0, 's', 'before it is played, each time', 0.0, 1e6),
+    Parameter('start_paused', 'bool', False, '', 'whether to wait for ~/resume at the begin'),
+    Parameter('clock', 'double', 0.0, 'Hz', 'how often /clock is published; 0: not at all', 0.0, 1e4),
+    Parameter('topics', 'string_array', (), '', 'which are played; left out: all'),
+    Parameter('axis', 'string', '', '', 'with mode: commands: the node that takes them; empty: feed_axis in the'
+              ' namespace of the recording'),
+)
+
+
+@dataclass(frozen=True)
+class Settings:
+    """The parameters, checked together."""
+
+    bag: str
+    mode: str
+    rate: float
+    loop: bool
+    start_offset: float
+    playback_duration: float
+    delay: float
+    start_paused: bool
+    clock: float
+    topics: tuple[str, ...]
+    axis: str
+
+    @classmethod
+    def of(cls, values: Mapping[str, object]) -> 'Settings':
+        """Return the settings; raises InputError on those that have no meaning together."""
+        settings = cls(**{field.name: values[field.name] for field in fields(cls)})  # type: ignore[arg-type]
+        if not settings.bag:
+            raise InputError('bag', '', 'the folder of a run', 'give it: --ros-args -p bag:=RUN_FOLDER')
+        if settings.mode == COMMANDS and settings.clock:
+            raise InputError('clock', settings.clock, '0 with mode: commands', 'the axis has the clock')
+        if settings.mode == STATES and settings.axis:
+            raise InputError('axis', settings.axis, 'left out with mode: states', 'it is for mode: commands')
+        return settings

@@ -1,0 +1,43 @@
+"""What of a recording is played: its topics, and from when to when."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from ...errors import InputError
+from ...pacing import NANOSECONDS
+from ...recording.playback import Recording
+from .settings import Settings
+
+
+class Span(NamedTuple):
+    """Log times, ns; both belong to it."""
+
+    begin: int
+    end: int
+
+
+def span_of(recording: Recording, settings: Settings) -> Span:
+    """Return the span that the settings ask for; raises InputError when there is nothing in it."""
+    begin = recording.begin + round(settings.start_offset * NANOSECONDS)
+    if begin > recording.end:
+        length = (recording.end - recording.begin) / NANOSECONDS
+        raise InputError('start_offset', settings.start_offset, f'at most {length:g} s, the length of the recording',
+                         'begin earlier')
+    if settings.playback_duration < 0.0:
+        return Span(begin, recording.end)
+    return Span(begin, min(recording.end, begin + round(settings.playback_duration * NANOSECONDS)))
+
+
+def chosen_topics(recording: Recording, wanted: Sequence[str]) -> list[str]:
+    """Return the topics that are wanted, all when none is named; raises InputError on one that is not there.
+
+    A name without a slash at its begin is that of the one topic that ends so.
+    """
+    return [_topic(recording, name) for name in wanted] or list(recording.topics)
+
+
+def _topic(recording: Recording, wanted: str) -> str:
+    found = [name for name in recording.topics if name == wanted or name.endswith(f'/{wanted}')]
+    if len(found) != 1:
+        raise InputError('topics', wanted, f'in the recording: {", ".join(recording.topics)}', 'give one of them')
+    return found[0]

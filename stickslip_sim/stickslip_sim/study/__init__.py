@@ -1,0 +1,14 @@
+"""Design studies: many variants of one scene, the cycle figures of each, and where the motion changes.
+
+    study = Study(load_scene('paper_fig7').values, Grid((variation('drive.velocity=1e-4:1e-1:100:log'),)))
+    figures = study.figures(0, study.count)
+
+A study is plain data and can be sent to other processes; `figures` of a stretch of its points depends on nothing else.
+"""
+
+from .figures import MOTIONS, Figures, Motion
+from .sample import Grid, Sobol
+from .study import Study
+from .variation import Variation, variation
+
+__all__ = ['MOTIONS', 'Figures', 'Grid', 'Motion', 'Sobol', 'Study', 'Variation', 'variation']

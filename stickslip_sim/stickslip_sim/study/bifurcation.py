@@ -1,0 +1,51 @@
+"""Where the cycles of a scene go as one of its parameters changes: a bifurcation diagram, in numbers."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from ..analysis import Cycle, cycle_figures
+from ..offline import run_offline
+from .figures import Figures, Motion
+from .points import scene_at
+from .steady import sliding_slope
+from .study import Study
+from .variation import Numbers
+
+_LAST = 20   # cycles of each point that are shown, or half of all
+
+
+class Bifurcation(NamedTuple):
+    """`cycles`: a row (value, drive force at break-away and at arrest in N, jump in m) for each of the last cycles.
+
+    `sliding`: a row (value, drive force of steady sliding in N, 1 where it is stable) for each value; empty for inputs
+    that change with time.
+    """
+
+    cycles: Numbers
+    sliding: Numbers
+
+
+def bifurcation(study: Study, figures: Figures, progress: Callable[[float], None] | None = None) -> Bifurcation:
+    """Run each point of a study of one parameter again, as long as its `figures` say, and keep its last cycles."""
+    cycles, sliding = [], []
+    values = study.points(0, study.count)[:, 0].tolist()
+    for k, value in enumerate(values):
+        scene = scene_at(study.values, study.names, np.array([value]))
+        if figures.motion[k] == Motion.STICK_SLIP:
+            events = run_offline(scene, float(figures.duration[k])).events
+            found = cycle_figures(events)
+            cycles += [_row(value, cycle) for cycle in found[len(found) // 2:][-_LAST:]]
+        feed = scene.drive.values[0]
+        if study.works_in_batches and feed != 0.0:
+            friction = scene.axis.normal_force * scene.axis.friction.kinetic.coefficient(abs(feed))
+            slope = sliding_slope(scene.axis, {'drive_velocity': np.array([feed])})[0]
+            sliding.append((value, np.copysign(friction, feed) - scene.force.values[0], float(slope >= 0.0)))
+        if progress:
+            progress((k + 1) / len(values))
+    return Bifurcation(np.array(cycles).reshape(-1, 4), np.array(sliding).reshape(-1, 3))
+
+
+def _row(value: float, cycle: Cycle) -> tuple[float, float, float, float]:
+    return value, cycle.break_away_drive_force, cycle.arrest_drive_force, cycle.jump

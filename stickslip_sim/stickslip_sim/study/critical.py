@@ -1,0 +1,105 @@
+"""Critical values: where an axis that starts from rest begins to stick and slip, and where steady sliding is lost.
+
+From rest: the scene as it is, run by the exact engine until its motion settles; is that stick-slip?  From sliding:
+steady sliding at the drive's velocity, slightly disturbed; it is lost where h + N mu_k′(v) < 0.  Between the two values
+both motions go on, and the start decides.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from ..errors import InputError
+from ..scene import Scene
+from .figures import Motion, Numbers, figures_of
+from .points import runs_in_batches, scene_at, works_in_batches
+from .steady import sliding_slope
+from .transitions import NO, OPEN, YES, Course, Verdicts, course
+from .variation import Variation, checked, parameter_of
+
+_PATIENCE = 20_000   # cycles that a motion is given to settle
+_WIDTH = 100.0       # times up and down from the scene's own value, where no range is given
+FINEST = 1e-15
+
+
+@dataclass(frozen=True)
+class Critical:
+    """Where the motion changes over a parameter: YES is stick-slip `from_rest`, and lost sliding `from_sliding`."""
+
+    over: Variation
+    accuracy: float
+    from_rest: Course
+    from_sliding: Course
+
+    @property
+    def both(self) -> list[tuple[float, float]]:
+        """Stretches in which stick-slip goes on from rest, and sliding from sliding."""
+        marks = [one.value for one in (*self.from_rest.transitions, *self.from_sliding.transitions)]
+        ends = sorted({self.over.low, *marks, self.over.high})
+        return _joined([(a, b) for a, b in pairwise(ends) if self.from_rest.at(0.5 * (a + b)) == YES
+                        and self.from_sliding.at(0.5 * (a + b)) == NO])
+
+
+def critical(scene: Scene, over: Variation, accuracy: float,
+             progress: Callable[[float], None] | None = None) -> Critical:
+    """Return the critical values of a parameter of a scene; raises InputError."""
+    if not FINEST <= accuracy < 1.0:
+        raise InputError('--accuracy', accuracy, f'>= {FINEST:g} and < 1', 'give the relative width, as 1e-9')
+    if not works_in_batches(scene):
+        raise InputError('scene', scene.name, 'one with constant inputs, without faults and with the solver exact',
+                         'a critical value belongs to a motion that settles')
+    for end in (over.low, over.high):
+        scene_at(scene.values, [over.name], np.array([end]))
+    judge = _Judge(scene.values, over.name)
+    return Critical(over, accuracy, *(course(one, over.low, over.high, over.log, accuracy, progress)
+                                      for one in (judge.sticks, judge.loses_sliding)))
+
+
+def default_range(scene: Scene, name: str) -> Variation:
+    """Return the range of a parameter from a hundredth to a hundred times its value in the scene; raises InputError."""
+    entry, index = parameter_of(name)
+    value = scene.values.get(entry.name)
+    if isinstance(value, tuple) and index is not None and index < len(value):
+        value = value[index]
+    if not isinstance(value, float) or not 0.0 < value < np.inf:
+        raise InputError('--between', None, f'given for {name}, which is no number above 0 in this scene',
+                         'add --between LOW:HIGH')
+    low, high = value / _WIDTH, value * _WIDTH
+    return checked(Variation(name, max(low, entry.low or low), min(high, entry.high or high), 0, True))
+
+
+@dataclass(frozen=True)
+class _Judge:
+    """Judges values of one parameter of a scene."""
+
+    values: Mapping[str, object]
+    name: str
+
+    def sticks(self, numbers: Numbers) -> Verdicts:
+        """Whether stick-slip goes on, from the start of the scene."""
+        figures = figures_of(runs_in_batches(self.values, [self.name], numbers[:, None], None, _PATIENCE))
+        slips = figures.motion == Motion.STICK_SLIP
+        unknown = (slips & (figures.settled == 0.0)) | (figures.motion == Motion.UNSOLVED)
+        return np.where(unknown, OPEN, np.where(slips, YES, NO))
+
+    def loses_sliding(self, numbers: Numbers) -> Verdicts:
+        """Whether a disturbance of steady sliding grows."""
+        slopes = np.array([self._slope(number) for number in numbers])
+        return np.where(np.isnan(slopes), OPEN, np.where(slopes < 0.0, YES, NO))
+
+    def _slope(self, number: float) -> float:
+        scene = scene_at(self.values, [self.name], np.array([number]))
+        return float(sliding_slope(scene.axis, {'drive_velocity': np.array([scene.drive.values[0]])})[0])
+
+
+def _joined(stretches: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Return stretches with those put together that touch."""
+    joined: list[tuple[float, float]] = []
+    for begin, end in stretches:
+        if joined and joined[-1][1] == begin:
+            joined[-1] = (joined[-1][0], end)
+        else:
+            joined.append((begin, end))
+    return joined

@@ -1,0 +1,37 @@
+"""A study as JSON values, and back: what stands beside its table."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, fields
+from typing import Any
+
+from ..receipt import versions
+from ..scene.load import scene_of_parameters
+from ..scene.ros_yaml import read_yaml
+from ..scene.sections import parameters_of
+from .sample import Grid, Sample, Sobol
+from .study import Study
+from .variation import Variation
+
+FORM = 'stickslip study 1'
+_VARIED = tuple(field.name for field in fields(Variation))
+
+
+def description(study: Study, command: str = '') -> dict[str, Any]:
+    """Return all that a study is, enough to run it again, with the `command` and the versions that run it."""
+    sample = study.sample
+    return {
+        'form': FORM, 'command': command, 'scene': study.scene.name, 'scene_hash': study.scene.hash,
+        'points': study.count, 'duration': study.duration,
+        'over': [{**asdict(one), 'unit': one.unit} for one in sample.variations],
+        'sobol': {'points': sample.count, 'seed': sample.seed} if isinstance(sample, Sobol) else None,
+        'versions': versions(), 'scene_text': study.scene.text,
+    }
+
+
+def study_of(told: Mapping[str, Any]) -> Study:
+    """Return the study that a description is of; raises InputError and KeyError."""
+    variations = tuple(Variation(**{name: one[name] for name in _VARIED}) for one in told['over'])
+    drawn = told['sobol']
+    sample: Sample = Sobol(variations, drawn['points'], drawn['seed']) if drawn else Grid(variations)
+    scene = scene_of_parameters(parameters_of(read_yaml(told['scene_text'])), {})
+    return Study(scene.values, sample, told['duration'])

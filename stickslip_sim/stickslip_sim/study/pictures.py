@@ -1,0 +1,92 @@
+"""The pictures of a study: a map of two parameters, or a bifurcation diagram of one."""
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from ..plots.bifurcation import plot_bifurcation
+from ..plots.scale import Scale
+from ..plots.stability import Field, Lines, Pick, plot_stability
+from .bifurcation import bifurcation
+from .borders import FEED, borders
+from .figures import Motion
+from .sample import Grid
+from .study import Study
+from .table import figures_in
+from .variation import Numbers, Variation
+
+UNITS = {'amplitude': 'm', 'period': 's', 'stick_share': '', 'peak_speed': 'm/s', 'break_away_force': 'N',
+         'settling_time': 's', 'cycles': '', 'duration': 's'}
+Columns = Mapping[str, Numbers]
+_PLAIN = {Motion.AT_REST: 2, Motion.SINGLE_SLIP: 2, Motion.SMOOTH_SLIDING: 0, Motion.UNSOLVED: 3}
+
+
+def check_drawable(study: Study, shown: str) -> None:
+    """Raise InputError unless a study can be drawn, and the figure `shown` in colours."""
+    if not isinstance(study.sample, Grid) or len(study.names) > 2:
+        raise InputError('--over', ', '.join(study.names), 'a grid of two parameters for a map, of one for a'
+                         ' bifurcation diagram', 'read other studies from their table')
+    if shown not in UNITS:
+        raise InputError('--show', shown, 'one of ' + ', '.join(UNITS), 'leave it out for the amplitude')
+
+
+def draw_bifurcation(study: Study, columns: Columns, paths: Sequence[str],
+                     progress: Callable[[float], None] | None = None) -> None:
+    """Draw the last cycles over the one parameter of a study into each of `paths`."""
+    found = bifurcation(study, figures_in(columns), progress)
+    (over,) = study.sample.variations
+    for path in paths:
+        plot_bifurcation(_scale(over), found.cycles, found.sliding, path)
+
+
+def draw_map(study: Study, columns: Columns, shown: str, picks: Sequence[Pick], paths: Sequence[str]) -> None:
+    """Draw one figure over the two parameters of a study, the feed along x, into each of `paths`."""
+    first, second = study.sample.variations
+    turned = second.name == FEED
+    x, y = (second, first) if turned else (first, second)
+
+    def table(values: Numbers) -> Numbers:
+        grid = values.reshape(first.count, second.count)
+        return grid if turned else grid.T
+
+    motion = table(columns['motion'])
+    values = np.where(motion == Motion.STICK_SLIP, table(columns[shown]), np.nan)
+    field = Field(x.grid(), y.grid(), values, _plain(motion, table(columns['settled'])))
+    known = borders(study)
+    lines = Lines(known.others, known.critical_feed, known.feeds, known.is_lost) if known else None
+    for path in paths:
+        plot_stability((_scale(x), _scale(y), Scale(shown, UNITS[shown])), field, lines, picks, path)
+
+
+def point_of(study: Study, text: str) -> Numbers:
+    """Return the values `A,B` of the two parameters of a study; raises InputError."""
+    try:
+        point = np.array([float(word) for word in text.split(',')])
+    except ValueError:
+        point = np.array([])
+    variations = study.sample.variations
+    if len(point) != len(variations) or any(not one.low <= value <= one.high for one, value in zip(variations, point)):
+        ranges = ', '.join(f'{one.name} from {one.low:g} to {one.high:g}' for one in variations)
+        raise InputError('--pick', text, f'a number for each of {ranges}', 'give them with a comma: A,B')
+    return point
+
+
+def pick(study: Study, point: Numbers) -> tuple[float, float]:
+    """Return where a point stands in the map: x, y."""
+    first, second = point.tolist()
+    return (second, first) if study.names[1] == FEED else (first, second)
+
+
+def _scale(one: Variation) -> Scale:
+    return Scale(one.name, one.unit, one.log)
+
+
+def _plain(motion: Numbers, settled: Numbers) -> NDArray[np.int64]:
+    """Return what stands in the map where no stick-slip does, as places in `plots.stability.PLAIN`."""
+    plain = np.zeros(motion.shape, dtype=np.int64)
+    for code, place in _PLAIN.items():
+        plain[motion == code] = place
+    plain[(motion == Motion.SMOOTH_SLIDING) & (settled == 0.0)] = 1
+    return plain

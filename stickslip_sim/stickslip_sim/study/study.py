@@ -1,0 +1,96 @@
+"""A study: variants of one scene, and what becomes of each."""
+
+import itertools
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..errors import InputError
+from ..offline import check_times
+from ..scene import Scene, scene_from_values
+from ..scene.load import named
+from .figures import Figures, Runs, figures_of
+from .points import runs_alone, runs_in_batches, scene_at, works_in_batches
+from .sample import Sample
+from .variation import Numbers
+
+MOST_VARIATIONS = 10
+_IN_A_CHUNK, _ALONE_IN_A_CHUNK = 2000, 20   # points: a fraction of a second
+
+
+@dataclass(frozen=True)
+class Study:
+    """The scene of the effective `values`, varied as `sample` says.
+
+    Each point runs for `duration` s, or with None until its motion settles (`settling`).  Raises InputError unless
+    every combination of the ends of the variations is a scene.
+    """
+
+    values: Mapping[str, object]
+    sample: Sample
+    duration: float | None = None
+
+    def __post_init__(self) -> None:
+        self._check_names()
+        for corner in itertools.product(*((one.low, one.high) for one in self.sample.variations)):
+            with named('at ' + ', '.join(f'{name}={number:g}' for name, number in zip(self.names, corner))):
+                self.scene_at(np.array(corner))
+        if self.duration is not None:
+            check_times(self.duration, None)
+        elif not self.works_in_batches:
+            raise InputError('duration', None, 'given for a scene with faults, inputs that change with time, or a '
+                             'solver other than exact', 'add --duration S')
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The parameters that vary."""
+        return tuple(one.name for one in self.sample.variations)
+
+    @property
+    def count(self) -> int:
+        """How many points there are."""
+        return self.sample.count
+
+    @cached_property
+    def scene(self) -> Scene:
+        """The scene that is varied."""
+        return scene_from_values(self.values)
+
+    @cached_property
+    def works_in_batches(self) -> bool:
+        """Whether the compiled batch can run the points."""
+        return works_in_batches(self.scene)
+
+    @property
+    def chunk(self) -> int:
+        """How many points to work on between two looks at the clock; the figures do not depend on it."""
+        return _IN_A_CHUNK if self.works_in_batches else _ALONE_IN_A_CHUNK
+
+    def points(self, first: int, last: int) -> Numbers:
+        """Return the points from `first` on, up to `last`: a row each, a column for each of `names`."""
+        return self.sample.points(first, last)
+
+    def scene_at(self, point: Numbers) -> Scene:
+        """Return the scene of a point; raises InputError."""
+        return scene_at(self.values, self.names, point)
+
+    def figures(self, first: int, last: int) -> Figures:
+        """Return the figures of the points from `first` on, up to `last`."""
+        return figures_of(self.runs(self.points(first, last)))
+
+    def runs(self, points: Numbers) -> Runs:
+        """Run the scenes of points."""
+        if self.works_in_batches:
+            return runs_in_batches(self.values, self.names, points, self.duration)
+        return runs_alone(self.values, self.names, points, self.duration or 0.0)
+
+    def _check_names(self) -> None:
+        names = self.names
+        if not 1 <= len(names) <= MOST_VARIATIONS:
+            raise InputError('--over', f'{len(names)} times', f'given once to {MOST_VARIATIONS} times',
+                             'vary fewer parameters in one study')
+        twice = [name for name in names if names.count(name) > 1]
+        if twice:
+            raise InputError('--over', twice[0], 'given once for each parameter', 'drop one of the two')

@@ -1,0 +1,72 @@
+"""The points of a study as lines of CSV, and those lines back as columns."""
+
+import io
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import InputError
+from .figures import FIGURES, MOTIONS, Figures, Motion
+from .study import Study
+from .variation import Numbers
+
+BYTES_OF_A_NUMBER = 24   # 17 digits, sign, point, exponent, comma
+_CODES = {word: float(motion) for motion, word in MOTIONS.items()}
+
+
+def header(study: Study) -> bytes:
+    """Return the line of names."""
+    return (','.join((*study.names, *FIGURES)) + '\n').encode()
+
+
+def lines(study: Study, first: int, last: int) -> bytes:
+    """Run the points from `first` on, up to `last`, and return a line for each; what does not exist stays empty."""
+    points, figures = study.points(first, last), study.figures(first, last)
+    columns = [map(_text, column) for column in points.T.tolist()]
+    columns += [map(_word if name == 'motion' else _text, getattr(figures, name).tolist()) for name in FIGURES]
+    return ''.join(','.join(row) + '\n' for row in zip(*columns, strict=True)).encode()
+
+
+def size_on_disk(study: Study) -> int:
+    """Return how many bytes all lines take at most."""
+    return study.count * (len(study.names) + len(FIGURES)) * BYTES_OF_A_NUMBER
+
+
+def size_in_memory(study: Study) -> int:
+    """Return how many bytes the columns take when they are read."""
+    return study.count * (len(study.names) + len(FIGURES)) * 8
+
+
+def read_columns(path: Path, names: Sequence[str]) -> dict[str, Numbers]:
+    """Return the columns of a table by name; motions as numbers of `Motion`.  Raises InputError."""
+    try:
+        text = path.read_text(encoding='utf-8')
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError('points', str(path), 'a readable table of a sweep', str(error)) from None
+    titles, _, body = text.partition('\n')
+    if titles.split(',') != [*names, *FIGURES]:
+        raise InputError('points', str(path), 'the table of this study', 'it was changed; sweep again')
+    rows = [[_number(cell) for cell in line.split(',')] for line in io.StringIO(body)]
+    if any(len(row) != len(names) + len(FIGURES) for row in rows) or not rows:
+        raise InputError('points', str(path), 'a table of whole lines', 'it was changed; sweep again')
+    return dict(zip((*names, *FIGURES), np.array(rows).T.copy()))
+
+
+def figures_in(columns: Mapping[str, Numbers]) -> Figures:
+    """Return the figures among columns."""
+    return Figures(**{name: columns[name] for name in FIGURES})
+
+
+def _text(number: float) -> str:
+    return '' if math.isnan(number) else repr(number)
+
+
+def _word(motion: float) -> str:
+    return MOTIONS[Motion(int(motion))]
+
+
+def _number(cell: str) -> float:
+    cell = cell.strip()
+    return _CODES[cell] if cell in _CODES else float(cell or 'nan')

@@ -1,0 +1,100 @@
+"""Critical feeds in closed form: from which feed on a slider no longer sticks, where the theory says it.
+
+m ẍ = c (v t − x) + h (v − ẋ) − F, with ω = √(c/m), ζ = h/(2 √(cm)) and s = √(1 − ζ²).  Friction drops by ΔF as the slip
+begins; A = ΔF/(v √(cm)) is that drop over what the feed v stands for.
+"""
+
+import math
+from typing import NamedTuple
+
+from scipy.optimize import brentq
+
+from ..axis import Axis, RigidContact
+from ..friction import KineticTable, StaticLaw, StaticLawKind
+
+_CREEPS = 0.9999   # damping ratio from which on no slip of a double comes to rest: A_c beyond 1e190
+
+
+class Oscillator(NamedTuple):
+    """The slider on its drive: mass m kg, stiffness c N/m, damping h N s/m."""
+
+    mass: float
+    stiffness: float
+    damping: float = 0.0
+
+    @property
+    def frequency(self) -> float:
+        """The undamped angular frequency ω, rad/s."""
+        return math.sqrt(self.stiffness / self.mass)
+
+    @property
+    def impedance(self) -> float:
+        """√(cm), N s/m."""
+        return math.sqrt(self.stiffness * self.mass)
+
+    @property
+    def damping_ratio(self) -> float:
+        """The damping over the critical one, ζ."""
+        return 0.5 * self.damping / self.impedance
+
+
+def critical_drop(damping_ratio: float) -> float:
+    """Return A_c, at which the slip only just comes to rest: A above it is stick-slip; 0 < ζ < 1.
+
+    (ζ/s) [2π − asin ζ − atan((A − ζ)/s)] = ½ ln(1 − 2 A ζ + A²).
+    """
+    zeta = damping_ratio
+    s = math.sqrt(1.0 - zeta * zeta)
+
+    def beyond(a: float) -> float:
+        angle = 2.0 * math.pi - math.asin(zeta) - math.atan((a - zeta) / s)
+        return zeta / s * angle - 0.5 * math.log1p(a * a - 2.0 * a * zeta)
+
+    return float(brentq(beyond, zeta, 2.0 * zeta + math.exp(2.0 * math.pi * zeta / s), xtol=1e-16, rtol=1e-15))
+
+
+def critical_feed(oscillator: Oscillator, drop: float) -> float:
+    """Return the feed v_c (m/s) from which on constant friction slides: ΔF/(A_c √(cm))."""
+    return drop / (critical_drop(oscillator.damping_ratio) * oscillator.impedance)
+
+
+def healing_critical_feed(stiffness: float, growth: float) -> float:
+    """Return v_c = 2 S′(0)/c (m/s) of friction that only grows with rest, at `growth` S′(0) N/s from the arrest on.
+
+    For a concave growth S and h = 0.
+    """
+    return 2.0 * growth / stiffness
+
+
+def feed_of_theory(axis: Axis) -> float | None:
+    """Return the critical feed (m/s, perhaps infinite or 0) of an axis, None where no closed form is known.
+
+    It is known for a rigid contact without acceleration dependence whose kinetic friction is constant or rises
+    linearly: with constant static friction, where a damper N mu_k′ stands beside the drive's; and without any damping,
+    where static friction begins at the kinetic one and its growth is concave.
+    """
+    friction, kinetic = axis.friction, axis.friction.kinetic
+    if not isinstance(axis.contact, RigidContact) or friction.excess or len(kinetic.velocities) > 1 or kinetic.law:
+        return None
+    damped = Oscillator(axis.mass, axis.drive_stiffness, axis.drive_damping + axis.normal_force * kinetic.end_slope)
+    if damped.stiffness == 0.0:
+        return None
+    if friction.static.kind == StaticLawKind.CONSTANT:
+        return _feed_of_a_drop(damped, axis.normal_force * (friction.static.initial - kinetic.coefficients[0]))
+    return _feed_of_growth(damped, friction.static, kinetic, axis.normal_force)
+
+
+def _feed_of_a_drop(oscillator: Oscillator, drop: float) -> float:
+    if drop == 0.0 or oscillator.damping_ratio >= _CREEPS:
+        return 0.0
+    return critical_feed(oscillator, drop) if oscillator.damping_ratio > 0.0 else math.inf
+
+
+def _feed_of_growth(oscillator: Oscillator, static: StaticLaw, kinetic: KineticTable, normal: float) -> float | None:
+    convex = static.kind == StaticLawKind.KATO and static.exponent > 1.0
+    if oscillator.damping > 0.0 or kinetic.coefficients[0] != static.initial or convex:
+        return None
+    if static.kind == StaticLawKind.KATO and static.exponent < 1.0:
+        return math.inf
+    return healing_critical_feed(oscillator.stiffness,
+                                 normal * (static.limit - static.initial) / static.time_constant)

@@ -1,0 +1,195 @@
+"""replay_node with mode: commands: what an axis was told, into a live one."""
+
+from collections.abc import Sequence
+from contextlib import AbstractContextManager
+from functools import partial
+from pathlib import Path
+
+import pytest
+
+from stickslip_sim.recording import RECORDED, Run, flat_layout, open_run, read_run
+from stickslip_sim.recording.messages import Packer
+from stickslip_sim.recording.topics import DRIVE_VELOCITY, SLIDER_STATE
+from tests.recorded_runs import FACTS, samples
+from tests.ros_nodes import Client, NodeProcess, client, running, wait_for
+
+from stickslip_msgs.srv import InjectFault, Step  # isort: skip
+
+pytestmark = pytest.mark.ros
+
+SAME = ('/slider_state', '/friction_force', '/mode_event')
+LOCKSTEP = ('-p', 'time.mode:=lockstep')
+
+
+def recording_into(folder: Path) -> list[str]:
+    return ['-p', 'record.enabled:=true', '-p', f'record.folder:={folder}']
+
+
+@pytest.fixture(scope='module')
+def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A run of the node in real time under commands, faults and changed parameters."""
+    folder = tmp_path_factory.mktemp('recorded') / 'run'
+    with running(*recording_into(folder)) as process, client() as axis:
+        axis.connect()
+        for velocity in (0.004, -0.003, 0.002):
+            axis.send_velocity(velocity)
+            wait_for(partial(axis_follows, axis, velocity), 'the command in force')
+        assert axis.call(InjectFault, 'inject_fault', id='dry', kind='friction_scale', start=0.05, duration=9.0,
+                         value=1.5).success
+        assert axis.call(InjectFault, 'inject_fault', kind='force_pulse', start=0.2, duration=0.1, value=500.0).success
+        axis.send_force(300.0)
+        assert axis.set_parameters(axis__mass=300.0).successful
+        axis.next('mode_event')
+        assert axis.call(InjectFault, 'inject_fault', id='dry', kind='clear').success
+        assert axis.trigger('clear_faults').success
+        axis.send_force(0.0)
+        axis.next('timing')
+        assert process.end()[0] == 0
+    return folder
+
+
+def axis_follows(axis: Client, velocity: float) -> bool:
+    return bool(axis.latest('slider_state').drive_velocity == velocity)
+
+
+def replaying(folder: Path, *arguments: str) -> AbstractContextManager[NodeProcess]:
+    return running('-p', f'bag:={folder}', '-p', 'mode:=commands', *arguments, program='replay_node')
+
+
+def ended(process: NodeProcess) -> None:
+    code, errors = process.wait()
+    assert code == 0, errors
+    assert 'Traceback' not in errors
+
+
+def assert_same(one: Run, other: Run) -> None:
+    """Assert that two runs have the same steps and events, to the last bit; stamps are those of their own clocks."""
+    for topic in SAME:
+        columns, others = one.columns(topic), other.columns(topic)
+        assert len(columns['step']) > (0 if topic == '/mode_event' else 1000)
+        for name in columns.keys() - {'publish_time'}:
+            assert columns[name].tobytes() == others[name].tobytes(), f'{topic} {name}'
+
+
+class TestLockStep:
+    def test_the_same_run_to_the_last_bit(self, recorded: Path, tmp_path: Path) -> None:
+        again = tmp_path / 'again'
+        with running(*LOCKSTEP, *recording_into(again)) as axis, replaying(recorded, '-p', 'rate:=50') as process:
+            ended(process)
+            assert axis.end()[0] == 0
+        assert_same(read_run(recorded), read_run(again))
+        for topic in ('/drive_velocity', '/external_force', '/parameter_events'):
+            steps, again_at = ([message.sequence for message in read_run(folder).messages([topic])]
+                               for folder in (recorded, again))
+            assert steps == again_at
+
+    def test_an_axis_under_way_is_brought_to_its_begin(self, recorded: Path) -> None:
+        with running(*LOCKSTEP) as axis, client() as viewer:
+            viewer.connect(is_moving=False)
+            assert viewer.call(Step, 'step', steps=700, velocity=0.05, force=0.0).success
+            viewer.heard['slider_state'].clear()
+            with replaying(recorded, '-p', 'rate:=50', '-p', 'playback_duration:=0.5') as process:
+                ended(process)
+            positions = wait_for(lambda: positions_by_step(viewer, 501), 'the last step')
+            assert positions == read_run(recorded).columns('/slider_state')['position'][:501].tolist()
+            assert axis.end()[0] == 0
+
+    def test_again_and_again(self, recorded: Path) -> None:
+        with running(*LOCKSTEP) as axis, client() as viewer:
+            viewer.connect(is_moving=False)
+            with replaying(recorded, '-p', 'rate:=50', '-p', 'playback_duration:=0.2', '-p', 'loop:=true') as process:
+                wait_for(lambda: [state.step for state in viewer.heard['slider_state']].count(200) > 2, 'three rounds')
+                code, errors = process.end()
+                assert (code, 'Traceback' in errors) == (0, False), errors
+            assert len({state.position for state in viewer.heard['slider_state'] if state.step == 200}) == 1
+            assert axis.end()[0] == 0
+
+    @pytest.mark.parametrize(('arguments', 'options', 'told'), [
+        (['-p', 'time.rate:=500.0'], [], 'time.rate = 500.0 is refused: must be that of the recording, whose step 1'),
+        ([], ['-p', 'start_offset:=0.1'], 'start_offset = 0.1 is refused: must be 0 in lock-step'),
+        (['-p', 'time.mode:=free_run'], [], "time.mode = 'free_run' is refused: must be realtime or lockstep"),
+    ])
+    def test_another_axis(self, recorded: Path, arguments: list[str], options: list[str], told: str) -> None:
+        assert told in refused(recorded, *options, axis=arguments)
+
+    def test_a_recording_begun_in_mid_run(self, tmp_path: Path) -> None:
+        assert 'step 1 is missing; only a run that was recorded' in refused(commanded(tmp_path / 'mid', first=400))
+
+    def test_orders_that_the_axis_refuses(self, tmp_path: Path) -> None:
+        assert '/feed_axis gave up: velocity = 5.0 is refused' in refused(commanded(tmp_path / 'fast', velocity=5.0))
+
+    def test_a_recording_axis_that_is_not_at_its_begin(self, recorded: Path, tmp_path: Path) -> None:
+        with running(*LOCKSTEP, *recording_into(tmp_path / 'run')) as axis, client() as viewer:
+            viewer.connect(is_moving=False)
+            assert viewer.call(Step, 'step', steps=5, velocity=0.0, force=0.0).success
+            with replaying(recorded) as process:
+                code, errors = process.wait()
+            assert code == 2
+            assert "axis = '/feed_axis' is refused: must be at step 0, but is at 5; ~/reset is refused" in errors
+            assert axis.end()[0] == 0
+
+
+def refused(folder: Path, *options: str, axis: Sequence[str] = ()) -> str:
+    """Return why a recording is not replayed into an axis in lock-step."""
+    with running(*LOCKSTEP, *axis) as process, replaying(folder, '-p', 'rate:=50', *options) as replay:
+        code, errors = replay.wait()
+        assert process.end()[0] == 0
+    assert (code, 'Traceback' in errors) == (2, False), errors
+    line, = (line for line in errors.splitlines() if line.startswith('replay_node: '))
+    return line
+
+
+def positions_by_step(viewer: Client, count: int) -> list[float]:
+    """Return the positions heard since the latest step 0, when there are so many."""
+    states = viewer.heard['slider_state']
+    begin = max((number for number, state in enumerate(states) if state.step == 0), default=len(states))
+    positions = [state.position for state in states[begin:begin + count]]
+    return positions if len(positions) == count else []
+
+
+def commanded(folder: Path, first: int = 0, velocity: float = 0.002) -> Path:
+    """Write a run of 50 steps with one command, before its second step."""
+    states, commands = Packer(SLIDER_STATE), flat_layout(DRIVE_VELOCITY.type)
+    writer = open_run(folder, FACTS)
+    for step, sample in enumerate(samples(50, first), first):
+        writer.write(RECORDED.index(SLIDER_STATE), states.pack(0, step, sample), step * 1_000_000, 0, step)
+        if step == first:
+            writer.write(RECORDED.index(DRIVE_VELOCITY), commands.pack(0, velocity), step * 1_000_000, 0, step + 1)
+    writer.close()
+    return folder
+
+
+class TestRealTime:
+    def test_orders_in_their_time(self, recorded: Path, tmp_path: Path) -> None:
+        again = tmp_path / 'again'
+        with running(*recording_into(again)) as axis, replaying(recorded) as process:
+            ended(process)
+            assert axis.end()[0] == 0
+        one, other = read_run(recorded), read_run(again)
+        for topic in ('/drive_velocity', '/external_force'):
+            field = 'velocity' if topic == '/drive_velocity' else 'force'
+            assert one.columns(topic)[field].tolist() == other.columns(topic)[field].tolist()
+        ids = [[run.decode(message).id for message in run.messages(['/rig_event'])] for run in (one, other)]
+        assert ids[0] == ids[1]
+        changes = [run.decode(message).changed_parameters[0].name for run in (one, other)
+                   for message in run.messages(['/parameter_events'])]
+        assert changes == ['axis.mass'] * 2
+
+    def test_the_command_in_force_comes_first(self, recorded: Path) -> None:
+        run = read_run(recorded)
+        _, second, third = (message.log_time * 1e-9 for message in run.messages(['/drive_velocity']))
+        begin = (second + third) / 2.0
+        with running('-p', 'drive.velocity:=0.0') as axis, client() as viewer:
+            viewer.connect()
+            part = ('-p', f'start_offset:={begin:.9f}', '-p', 'playback_duration:=0.0')
+            with replaying(recorded, *part) as process:
+                ended(process)
+            viewer.next('slider_state')
+            assert viewer.latest('slider_state').drive_velocity == -0.003
+            assert axis.end()[0] == 0
+
+    def test_nobody_there(self, recorded: Path) -> None:
+        with replaying(recorded) as process:
+            code, errors = process.wait()
+        assert code == 2
+        assert "axis = '/feed_axis' is refused: must be a sim_node that runs; none answers" in errors

@@ -1,0 +1,319 @@
+"""Storms of service calls, floods of commands, controllers that die: clear answers, and the state stays valid."""
+
+import math
+import random
+import resource
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from stickslip_sim.errors import InputError
+from stickslip_sim.recording import read_run
+from stickslip_sim.rig import Fault, NoteKind
+from stickslip_sim.rig.faults import RULES
+from stickslip_sim.scene import Scene, load_scene, scene_from_values
+from stickslip_sim.scene.ros_yaml import plain_value
+from tests.replays import FIELDS, assert_same_states, made_again
+from tests.ros_nodes import Client, NodeProcess, client, running, wait_for
+
+from stickslip_msgs.srv import InjectFault, Step  # isort: skip
+
+pytestmark = pytest.mark.ros
+
+CALLS = 150
+BILLION = 10**9
+COUNTS: tuple[int, ...] = (0, -1, -BILLION, BILLION, 100_001, 1, 2, 7, 50)
+SPEEDS = (math.nan, 0.002, -0.004, 0.01, math.inf, -math.inf, 1.5)
+FORCES = (math.nan, 0.0, 100.0, -300.0, math.inf, 1e6)
+MASSES = (350.0, 200.0, 500.0, -1.0, math.nan, 0.0)
+
+
+@contextmanager
+def node(folder: Path, mode: str, *arguments: str) -> Iterator[tuple[NodeProcess, Client]]:
+    with (running('-p', f'time.mode:={mode}', *arguments, folder=folder) as process, client() as axis):
+        axis.connect(is_moving=mode != 'lockstep')
+        yield process, axis
+        code, errors = process.end()
+        assert (code, 'Traceback' in errors) == (0, False), errors
+
+
+class Storm:
+    """Calls in any order, each with an answer that is known beforehand."""
+
+    def __init__(self, axis: Client, mode: str, seed: int) -> None:
+        self.axis, self.luck = axis, random.Random(seed)
+        self.is_stepped, self.is_paused, self.is_recording = mode == 'lockstep', False, False
+        self.values = dict(load_scene('paper_fig8', {'time.mode': mode}).values)
+        self.rig = scene_from_values(self.values).make_rig()     # in lock-step it is driven as the node is
+        self.rig.make_step()
+
+    def call(self) -> None:
+        """Make one call."""
+        self.luck.choices([self.step, self.inject, self.clear, self.reset, self.pause, self.record, self.parameter],
+                          [6, 4, 1, 1, 2, 1, 2])[0]()
+
+    def expect(self, answer: Any, success: bool, *told: str) -> None:
+        assert answer.success is success, answer
+        assert answer.message
+        assert '\n' not in answer.message
+        for words in told:
+            assert words in answer.message
+
+    def step(self) -> None:
+        count, velocity, force = self.luck.choice(COUNTS), self.luck.choice(SPEEDS), self.luck.choice(FORCES)
+        answer = self.axis.call(Step, 'step', steps=count, velocity=velocity, force=force)
+        if not 1 <= count <= 100_000:
+            self.expect(answer, False, f'steps = {count} is refused: must be 1 to 100000')
+        elif not math.isnan(velocity) and not abs(velocity) <= 1.0:
+            self.expect(answer, False, f'velocity = {velocity} is refused', 'NaN leaves the one in force')
+        elif not math.isnan(force) and not abs(force) <= 1e5:
+            self.expect(answer, False, f'force = {force} is refused')
+        elif not (self.is_stepped or self.is_paused):
+            self.expect(answer, False, 'refused while time runs by itself')
+        else:
+            self.expect(answer, True, f'{count} step')
+            if self.is_stepped:
+                self.follow(answer, count, velocity, force)
+
+    def follow(self, answer: Any, count: int, velocity: float, force: float) -> None:
+        """Make the same steps; the state and the events must be the same to the last bit."""
+        if not math.isnan(velocity):
+            self.rig.command_velocity(velocity)
+        if not math.isnan(force):
+            self.rig.command_force(force)
+        products = [self.rig.make_step() for _ in range(count)]
+        assert answer.state.step == products[-1].step
+        assert {name: getattr(answer.state, name) for name in FIELDS} == {
+            name: getattr(products[-1].sample, name) for name in FIELDS}
+        assert answer.friction.force == products[-1].sample.friction_force
+        assert [(event.step, event.time, event.kind) for event in answer.events] == [
+            (product.step, event.time, event.kind) for product in products for event in product.events
+            if event.kind <= 5]
+
+    def inject(self) -> None:
+        kind = self.luck.choice([*RULES, 'clear', 'gremlin'])
+        value = self.luck.choice([0.0, 0.5, 2.0, 200.0, math.nan, -1.0])
+        asked = Fault(self.luck.choice(['', 'a', 'b', 'x\n', 'y' * 99]), kind, self.luck.choice([0.0, 0.004, -1.0]),
+                      self.luck.choice([0.01, 0.05, math.inf, 0.0]), value)
+        answer = self.axis.call(InjectFault, 'inject_fault', id=asked.id, kind=kind, start=asked.start,
+                                duration=asked.duration, value=value)
+        try:
+            given = asked.id if kind == 'clear' else self.rig.inject(asked).id
+            if kind == 'clear':
+                self.rig.clear_fault(given)
+        except InputError as error:
+            self.expect_refusal(answer, error)
+        else:
+            self.expect(answer, True, given)
+            assert answer.id == given
+
+    def expect_refusal(self, answer: Any, error: InputError) -> None:
+        self.expect(answer, False, f'{error.name} = ', 'is refused: must be ')
+        assert answer.message == str(error)
+
+    def clear(self) -> None:
+        answer = self.axis.trigger('clear_faults')
+        self.expect(answer, True, ', '.join(self.rig.clear_faults()) or 'there were none')
+
+    def reset(self) -> None:
+        answer = self.axis.trigger('reset')
+        if self.is_recording:
+            self.expect(answer, False, 'refused while recording', '~/record')
+            return
+        self.expect(answer, True)
+        self.rig.reset()
+        self.rig.make_step()
+
+    def pause(self) -> None:
+        wanted = self.luck.random() < 0.5
+        answer = self.axis.switch('set_paused', wanted)
+        if self.is_stepped:
+            self.expect(answer, False, 'time.mode: lockstep', '~/step')
+            return
+        self.expect(answer, True, 'paused' if wanted else 'running', 'at simulation time')
+        self.is_paused = wanted
+
+    def record(self) -> None:
+        wanted = self.luck.random() < 0.6
+        answer = self.axis.switch('record', wanted)
+        self.expect(answer, True, 'record')
+        self.is_recording = wanted
+
+    def parameter(self) -> None:
+        mass = self.luck.choice(MASSES)
+        answer = self.axis.set_parameters(axis__mass=mass)
+        if not mass > 0.0:
+            assert (answer.successful, 'axis.mass = ' in answer.reason) == (False, True)
+            return
+        assert answer.successful
+        self.values['axis.mass'] = mass
+        self.rig.change_axis(scene_from_values(self.values).axis)
+
+
+class LiveStorm(Storm):
+    """A storm over time that runs by itself, all of it in one bag; what the rig makes of it is looked up there."""
+
+    def __init__(self, axis: Client, seed: int) -> None:
+        super().__init__(axis, 'realtime', seed)
+        self.is_recording = True
+
+    def call(self) -> None:
+        super().call()
+        self.axis.send_velocity(self.luck.uniform(-0.005, 0.005))
+        self.axis.send_force(self.luck.choice([0.0, 150.0, math.nan]))
+
+    def inject(self) -> None:
+        kind, value = self.luck.choice([('friction_scale', 1.5), ('force_pulse', 200.0), ('drive_freeze', 0.0),
+                                        ('command_delay', 0.01), ('command_loss', 0.5), ('encoder_dropout', 0.5)])
+        is_good = self.luck.random() < 0.7
+        answer = self.axis.call(InjectFault, 'inject_fault', kind=kind, start=self.luck.choice([0.0, 0.01]),
+                                duration=self.luck.choice([0.01, 0.1]), value=value if is_good else -1e10)
+        self.expect(answer, is_good, answer.id if is_good else 'value = -10000000000.0 is refused')
+
+    def clear(self) -> None:
+        self.expect(self.axis.trigger('clear_faults'), True, 'cleared: ')
+
+    def record(self) -> None:
+        self.expect(self.axis.switch('record', True), True, 'already recording into ')
+
+
+class TestStorm:
+    def test_in_lockstep_the_motion_is_that_of_the_orders(self, tmp_path: Path) -> None:
+        with node(tmp_path, 'lockstep') as (_, axis):
+            storm = Storm(axis, 'lockstep', 1)
+            for _ in range(CALLS):
+                storm.call()
+            answer = axis.call(Step, 'step', steps=300, velocity=math.nan, force=math.nan)
+            storm.follow(answer, 300, math.nan, math.nan)
+
+    def test_in_real_time_the_bag_tells_all_that_the_motion_depends_on(self, tmp_path: Path) -> None:
+        with node(tmp_path, 'realtime', *recording_into(tmp_path / 'run')) as (_, axis):
+            storm = LiveStorm(axis, 2)
+            for _ in range(CALLS):
+                storm.call()
+        recorded = read_run(tmp_path / 'run')
+        assert recorded.counts['/rig_event'] > 10
+        assert recorded.counts['/slider_state'] > 300
+        assert_same_states(recorded, made_again(recorded, load_scene('paper_fig8')))
+
+
+def recording_into(folder: Path) -> list[str]:
+    return ['-p', 'record.enabled:=true', '-p', f'record.folder:={folder}']
+
+
+_SENDER = """
+import sys, time, rclpy
+from rclpy.node import Node
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from stickslip_msgs.msg import DriveVelocity
+
+rate, value = map(float, sys.argv[1:])
+rclpy.init()
+node = Node('controller')
+quality = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+out = node.create_publisher(DriveVelocity, 'drive_velocity', quality)
+begin, count = time.monotonic(), 0
+while True:
+    out.publish(DriveVelocity(velocity=value))
+    count += 1
+    time.sleep(max(begin + count / rate - time.monotonic(), 0.0))
+"""
+
+
+@contextmanager
+def controller(rate: float, value: float) -> Iterator[None]:
+    """Run a process that sends a velocity at a rate, Hz, and is killed at the end."""
+    process = subprocess.Popen([sys.executable, '-c', _SENDER, str(rate), str(value)])
+    try:
+        yield
+    finally:
+        process.kill()
+        process.wait()
+
+
+def memory_of(pid: int) -> float:
+    """Return the resident memory of a process, MB."""
+    pages = int(Path(f'/proc/{pid}/statm').read_text().split()[1])
+    return pages * resource.getpagesize() / 1e6
+
+
+class TestFlood:
+    def test_of_commands_is_counted_and_costs_no_memory(self, tmp_path: Path) -> None:
+        with node(tmp_path, 'realtime') as (process, axis), controller(10_000.0, 0.003):
+            first = axis.next('timing', lambda timing: timing.total_received > 1000)
+            before = memory_of(process.pid)
+            timing = axis.next('timing', lambda timing: timing.total_received > first.total_received + 8000)
+            assert timing.total_refused == 0
+            assert timing.step - first.step > 200
+            assert axis.next('slider_state').drive_velocity == 0.003
+            assert memory_of(process.pid) - before < 5.0
+
+    def test_of_what_is_no_number_is_refused_counted_and_told_once_a_second(self) -> None:
+        with running('-p', 'drive.velocity:=0.001') as process, client() as axis:
+            axis.connect()
+            begin = time.monotonic()
+            with controller(2000.0, math.nan):
+                timing = axis.next('timing', lambda timing: timing.total_refused > 2000)
+            assert timing.total_refused == timing.total_received
+            assert axis.next('slider_state').drive_velocity == 0.001
+            lasted = time.monotonic() - begin
+            code, errors = process.end()
+        assert code == 0
+        assert 1 <= errors.count('velocity = nan is refused: must be finite and within') <= lasted + 1
+
+
+class TestController:
+    def test_that_dies_is_noticed_and_one_that_restarts_is_obeyed(self, tmp_path: Path) -> None:
+        wanted = ['-p', 'command.timeout:=0.3', '-p', 'command.on_timeout:=ramp_to_zero', '-p',
+                  'command.timeout_deceleration:=0.1']
+        with node(tmp_path, 'realtime', *wanted, *recording_into(tmp_path / 'run')) as (_, axis):
+            for count, velocity in enumerate((0.004, 0.006), 1):
+                with controller(200.0, velocity):
+                    axis.next('slider_state', runs_at(velocity))
+                axis.next('slider_state', runs_at(0.0))
+                timing = axis.next('timing', lambda timing: timing.total_timed_out > 0)
+                assert timing.total_timed_out == count
+                assert axis.status('command')[0].message == 'timed out: no drive velocity comes'
+        recorded = read_run(tmp_path / 'run')
+        kinds = [event.kind for event in map(recorded.decode, recorded.messages(['/rig_event']))]
+        assert kinds == [NoteKind.COMMAND_TIMEOUT, NoteKind.COMMAND_RESUMED, NoteKind.COMMAND_TIMEOUT]
+        assert '2 time-outs' in recorded.receipt['timing']['verdict']
+        assert_same_states(recorded, made_again(recorded, scene_with(wanted)))
+
+
+def runs_at(velocity: float) -> Callable[[Any], bool]:
+    return lambda state: state.drive_velocity == velocity
+
+
+def scene_with(arguments: list[str]) -> Scene:
+    """Return the default scene changed by arguments as ROS takes them."""
+    pairs = [argument.split(':=') for argument in arguments if ':=' in argument]
+    return load_scene('paper_fig8', {name: plain_value(value) for name, value in pairs})
+
+
+class TestInterrupt:
+    def test_amid_many_steps_ends_them_and_closes_the_bag(self, tmp_path: Path) -> None:
+        folder = tmp_path / 'run'
+        with running('-p', 'time.mode:=lockstep', *recording_into(folder)) as process, client() as axis:
+            axis.connect(is_moving=False)
+            service = axis.node.create_client(Step, 'feed_axis/step')
+            assert service.wait_for_service(10.0)
+            service.call_async(Step.Request(steps=100_000, velocity=0.003, force=math.nan))
+            wait_for(lambda: axis.heard['slider_state'] and axis.latest('slider_state').step > 500, 'steps')
+            begin = time.monotonic()
+            code, errors = process.end(signal.SIGINT)
+            assert time.monotonic() - begin < 1.0
+        assert (code, 'Traceback' in errors) == (0, False), errors
+        recorded = read_run(folder)
+        assert recorded.is_complete
+        last = recorded.columns('/slider_state')['step'][-1]
+        assert 500 < last < 100_000
+        assert recorded.receipt['timing']['steps'] == last + 1
+        assert recorded.receipt['dropped_messages'] == 0
