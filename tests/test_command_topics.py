@@ -1,8 +1,8 @@
-"""Commands are read from functools import partial
-from the bytes as they come, whatever their sender puts into the header."""
+"""Commands are read from the bytes as they come, whatever their sender puts into the header."""
 
 import math
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
