@@ -102,9 +102,10 @@ def test_killed_in_the_middle_and_resumed_it_gives_the_same_file(workers: str, t
     assert not (out / PARTIAL).exists()
 
 
-def test_ctrl_c_keeps_what_is_done(tmp_path: Path, uninterrupted: bytes) -> None:
+@pytest.mark.parametrize('workers', ['1', '2'])
+def test_ctrl_c_keeps_what_is_done(workers: str, tmp_path: Path, uninterrupted: bytes) -> None:
     out = tmp_path / 'out'
-    process = started(*LONG, '--workers', '2', '--out', out)
+    process = started(*LONG, '--workers', workers, '--out', out)
     wait_for_lines(out / PARTIAL, process)
     os.killpg(process.pid, signal.SIGINT)
     said, error = process.communicate(timeout=60)
