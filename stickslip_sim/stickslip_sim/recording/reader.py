@@ -28,7 +28,6 @@ _OVERHEAD = 300         # bytes of a message there beside its own
 _MOST_TOLD = 64 << 20   # bytes of all that a file holds beside messages
 
 
-
 class RecordedMessage(NamedTuple):
     """One message as it stands in the file; times in ns."""
 
@@ -75,11 +74,11 @@ class Run:
         return events_of(self)
 
     def values(self, attachment: str) -> dict[str, Any]:
-        """Return what a JSON file in the run says by name, nothing without it; raises RecordingError."""
+        """Return what a JSON file in the run says by name, nothing without the file; raises RecordingError."""
         try:
             return dict(json.loads(self.attachments.get(attachment, b'{}')))
         except (ValueError, TypeError, RecursionError) as error:
-            raise RecordingError(f'{self.path}: damaged: its {attachment} holds no values by name: {error}') from None
+            raise RecordingError(f'{self.path}: damaged: its {attachment} is no JSON object: {error}') from None
 
     def messages(self, topics: Iterable[str] | None = None) -> Iterator[RecordedMessage]:
         """Yield the messages of some topics (None: all)."""

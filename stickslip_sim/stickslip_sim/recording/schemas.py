@@ -64,7 +64,8 @@ def understood(what: str) -> Iterator[None]:
     try:
         yield
     except Exception as error:
-        raise RecordingError(f'{what} cannot be understood: {error or type(error).__name__}') from None
+        reason, *_ = str(error).splitlines() or [type(error).__name__]
+        raise RecordingError(f'{what} cannot be understood: {reason}') from None
 
 
 @cache

@@ -47,7 +47,7 @@ class Recordings:
     def begin(self, scene: Scene) -> None:
         """Open a new run folder; raises RecordingError."""
         try:
-            writer = open_run(_folder_of(scene), RunFacts.of(scene), self._namespace)
+            writer = open_run(_folder_of(scene, self._namespace), RunFacts.of(scene), self._namespace)
         except (RecordingError, OSError, RuntimeError, ValueError) as error:    # the last two: no such home, odd names
             self.failure = f'record.folder = {scene.record.folder!r}: {error}'
             raise RecordingError(self.failure) from None
@@ -86,11 +86,12 @@ class Recordings:
         return self.failure
 
 
-def _folder_of(scene: Scene) -> Path:
-    """Return the folder of the scene, or a new one that is named after scene and time."""
+def _folder_of(scene: Scene, namespace: str) -> Path:
+    """Return the folder of the scene, or a new one that is named after namespace, scene and time."""
     if scene.record.folder:
         return Path(scene.record.folder).expanduser()
-    return first_free(lambda number: _RUNS / f'{scene.name}_{utc_stamp()}{f"_{number}" if number > 1 else ""}')
+    name = '_'.join([*filter(None, namespace.split('/')), scene.name])    # axes may start in the same second
+    return first_free(lambda number: _RUNS / f'{name}_{utc_stamp()}{f"_{number}" if number > 1 else ""}')
 
 
 def first_free(name: Callable[[int], Path]) -> Path:
