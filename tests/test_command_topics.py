@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -82,8 +83,12 @@ def test_a_node_outlives_senders_that_mean_no_good(tmp_path: Path) -> None:
             for count, message in enumerate(bad[:None if topic == topics.JOINT_COMMANDS else -1], 1):
                 sender.publish(message)
                 axis.send_velocity(1e-3 * count)
-                axis.next('slider_state', lambda state, velocity=1e-3 * count: state.drive_velocity == velocity)
+                axis.next('slider_state', partial(moves_at, 1e-3 * count))
         assert axis.next('timing').total_refused > len(bad)
+
+
+def moves_at(velocity: float, state: Any) -> bool:
+    return bool(state.drive_velocity == velocity)
 
 
 def command(topic: topics.Topic, field: str, frame_id: str, value: float) -> Any:

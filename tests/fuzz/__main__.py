@@ -33,7 +33,7 @@ def main() -> int:
                 counts[name] += _EXAMPLES
                 if not _passes(name, target):
                     return 1
-    print(', '.join(f'{count} {name}s' for name, count in counts.items()) + ': all read, or refused in one line')
+    print('all read, or refused in one line: ' + ', '.join(f'{name} {count}' for name, count in counts.items()))
     return 0
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from hypothesis import strategies as st
 from hypothesis.strategies import SearchStrategy
@@ -34,7 +34,7 @@ def targets(folder: Path) -> Mapping[str, Target]:
         file.write_bytes(data)
         readers.bag(file)
 
-    found = {
+    found: dict[str, tuple[SearchStrategy[Any], Callable[..., None]]] = {
         'scene': (texts.changed(scenes) | texts.ANYTHING, readers.scene),
         'limits': (texts.changed(limits) | texts.ANYTHING, readers.limits),
         'override': (changes, lambda given: readers.override(*given)),
