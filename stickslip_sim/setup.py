@@ -56,6 +56,7 @@ setup(
         'console_scripts': [
             'cascade_controller = stickslip_sim.ros.cascade_controller:main',
             'compensating_controller = stickslip_sim.ros.compensating_controller:main',
+            'health = stickslip_sim.ros.health:main',
             'replay_node = stickslip_sim.ros.replay_node:main',
             'sim_node = stickslip_sim.ros.sim_node:main',
             'stickslip = stickslip_sim.__main__:main',

@@ -59,7 +59,7 @@ def test_heard_as_sent(node: Any, topic: topics.Topic, field: str) -> None:
 @pytest.mark.parametrize('topic', [topics.DRIVE_VELOCITY, topics.EXTERNAL_FORCE])
 @pytest.mark.parametrize(('data', 'told'), [
     (b'', '0 bytes'), (b'\0\1\0\0', 'its sender is broken'), (b'\0\1\0\0' + b'\xff' * 100, 'its sender is broken'),
-    (bytes(5000), 'at most 4096'),
+    (bytes(5000), 'at most 4096 bytes'),
 ])
 def test_bytes_that_are_no_command(topic: topics.Topic, data: bytes, told: str) -> None:
     from stickslip_sim.ros.topics import command_reader
@@ -83,11 +83,11 @@ def test_a_node_outlives_senders_that_mean_no_good(tmp_path: Path) -> None:
             for count, message in enumerate(bad[:None if topic == topics.JOINT_COMMANDS else -1], 1):
                 sender.publish(message)
                 axis.send_velocity(1e-3 * count)
-                axis.next('slider_state', partial(moves_at, 1e-3 * count))
+                axis.next('slider_state', partial(runs_at, 1e-3 * count))
         assert axis.next('timing').total_refused > len(bad)
 
 
-def moves_at(velocity: float, state: Any) -> bool:
+def runs_at(velocity: float, state: Any) -> bool:
     return bool(state.drive_velocity == velocity)
 
 

@@ -2,13 +2,11 @@
 
 import math
 import queue
-import re
 import signal
 import subprocess
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -17,7 +15,6 @@ from benchmarks.closed_loop import close_loop
 from benchmarks.controllers import AXIS, controllers
 from stickslip_sim.control import Moves
 from stickslip_sim.errors import InputError
-from stickslip_sim.scene.schema import BY_NAME
 from stickslip_sim.words import EventKind
 from tests.ros_nodes import DEADLINE, Client, client, executable, running, wait_for
 
@@ -30,7 +27,6 @@ from std_srvs.srv import Trigger  # isort: skip
 
 from stickslip_msgs.srv import Step
 from stickslip_sim.ros.controller_node import measurement
-from stickslip_sim.ros.controller_parameters import COMMON, COMPENSATION
 
 pytestmark = pytest.mark.ros
 
@@ -40,7 +36,6 @@ BENCH = ['-p', 'scene:=positioning', '-p', 'drive.course:=constant', '-p', 'driv
 BEST_EFFORT = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
 LATCHED = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 ATTEMPTS = 40
-LAUNCH = Path(__file__).parents[1] / 'stickslip_sim' / 'launch' / 'controlled.launch.py'
 
 
 def refused(program: str, *ros_args: str) -> str:
@@ -205,14 +200,3 @@ def test_joints_come_in_any_order() -> None:
     message = JointState(name=['other', 'axis_drive', 'axis_slider'], position=[9.0, 2.0, 1.0],
                          velocity=[9.0, 4.0, 3.0])
     assert measurement(message) == (1.0, 3.0, 2.0, 4.0)
-
-
-def test_the_launch_file_names_what_there_is() -> None:
-    text = LAUNCH.read_text(encoding='utf-8')
-    compile(text, LAUNCH, 'exec')
-    parameters = re.findall(r"'([\w.]+):=", text)
-    assert len(parameters) == 7
-    assert set(parameters) <= {*BY_NAME, *(entry.name for entry in (*COMMON, *COMPENSATION))}
-    for program in NAMES.values():
-        assert program in text
-        assert executable(program)

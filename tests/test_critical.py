@@ -121,7 +121,7 @@ def test_the_tool_tells_both_values(capsys: Capture) -> None:
     out = capsys.readouterr().out
     assert 'from rest' in out
     assert 'bistable' in out
-    assert '2000 N both go on' in out
+    assert 'to 2000 N both go on' in out
 
 
 def test_the_tool_says_that_there_is_no_transition(capsys: Capture) -> None:

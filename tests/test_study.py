@@ -209,6 +209,19 @@ def test_a_run_twice_as_long_ends_in_the_same_cycle(seed: int) -> None:
             assert longer.events[EventKind.STICK] <= figures.cycles[k] + 1
 
 
+def test_where_the_slider_only_just_comes_to_rest_the_events_are_those_of_the_reference() -> None:
+    """The corner of the grid of docs/maps.md in which scipy misses break-aways."""
+    pytest.importorskip('mpmath')
+    from stickslip_sim.reference import simulate
+    scene = load_scene('paper_fig7', {'drive.velocity': 0.03, 'axis.drive_stiffness': 3e6})
+    events = run_offline(scene, 2.0).events
+    expected = simulate(scene.axis, scene.initial, scene.drive, scene.force, 2.0).events
+    assert [event.kind for event in events] == [event.kind for event in expected]
+    assert sum(event.kind == EventKind.BREAKAWAY for event in events) == 30
+    for event, other in zip(events, expected):
+        assert event.time == pytest.approx(other.time, abs=1e-12)
+
+
 def test_critical_feed_of_light_damping_is_infinite_in_the_limit_only() -> None:
     from stickslip_sim.study.theory import Oscillator
 

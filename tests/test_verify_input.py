@@ -120,8 +120,8 @@ class TestAlteredAndForeign:
         assert told in refused(capsys, folder)
 
     @pytest.mark.parametrize(('content', 'told'), [
-        (b'{', 'its checkpoint.json is no JSON'), (b'{}', "damaged or of another version: 'drive'"),
-        (b'[]', 'damaged or of another version'), (b'\xff', 'its checkpoint.json is no JSON'),
+        (b'{', 'its checkpoint.json is no JSON object'), (b'{}', "damaged or of another version: 'drive'"),
+        (b'[]', 'damaged or of another version'), (b'\xff', 'its checkpoint.json is no JSON object'),
     ])
     def test_a_checkpoint_of_another_kind(self, content: bytes, told: str, bag: Path, tmp_path: Path, capsys: Capture
                                           ) -> None:

@@ -2,12 +2,13 @@
 
 ros2 launch stickslip_sim ros2_control.launch.py scene:=positioning controller:=position_controller record:=true
 
-Needs controller_manager, robot_state_publisher, xacro, joint_state_topic_hardware_interface and the controllers of
-ros2_control/controllers.yaml (docs/ros2_control.md).
+The arguments of sim.launch.py are there too.  Needs controller_manager, robot_state_publisher, xacro,
+joint_state_topic_hardware_interface and the controllers of ros2_control/controllers.yaml (docs/ros2_control.md).
 """
 
 from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument
+from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
+from launch.launch_description_sources import PythonLaunchDescriptionSource
 from launch.substitutions import Command, LaunchConfiguration, PathJoinSubstitution
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
@@ -24,7 +25,7 @@ def generate_launch_description() -> LaunchDescription:
         DeclareLaunchArgument('namespace', default_value='machine', description='namespace of the axis and its topics'),
         DeclareLaunchArgument('controller', default_value='velocity_controller',
                               description='velocity_controller or position_controller'),
-        DeclareLaunchArgument('record', default_value='false', description='whether to record a bag from the start'),
+        DeclareLaunchArgument('parameters', default_value='', description="further ones of the axis, like 'seed:=3'"),
         axis(),
         Node(package='robot_state_publisher', executable='robot_state_publisher', output='screen',
              parameters=[{'robot_description': ParameterValue(description(), value_type=str)}]),
@@ -36,14 +37,11 @@ def generate_launch_description() -> LaunchDescription:
     ])
 
 
-def axis() -> Node:
+def axis() -> IncludeLaunchDescription:
     """Return the simulated axis, with its joints."""
-    return Node(
-        package='stickslip_sim', executable='sim_node', name='feed_axis', namespace=LaunchConfiguration('namespace'),
-        # Not as `parameters`: launch makes a file of those, and in a file `scene` is no file.
-        arguments=['--ros-args', '-p', ['scene:=', LaunchConfiguration('scene')],
-                   '-p', ['record.enabled:=', LaunchConfiguration('record')], '-p', 'joint_interface.enabled:=true'],
-        output='screen')
+    sim = PathJoinSubstitution([FindPackageShare('stickslip_sim'), 'launch', 'sim.launch.py'])
+    return IncludeLaunchDescription(PythonLaunchDescriptionSource(sim), launch_arguments={
+        'parameters': ['joint_interface.enabled:=true ', LaunchConfiguration('parameters')]}.items())
 
 
 def description() -> Command:

@@ -1,28 +1,53 @@
-"""Starts the axis.
+"""Starts an axis.
 
-ros2 launch stickslip_sim sim.launch.py scene:=paper_fig7 namespace:=press record:=true
+ros2 launch stickslip_sim sim.launch.py scene:=paper_fig7 rate:=2000 namespace:=press record:=true
+ros2 launch stickslip_sim sim.launch.py parameters:='drive.velocity:=0.005 axis.mass:=200.0'
+
+What is left empty is as the scene has it.
 """
 
-from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument
+import shlex
+
+from launch import LaunchContext, LaunchDescription
+from launch.actions import DeclareLaunchArgument, OpaqueFunction
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
+
+ARGUMENTS = {
+    'scene': ('paper_fig8', 'shipped scene, or a parameter file'),
+    'namespace': ('', 'of the node and its topics'),
+    'mode': ('', 'of its time: realtime, lockstep or free_run'),
+    'rate': ('', 'steps per second of simulation time'),
+    'record': ('', 'true: a bag from the start; false: none'),
+    'folder': ('', 'of the bag, which must not exist; empty: one below runs/'),
+    'parameters': ('', "further ones, like 'drive.velocity:=0.005 seed:=3'"),
+    'clock': ('/clock', 'topic of its clock in lockstep and free_run; without a slash it is one of the namespace'),
+}
+PARAMETERS = {'scene': 'scene', 'mode': 'time.mode', 'rate': 'time.rate', 'record': 'record.enabled',
+              'folder': 'record.folder'}
 
 
 def generate_launch_description() -> LaunchDescription:
     """Return the node with its arguments."""
     return LaunchDescription([
-        DeclareLaunchArgument('scene', default_value='paper_fig8', description='shipped scene, or a parameter file'),
-        DeclareLaunchArgument('namespace', default_value='', description='namespace of the node and its topics'),
-        DeclareLaunchArgument('record', default_value='false', description='whether to record a bag from the start'),
-        Node(
-            package='stickslip_sim',
-            executable='sim_node',
-            name='feed_axis',
-            namespace=LaunchConfiguration('namespace'),
-            # Not as `parameters`: launch makes a file of those, and in a file `scene` is no file.
-            arguments=['--ros-args', '-p', ['scene:=', LaunchConfiguration('scene')],
-                       '-p', ['record.enabled:=', LaunchConfiguration('record')]],
-            output='screen',
-        ),
+        *(DeclareLaunchArgument(name, default_value=value, description=text)
+          for name, (value, text) in ARGUMENTS.items()),
+        OpaqueFunction(function=axis),
     ])
+
+
+def axis(context: LaunchContext) -> list[Node]:
+    """Return the node for the arguments that are given."""
+    given = {name: LaunchConfiguration(name).perform(context) for name in ARGUMENTS}
+    words = [f'{parameter}:={given[name]}' for name, parameter in PARAMETERS.items() if given[name]]
+    words += shlex.split(given['parameters'])
+    return [Node(
+        package='stickslip_sim',
+        executable='sim_node',
+        name='feed_axis',
+        namespace=given['namespace'],
+        # Not as `parameters`: launch makes a file of those, and in a file `scene` is no file.
+        arguments=['--ros-args', *(argument for word in words for argument in ('-p', word))],
+        remappings=[('/clock', given['clock'])],
+        output='screen',
+    )]

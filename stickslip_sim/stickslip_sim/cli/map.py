@@ -80,9 +80,12 @@ def _pick(study: 'Study', text: str) -> 'Pick':
     from ..paper.fresh import simulate
     from ..paper.windows import motion_of
     from ..plots.stability import Pick
+    from ..study.figures import Motion, figures_of
     from ..study.pictures import pick, point_of
 
     point = point_of(study, text)
     runs = study.runs(point[None, :])
     duration = float(runs.duration[0]) * min(1.0, _MOST_EVENTS / max(float(runs.events[0]), 1.0))
-    return Pick(*pick(study, point), motion_of(simulate(study.scene_at(point), duration)))
+    motion = motion_of(simulate(study.scene_at(point), duration))
+    sticks = figures_of(runs).motion[0] == Motion.STICK_SLIP
+    return Pick(*pick(study, point), motion if sticks else motion._replace(cycle=None))

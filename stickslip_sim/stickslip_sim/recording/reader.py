@@ -28,7 +28,6 @@ _OVERHEAD = 300         # bytes of a message there beside its own
 _MOST_TOLD = 64 << 20   # bytes of all that a file holds beside messages
 
 
-
 class RecordedMessage(NamedTuple):
     """One message as it stands in the file; times in ns."""
 

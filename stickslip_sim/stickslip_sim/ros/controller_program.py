@@ -1,9 +1,8 @@
 """The executables of the example controllers as programs."""
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from .life import Program, spin
+from .life import Program, read_nothing, spin
 
 if TYPE_CHECKING:
     from .sim_node import Signals
@@ -29,8 +28,4 @@ def controller_program(name: str, compensates: bool) -> Program:
         spin(ControllerNode(name, compensates), signals)
         return ''
 
-    return Program(name, _USAGE.format(name, _WHAT[compensates]), _nothing, run)
-
-
-def _nothing(_: Sequence[str]) -> None:
-    """Look at no arguments before ROS does."""
+    return Program(name, _USAGE.format(name, _WHAT[compensates]), read_nothing, run)

@@ -93,9 +93,12 @@ class Recordings:
         return self.failure
 
     def _folder_of(self, scene: Scene) -> Path:
-        """Return the folder of the scene, or a new one that is named after scene and time; raises RecordingError."""
-        if not scene.record.folder:
-            name = f'{file_name(scene.name)}_{utc_stamp()}'
+        """Return the folder of the scene, or a new one that is named after namespace, scene and time.
+
+        Raises RecordingError on one that lies elsewhere.
+        """
+        if not scene.record.folder:    # axes may start in the same second
+            name = '_'.join([*filter(None, self._namespace.split('/')), file_name(scene.name), utc_stamp()])
             return first_free(lambda number: self._root / (f'{name}_{number}' if number > 1 else name))
         folder = Path(scene.record.folder).expanduser()
         if self._root not in Path(os.path.realpath(folder)).parents:

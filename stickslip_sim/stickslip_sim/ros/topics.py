@@ -65,7 +65,8 @@ def raw_subscription(node: Node, topic: Topic, callback: Callable[[bytes], None]
 def message_of(topic: Topic, data: bytes) -> Any:
     """Return the message that these bytes are; raises InputError when they are too many, or none."""
     if len(data) > COMMAND_SIZE:
-        raise InputError(topic.name, f'{len(data)} bytes', f'at most {COMMAND_SIZE}', 'send commands of this axis')
+        raise InputError(topic.name, f'{len(data)} bytes', f'at most {COMMAND_SIZE} bytes',
+                         'send commands of this axis')
     try:
         return deserialize_message(data, message_type(topic))
     except RuntimeError:    # the base of what the middleware raises

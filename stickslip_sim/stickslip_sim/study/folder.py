@@ -98,7 +98,7 @@ class Folder:
                 raise
 
     def finish(self) -> None:
-        """Give the table its name; where pyarrow is installed, write it as Parquet too."""
+        """Give the table its name; where pandas is installed, write it as Parquet too."""
         with _refusing(self.path):
             write_parquet(self.path / PARTIAL, self.path / PARQUET)
             (self.path / PARTIAL).replace(self.path / TABLE)

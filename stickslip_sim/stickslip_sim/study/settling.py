@@ -20,7 +20,7 @@ from ..words import Mode
 from .figures import RUN_FIELDS, Flags, Numbers, Runs, no_runs
 from .steady import sliding_slope
 
-PATIENCE = 1000     # cycles
+PATIENCE = 400     # cycles
 _LOADINGS = 8.0     # of the spring, and natural periods, that a run has at least
 _EVENTS = 8         # of a cycle, or of a swing without a stick, as a rule
 _DOUBLINGS = 10

@@ -4,8 +4,8 @@ import os
 import signal
 import threading
 from collections import deque
-from collections.abc import Callable, Iterator
-from concurrent.futures import Executor, ProcessPoolExecutor
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from itertools import islice
@@ -58,7 +58,7 @@ def _results(study: Study, starts: range, workers: int) -> Iterator[Iterator[byt
 @contextmanager
 def _pool(workers: int) -> Iterator[Executor]:
     """Yield processes; on any error what waits for them is dropped and what they are at is waited for."""
-    pool = ProcessPoolExecutor(workers, get_context('spawn'), _be_a_worker)
+    pool = ProcessPoolExecutor(workers, get_context('spawn'), _watch_the_parent)
     try:
         yield pool
     except BrokenProcessPool:
@@ -67,9 +67,8 @@ def _pool(workers: int) -> Iterator[Executor]:
         pool.shutdown(cancel_futures=True)
 
 
-def _be_a_worker() -> None:
-    """Leave Ctrl-C to the parent, and go when it is gone, however it went: nothing else would end this process."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+def _watch_the_parent() -> None:
+    """Have a worker go when its parent is gone, however it went: nothing else would end it."""
     threading.Thread(target=_go_with_the_parent, daemon=True).start()
 
 
@@ -82,7 +81,16 @@ def _go_with_the_parent() -> NoReturn:
 
 def _in_order(pool: Executor, chunks: Iterator[tuple[Study, int, int]], ahead: int) -> Iterator[bytes]:
     """Yield results in the order of the chunks, with no more than `ahead` under way, whatever their number."""
-    waiting = deque(pool.submit(lines, *chunk) for chunk in islice(chunks, ahead))
+    waiting = deque(_submitted(pool, islice(chunks, ahead)))
     while waiting:
         yield waiting.popleft().result()
-        waiting.extend(pool.submit(lines, *chunk) for chunk in islice(chunks, 1))
+        waiting.extend(_submitted(pool, islice(chunks, 1)))
+
+
+def _submitted(pool: Executor, chunks: Iterable[tuple[Study, int, int]]) -> list[Future[bytes]]:
+    """Hand out chunks; workers that this starts inherit that Ctrl-C is held back, and leave it to their parent."""
+    signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+    try:
+        return [pool.submit(lines, *chunk) for chunk in chunks]
+    finally:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])

@@ -1,9 +1,8 @@
 """The executable `replay_node` as a program."""
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from ..life import Program, spin
+from ..life import Program, read_nothing, spin
 
 if TYPE_CHECKING:
     from ..sim_node import Signals
@@ -15,10 +14,6 @@ Plays a recorded run (node replay): all its topics for viewers, or with -p mode:
 a live sim_node.  The other parameters are named as the flags of ros2 bag play: rate, loop, start_offset,
 playback_duration, clock, delay, start_paused, topics.
 """
-
-
-def _read(_: Sequence[str]) -> None:
-    """Look at no arguments before ROS does."""
 
 
 def _run(_: None, signals: 'Signals') -> str:
@@ -33,4 +28,4 @@ def _run(_: None, signals: 'Signals') -> str:
     return '' if crash is None else f'in the player: {crash!r}'
 
 
-PROGRAM = Program('replay_node', _USAGE, _read, _run)
+PROGRAM = Program('replay_node', _USAGE, read_nothing, _run)

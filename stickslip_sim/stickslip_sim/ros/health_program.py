@@ -1,0 +1,28 @@
+"""The executable `health` as a program."""
+
+import sys
+from typing import TYPE_CHECKING
+
+from .life import Program, read_nothing, spin
+
+if TYPE_CHECKING:
+    from .sim_node import Signals
+
+_USAGE = """\
+usage: health [--help] [--ros-args [-p patience:=S] [-r __ns:=/NAMESPACE]]
+
+Waits for what the axis in this namespace says of itself in /diagnostics, once a second.  Exit code 0: all is well, or
+there are warnings; 1: there is an error, or it says nothing.
+"""
+
+
+def _run(_: None, signals: 'Signals') -> str:
+    from .health_node import Listener
+
+    listener = Listener()
+    spin(listener, signals, lambda: listener.is_over)
+    sys.stdout.write(listener.verdict() + '\n')
+    return ''
+
+
+PROGRAM = Program('health', _USAGE, read_nothing, _run)
