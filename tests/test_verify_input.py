@@ -154,7 +154,7 @@ class TestAlteredAndForeign:
         rewritten(bag, tmp_path / 'odd', definition=lambda text: text.replace('float64 rest_time', 'string rest_time'))
         assert 'has other fields than a step' in refused(capsys, tmp_path / 'odd')
         rewritten(bag, tmp_path / 'none', definition=lambda text: text.replace('float64', 'float 64'))
-        assert 'cannot be understood' in refused(capsys, tmp_path / 'none')
+        assert '/msg/ModeEvent cannot be read: Could not parse' in refused(capsys, tmp_path / 'none')
 
     def test_no_run_of_ours(self, bag: Path, tmp_path: Path, capsys: Capture) -> None:
         (tmp_path / 'empty').mkdir()

@@ -160,17 +160,17 @@ class Run:
         if type_name not in self._stores:
             if type_name not in self.schemas:
                 raise RecordingError(f'{self.path}: no definition of {type_name or "some messages"} in it')
-            with self._named('its messages'):
+            with self._named():
                 self._stores[type_name] = store_of({type_name: self.schemas[type_name]})
         return self._stores[type_name]
 
     @contextmanager
-    def _named(self, part: str) -> Iterator[None]:
-        """Put the file and a part of it in front of the text of a RecordingError."""
+    def _named(self, *part: str) -> Iterator[None]:
+        """Put the file, and a part of it, in front of the text of a RecordingError."""
         try:
             yield
         except RecordingError as error:
-            raise RecordingError(f'{self.path}: {part}: {error}') from None
+            raise RecordingError(': '.join([str(self.path), *part, str(error)])) from None
 
 
 def read_run(path: Path | str) -> Run:

@@ -50,10 +50,10 @@ def store_of(definitions: Mapping[str, str]) -> Typestore:
     for name, text in definitions.items():
         if len(text) > _DEFINITION:
             raise RecordingError(f'{name} is defined in {len(text)} letters; at most {_DEFINITION} are read')
-        with understood(name):
+        with understood(f'the definition of {name}'):
             types.update(get_types_from_msg(text, name))
     _check_arrays(types)
-    with understood(', '.join(definitions)):
+    with understood(f'the definition of {", ".join(definitions)}'):
         store.register(types)
     return store
 
@@ -65,7 +65,7 @@ def understood(what: str) -> Iterator[None]:
         yield
     except Exception as error:
         reason, *_ = str(error).splitlines() or [type(error).__name__]
-        raise RecordingError(f'{what} cannot be understood: {reason}') from None
+        raise RecordingError(f'{what} cannot be read: {reason.rstrip(":")}') from None
 
 
 @cache
