@@ -12,7 +12,7 @@ from stickslip_sim.recording.messages import Packer
 from stickslip_sim.recording.topics import DRIVE_VELOCITY, RIG_EVENT, SLIDER_STATE, Topic
 from tests.eventful_runs import eventful_run, recording_into
 from tests.recorded_runs import FACTS, samples
-from tests.ros_nodes import Client, NodeProcess, client, running, wait_for
+from tests.ros_nodes import NodeProcess, client, running, wait_for
 
 from rclpy.serialization import serialize_message  # isort: skip
 
@@ -70,11 +70,12 @@ class TestLockStep:
         with running(*LOCKSTEP) as axis, client() as viewer:
             viewer.connect(is_moving=False)
             assert viewer.call(Step, 'step', steps=700, velocity=0.05, force=0.0).success
-            viewer.heard['slider_state'].clear()
             with replaying(recorded, '-p', 'rate:=50', '-p', 'playback_duration:=0.5') as process:
                 ended(process)
-            positions = wait_for(lambda: positions_by_step(viewer, 501), 'the last step')
-            assert positions == read_run(recorded).columns('/slider_state')['position'][:501].tolist()
+            wait_for(lambda: viewer.latest('slider_state').step == 500, 'the last step')
+            columns = read_run(recorded).columns('slider_state')
+            for name in ('position', 'velocity', 'acceleration', 'drive_force'):
+                assert getattr(viewer.latest('slider_state'), name) == columns[name][500]
             assert axis.end()[0] == 0
 
     def test_again_and_again(self, recorded: Path) -> None:
@@ -117,7 +118,8 @@ class TestLockStep:
             viewer.connect(is_moving=False)
             with replaying(folder, '-r', '__ns:=/elsewhere') as process:
                 ended(process)
-            wait_for(lambda: positions_by_step(viewer, 50), 'the last step')
+            states = viewer.heard['slider_state']
+            wait_for(lambda: states and states[-1].step == 49, 'the last step')
             assert axis.end()[0] == 0
 
     def test_a_recording_axis_that_is_not_at_its_begin(self, recorded: Path, tmp_path: Path) -> None:
@@ -139,14 +141,6 @@ def refused(folder: Path, *options: str, axis: Sequence[str] = ()) -> str:
     assert (code, 'Traceback' in errors) == (2, False), errors
     line, = (line for line in errors.splitlines() if line.startswith('replay_node: '))
     return line
-
-
-def positions_by_step(viewer: Client, count: int) -> list[float]:
-    """Return the positions heard since the latest step 0, when there are so many."""
-    states = viewer.heard['slider_state']
-    begin = max((number for number, state in enumerate(states) if state.step == 0), default=len(states))
-    positions = [state.position for state in states[begin:begin + count]]
-    return positions if len(positions) == count else []
 
 
 def commanded(folder: Path, others: Mapping[int, tuple[Topic, bytes]] = MappingProxyType({}), first: int = 0,

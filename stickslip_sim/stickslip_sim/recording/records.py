@@ -1,5 +1,6 @@
 """The records of an MCAP file as far as they are whole; what it says of its own sizes is not believed."""
 
+import os
 import struct
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
@@ -10,8 +11,10 @@ from typing import BinaryIO
 import lz4.frame
 import zstandard
 from mcap.exceptions import McapError
+from mcap.reader import SeekingReader
 from mcap.records import Chunk, McapRecord
 from mcap.stream_reader import CRCValidationError, StreamReader, breakup_chunk
+from mcap.summary import Summary
 
 from ..errors import RecordingError
 
@@ -43,6 +46,21 @@ def records(path: Path) -> Iterator[McapRecord]:
         raise RecordingError(f'{path}: {error.strerror}') from None
 
 
+def summary_of(file: BinaryIO) -> Summary | None:
+    """Return what stands at the end of a file; None when there is nothing, as in one that was cut off."""
+    try:
+        return SeekingReader(_Careful(file)).get_summary()  # type: ignore[arg-type]
+    except (*CUT_OFF, OSError, StopIteration):    # OSError: the file is shorter than such an end
+        return None
+
+
+def chunk_at(path: Path, file: BinaryIO, offset: int) -> Iterable[McapRecord]:
+    """Return the records of the chunk at a place in an open file; raises one of CUT_OFF or RecordingError."""
+    file.seek(offset)
+    chunk = next(StreamReader(_Careful(file), skip_magic=True, emit_chunks=True).records)  # type: ignore[arg-type]
+    return _unpacked(path, chunk)
+
+
 class _Careful:
     """A file that is never asked for more at once than a record may hold: it would make room for it first."""
 
@@ -53,6 +71,9 @@ class _Careful:
         if not 0 <= size <= SIZE_LIMIT:
             raise McapError(f'a part of {size} bytes')
         return self._file.read(size)
+
+    def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
+        return self._file.seek(offset, whence)
 
 
 def _unpacked(path: Path, record: McapRecord) -> Iterable[McapRecord]:
