@@ -44,6 +44,7 @@ setup(
         (f'{SHARE}/launch', sorted(glob('launch/*.launch.py'))),
         (f'{SHARE}/layouts', sorted(glob('layouts/*'))),
         (f'{SHARE}/ros2_control', sorted(glob('ros2_control/*'))),
+        (f'{SHARE}/security', sorted(glob('security/*'))),
     ],
     zip_safe=False,
     python_requires='>=3.10',

@@ -23,9 +23,9 @@ from .run import RECEIPT_FILE, SCENE_FILE
 from .schemas import store_of, understood
 from .tables import events_of
 
-_MOST_HELD = 4 << 30    # bytes of a topic in memory at once
-_OVERHEAD = 300         # bytes of a message there beside its own
-_MOST_TOLD = 64 << 20   # bytes of all that a file holds beside messages
+MOST_HELD = 4 << 30    # bytes of a topic in memory at once
+_OVERHEAD = 300        # bytes of a message there beside its own
+MOST_TOLD = 64 << 20   # bytes of all that a file holds beside messages
 
 
 class RecordedMessage(NamedTuple):
@@ -139,7 +139,7 @@ class Run:
         for message in self.messages([topic]):
             held.append(message)
             size += len(message.data) + _OVERHEAD
-            if size > _MOST_HELD:
+            if size > MOST_HELD:
                 raise RecordingError(f'{self.path}: {topic} has more than {len(held)} messages of {size >> 20} MiB in '
                                      'all, which do not fit: take messages() one by one, or a part of the recording')
         return held
@@ -190,8 +190,8 @@ def read_run(path: Path | str) -> Run:
             run.counts[channels[record.channel_id]] += 1
             continue
         told += _size(record)
-        if told > _MOST_TOLD:
-            raise RecordingError(f'{run.path}: more than {_MOST_TOLD >> 20} MiB beside its messages; no run has that')
+        if told > MOST_TOLD:
+            raise RecordingError(f'{run.path}: more than {MOST_TOLD >> 20} MiB beside its messages; no run has that')
         _note(run, record, names, channels)
     if not run.is_complete:
         warnings.warn(f'{run.path} has no end: cut off, or still being written; {sum(run.counts.values())} messages are'

@@ -18,8 +18,8 @@ from rosbags.typesys.store import Typestore
 from ..errors import RecordingError
 from .layout import Layout, numbers_of
 
-_DEFINITION = 128 * 1024   # letters of a definition: a second or two of reading
-_ELEMENTS = 1000           # of arrays of fixed length in a type, of texts and messages
+LONGEST = 128 * 1024    # letters of a definition: a second or two of reading
+MOST_ELEMENTS = 1000    # of arrays of fixed length in a type, of texts and messages
 _RULE = '=' * 80
 _TYPE_OF_FIELD = re.compile(r'^\s*([A-Za-z]\w*(?:/\w+)*)(?:<=\d+)?(?:\[[^\]]*\])?\s+\w', re.MULTILINE)
 _PRIMITIVE = frozenset(
@@ -48,8 +48,8 @@ def store_of(definitions: Mapping[str, str]) -> Typestore:
     store = get_typestore(Stores.EMPTY)
     types: dict[str, Any] = {}
     for name, text in definitions.items():
-        if len(text) > _DEFINITION:
-            raise RecordingError(f'{name} is defined in {len(text)} letters; at most {_DEFINITION} are read')
+        if len(text) > LONGEST:
+            raise RecordingError(f'{name} is defined in {len(text)} letters; at most {LONGEST} are read')
         with understood(f'the definition of {name}'):
             types.update(get_types_from_msg(text, name))
     _check_arrays(types)
@@ -107,8 +107,8 @@ def _check_arrays(types: Mapping[str, Any]) -> None:
     """Raise RecordingError when arrays of fixed length have too many elements: each becomes a line of code."""
     for name, (_, fields) in types.items():
         count = sum(inner[1] for _, (node, inner) in fields if node == Nodetype.ARRAY and not _is_number(inner[0]))
-        if count > _ELEMENTS:
-            raise RecordingError(f'{name} has arrays of {count} elements; at most {_ELEMENTS} are read')
+        if count > MOST_ELEMENTS:
+            raise RecordingError(f'{name} has arrays of {count} elements; at most {MOST_ELEMENTS} are read')
 
 
 def _is_number(element: tuple[Nodetype, Any]) -> bool:

@@ -21,7 +21,7 @@ from .recording import Recording
 
 ORDERS = DRIVE_VELOCITY, EXTERNAL_FORCE, RIG_EVENT, PARAMETER_EVENTS
 WORDS = SLIDER_STATE, FRICTION_FORCE, MODE_EVENT
-_MOST_MISSING = 1_000_000          # steps that are made again without being compared
+MOST_MISSING = 1_000_000           # steps that are made again without being compared
 _HALF, _WHOLE = 1 << 31, 1 << 32   # the file has 32 bits for the number of a step
 
 
@@ -54,9 +54,9 @@ def steps_of(recording: Recording, start: int) -> Iterator[Step]:
         if ahead < 0:
             raise RecordingError(f'{run.path}: step {number + ahead} after step {number}; give a recording of one run')
         missing += max(ahead - 1, 0)
-        if missing > _MOST_MISSING:
+        if missing > MOST_MISSING:
             raise RecordingError(f'{run.path}: step {number + ahead} after step {number}; a recording that lacks more '
-                                 f'than {_MOST_MISSING} steps is damaged')
+                                 f'than {MOST_MISSING} steps is damaged')
         number += ahead
         if number > start:     # what was in force at the checkpoint is told again
             yield _step(number, [message for _, message in group], kinds)

@@ -22,8 +22,8 @@ from yaml.scanner import Scanner
 from ..errors import InputError
 
 SIZE_LIMIT = 1 << 20   # letters of a document
-_DEPTH = 16
-_NODES = 100_000       # names, values and lists of a document: four seconds of reading
+MOST_LEVELS = 16
+MOST_NODES = 100_000   # names, values and lists of a document: four seconds of reading
 _SHOWN = 100           # letters of a document that is refused
 _DIGITS = 24   # no longer word can be a whole number of 64 bits
 _TEXT = BaseResolver.DEFAULT_SCALAR_TAG
@@ -63,19 +63,21 @@ class _Reader(Reader, Scanner, Parser, Composer, BaseResolver):
         self._depth = self._nodes = 0
 
     def compose_node(self, parent: Node | None, index: int) -> Node | None:
-        if self.check_event(AliasEvent):
-            raise MarkedYAMLError(problem='ROS knows no aliases: write the value out',
-                                  problem_mark=self.peek_event().start_mark)
-        if self._depth >= _DEPTH:
-            raise MarkedYAMLError(problem=f'nested more than {_DEPTH} deep', problem_mark=self.peek_event().start_mark)
-        if self._nodes >= _NODES:
-            raise MarkedYAMLError(problem=f'more than {_NODES} names and values',
-                                  problem_mark=self.peek_event().start_mark)
+        if trouble := self._trouble():
+            raise MarkedYAMLError(problem=trouble, problem_mark=self.peek_event().start_mark)
         self._nodes += 1
         self._depth += 1
         node = super().compose_node(parent, index)
         self._depth -= 1
         return node
+
+    def _trouble(self) -> str:
+        """Return why the next node is refused, or an empty text."""
+        if self.check_event(AliasEvent):
+            return 'ROS knows no aliases: write the value out'
+        if self._depth >= MOST_LEVELS:
+            return f'nested more than {MOST_LEVELS} deep'
+        return f'more than {MOST_NODES} names and values' if self._nodes >= MOST_NODES else ''
 
 
 def _value(node: Node) -> object:
