@@ -9,7 +9,7 @@ SHELL := /bin/bash
 HERE := ros2_ws/on_this_machine
 TOOLS := ros2_ws/.venv/bin
 
-.PHONY: help build run test check extremes bench hil soak clean
+.PHONY: help build run test check extremes bench hil soak fuzz clean
 
 help:  ## list the targets
 	@sed -nE 's/^([a-z]+):.*## (.*)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 14
@@ -45,6 +45,9 @@ hil: build  ## the node with a controller beside it: against a bare rclpy node, 
 
 soak: build  ## the node, recording, with a controller beside it for MINUTES=10; writes docs/, fails when a limit is missed
 	@$(HERE) --own-domain python3 -m benchmarks.soak --minutes $(MINUTES)
+
+fuzz: tools  ## made-up scenes, limits, overrides and bags for MINUTES=10; fails when one is not read or refused in one line
+	@$(HERE) python3 -m tests.fuzz --minutes $(MINUTES)
 
 clean:  ## remove everything that was set up, built or cached in this tree
 	rm -rf ros2_ws/{.venv,build,install,log} runs .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache

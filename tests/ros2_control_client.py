@@ -9,14 +9,14 @@ import re
 import threading
 import xml.etree.ElementTree as ET
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from enum import Enum
 from pathlib import Path
 from typing import NamedTuple
 
 import rclpy
 from rclpy.context import Context
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, qos_profile_sensor_data
 from sensor_msgs.msg import JointState
@@ -107,12 +107,11 @@ class HardwareInterface:
         self._context.try_shutdown()
 
     def _run(self) -> None:
-        with suppress(ExternalShutdownException):
-            while not self._is_over.wait(_PERIOD):
-                self._executor.spin_once(timeout_sec=0.0)
-                self.read()
-                self._command(self._update(self.states))
-                self.write()
+        while not self._is_over.wait(_PERIOD):
+            self._executor.spin_once(timeout_sec=0.0)
+            self.read()
+            self._command(self._update(self.states))
+            self.write()
 
     def _hear(self, message: JointState) -> None:
         self._latest = message

@@ -8,7 +8,7 @@ import threading
 import time
 import warnings
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +22,7 @@ with warnings.catch_warnings():   # rclpy loads it at the first message, and it 
 from diagnostic_msgs.msg import DiagnosticArray  # noqa: E402
 from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParametersAtomically  # noqa: E402
 from rclpy.context import Context  # noqa: E402
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor  # noqa: E402
+from rclpy.executors import SingleThreadedExecutor  # noqa: E402
 from rclpy.node import Node  # noqa: E402
 from rclpy.parameter import Parameter  # noqa: E402
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy  # noqa: E402
@@ -135,18 +135,21 @@ class Client:
         self._services: dict[str, Any] = {}
         self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self.node)
+        self._is_closing = threading.Event()
         self._thread = threading.Thread(target=self._spin, daemon=True)
         self._thread.start()
 
     def _spin(self) -> None:
-        with suppress(ExternalShutdownException):
-            self._executor.spin()
+        while not self._is_closing.is_set():
+            self._executor.spin_once(timeout_sec=0.1)
 
     def close(self) -> None:
-        self._context.try_shutdown()
+        self._is_closing.set()
         self._thread.join(DEADLINE)
+        self._context.try_shutdown()
         self._executor.shutdown()
         self.node.destroy_node()
+        self._context.try_shutdown()
 
     def connect(self, is_moving: bool = True) -> None:
         """Wait until a node hears the commands and is heard; without states while its time stands still."""

@@ -2,12 +2,15 @@
 
 import math
 from collections.abc import Iterator
+from functools import partial
+from pathlib import Path
 from typing import Any
 
 import pytest
 
+from stickslip_sim.errors import InputError
 from stickslip_sim.recording import flat_layout, topics
-from tests.ros_nodes import rclpy, wait_for
+from tests.ros_nodes import client, rclpy, running, wait_for
 
 pytestmark = pytest.mark.ros
 
@@ -39,9 +42,10 @@ def test_other_bytes_have_no_numbers(data: bytes) -> None:
 def test_heard_as_sent(node: Any, topic: topics.Topic, field: str) -> None:
     from rclpy.executors import SingleThreadedExecutor
 
-    from stickslip_sim.ros.topics import command_subscription, publisher
+    from stickslip_sim.ros.topics import command_reader, publisher, raw_subscription
     heard: list[float] = []
-    command_subscription(node, topic, heard.append)
+    read = command_reader(topic)
+    raw_subscription(node, topic, lambda data: heard.append(read(data)))
     out = publisher(node, topic)
     executor = SingleThreadedExecutor(context=node.context)
     executor.add_node(node)
@@ -50,6 +54,41 @@ def test_heard_as_sent(node: Any, topic: topics.Topic, field: str) -> None:
         out.publish(command(topic, field, frame_id, value))
         wait_for(lambda: executor.spin_once(timeout_sec=0.01) or heard, 'the command')
         assert heard.pop() == value
+
+
+@pytest.mark.parametrize('topic', [topics.DRIVE_VELOCITY, topics.EXTERNAL_FORCE])
+@pytest.mark.parametrize(('data', 'told'), [
+    (b'', '0 bytes'), (b'\0\1\0\0', 'its sender is broken'), (b'\0\1\0\0' + b'\xff' * 100, 'its sender is broken'),
+    (bytes(5000), 'at most 4096 bytes'),
+])
+def test_bytes_that_are_no_command(topic: topics.Topic, data: bytes, told: str) -> None:
+    from stickslip_sim.ros.topics import command_reader
+    with pytest.raises(InputError, match=topic.name) as refusal:
+        command_reader(topic)(data)
+    assert told in str(refusal.value)
+
+
+def test_a_node_outlives_senders_that_mean_no_good(tmp_path: Path) -> None:
+    """Each publishes what is no message of its type, or far too much; one that is meant well is heard after each."""
+    from sensor_msgs.msg import JointState
+
+    from stickslip_sim.ros.topics import publisher
+    bad = [b'', b'\0\1\0\0', b'\0\1\0\0' + b'\xff' * 100, b'\0\1\0\0' + bytes(8) + b'\xff\xff\xff\x7f',
+           JointState(name=['axis_drive'] * 100_000, velocity=[1.0] * 100_000)]
+    with client() as axis, running('-p', 'joint_interface.enabled:=true', folder=tmp_path):
+        axis.connect()
+        for topic in (topics.DRIVE_VELOCITY, topics.EXTERNAL_FORCE, topics.JOINT_COMMANDS):
+            sender = publisher(axis.node, topic)
+            wait_for(sender.get_subscription_count, 'the axis')
+            for count, message in enumerate(bad[:None if topic == topics.JOINT_COMMANDS else -1], 1):
+                sender.publish(message)
+                axis.send_velocity(1e-3 * count)
+                axis.next('slider_state', partial(runs_at, 1e-3 * count))
+        assert axis.next('timing').total_refused > len(bad)
+
+
+def runs_at(velocity: float, state: Any) -> bool:
+    return bool(state.drive_velocity == velocity)
 
 
 def command(topic: topics.Topic, field: str, frame_id: str, value: float) -> Any:

@@ -231,7 +231,7 @@ class TestServices:
 
     def test_reset_is_a_new_run(self, axis: Client) -> None:
         axis.send_velocity(0.005)
-        axis.next('slider_state', lambda state: state.drive_velocity == 0.005)
+        axis.next('slider_state', lambda state: state.drive_velocity == 0.005 and state.step > 200)
         before = axis.latest('run_info').start_time
         assert axis.trigger('reset').success
         state = axis.next('slider_state', lambda state: state.step < 200)

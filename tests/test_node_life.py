@@ -285,6 +285,33 @@ class TestRecording:
             assert_clean(*process.end())
         assert set(read_run(folder).topics) >= {'/cell/press/slider_state', '/parameter_events'}
 
+    def test_only_below_the_folder_of_the_start(self, tmp_path: Path) -> None:
+        """Who may set parameters may not write anywhere: not up, not elsewhere, not through a link."""
+        (tmp_path / 'runs').mkdir()
+        (tmp_path / 'runs' / 'away').symlink_to(tmp_path, target_is_directory=True)
+        with running('-p', f'record.folder:={tmp_path}/runs/first', folder=tmp_path) as process, client() as axis:
+            axis.connect()
+            for place in ('elsewhere', f'{tmp_path}/runs/../up', f'{tmp_path}/runs/away/x', '/dev/shm/x', '~/x'):
+                assert axis.set_parameters(record__folder=place).successful
+                answer = axis.switch('record', True)
+                assert (answer.success, 'must lie below' in answer.message) == (False, True), answer.message
+            for place in (f'{tmp_path}/runs/second', ''):
+                assert axis.set_parameters(record__folder=place).successful
+                assert axis.switch('record', True).success
+                assert axis.switch('record', False).success
+            process.end()
+        assert {path.name for path in tmp_path.iterdir()} == {'runs'}
+        assert len(list((tmp_path / 'runs').iterdir())) == 3
+
+    def test_a_scene_whose_name_is_a_path(self, tmp_path: Path) -> None:
+        scene = tmp_path / 'scene.yaml'
+        scene.write_text('/**:\n  ros__parameters: {scene: ../../up, axis: {mass: 300.0}, record: {enabled: true}}\n')
+        with running('--params-file', str(scene), folder=tmp_path) as process, client() as axis:
+            axis.connect()
+            process.end()
+        (folder,) = (tmp_path / 'runs').iterdir()
+        assert folder.name.startswith('.._.._up_')
+
     def test_bytes_are_those_that_were_published(self, tmp_path: Path) -> None:
         """Also from a recording that begins and ends while the axis runs."""
         folder = tmp_path / 'run'

@@ -1,19 +1,23 @@
 """replay_node with mode: commands: what an axis was told, into a live one."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager
-from functools import partial
 from pathlib import Path
+from types import MappingProxyType
 
 import pytest
 
 from stickslip_sim.recording import RECORDED, Run, flat_layout, open_run, read_run
 from stickslip_sim.recording.messages import Packer
-from stickslip_sim.recording.topics import DRIVE_VELOCITY, SLIDER_STATE
+from stickslip_sim.recording.topics import DRIVE_VELOCITY, RIG_EVENT, SLIDER_STATE, Topic
+from tests.eventful_runs import eventful_run, recording_into
 from tests.recorded_runs import FACTS, samples
-from tests.ros_nodes import Client, NodeProcess, client, running, wait_for
+from tests.ros_nodes import NodeProcess, client, running, wait_for
 
-from stickslip_msgs.srv import InjectFault, Step  # isort: skip
+from rclpy.serialization import serialize_message  # isort: skip
+
+from stickslip_msgs.msg import RigEvent  # isort: skip
+from stickslip_msgs.srv import Step  # isort: skip
 
 pytestmark = pytest.mark.ros
 
@@ -21,35 +25,12 @@ SAME = ('/slider_state', '/friction_force', '/mode_event')
 LOCKSTEP = ('-p', 'time.mode:=lockstep')
 
 
-def recording_into(folder: Path) -> list[str]:
-    return ['-p', 'record.enabled:=true', '-p', f'record.folder:={folder}']
-
-
 @pytest.fixture(scope='module')
 def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A run of the node in real time under commands, faults and changed parameters."""
     folder = tmp_path_factory.mktemp('recorded') / 'run'
-    with running(*recording_into(folder)) as process, client() as axis:
-        axis.connect()
-        for velocity in (0.004, -0.003, 0.002):
-            axis.send_velocity(velocity)
-            wait_for(partial(axis_follows, axis, velocity), 'the command in force')
-        assert axis.call(InjectFault, 'inject_fault', id='dry', kind='friction_scale', start=0.05, duration=9.0,
-                         value=1.5).success
-        assert axis.call(InjectFault, 'inject_fault', kind='force_pulse', start=0.2, duration=0.1, value=500.0).success
-        axis.send_force(300.0)
-        assert axis.set_parameters(axis__mass=300.0).successful
-        axis.next('mode_event')
-        assert axis.call(InjectFault, 'inject_fault', id='dry', kind='clear').success
-        assert axis.trigger('clear_faults').success
-        axis.send_force(0.0)
-        axis.next('timing')
-        assert process.end()[0] == 0
+    with eventful_run(folder):
+        pass
     return folder
-
-
-def axis_follows(axis: Client, velocity: float) -> bool:
-    return bool(axis.latest('slider_state').drive_velocity == velocity)
 
 
 def replaying(folder: Path, *arguments: str) -> AbstractContextManager[NodeProcess]:
@@ -73,8 +54,10 @@ def assert_same(one: Run, other: Run) -> None:
 
 class TestLockStep:
     def test_the_same_run_to_the_last_bit(self, recorded: Path, tmp_path: Path) -> None:
-        again = tmp_path / 'again'
-        with running(*LOCKSTEP, *recording_into(again)) as axis, replaying(recorded, '-p', 'rate:=50') as process:
+        again, scene = tmp_path / 'again', tmp_path / 'scene.yaml'
+        scene.write_bytes(read_run(recorded).attachments['scene.yaml'])
+        arguments = ['--params-file', str(scene), *LOCKSTEP, *recording_into(again)]
+        with running(*arguments) as axis, replaying(recorded, '-p', 'rate:=50') as process:
             ended(process)
             assert axis.end()[0] == 0
         assert_same(read_run(recorded), read_run(again))
@@ -87,11 +70,12 @@ class TestLockStep:
         with running(*LOCKSTEP) as axis, client() as viewer:
             viewer.connect(is_moving=False)
             assert viewer.call(Step, 'step', steps=700, velocity=0.05, force=0.0).success
-            viewer.heard['slider_state'].clear()
             with replaying(recorded, '-p', 'rate:=50', '-p', 'playback_duration:=0.5') as process:
                 ended(process)
-            positions = wait_for(lambda: positions_by_step(viewer, 501), 'the last step')
-            assert positions == read_run(recorded).columns('/slider_state')['position'][:501].tolist()
+            wait_for(lambda: viewer.latest('slider_state').step == 500, 'the last step')
+            columns = read_run(recorded).columns('slider_state')
+            for name in ('position', 'velocity', 'acceleration', 'drive_force'):
+                assert getattr(viewer.latest('slider_state'), name) == columns[name][500]
             assert axis.end()[0] == 0
 
     def test_again_and_again(self, recorded: Path) -> None:
@@ -118,6 +102,26 @@ class TestLockStep:
     def test_orders_that_the_axis_refuses(self, tmp_path: Path) -> None:
         assert '/feed_axis gave up: velocity = 5.0 is refused' in refused(commanded(tmp_path / 'fast', velocity=5.0))
 
+    def test_a_time_out_is_left_to_the_axis_and_told(self, tmp_path: Path) -> None:
+        timeout = RigEvent(kind=RigEvent.KIND_COMMAND_TIMEOUT, step=20, value=0.5)
+        folder = commanded(tmp_path / 'silent', {20: (RIG_EVENT, serialize_message(timeout))})
+        with running(*LOCKSTEP) as axis, replaying(folder) as process:
+            code, errors = process.wait()
+            assert axis.end()[0] == 0
+        assert code == 0
+        assert 'a command time-out at 0.019 s is left to the axis' in errors
+
+    def test_in_namespaces(self, tmp_path: Path) -> None:
+        """The axis is that of the recording, wherever the replay itself is."""
+        folder = commanded(tmp_path / 'run', namespace='/cell')
+        with running(*LOCKSTEP, '-r', '__ns:=/cell') as axis, client('/cell') as viewer:
+            viewer.connect(is_moving=False)
+            with replaying(folder, '-r', '__ns:=/elsewhere') as process:
+                ended(process)
+            states = viewer.heard['slider_state']
+            wait_for(lambda: states and states[-1].step == 49, 'the last step')
+            assert axis.end()[0] == 0
+
     def test_a_recording_axis_that_is_not_at_its_begin(self, recorded: Path, tmp_path: Path) -> None:
         with running(*LOCKSTEP, *recording_into(tmp_path / 'run')) as axis, client() as viewer:
             viewer.connect(is_moving=False)
@@ -139,22 +143,17 @@ def refused(folder: Path, *options: str, axis: Sequence[str] = ()) -> str:
     return line
 
 
-def positions_by_step(viewer: Client, count: int) -> list[float]:
-    """Return the positions heard since the latest step 0, when there are so many."""
-    states = viewer.heard['slider_state']
-    begin = max((number for number, state in enumerate(states) if state.step == 0), default=len(states))
-    positions = [state.position for state in states[begin:begin + count]]
-    return positions if len(positions) == count else []
-
-
-def commanded(folder: Path, first: int = 0, velocity: float = 0.002) -> Path:
-    """Write a run of 50 steps with one command, before its second step."""
-    states, commands = Packer(SLIDER_STATE), flat_layout(DRIVE_VELOCITY.type)
-    writer = open_run(folder, FACTS)
+def commanded(folder: Path, others: Mapping[int, tuple[Topic, bytes]] = MappingProxyType({}), first: int = 0,
+              velocity: float = 0.002, namespace: str = '/') -> Path:
+    """Write a run of 50 steps with one command, before its second step, and `others` by step."""
+    states, command = Packer(SLIDER_STATE), flat_layout(DRIVE_VELOCITY.type).pack(0, velocity)
+    messages = {first + 1: (DRIVE_VELOCITY, command), **others}
+    writer = open_run(folder, FACTS, namespace)
     for step, sample in enumerate(samples(50, first), first):
+        if step in messages:
+            topic, data = messages[step]
+            writer.write(RECORDED.index(topic), data, (step - 1) * 1_000_000, 0, step)
         writer.write(RECORDED.index(SLIDER_STATE), states.pack(0, step, sample), step * 1_000_000, 0, step)
-        if step == first:
-            writer.write(RECORDED.index(DRIVE_VELOCITY), commands.pack(0, velocity), step * 1_000_000, 0, step + 1)
     writer.close()
     return folder
 

@@ -7,8 +7,7 @@ import pathlib
 import pytest
 
 from stickslip_sim.scene import PARAMETERS, Parameter, load_scene, scene_from_values
-from stickslip_sim.scene.load import SIZE_LIMIT
-from stickslip_sim.scene.ros_yaml import plain_value, read_yaml
+from stickslip_sim.scene.ros_yaml import SIZE_LIMIT, plain_value, read_yaml
 from tests.scene_files import refusal, write
 
 EXPONENTIAL = 'law: exponential, initial: 0.1, limit: 0.05, stribeck_velocity: 0.01'
@@ -34,7 +33,8 @@ def test_not_a_number_is_read_as_one_and_refused_as_a_value() -> None:
 @pytest.mark.parametrize(('text', 'hint'), [
     ('a: &x 1.0\nb: *x\n', 'aliases'), ('a: 1\na: 2\n', 'twice'), ('a: !!python/object:os.system 1\n', 'tags'),
     ('a: [1, 2\n', 'line 2'), ('a:\n', 'missing'), ('a: 1\n---\nb: 2\n', 'document'), ('a: b: c\n', 'line 1'),
-    ('[' * 400, 'deep'), ('? [1]\n: 2\n', 'word'), ('a: \x00\n', 'printable'), ('a: !x 1\n', 'tags'),
+    ('[' * 400, 'deep'), ('[' + '1,' * 100_000 + ']', 'more than 100000'), ('#' * (SIZE_LIMIT + 1), 'at most'),
+    ('a: "\\U00110000"\n', 'Unicode'), ('? [1]\n: 2\n', 'word'), ('a: \x00\n', 'printable'), ('a: !x 1\n', 'tags'),
 ])
 def test_yaml_that_ros_refuses_or_passes_over(text: str, hint: str) -> None:
     assert hint in str(refusal(read_yaml, text))

@@ -120,8 +120,8 @@ class TestAlteredAndForeign:
         assert told in refused(capsys, folder)
 
     @pytest.mark.parametrize(('content', 'told'), [
-        (b'{', 'its checkpoint.json is no JSON'), (b'{}', "damaged or of another version: 'drive'"),
-        (b'[]', 'damaged or of another version'), (b'\xff', 'its checkpoint.json is no JSON'),
+        (b'{', 'its checkpoint.json is no JSON object'), (b'{}', "damaged or of another version: 'drive'"),
+        (b'[]', 'damaged or of another version'), (b'\xff', 'its checkpoint.json is no JSON object'),
     ])
     def test_a_checkpoint_of_another_kind(self, content: bytes, told: str, bag: Path, tmp_path: Path, capsys: Capture
                                           ) -> None:
@@ -154,7 +154,7 @@ class TestAlteredAndForeign:
         rewritten(bag, tmp_path / 'odd', definition=lambda text: text.replace('float64 rest_time', 'string rest_time'))
         assert 'has other fields than a step' in refused(capsys, tmp_path / 'odd')
         rewritten(bag, tmp_path / 'none', definition=lambda text: text.replace('float64', 'float 64'))
-        assert 'a definition of messages in it cannot be read' in refused(capsys, tmp_path / 'none')
+        assert '/msg/ModeEvent cannot be read: Could not parse' in refused(capsys, tmp_path / 'none')
 
     def test_no_run_of_ours(self, bag: Path, tmp_path: Path, capsys: Capture) -> None:
         (tmp_path / 'empty').mkdir()

@@ -9,11 +9,17 @@
 Each carries one line of text for people and the exit code of the tool.
 """
 
+LINE_LIMIT = 2000   # characters
+
 
 class StickslipError(Exception):
     """Base of all errors raised on purpose; `exit_code` is what the tool exits with."""
 
     exit_code = 1
+
+    def __str__(self) -> str:
+        """Return one line of printable text, whatever names of files, topics and parameters are in it."""
+        return one_line(super().__str__())
 
 
 class InputError(StickslipError):
@@ -51,6 +57,11 @@ class VerdictError(StickslipError):
     exit_code = 3
 
 
+def one_line(text: str, limit: int = LINE_LIMIT) -> str:
+    """Return text from outside as one line that any terminal and any file can hold."""
+    printable = ''.join(letter if letter.isprintable() else '?' for letter in ' '.join(text[:4 * limit].split()))
+    return printable if len(printable) <= limit else printable[:limit] + '…'
+
+
 def _short(value: object, limit: int = 80) -> str:
-    text = ' '.join(repr(value).split())
-    return text if len(text) <= limit else text[:limit] + '…'
+    return one_line(repr(value), limit)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import RecordingError, RecordingWarning
+from ..errors import RecordingError, RecordingWarning, one_line
 from ..offline import Trajectory
 from ..recording import Run, columns_of, events_of, read_run
 from ..recording.topics import SLIDER_STATE
@@ -58,7 +58,7 @@ def recorded(path: str) -> Evidence:
     time = columns['time']
     motion = Motion(float(time[0]), float(time[-1]), Mode(int(columns['mode'][0])), time, columns['position'],
                     columns['velocity'], columns['drive_position'], events_of(run))
-    return Evidence(_printable(Path(os.path.abspath(path)).name), motion, _timing(run), run.is_complete,
+    return Evidence(one_line(Path(os.path.abspath(path)).name), motion, _timing(run), run.is_complete,
                     tuple(_notes(run, columns)))
 
 
@@ -86,13 +86,8 @@ def _timing(run: Run) -> Timing | None:
         return Timing(False, 'the run has no end, no verdict')
     try:
         timing = run.receipt.get('timing')
-    except (TypeError, ValueError):   # an attachment of somebody else
+    except RecordingError:   # an attachment of somebody else
         return None
     if not isinstance(timing, dict) or timing.get('valid') is None:   # None: not in real time
         return None
-    return Timing(timing['valid'] is True, _printable(str(timing.get('verdict', ''))))
-
-
-def _printable(text: str) -> str:
-    """Return text that any file can hold: XML has no control characters."""
-    return ''.join(letter if letter.isprintable() else '?' for letter in text)
+    return Timing(timing['valid'] is True, one_line(str(timing.get('verdict', ''))))

@@ -78,12 +78,13 @@ def _history(run: str, duration: float | None, changes: tuple[str, ...]) -> 'His
 
 def _named_apart(histories: list['History']) -> list['History']:
     """Give each run a name of its own that is good for a file, too."""
-    import re
     from dataclasses import replace
+
+    from ..scene.text import file_name
 
     named: dict[str, History] = {}
     for history in histories:
-        stem = re.sub(r'[^\w.+-]+', '_', history.name)
+        stem = file_name(history.name)
         name = next(name for name in (stem, *(f'{stem}_{k}' for k in range(2, _MOST + 1))) if name not in named)
         named[name] = replace(history, name=name)
     return list(named.values())

@@ -1,5 +1,6 @@
 """`stickslip critical`: the value of a parameter at which stick-slip begins or ends."""
 
+import math
 from typing import TYPE_CHECKING
 
 import click
@@ -46,27 +47,28 @@ def _lines(scene: 'Scene', found: 'Critical') -> list[str]:
 
     over = found.over
     unit = f' {over.unit}'.rstrip()
+    digits = max(3, math.ceil(-math.log10(found.accuracy)) + 1)
     lines = [f'{scene.name}: {over.name} from {over.low:g} to {over.high:g}{unit}, to {found.accuracy:g} of the value',
-             *_told('from rest', found.from_rest, unit, 'stick-slip', 'no stick-slip'),
-             *_told('from sliding', found.from_sliding, unit, 'sliding is lost', 'sliding lasts')]
-    lines += [f'{"bistable":14} from {low:.10g} to {high:.10g}{unit} both go on: the start decides'
+             *_told('from rest', found.from_rest, unit, digits, 'stick-slip', 'no stick-slip'),
+             *_told('from sliding', found.from_sliding, unit, digits, 'sliding is lost', 'sliding lasts')]
+    lines += [f'{"bistable":14} from {low:.6g} to {high:.6g}{unit} both go on: the start decides'
               for low, high in found.both]
     theory = feed_of_theory(scene.axis) if over.name == 'drive.velocity' else None
-    return lines if theory is None else [*lines, f'{"closed form":14} {theory:.10g}{unit}, from rest']
+    return lines if theory is None else [*lines, f'{"closed form":14} {theory:.{digits + 2}g}{unit}, from rest']
 
 
-def _told(start: str, course: 'Course', unit: str, yes: str, no: str) -> list[str]:
+def _told(start: str, course: 'Course', unit: str, digits: int, yes: str, no: str) -> list[str]:
     """Return a line for each transition of a course, or one that there is none."""
     from ..study.transitions import OPEN, YES
 
     if not course.transitions:
         all_over = 'it cannot be told' if course.first == OPEN else yes if course.first == YES else no
         return [f'{start:14} no transition: {all_over} all over the range']
-    return [f'{start:14} {_value(one, unit)}: {no if one.rises else yes} below, {yes if one.rises else no} above'
-            for one in course.transitions]
+    return [f'{start:14} {_value(one, unit, digits)}: '
+            + (f'{no} below, {yes} above' if one.rises else f'{yes} below, {no} above') for one in course.transitions]
 
 
-def _value(one: 'Transition', unit: str) -> str:
+def _value(one: 'Transition', unit: str, digits: int) -> str:
     if one.resolved:
-        return f'{one.value:.12g}{unit}'
-    return f'between {one.low:.12g} and {one.high:.12g}{unit}, in between it settles too slowly to tell'
+        return f'{one.value:.{digits}g}{unit}'
+    return f'between {one.low:.{digits + 2}g} and {one.high:.{digits + 2}g}{unit}, where it settles too slowly'

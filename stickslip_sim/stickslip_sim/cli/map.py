@@ -39,7 +39,7 @@ def map_(folder: str, pictures: tuple[str, ...], show: str, picks: tuple[str, ..
     work.check_drawable(study, show)
     _check_picks(study, picks)
     _check_complete(sweep)
-    columns = read_columns(sweep.path / TABLE, study.names)
+    columns = read_columns(sweep.path / TABLE, study)
     with progress_bar('drawing') as progress, ExitStack() as files:
         motions = [_pick(study, text) for text in picks]
         paths = [str(files.enter_context(whole(path))) for path in pictures]
@@ -80,9 +80,12 @@ def _pick(study: 'Study', text: str) -> 'Pick':
     from ..paper.fresh import simulate
     from ..paper.windows import motion_of
     from ..plots.stability import Pick
+    from ..study.figures import Motion, figures_of
     from ..study.pictures import pick, point_of
 
     point = point_of(study, text)
     runs = study.runs(point[None, :])
     duration = float(runs.duration[0]) * min(1.0, _MOST_EVENTS / max(float(runs.events[0]), 1.0))
-    return Pick(*pick(study, point), motion_of(simulate(study.scene_at(point), duration)))
+    motion = motion_of(simulate(study.scene_at(point), duration))
+    sticks = figures_of(runs).motion[0] == Motion.STICK_SLIP
+    return Pick(*pick(study, point), motion if sticks else motion._replace(cycle=None))

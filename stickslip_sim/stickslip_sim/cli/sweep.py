@@ -19,7 +19,7 @@ _MOST_WORKERS = 1024
 @click.option('--over', 'ranges', multiple=True, required=True, metavar='A.B=LOW:HIGH:N[:log]',
               help='Vary a parameter, or an element of a list: A.B[1]. Given again: every combination.')
 @click.option('--sobol', type=int, metavar='N', help='Draw N points (Sobol) instead; then --over A.B=LOW:HIGH[:log].')
-@click.option('--out', required=True, metavar='FOLDER', help='Write points.csv (and .parquet with pyarrow) there.')
+@click.option('--out', required=True, metavar='FOLDER', help='Write points.csv (with pandas .parquet too) there.')
 @click.option('--duration', type=float, metavar='S', help='Simulated time, s [default: until the motion settles].')
 @click.option('--workers', default='1', metavar='N|all', help='Processes to use [default: 1].')
 @click.option('--resume', is_flag=True, help='Go on with a sweep that was interrupted.')
@@ -77,7 +77,7 @@ def _tell(study: 'Study', folder: 'Folder', ran: int) -> None:
     from ..study.folder import TABLE
     from ..study.table import read_columns
 
-    columns = read_columns(folder.path / TABLE, study.names)
+    columns = read_columns(folder.path / TABLE, study)
     counts = Counter(MOTIONS[Motion(int(motion))] for motion in columns['motion'])
     motions = ', '.join(f'{count} {word}' for word, count in counts.most_common())
     unsettled = int((columns['settled'] == 0.0).sum())

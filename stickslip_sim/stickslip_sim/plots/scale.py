@@ -6,7 +6,7 @@ import numpy as np
 
 from .look import MILLI, Numbers
 
-_SHOWN = {'m': (MILLI, 'mm'), 'm/s': (MILLI, 'mm/s')}
+_SHOWN = {'m': (MILLI, 'mm'), 'm/s': (MILLI, 'mm/s'), 'N/m': (1e-6, 'N/µm')}
 
 
 class Scale(NamedTuple):

@@ -23,7 +23,7 @@ from .motion import Motion, phase_plane
 from .scale import Scale
 
 MOST_PICKS = 6
-PLAIN = ('smooth sliding', 'sliding that swings on', 'no motion that lasts', 'unsolved')
+PLAIN = ('smooth sliding', 'sliding that swings on', 'at rest', 'unsolved')
 _PLAIN_COLOURS = ('#f2f2f2', '#c4c4c4', '#56B4E9', '#222222')
 _LOST = (0, (4.0, 2.0))
 _DECADE = 10.0

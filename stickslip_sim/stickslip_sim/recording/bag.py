@@ -91,12 +91,11 @@ class BagWriter:
         """Finish the bag: attachments, index, counts in metadata.yaml."""
         try:
             self._attach(attachments or {}, self._tally.last)
-            body = self._information()
-            self._mcap.add_metadata('rosbag2', {'serialized_metadata': to_yaml(body)})
+            self._add_information()
             self._mcap.finish()  # type: ignore[no-untyped-call]
             self._file.close()
             self._note_on_disk()
-            write_metadata(self.folder, body)
+            write_metadata(self.folder, self._information())
         except OSError as error:
             self.abandon()
             _refuse(self.path, error)
@@ -118,7 +117,12 @@ class BagWriter:
                 'offered_qos_profiles': to_yaml([topic.qos.as_yaml()]),
                 'topic_type_hash': self._schemas[topic.type].hash,
             })
+        self._add_information()
         write_metadata(self.folder, self._information())
+
+    def _add_information(self) -> None:
+        """Put what metadata.yaml says into the file too, at both ends as rosbag2 does: one end may be lost."""
+        self._mcap.add_metadata('rosbag2', {'serialized_metadata': to_yaml(self._information())})
 
     def _attach(self, attachments: Mapping[str, bytes], log_time_ns: int) -> None:
         for name, data in attachments.items():

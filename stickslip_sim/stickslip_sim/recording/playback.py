@@ -1,20 +1,20 @@
 """Recordings to be played: any MCAP bag of ROS 2, from any time on, without reading all that comes before."""
 
-from collections.abc import Callable, Collection, Iterator
-from contextlib import contextmanager
+from collections.abc import Collection, Iterator
+from heapq import heappop, heappush
+from itertools import count
 from pathlib import Path
-from typing import IO, NamedTuple
+from typing import NamedTuple
 
-from mcap.reader import McapReader, NonSeekingReader, SeekingReader
-from mcap.records import Channel, Schema
+from mcap.records import Channel, ChunkIndex, Footer, Message, Schema
 from rosbags.rosbag2 import ReaderError
 from rosbags.rosbag2.metadata import parse_qos
 
 from ..errors import RecordingError
-from .reader import _CUT_OFF, RecordedMessage, _file_of
+from .reader import RecordedMessage, file_of
+from .records import CUT_OFF, chunk_at, records, summary_of
 from .topics import QosProfile
 
-_COMPRESSIONS = {'', 'zstd', 'lz4'}
 _DEFAULT_QOS = QosProfile(10)    # as rosbag2 plays what has none, or several
 
 
@@ -36,75 +36,87 @@ class Recording:
     """
 
     def __init__(self, path: Path | str) -> None:
-        self.path = _file_of(Path(path))
+        self.path = file_of(Path(path))
         self.topics: dict[str, RecordedTopic] = {}
         self.is_complete = True
-        with self._reading() as stream:
-            span = self._look_at_summary(stream) or self._look_at_all(stream)
+        self._names: dict[int, str] = {}           # of topics by channel
+        self._chunks: list[ChunkIndex] = []        # by time; empty without an index
+        span = self._look_at_summary() or self._look_at_all()
         if span is None:
-            raise RecordingError(f'{self.path}: no message in it; give a recording that holds some')
+            raise RecordingError(f'{self.path}: no message can be read of it; give a recording that holds some')
         self.begin, self.end = span
 
     def messages(self, topics: Collection[str], since: int, until: int) -> Iterator[RecordedMessage]:
         """Yield the messages of some topics from one log time to another (ns), both included, in this order.
 
-        A bag that was cut off has them in the order in which they were written.  Raises RecordingError where the bag
-        is damaged.
+        A bag without an index, such as one that was cut off, has them in the order in which they were written.  Raises
+        RecordingError where the bag is damaged.
         """
-        make: Callable[..., McapReader] = SeekingReader if self.is_complete else NonSeekingReader
-        time = since
-        with self._reading() as stream:
-            items = make(stream, validate_crcs=True).iter_messages(
-                topics, log_time_order=self.is_complete, starting_at=since, ending_at=until)
-            try:
-                for _, channel, message in items:
-                    time = message.log_time
-                    yield RecordedMessage(channel.topic, self.topics[channel.topic].type, message.sequence, time,
-                                          message.publish_time, message.data)
-            except _CUT_OFF as error:
-                if self.is_complete:
-                    raise RecordingError(f'{self.path}: damaged behind {time * 1e-9:g} s: {error}') from None
+        for message in self._indexed(since, until) if self._chunks else self._written():
+            name = self._names.get(message.channel_id, '')
+            if name in topics and since <= message.log_time <= until:
+                yield RecordedMessage(name, self.topics[name].type, message.sequence, message.log_time,
+                                      message.publish_time, message.data)
 
-    @contextmanager
-    def _reading(self) -> Iterator[IO[bytes]]:
+    def _indexed(self, since: int, until: int) -> Iterator[Message]:
+        """Yield all messages in the order of time, out of the chunks that hold any of this span."""
+        waiting: list[tuple[int, int, Message]] = []    # a heap, by time and place
+        places = count()
+        for chunk in self._chunks:
+            if chunk.message_end_time < since or chunk.message_start_time > until:
+                continue
+            while waiting and waiting[0][0] < chunk.message_start_time:
+                yield heappop(waiting)[-1]
+            for message in self._messages_in(chunk):
+                heappush(waiting, (message.log_time, next(places), message))
+        while waiting:
+            yield heappop(waiting)[-1]
+
+    def _messages_in(self, chunk: ChunkIndex) -> list[Message]:
         try:
-            with self.path.open('rb') as stream:
-                yield stream
+            with self.path.open('rb') as file:
+                return [record for record in chunk_at(self.path, file, chunk.chunk_start_offset)
+                        if isinstance(record, Message)]
+        except (*CUT_OFF, OSError) as error:
+            begin = chunk.message_start_time * 1e-9
+            raise RecordingError(f'{self.path}: damaged behind {begin:g} s: {error}') from None
+
+    def _written(self) -> Iterator[Message]:
+        return (record for record in records(self.path) if isinstance(record, Message))
+
+    def _look_at_summary(self) -> tuple[int, int] | None:
+        """Take topics and index from the end of the file; return first and last time, None where that does not tell."""
+        try:
+            with self.path.open('rb') as file:
+                summary = summary_of(file)
         except OSError as error:
             raise RecordingError(f'{self.path}: {error.strerror}') from None
-
-    def _look_at_summary(self, stream: IO[bytes]) -> tuple[int, int] | None:
-        """Take the topics from the end of the file; return first and last time, None where that does not tell."""
-        try:
-            summary = SeekingReader(stream).get_summary()
-        except (*_CUT_OFF, OSError, StopIteration):    # there is no end, or the file is shorter than one
-            return None
         if summary is None or summary.statistics is None or not summary.statistics.message_count:
             return None
-        unknown = {chunk.compression for chunk in summary.chunk_indexes} - _COMPRESSIONS
-        if unknown:
-            raise RecordingError(f'{self.path}: compressed with {", ".join(unknown)}; only zstd and lz4 can be read')
         for channel in summary.channels.values():
             self._add(channel, summary.schemas.get(channel.schema_id))
+        self._chunks = sorted(summary.chunk_indexes, key=lambda chunk: chunk.message_start_time)
         return summary.statistics.message_start_time, summary.statistics.message_end_time
 
-    def _look_at_all(self, stream: IO[bytes]) -> tuple[int, int] | None:
-        """Take the topics from the messages; return first and last time, None when there is no message."""
-        stream.seek(0)
+    def _look_at_all(self) -> tuple[int, int] | None:
+        """Take the topics from the records; return first and last time, None when there is no message."""
+        schemas: dict[int, Schema] = {}
         span: tuple[int, int] | None = None
-        try:
-            for schema, channel, message in NonSeekingReader(stream, validate_crcs=True).iter_messages(
-                    log_time_order=False):
-                self._add(channel, schema)
-                time = message.log_time
+        self.is_complete = False
+        for record in records(self.path):
+            if isinstance(record, Schema):
+                schemas[record.id] = record
+            elif isinstance(record, Channel):
+                self._add(record, schemas.get(record.schema_id))
+            elif isinstance(record, Message):
+                time = record.log_time
                 span = (min(span[0], time), max(span[1], time)) if span else (time, time)
-        except _CUT_OFF as error:
-            self.is_complete = False
-            if span is None:
-                raise RecordingError(f'{self.path}: no message can be read: {error}') from None
+            elif isinstance(record, Footer):
+                self.is_complete = True
         return span
 
     def _add(self, channel: Channel, schema: Schema | None) -> None:
+        self._names[channel.id] = channel.topic
         if channel.topic not in self.topics:
             self.topics[channel.topic] = RecordedTopic(
                 channel.topic, schema.name if schema else '', channel.message_encoding,

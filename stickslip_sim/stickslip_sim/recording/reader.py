@@ -1,35 +1,31 @@
 """Reads runs back, also those of a process that was killed or of a disk that was full."""
 
 import json
-import struct
 import warnings
 from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-import zstandard
-from mcap.exceptions import McapError
-from mcap.records import Attachment, Channel, Chunk, Footer, McapRecord, Message, Metadata, Schema
-from mcap.stream_reader import CRCValidationError, StreamReader, breakup_chunk
+from mcap.records import Attachment, Channel, Footer, McapRecord, Message, Metadata, Schema
 from numpy.typing import NDArray
-from rosbags.serde import SerdeError
-from rosbags.typesys import TypesysError
 from rosbags.typesys.store import Typestore
 
 from ..errors import InputError, RecordingError, RecordingWarning
 from ..scene import Scene, parse_scene
 from ..words import Event
 from .layout import Layout, layout_of, numbers_of, texts_of
+from .records import records
 from .run import RECEIPT_FILE, SCENE_FILE
-from .schemas import store_of
+from .schemas import store_of, understood
 from .tables import events_of
 
-# What a file that ends anywhere makes the reader stumble over (RuntimeError: lz4).
-_CUT_OFF = (McapError, CRCValidationError, struct.error, zstandard.ZstdError, RuntimeError, UnicodeDecodeError)
-_COMPRESSIONS = ('', 'zstd', 'lz4')
+_MOST_HELD = 4 << 30    # bytes of a topic in memory at once
+_OVERHEAD = 300         # bytes of a message there beside its own
+_MOST_TOLD = 64 << 20   # bytes of all that a file holds beside messages
 
 
 class RecordedMessage(NamedTuple):
@@ -55,11 +51,12 @@ class Run:
     topics: dict[str, str] = field(default_factory=dict)    # type names by topic
     channel_metadata: dict[str, dict[str, str]] = field(default_factory=dict)
     counts: dict[str, int] = field(default_factory=dict)
+    _stores: dict[str, Typestore] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @property
     def receipt(self) -> dict[str, Any]:
-        """The final figures; empty when the run was cut off."""
-        return dict(json.loads(self.attachments.get(RECEIPT_FILE, b'{}')))
+        """The final figures; empty when the run was cut off.  Raises RecordingError when they are none."""
+        return self.values(RECEIPT_FILE)
 
     @cached_property
     def scene(self) -> Scene:
@@ -76,41 +73,47 @@ class Run:
         """The transitions in the order of time; the drive position is not recorded with them (NaN)."""
         return events_of(self)
 
+    def values(self, attachment: str) -> dict[str, Any]:
+        """Return what a JSON file in the run says by name, nothing without the file; raises RecordingError."""
+        try:
+            return dict(json.loads(self.attachments.get(attachment, b'{}')))
+        except (ValueError, TypeError, RecursionError) as error:
+            raise RecordingError(f'{self.path}: damaged: its {attachment} is no JSON object: {error}') from None
+
     def messages(self, topics: Iterable[str] | None = None) -> Iterator[RecordedMessage]:
         """Yield the messages of some topics (None: all)."""
         wanted = set(self.topics if topics is None else topics)
-        channels: dict[int, Channel] = {}
-        for record in _records(self.path):
+        channels: dict[int, str] = {}
+        for record in records(self.path):
             if isinstance(record, Channel):
-                channels[record.id] = record
-            elif isinstance(record, Message) and (topic := channels[record.channel_id].topic) in wanted:
+                channels.setdefault(record.id, record.topic)
+            elif isinstance(record, Message) and (topic := channels[record.channel_id]) in wanted:
                 yield RecordedMessage(topic, self.topics[topic], record.sequence, record.log_time,
                                       record.publish_time, record.data)
 
     def decode(self, message: RecordedMessage) -> Any:
         """Return the message as an object with its fields as attributes; raises RecordingError when it is damaged."""
-        try:
-            return self._store.deserialize_cdr(message.data, message.type)
-        except (SerdeError, struct.error, ValueError, IndexError) as error:
-            raise RecordingError(f'{self.path}: {message.topic}: no {message.type} at {message.log_time} ns: {error}'
-                                 ) from None
+        store = self._store(message.type)
+        with self._named(f'{message.topic} at {message.log_time} ns'), understood(f'a {message.type}'):
+            return store.deserialize_cdr(message.data, message.type)
 
     def columns(self, topic: str) -> dict[str, NDArray[Any]]:
         """Return a topic as one array for each field that is a number or a text.
 
         `log_time` (simulation time) and `publish_time` are in ns; `sequence` is the step.  A name without a slash at
-        its begin is that of the one topic that ends so.  Raises RecordingError when there is none.
+        its begin is that of the one topic that ends so.  Raises RecordingError when there is none, or too much of it.
         """
         topic = self._resolved(topic)
-        messages = list(self.messages([topic]))
-        columns = self._fields(self.topics[topic], [message.data for message in messages])
-        for name in ('log_time', 'publish_time', 'sequence'):
-            columns[name] = np.array([getattr(message, name) for message in messages], dtype=np.int64)
+        messages = self._held(topic)
+        columns = self._fields(self.topics[topic], messages)
+        with self._named(topic), understood('a time beyond the year 2262'):
+            for name in ('log_time', 'publish_time', 'sequence'):
+                columns[name] = np.array([getattr(message, name) for message in messages], dtype=np.int64)
         return columns
 
     def layout(self, topic: str) -> Layout:
         """Return where a topic has its numbers; raises RecordingError when they have no fixed places."""
-        layout = layout_of(self._store, self.topics[topic])
+        layout = layout_of(self._store(self.topics[topic]), self.topics[topic])
         if layout is None:
             raise RecordingError(f'{self.path}: {topic} has other fields than a step; recorded by another version?')
         return layout
@@ -130,27 +133,44 @@ class Run:
         found = f'{len(names)} topics' if names else 'no topic'
         raise RecordingError(f'{self.path}: {found} {topic}; there are {", ".join(self.topics) or "none"}')
 
-    def _fields(self, type_name: str, data: list[bytes]) -> dict[str, NDArray[Any]]:
-        layout = layout_of(self._store, type_name)
-        if layout and all(len(item) == layout.size for item in data):
-            rows = layout.unpack(data)
-            return {name: rows[name].copy() for name in rows.dtype.names or ()}
-        decoded = [self._store.deserialize_cdr(item, type_name) for item in data]
-        return {
-            name: np.array([getattr(message, name) for message in decoded], dtype=kind)
-            for name, kind in numbers_of(self._store, type_name).items()
-        } | {
-            name: np.array([getattr(message, name) for message in decoded], dtype=object)
-            for name in texts_of(self._store, type_name)
-        }
+    def _held(self, topic: str) -> list[RecordedMessage]:
+        """Return all messages of a topic; raises RecordingError when they are more than fit into memory."""
+        held, size = [], 0
+        for message in self.messages([topic]):
+            held.append(message)
+            size += len(message.data) + _OVERHEAD
+            if size > _MOST_HELD:
+                raise RecordingError(f'{self.path}: {topic} has more than {len(held)} messages of {size >> 20} MiB in '
+                                     'all, which do not fit: take messages() one by one, or a part of the recording')
+        return held
 
-    @cached_property
-    def _store(self) -> Typestore:
+    def _fields(self, type_name: str, messages: list[RecordedMessage]) -> dict[str, NDArray[Any]]:
+        store = self._store(type_name)
+        layout = layout_of(store, type_name)
+        if layout and all(len(message.data) == layout.size for message in messages):
+            rows = layout.unpack([message.data for message in messages])
+            return {name: rows[name].copy() for name in rows.dtype.names or ()}
+        decoded = [self.decode(message) for message in messages]
+        kinds = {**numbers_of(store, type_name), **dict.fromkeys(texts_of(store, type_name), 'object')}
+        return {name: np.array([getattr(message, name) for message in decoded], dtype=kind)
+                for name, kind in kinds.items()}
+
+    def _store(self, type_name: str) -> Typestore:
+        """Return what reads messages of a type; raises RecordingError without a definition of it that can be read."""
+        if type_name not in self._stores:
+            if type_name not in self.schemas:
+                raise RecordingError(f'{self.path}: no definition of {type_name or "some messages"} in it')
+            with self._named():
+                self._stores[type_name] = store_of({type_name: self.schemas[type_name]})
+        return self._stores[type_name]
+
+    @contextmanager
+    def _named(self, *part: str) -> Iterator[None]:
+        """Put the file, and a part of it, in front of the text of a RecordingError."""
         try:
-            return store_of(self.schemas)
-        except TypesysError as error:
-            reason, *_ = str(error).splitlines()
-            raise RecordingError(f'{self.path}: a definition of messages in it cannot be read: {reason}') from None
+            yield
+        except RecordingError as error:
+            raise RecordingError(': '.join([str(self.path), *part, str(error)])) from None
 
 
 def read_run(path: Path | str) -> Run:
@@ -159,34 +179,56 @@ def read_run(path: Path | str) -> Run:
     A run without an end (its process was killed, its disk was full, or it is still being written) is read as far as it
     goes, with a RecordingWarning.
     """
-    run = Run(_file_of(Path(path)))
+    run = Run(file_of(Path(path)))
     names: dict[int, str] = {}
     channels: dict[int, str] = {}
-    for record in _records(run.path):
+    told = 0
+    for record in records(run.path):
         if isinstance(record, Message):
+            if record.channel_id not in channels:
+                raise RecordingError(f'{run.path}: damaged: a message on channel {record.channel_id}, which is nowhere')
             run.counts[channels[record.channel_id]] += 1
-        elif isinstance(record, Schema) and record.id not in names:    # the index repeats them
-            names[record.id] = record.name
-            if record.encoding == 'ros2msg':
-                run.schemas[record.name] = record.data.decode(errors='replace')
-        elif isinstance(record, Channel) and record.id not in channels:
-            channels[record.id] = record.topic
-            run.topics[record.topic] = names.get(record.schema_id, '')    # other programs may give none
-            run.channel_metadata[record.topic] = record.metadata
-            run.counts[record.topic] = 0
-        elif isinstance(record, Attachment):
-            run.attachments[record.name] = record.data
-        elif isinstance(record, Metadata):
-            run.metadata[record.name] = record.metadata
-        elif isinstance(record, Footer):
-            run.is_complete = True
+            continue
+        told += _size(record)
+        if told > _MOST_TOLD:
+            raise RecordingError(f'{run.path}: more than {_MOST_TOLD >> 20} MiB beside its messages; no run has that')
+        _note(run, record, names, channels)
     if not run.is_complete:
         warnings.warn(f'{run.path} has no end: cut off, or still being written; {sum(run.counts.values())} messages are'
                       ' whole, and metadata.yaml does not count them', RecordingWarning, stacklevel=2)
     return run
 
 
-def _file_of(path: Path) -> Path:
+def _note(run: Run, record: McapRecord, names: dict[int, str], channels: dict[int, str]) -> None:
+    """Take what a record tells of the run; `names` of schemas and topics of `channels` by their numbers."""
+    if isinstance(record, Schema) and record.id not in names:    # the index repeats them
+        names[record.id] = record.name
+        if record.encoding == 'ros2msg':
+            run.schemas[record.name] = record.data.decode(errors='replace')
+    elif isinstance(record, Channel) and record.id not in channels:
+        channels[record.id] = record.topic
+        run.topics[record.topic] = names.get(record.schema_id, '')    # other programs may give none
+        run.channel_metadata[record.topic] = record.metadata
+        run.counts.setdefault(record.topic, 0)
+    elif isinstance(record, Attachment):
+        run.attachments[record.name] = record.data
+    elif isinstance(record, Metadata):
+        run.metadata[record.name] = record.metadata
+    elif isinstance(record, Footer):
+        run.is_complete = True
+
+
+def _size(record: McapRecord) -> int:
+    """Return about how many bytes of a record are kept."""
+    if isinstance(record, (Attachment, Schema)):
+        return len(record.name) + len(record.data)
+    if isinstance(record, (Channel, Metadata)):
+        return sum(len(key) + len(value) for key, value in record.metadata.items()) + _OVERHEAD
+    return 0
+
+
+def file_of(path: Path) -> Path:
+    """Return the MCAP file of a bag, given by its folder or by itself; raises RecordingError when there is no one."""
     files = sorted(path.glob('*.mcap')) if path.is_dir() else [path]
     for foreign in [*path.glob('*.mcap.*'), *path.glob('*.db3*')] if not files else []:
         raise RecordingError(f'{path}: {foreign.name} is not read, only .mcap is; decompress or convert it first '
@@ -196,29 +238,3 @@ def _file_of(path: Path) -> Path:
     if len(files) > 1:
         raise RecordingError(f'{path}: {len(files)} .mcap files; give the one to read')
     return files[0]
-
-
-def _records(path: Path) -> Iterator[McapRecord]:
-    """Yield the records that are whole; a file that is cut off just ends earlier."""
-    try:
-        with path.open('rb') as stream:
-            begin = True
-            try:
-                for record in StreamReader(stream, validate_crcs=True, emit_chunks=True).records:
-                    begin = False
-                    yield from _unpacked(path, record)
-            except _CUT_OFF as error:
-                if begin:
-                    raise RecordingError(f'{path} is not an MCAP file: {error}') from None
-    except OSError as error:
-        raise RecordingError(f'{path}: {error.strerror}') from None
-
-
-def _unpacked(path: Path, record: McapRecord) -> Iterable[McapRecord]:
-    """Return the records of a chunk, or any other record by itself."""
-    if not isinstance(record, Chunk):
-        return [record]
-    if record.compression not in _COMPRESSIONS:
-        raise RecordingError(f'{path}: its chunks are compressed with {record.compression!r}; zstd, lz4 and none are '
-                             'read: convert it first (mcap compress)')
-    return breakup_chunk(record, validate_crc=True)

@@ -5,7 +5,8 @@ The files are those of the sourced workspace (AMENT_PREFIX_PATH), so a bag descr
 
 import os
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -17,6 +18,8 @@ from rosbags.typesys.store import Typestore
 from ..errors import RecordingError
 from .layout import Layout, numbers_of
 
+_DEFINITION = 128 * 1024   # letters of a definition: a second or two of reading
+_ELEMENTS = 1000           # of arrays of fixed length in a type, of texts and messages
 _RULE = '=' * 80
 _TYPE_OF_FIELD = re.compile(r'^\s*([A-Za-z]\w*(?:/\w+)*)(?:<=\d+)?(?:\[[^\]]*\])?\s+\w', re.MULTILINE)
 _PRIMITIVE = frozenset(
@@ -41,13 +44,28 @@ def schema(type_name: str) -> Schema:
 
 
 def store_of(definitions: Mapping[str, str]) -> Typestore:
-    """Return a rosbags type store made of definitions like `Schema.text`, by type name."""
+    """Return a rosbags type store made of definitions like `Schema.text`, by type name; raises RecordingError."""
     store = get_typestore(Stores.EMPTY)
     types: dict[str, Any] = {}
     for name, text in definitions.items():
-        types.update(get_types_from_msg(text, name))
-    store.register(types)
+        if len(text) > _DEFINITION:
+            raise RecordingError(f'{name} is defined in {len(text)} letters; at most {_DEFINITION} are read')
+        with understood(f'the definition of {name}'):
+            types.update(get_types_from_msg(text, name))
+    _check_arrays(types)
+    with understood(f'the definition of {", ".join(definitions)}'):
+        store.register(types)
     return store
+
+
+@contextmanager
+def understood(what: str) -> Iterator[None]:
+    """Turn whatever rosbags stumbles over into a RecordingError: it makes Python code of definitions, and runs that."""
+    try:
+        yield
+    except Exception as error:
+        reason, *_ = str(error).splitlines() or [type(error).__name__]
+        raise RecordingError(f'{what} cannot be read: {reason.rstrip(":")}') from None
 
 
 @cache
@@ -83,6 +101,18 @@ class MessageCodec:
                 arguments[field] = [self._message(str(inner[0][1]), item) for item in value]
         create: Any = self._store.types[type_name]
         return create(**arguments)
+
+
+def _check_arrays(types: Mapping[str, Any]) -> None:
+    """Raise RecordingError when arrays of fixed length have too many elements: each becomes a line of code."""
+    for name, (_, fields) in types.items():
+        count = sum(inner[1] for _, (node, inner) in fields if node == Nodetype.ARRAY and not _is_number(inner[0]))
+        if count > _ELEMENTS:
+            raise RecordingError(f'{name} has arrays of {count} elements; at most {_ELEMENTS} are read')
+
+
+def _is_number(element: tuple[Nodetype, Any]) -> bool:
+    return element[0] == Nodetype.BASE and element[1][0] != 'string'
 
 
 def _full_text(type_name: str, seen: set[str]) -> str:

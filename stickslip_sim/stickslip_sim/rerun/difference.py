@@ -1,5 +1,6 @@
 """Recorded messages beside what was made again: every field, to the last bit."""
 
+import struct
 from typing import NamedTuple
 
 from ..errors import RecordingError
@@ -77,6 +78,9 @@ class _Topic:
         except AttributeError as error:
             raise RecordingError(f'{self._path}: {self.name}: its field {error.name} is unknown here; recorded by '
                                  'another version?') from None
+        except struct.error:
+            raise RecordingError(f'{self._path}: {self.name}: published at {message.publish_time} ns, which no stamp '
+                                 'can say') from None
         return None if made == message.data else self._field(message.data, made, number, word.time)
 
     def _field(self, recorded: bytes, made: bytes, number: int, time: float) -> Difference:

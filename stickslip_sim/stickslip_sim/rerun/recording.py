@@ -1,7 +1,6 @@
 """A recorded run that is to be run again: what it began from, and what is doubtful about it."""
 
 import hashlib
-import json
 import warnings
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -10,7 +9,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from .. import __version__
-from ..errors import RecordingError, RecordingWarning
+from ..errors import RecordingError, RecordingWarning, one_line
 from ..recording import Run, read_run
 from ..recording.bag import METADATA
 from ..recording.run import CHECKPOINT_FILE, SCENE_FILE, RunFacts
@@ -52,7 +51,7 @@ def open_recording(path: Path | str) -> Recording:
     if facts is None:
         raise RecordingError(f'{run.path}: it does not say what it was simulated with; give a run that stickslip '
                              'recorded')
-    return Recording(run, run.scene, _checkpoint(run), _offline(run, facts), tuple(_notes(run, facts)))
+    return Recording(run, run.scene, _checkpoint(run), _offline(run, facts), tuple(map(one_line, _notes(run, facts))))
 
 
 def made_with(recording: Recording) -> str:
@@ -60,7 +59,7 @@ def made_with(recording: Recording) -> str:
     recorded, here = recording.run.metadata[METADATA], RunFacts.of(recording.scene).as_metadata()
     others = [f'{name} {recorded[name]} (here {here[name]})' for name in _MAKERS
               if recorded.get(name, here[name]) != here[name]]
-    return ', '.join(others) or 'the same versions on the same kind of machine'
+    return one_line(', '.join(others)) or 'the same versions on the same kind of machine'
 
 
 def _is_finished(path: Path) -> bool:
@@ -70,13 +69,7 @@ def _is_finished(path: Path) -> bool:
 
 
 def _checkpoint(run: Run) -> Mapping[str, Any] | None:
-    if CHECKPOINT_FILE not in run.attachments:
-        return None
-    try:
-        checkpoint: Mapping[str, Any] = json.loads(run.attachments[CHECKPOINT_FILE])
-    except ValueError as error:
-        raise RecordingError(f'{run.path}: damaged: its {CHECKPOINT_FILE} is no JSON: {error}') from None
-    return checkpoint
+    return run.values(CHECKPOINT_FILE) if CHECKPOINT_FILE in run.attachments else None
 
 
 def _offline(run: Run, facts: Mapping[str, str]) -> Offline | None:

@@ -21,6 +21,7 @@ from .recording import Recording
 
 ORDERS = DRIVE_VELOCITY, EXTERNAL_FORCE, RIG_EVENT, PARAMETER_EVENTS
 WORDS = SLIDER_STATE, FRICTION_FORCE, MODE_EVENT
+_MOST_MISSING = 1_000_000          # steps that are made again without being compared
 _HALF, _WHOLE = 1 << 31, 1 << 32   # the file has 32 bits for the number of a step
 
 
@@ -47,11 +48,15 @@ def steps_of(recording: Recording, start: int) -> Iterator[Step]:
     kinds = {name_of(run, topic): topic for topic in (*ordered, *WORDS)}
     messages = (message for message in run.messages(kinds) if kinds[message.topic] != RIG_EVENT
                 or is_order(run, message))
-    number = start
+    number, missing = start, 0
     for sequence, group in groupby(_numbered(messages, kinds, start), key=lambda item: item[0]):
         ahead = (sequence - number + _HALF) % _WHOLE - _HALF
         if ahead < 0:
             raise RecordingError(f'{run.path}: step {number + ahead} after step {number}; give a recording of one run')
+        missing += max(ahead - 1, 0)
+        if missing > _MOST_MISSING:
+            raise RecordingError(f'{run.path}: step {number + ahead} after step {number}; a recording that lacks more '
+                                 f'than {_MOST_MISSING} steps is damaged')
         number += ahead
         if number > start:     # what was in force at the checkpoint is told again
             yield _step(number, [message for _, message in group], kinds)

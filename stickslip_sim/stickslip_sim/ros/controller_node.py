@@ -33,7 +33,7 @@ class ControllerNode(ListedNode):
 
     def __init__(self, name: str, compensates: bool) -> None:
         super().__init__(name, (*COMMON, *(COMPENSATION if compensates else ())))
-        self.values_changed()
+        self._following = following(self.values)
         self._progress: Progress | None = None
         self._heard = self._refused = self._limited = 0    # measurements and commands since the last report
         self._refusal = ''
@@ -57,7 +57,7 @@ class ControllerNode(ListedNode):
                 time.sleep(_STOP_PAUSE)
 
     def values_changed(self) -> None:
-        """Go on with other gains and moves."""
+        """Go on with other gains."""
         self._following = following(self.values)
 
     def _hear(self, message: JointState) -> None:

@@ -3,13 +3,12 @@
 from collections.abc import Callable
 
 from rclpy.node import Node
-from sensor_msgs.msg import JointState
 
 from ..commands import CommandSlot
 from ..errors import InputError
 from ..recording import topics as names
 from .joints import DRIVE, commanded_velocity, disregarded
-from .topics import command_subscription, subscription
+from .topics import command_reader, message_of, raw_subscription
 
 _QUIET = 1_000_000_000   # ns between two warnings of refused commands of a kind
 
@@ -20,25 +19,28 @@ class Inlet:
     def __init__(self, node: Node, velocity: CommandSlot, force: CommandSlot, now: Callable[[], int],
                  with_joints: bool) -> None:
         self._log, self._now = node.get_logger(), now
-        self._velocity = velocity
         self._quiet_until: dict[str, int] = {}   # by kind of command
-        command_subscription(node, names.DRIVE_VELOCITY, lambda value: self._take(velocity, value))
-        command_subscription(node, names.EXTERNAL_FORCE, lambda value: self._take(force, value))
+        self._hear(node, names.DRIVE_VELOCITY, velocity, command_reader(names.DRIVE_VELOCITY))
+        self._hear(node, names.EXTERNAL_FORCE, force, command_reader(names.EXTERNAL_FORCE))
         if with_joints:
-            subscription(node, names.JOINT_COMMANDS, self._take_joints)
+            self._hear(node, names.JOINT_COMMANDS, velocity, self._velocity_of_joints)
 
-    def _take(self, slot: CommandSlot, value: float) -> None:
-        self._tell(slot, slot.offer(value, self._now()))
+    def _hear(self, node: Node, topic: names.Topic, slot: CommandSlot, read: Callable[[bytes], float]) -> None:
+        def take(data: bytes) -> None:
+            try:
+                refusal = slot.offer(read(data), self._now())
+            except InputError as error:
+                refusal = slot.refuse(str(error))
+            self._tell(slot, refusal)
 
-    def _take_joints(self, message: JointState) -> None:
-        try:
-            velocity = commanded_velocity(message)
-        except InputError as error:
-            self._tell(self._velocity, self._velocity.refuse(str(error)))
-            return
-        self._take(self._velocity, velocity)
+        raw_subscription(node, topic, take)
+
+    def _velocity_of_joints(self, data: bytes) -> float:
+        message = message_of(names.JOINT_COMMANDS, data)
+        velocity = commanded_velocity(message)
         if other := disregarded(message):
             self._log.warning(f'joint_commands: {other} is disregarded; the velocity of {DRIVE} counts', once=True)
+        return velocity
 
     def _tell(self, slot: CommandSlot, refusal: str) -> None:
         now = self._now()

@@ -50,7 +50,7 @@ def spin(node: Any, signals: 'Signals', is_over: Callable[[], bool] = lambda: Fa
             executor.spin_once(timeout_sec=_POLL)
     finally:
         node.end()
-        executor.remove_node(node)
+        executor.shutdown()      # lets go of what still arrives; removing the node would do so with the next spin only
         node.destroy_node()
 
 

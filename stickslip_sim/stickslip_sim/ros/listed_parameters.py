@@ -4,6 +4,7 @@ import difflib
 from collections.abc import Mapping, Sequence
 
 from rcl_interfaces.msg import SetParametersResult
+from rclpy.exceptions import ParameterException
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
@@ -21,7 +22,7 @@ class ListedNode(Node):  # type: ignore[misc]
     """
 
     def __init__(self, name: str, entries: Sequence[Entry]) -> None:
-        with refusing('ROS environment', variables()):
+        with refusing('ROS parameters or environment', variables(), ParameterException):
             super().__init__(name)
         self._entries = {entry.name: entry for entry in entries}
         given = {name: parameter.value for name, parameter in self._parameter_overrides.items()}

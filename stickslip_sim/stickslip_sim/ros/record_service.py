@@ -21,7 +21,7 @@ class RecordService:
 
     def __init__(self, node: SceneNode, loop: StepLoop, outlet: Outlet, tell: Callable[[], None],
                  receipt: Callable[[], dict[str, Any]]) -> None:
-        self.recordings = Recordings(node.get_namespace())
+        self.recordings = Recordings(node.get_namespace(), node.scene)
         self._node, self._loop, self._outlet = node, loop, outlet
         self._tell, self._receipt = tell, receipt
         node.create_service(SetBool, '~/record', self._set_recording)

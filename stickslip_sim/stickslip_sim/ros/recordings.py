@@ -19,19 +19,26 @@ from ..recording import (
 )
 from ..recording.topics import PARAMETER_EVENTS
 from ..scene.model import Scene
+from ..scene.text import file_name
 
-_RUNS = Path('runs')
+_RUNS = 'runs'
 
 
 class Recordings:
-    """At most one recording at a time; a failure ends the recording and is kept to be told, never raised."""
+    """At most one recording at a time; a failure ends the recording and is kept to be told, never raised.
 
-    def __init__(self, namespace: str) -> None:
+    All lie below the folder of the one that the scene names at the start, or below runs/: whoever may set parameters
+    may not write anywhere.
+    """
+
+    def __init__(self, namespace: str, scene: Scene) -> None:
         self.recorder: RecorderThread | None = None
         self.folder = ''             # of the recording under way
         self.failure = ''            # why the latest recording ended or did not begin
         self.dropped = 0             # messages of earlier recordings
         self._namespace = namespace
+        given = os.path.expanduser(scene.record.folder)
+        self._root = Path(os.path.realpath(os.path.dirname(given) if given else _RUNS))
         self._codec = MessageCodec([PARAMETER_EVENTS.type])
 
     @property
@@ -47,7 +54,7 @@ class Recordings:
     def begin(self, scene: Scene) -> None:
         """Open a new run folder; raises RecordingError."""
         try:
-            writer = open_run(_folder_of(scene, self._namespace), RunFacts.of(scene), self._namespace)
+            writer = open_run(self._folder_of(scene), RunFacts.of(scene), self._namespace)
         except (RecordingError, OSError, RuntimeError, ValueError) as error:    # the last two: no such home, odd names
             self.failure = f'record.folder = {scene.record.folder!r}: {error}'
             raise RecordingError(self.failure) from None
@@ -85,13 +92,18 @@ class Recordings:
         self.recorder, self.folder = None, ''
         return self.failure
 
+    def _folder_of(self, scene: Scene) -> Path:
+        """Return the folder of the scene, or a new one that is named after namespace, scene and time.
 
-def _folder_of(scene: Scene, namespace: str) -> Path:
-    """Return the folder of the scene, or a new one that is named after namespace, scene and time."""
-    if scene.record.folder:
-        return Path(scene.record.folder).expanduser()
-    name = '_'.join([*filter(None, namespace.split('/')), scene.name])    # axes may start in the same second
-    return first_free(lambda number: _RUNS / f'{name}_{utc_stamp()}{f"_{number}" if number > 1 else ""}')
+        Raises RecordingError on one that lies elsewhere.
+        """
+        if not scene.record.folder:    # axes may start in the same second
+            name = '_'.join([*filter(None, self._namespace.split('/')), file_name(scene.name), utc_stamp()])
+            return first_free(lambda number: self._root / (f'{name}_{number}' if number > 1 else name))
+        folder = Path(scene.record.folder).expanduser()
+        if self._root not in Path(os.path.realpath(folder)).parents:
+            raise RecordingError(f'it must lie below {self._root}, as at the start of the node')
+        return folder
 
 
 def first_free(name: Callable[[int], Path]) -> Path:

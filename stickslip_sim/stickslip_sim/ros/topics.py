@@ -22,9 +22,11 @@ from stickslip_msgs.msg import (
     StepTiming,
 )
 
+from ..errors import InputError
 from ..recording import flat_layout
 from ..recording.topics import QosProfile, Topic
 
+COMMAND_SIZE = 4096   # bytes of a message that commands something; one of two joints takes some 200
 _TYPES = {
     f'{kind.__module__.split(".")[0]}/msg/{kind.__name__}': kind
     for kind in (DriveVelocity, ExternalForce, FrictionForce, ModeEvent, RigEvent, RunInfo, SliderState, StepTiming,
@@ -55,16 +57,33 @@ def subscription(node: Node, topic: Topic, callback: Callable[[Any], None]) -> A
     return node.create_subscription(message_type(topic), topic.name, callback, qos(topic.qos))
 
 
-def command_subscription(node: Node, topic: Topic, callback: Callable[[float], None]) -> Any:
-    """Create a subscription of a topic of commands, a header and one number; the callback gets the number.
+def raw_subscription(node: Node, topic: Topic, callback: Callable[[bytes], None]) -> Any:
+    """Create a subscription whose callback gets the bytes of each message: whatever anyone sends."""
+    return node.create_subscription(message_type(topic), topic.name, callback, qos(topic.qos), raw=True)
 
-    It is read from the bytes, so that rclpy need not make an object of each message.
+
+def message_of(topic: Topic, data: bytes) -> Any:
+    """Return the message that these bytes are; raises InputError when they are too many, or none."""
+    if len(data) > COMMAND_SIZE:
+        raise InputError(topic.name, f'{len(data)} bytes', f'at most {COMMAND_SIZE} bytes',
+                         'send commands of this axis')
+    try:
+        return deserialize_message(data, message_type(topic))
+    except RuntimeError:    # the base of what the middleware raises
+        raise InputError(topic.name, f'{len(data)} bytes', f'a {topic.type}', 'its sender is broken') from None
+
+
+def command_reader(topic: Topic) -> Callable[[bytes], float]:
+    """Return what reads the number of a command from its bytes and raises InputError when they are no such command.
+
+    Where it can, without an object of rclpy for each message.
     """
-    kind, layout = message_type(topic), flat_layout(topic.type)
+    layout = flat_layout(topic.type)
     field, = layout.names
 
-    def take(data: bytes) -> None:
+    def read(data: bytes) -> float:
         numbers = layout.numbers(data)
-        callback(numbers[0] if numbers else getattr(deserialize_message(data, kind), field))
+        value: float = numbers[0] if numbers else getattr(message_of(topic, data), field)
+        return value
 
-    return node.create_subscription(kind, topic.name, take, qos(topic.qos), raw=True)
+    return read

@@ -9,11 +9,10 @@ from contextlib import contextmanager
 from ..errors import InputError
 from .build import build_scene
 from .model import Scene
-from .ros_yaml import read_yaml
+from .ros_yaml import SIZE_LIMIT, read_yaml
 from .sections import describes_an_axis, parameters_of, without_those_of_ros
 from .values import overridden
 
-SIZE_LIMIT = 1 << 20   # bytes of a scene file
 _SHIPPED = pathlib.Path(__file__).parent.parent / 'scenes'
 _ENDINGS = ('.yaml', '.yml')
 

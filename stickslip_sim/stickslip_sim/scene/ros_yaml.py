@@ -21,7 +21,10 @@ from yaml.scanner import Scanner
 
 from ..errors import InputError
 
+SIZE_LIMIT = 1 << 20   # letters of a document
 _DEPTH = 16
+_NODES = 100_000       # names, values and lists of a document: four seconds of reading
+_SHOWN = 100           # letters of a document that is refused
 _DIGITS = 24   # no longer word can be a whole number of 64 bits
 _TEXT = BaseResolver.DEFAULT_SCALAR_TAG
 _TAGS = (_TEXT, BaseResolver.DEFAULT_SEQUENCE_TAG, BaseResolver.DEFAULT_MAPPING_TAG)
@@ -34,6 +37,8 @@ _SPECIAL = re.compile(r'[-+]?(?:\.inf|\.Inf|\.INF|(?i:inf|infinity))|\.nan|\.NaN
 
 def read_yaml(text: str) -> object:
     """Return a YAML document as dicts, lists, texts, bools and numbers; raises InputError that names the line."""
+    if len(text) > SIZE_LIMIT:
+        raise InputError('text', text[:_SHOWN], f'at most {SIZE_LIMIT} letters', 'is this the right file?')
     try:
         root = _Reader(text).get_single_node()
         return None if root is None else _value(root)
@@ -41,11 +46,13 @@ def read_yaml(text: str) -> object:
         mark = error.problem_mark or error.context_mark
         _refuse(text, mark.line if mark else 0, error.problem or str(error))
     except YAMLError as error:
-        raise InputError('text', type(error).__name__, 'printable YAML', ' '.join(str(error).split())) from None
+        raise InputError('text', type(error).__name__, 'printable YAML', str(error)) from None
+    except ValueError:    # of PyYAML, which makes letters of any number
+        raise InputError('text', 'an escape \\U', 'letters that Unicode has', 'none is beyond \\U0010FFFF') from None
 
 
 class _Reader(Reader, Scanner, Parser, Composer, BaseResolver):
-    """Composes a tree of nodes without aliases and of a sane depth."""
+    """Composes a tree of nodes without aliases, of a sane depth and size."""
 
     def __init__(self, text: str) -> None:
         Reader.__init__(self, text)
@@ -53,7 +60,7 @@ class _Reader(Reader, Scanner, Parser, Composer, BaseResolver):
         Parser.__init__(self)
         Composer.__init__(self)
         BaseResolver.__init__(self)
-        self._depth = 0
+        self._depth = self._nodes = 0
 
     def compose_node(self, parent: Node | None, index: int) -> Node | None:
         if self.check_event(AliasEvent):
@@ -61,6 +68,10 @@ class _Reader(Reader, Scanner, Parser, Composer, BaseResolver):
                                   problem_mark=self.peek_event().start_mark)
         if self._depth >= _DEPTH:
             raise MarkedYAMLError(problem=f'nested more than {_DEPTH} deep', problem_mark=self.peek_event().start_mark)
+        if self._nodes >= _NODES:
+            raise MarkedYAMLError(problem=f'more than {_NODES} names and values',
+                                  problem_mark=self.peek_event().start_mark)
+        self._nodes += 1
         self._depth += 1
         node = super().compose_node(parent, index)
         self._depth -= 1

@@ -248,7 +248,8 @@ PARAMETERS: tuple[Parameter, ...] = (
             low=0.0, high=_TIME, above=True, infinite=True),
 
     Parameter('record.enabled', 'bool', False, '', 'whether the node records a bag from the start'),
-    Parameter('record.folder', 'string', '', '', 'folder of the bag, which must not exist; empty: the node chooses',
+    Parameter('record.folder', 'string', '', '', 'folder of the bag, which must not exist; empty: the node chooses;'
+              ' changed live, it must lie where it lay at the start (empty: runs/), or below',
               live=True),
 
     Parameter('seed', 'integer', 0, '', 'of everything random in the run', 0, 2**63 - 1),

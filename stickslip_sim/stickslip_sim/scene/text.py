@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 from collections.abc import Mapping
 
 from .parameter import Parameter, yaml_word
@@ -22,6 +23,11 @@ def scene_text(values: Mapping[str, object]) -> str:
         inside = sections
         lines.append(f'{_indent(len(sections))}{leaf}: {yaml_value(entry, values[entry.name])}')
     return '\n'.join(lines) + '\n'
+
+
+def file_name(name: str) -> str:
+    """Return a name from outside as a part of a file name: it leads nowhere else."""
+    return re.sub(r'[^\w.+-]+', '_', name)
 
 
 def _indent(depth: int) -> str:

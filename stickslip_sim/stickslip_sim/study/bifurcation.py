@@ -13,7 +13,7 @@ from .steady import sliding_slope
 from .study import Study
 from .variation import Numbers
 
-_LAST = 20   # cycles of each point that are shown, or half of all
+_LAST = 40   # cycles of each point that are shown, or half of all
 
 
 class Bifurcation(NamedTuple):

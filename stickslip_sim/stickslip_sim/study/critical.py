@@ -79,9 +79,10 @@ class _Judge:
 
     def sticks(self, numbers: Numbers) -> Verdicts:
         """Whether stick-slip goes on, from the start of the scene."""
-        figures = figures_of(runs_in_batches(self.values, [self.name], numbers[:, None], None, _PATIENCE))
+        runs = runs_in_batches(self.values, [self.name], numbers[:, None], None, _PATIENCE)
+        figures = figures_of(runs)
         slips = figures.motion == Motion.STICK_SLIP
-        unknown = (slips & (figures.settled == 0.0)) | (figures.motion == Motion.UNSOLVED)
+        unknown = (slips & (figures.settled == 0.0) & runs.fades) | (figures.motion == Motion.UNSOLVED)
         return np.where(unknown, OPEN, np.where(slips, YES, NO))
 
     def loses_sliding(self, numbers: Numbers) -> Verdicts:

@@ -6,7 +6,7 @@
 | stick_slip | | 1 or 0 |
 | amplitude | m | travel of one slip, from break-away to standstill; 0 without stick-slip |
 | period | s | from break-away to break-away |
-| stick_share | | of the period; 0 for smooth sliding, 1 at rest |
+| stick_share | | of the last period; 0 for smooth sliding, 1 at rest |
 | peak_speed | m/s | of a slip |
 | break_away_force | N | friction at the break-away |
 | settling_time | s | time to the limit cycle: the break-away from which on each period is the one before, to 1e-6; of \
@@ -37,41 +37,53 @@ class Motion(IntEnum):
     """What a point ends in."""
 
     AT_REST = 0
-    SINGLE_SLIP = 1
-    SMOOTH_SLIDING = 2
-    STICK_SLIP = 3
-    UNSOLVED = 4
+    SMOOTH_SLIDING = 1
+    STICK_SLIP = 2
+    UNSOLVED = 3
 
 
-MOTIONS = {Motion.AT_REST: 'at rest', Motion.SINGLE_SLIP: 'single slip', Motion.SMOOTH_SLIDING: 'smooth sliding',
-           Motion.STICK_SLIP: 'stick-slip', Motion.UNSOLVED: 'unsolved'}
+MOTIONS = {Motion.AT_REST: 'at rest', Motion.SMOOTH_SLIDING: 'smooth sliding', Motion.STICK_SLIP: 'stick-slip',
+           Motion.UNSOLVED: 'unsolved'}
 
 
 @dataclass(frozen=True)
 class Runs:
-    """What is known of the run of each point, one entry each; named as in `batch.BatchFigures`."""
+    """What is known of the run of each point, one entry each; named as in `batch.BatchFigures`.
+
+    `fades`: sticks take a smaller and smaller share of runs twice as long.
+    """
 
     duration: Numbers
     complete: Flags
     events: Numbers
     cycles: Numbers
     final_mode: Numbers
-    first_break_away: Numbers
     last_break_away: Numbers
     settling_time: Numbers
     settled: Flags
+    stick_share: Numbers
     stick_time: Numbers
     period: Numbers
     slip_travel: Numbers
     peak_speed: Numbers
     break_away_force: Numbers
+    fades: Flags
 
     @property
     def slides_on(self) -> Flags:
-        """Whether the last slip goes on and took more than half of the run; without a break-away all of it."""
-        since = self.duration - np.nan_to_num(self.last_break_away)
-        slides: Flags = (self.final_mode != Mode.STICK) & (since >= 0.5 * self.duration)
+        """Whether the last slip goes on and took more than half of the run."""
+        slides: Flags = (self.final_mode != Mode.STICK) & self._is_calm
         return slides
+
+    @property
+    def rests_on(self) -> Flags:
+        """Whether the slider stands still at the end, and no slip began in the second half of the run."""
+        rests: Flags = (self.final_mode == Mode.STICK) & self._is_calm
+        return rests
+
+    @property
+    def _is_calm(self) -> Flags:
+        return self.duration - np.nan_to_num(self.last_break_away) >= 0.5 * self.duration
 
     @property
     def sticks(self) -> Flags:
@@ -138,9 +150,7 @@ def _motions(runs: Runs) -> NDArray[np.int64]:
 
     It may have stuck for a while and slide now: what it ends in counts.  A slip that just began is one of a cycle.
     """
-    slips = runs.final_mode != Mode.STICK
-    stays = np.where(np.isnan(runs.first_break_away), Motion.AT_REST, Motion.SINGLE_SLIP)
-    found = np.where(runs.sticks, Motion.STICK_SLIP,
-                     np.where(slips | (runs.cycles > 0), Motion.SMOOTH_SLIDING, stays))
-    found = np.where(runs.slides_on, Motion.SMOOTH_SLIDING, found)
+    moves = (runs.final_mode != Mode.STICK) | (runs.cycles > 0)
+    found = np.where(runs.sticks, Motion.STICK_SLIP, np.where(moves, Motion.SMOOTH_SLIDING, Motion.AT_REST))
+    found = np.where(runs.slides_on, Motion.SMOOTH_SLIDING, np.where(runs.rests_on, Motion.AT_REST, found))
     return np.where(runs.complete, found, Motion.UNSOLVED)

@@ -36,10 +36,13 @@ class Folder:
         if os.path.lexists(self.path):
             raise InputError('--out', str(self.path), 'a folder that does not exist',
                              'choose another name, or add --resume to go on with it')
-        self._check_room(study)
+        parent = self.path.absolute().parent
+        if not parent.is_dir():
+            raise InputError('--out', str(self.path), 'in a folder that exists', f'make the folder {parent} first')
         with _refusing(self.path):
             self.path.mkdir()
             try:
+                self._check_room(study)
                 (self.path / SIDECAR).write_text(json.dumps(description(study, command), indent=1) + '\n',
                                                  encoding='utf-8')
                 (self.path / PARTIAL).write_bytes(header(study))
@@ -95,25 +98,22 @@ class Folder:
                 raise
 
     def finish(self) -> None:
-        """Give the table its name; where pyarrow is installed, write it as Parquet too."""
+        """Give the table its name; where pandas is installed, write it as Parquet too."""
         with _refusing(self.path):
             write_parquet(self.path / PARTIAL, self.path / PARQUET)
             (self.path / PARTIAL).replace(self.path / TABLE)
 
     def _check_room(self, study: Study) -> None:
         """Raise InputError when the table would not fit into memory or onto the disk."""
-        parent = self.path.absolute().parent
-        if not parent.is_dir():
-            raise InputError('--out', str(self.path), 'in a folder that exists', f'make the folder {parent} first')
         memory = os.sysconf('SC_AVPHYS_PAGES') * os.sysconf('SC_PAGE_SIZE')
         _check_size(study, 'memory', size_in_memory(study), memory)
-        _check_size(study, 'disk', size_on_disk(study), shutil.disk_usage(parent).free)
+        _check_size(study, 'disk', size_on_disk(study), shutil.disk_usage(self.path).free)
 
 
 def _check_size(study: Study, where: str, needed: int, free: int) -> None:
     if needed > free:
         raise InputError('points', study.count, f'at most {study.count * free // needed}: their table would take '
-                         f'{needed / 1e9:.3g} GB of {where}, of which {free / 1e9:.3g} GB are free',
+                         f'{needed / 1e6:,.0f} MB of {where}, of which {free / 1e6:,.0f} MB are free',
                          'take fewer values for each parameter, or --sobol N')
 
 

@@ -20,7 +20,7 @@ from .variation import Numbers, Variation
 UNITS = {'amplitude': 'm', 'period': 's', 'stick_share': '', 'peak_speed': 'm/s', 'break_away_force': 'N',
          'settling_time': 's', 'cycles': '', 'duration': 's'}
 Columns = Mapping[str, Numbers]
-_PLAIN = {Motion.AT_REST: 2, Motion.SINGLE_SLIP: 2, Motion.SMOOTH_SLIDING: 0, Motion.UNSOLVED: 3}
+_PLAIN = {Motion.AT_REST: 2, Motion.SMOOTH_SLIDING: 0, Motion.UNSOLVED: 3}
 
 
 def check_drawable(study: Study, shown: str) -> None:

@@ -86,8 +86,7 @@ def _row(run: Trajectory) -> dict[str, Any]:
            for name in ('stick_time', 'period', 'slip_travel', 'peak_speed', 'break_away_force')}
     final = [event.mode for event in run.events] or [_start_mode(run.scene)]
     return {**row, 'complete': True, 'events': len(run.events), 'cycles': len(cycles),
-            'settled': run.summary.settled, 'final_mode': final[-1],
-            'first_break_away': begins[0] if begins else math.nan,
+            'settled': run.summary.settled, 'stick_share': run.summary.stick_share, 'final_mode': final[-1],
             'last_break_away': begins[-1] if begins else math.nan, 'settling_time': _settling_time(cycles)}
 
 

@@ -55,7 +55,8 @@ class Sobol:
         from scipy.stats import qmc
 
         sequence = qmc.Sobol(len(self.variations), scramble=True, seed=self.seed)
-        sequence.fast_forward(first)
+        if first:   # scipy cannot go forward by none
+            sequence.fast_forward(first)
         with warnings.catch_warnings():
             warnings.simplefilter('ignore', UserWarning)   # that a part of the sequence is no power of two
             shares = sequence.random(last - first)

@@ -2,9 +2,9 @@
 
 An axis runs for at least eight times a natural period and the time in which its drive loads the spring to the static
 limit, rounded up to a power of two.  It runs twice as long, from the start, until two runs end in the same cycle (stick
-time and period within 1e-6), or until a slip has gone on for more than half of the run and either no event comes any
-more or steady sliding is stable.
-With the events of `patience` cycles, or 1024 times as long as the first run, it is left as it is: not settled.
+time and period within 1e-6 of each other and of the cycle before), or until a slip has gone on for more than half of
+the run and either no event comes any more or steady sliding is stable.  With the events of `patience` cycles, or 1024
+times as long as the first run, it is left as it is: not settled.
 """
 
 from collections.abc import Mapping
@@ -20,10 +20,11 @@ from ..words import Mode
 from .figures import RUN_FIELDS, Flags, Numbers, Runs, no_runs
 from .steady import sliding_slope
 
-PATIENCE = 1000     # cycles
+PATIENCE = 400     # cycles
 _LOADINGS = 8.0     # of the spring, and natural periods, that a run has at least
 _EVENTS = 8         # of a cycle, or of a swing without a stick, as a rule
 _DOUBLINGS = 10
+_FADING = 0.95     # of the share of stick, from a run to one twice as long
 
 
 def run_settled(axis: Axis, initial: InitialState, inputs: Mapping[str, Numbers], duration: float | None = None,
@@ -46,6 +47,7 @@ def run_settled(axis: Axis, initial: InitialState, inputs: Mapping[str, Numbers]
         now = _taken(runs, pending)
         settled = _is_settled(before, now, axis, {name: values[pending] for name, values in inputs.items()})
         runs.settled[pending] = settled
+        runs.fades[pending] = now.stick_share < _FADING * before.stick_share
         goes_on = ~settled & now.complete & (now.events < _EVENTS * patience) & (exponents[pending] < last[pending])
         pending = pending[goes_on]
         exponents[pending] += 1
@@ -58,7 +60,7 @@ def _is_settled(before: Runs, now: Runs, axis: Axis, inputs: Mapping[str, Number
     for name in ('stick_time', 'period'):
         one, other = getattr(before, name), getattr(now, name)
         same &= np.abs(one - other) <= SETTLED * np.abs(other)
-    goes_on = (now.cycles > before.cycles) & same & ~now.slides_on
+    goes_on = (now.cycles > before.cycles) & now.settled & same & ~now.slides_on
     slides = now.slides_on & ((sliding_slope(axis, inputs) >= 0.0) | (now.events == before.events))
     pulls_no_more = inputs['drive_velocity'] * _number(axis, inputs, 'drive_stiffness') == 0.0
     settled: Flags = goes_on | slides | (pulls_no_more & (now.final_mode == Mode.STICK))
@@ -92,7 +94,8 @@ def _number(axis: Axis, inputs: Mapping[str, Numbers], name: str) -> Numbers:
 def _runs(axis: Axis, initial: InitialState, inputs: Mapping[str, Numbers], duration: float) -> Runs:
     found: BatchFigures = run_batch(axis, duration, initial=initial, threads=1, **inputs)
     return Runs(np.full(len(found.cycles), duration),
-                **{name: getattr(found, name) for name in RUN_FIELDS if name != 'duration'})
+                **{name: getattr(found, name) for name in RUN_FIELDS if hasattr(found, name)},
+                fades=np.zeros(len(found.cycles), dtype=bool))
 
 
 def _taken(runs: Runs, places: Any) -> Runs:

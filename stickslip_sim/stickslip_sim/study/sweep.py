@@ -1,13 +1,16 @@
 """All points of a study, chunk by chunk and in their order, by one process or several."""
 
+import os
 import signal
+import threading
 from collections import deque
-from collections.abc import Callable, Iterator
-from concurrent.futures import Executor, ProcessPoolExecutor
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from itertools import islice
-from multiprocessing import get_context
+from multiprocessing import get_context, parent_process
+from typing import NoReturn
 
 from ..errors import StickslipError
 from .folder import Folder
@@ -55,7 +58,7 @@ def _results(study: Study, starts: range, workers: int) -> Iterator[Iterator[byt
 @contextmanager
 def _pool(workers: int) -> Iterator[Executor]:
     """Yield processes; on any error what waits for them is dropped and what they are at is waited for."""
-    pool = ProcessPoolExecutor(workers, get_context('spawn'), signal.signal, (signal.SIGINT, signal.SIG_IGN))
+    pool = ProcessPoolExecutor(workers, get_context('spawn'), _watch_the_parent)
     try:
         yield pool
     except BrokenProcessPool:
@@ -64,9 +67,30 @@ def _pool(workers: int) -> Iterator[Executor]:
         pool.shutdown(cancel_futures=True)
 
 
+def _watch_the_parent() -> None:
+    """Have a worker go when its parent is gone, however it went: nothing else would end it."""
+    threading.Thread(target=_go_with_the_parent, daemon=True).start()
+
+
+def _go_with_the_parent() -> NoReturn:
+    parent = parent_process()
+    if parent is not None:
+        parent.join()
+    os._exit(1)
+
+
 def _in_order(pool: Executor, chunks: Iterator[tuple[Study, int, int]], ahead: int) -> Iterator[bytes]:
     """Yield results in the order of the chunks, with no more than `ahead` under way, whatever their number."""
-    waiting = deque(pool.submit(lines, *chunk) for chunk in islice(chunks, ahead))
+    waiting = deque(_submitted(pool, islice(chunks, ahead)))
     while waiting:
         yield waiting.popleft().result()
-        waiting.extend(pool.submit(lines, *chunk) for chunk in islice(chunks, 1))
+        waiting.extend(_submitted(pool, islice(chunks, 1)))
+
+
+def _submitted(pool: Executor, chunks: Iterable[tuple[Study, int, int]]) -> list[Future[bytes]]:
+    """Hand out chunks; workers that this starts inherit that Ctrl-C is held back, and leave it to their parent."""
+    signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+    try:
+        return [pool.submit(lines, *chunk) for chunk in chunks]
+    finally:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])

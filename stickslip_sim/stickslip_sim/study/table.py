@@ -1,8 +1,7 @@
 """The points of a study as lines of CSV, and those lines back as columns."""
 
-import io
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +11,7 @@ from .figures import FIGURES, MOTIONS, Figures, Motion
 from .study import Study
 from .variation import Numbers
 
-BYTES_OF_A_NUMBER = 24   # 17 digits, sign, point, exponent, comma
+_BYTES_OF_A_NUMBER = 24   # 17 digits, sign, point, exponent, comma
 _CODES = {word: float(motion) for motion, word in MOTIONS.items()}
 
 
@@ -31,7 +30,7 @@ def lines(study: Study, first: int, last: int) -> bytes:
 
 def size_on_disk(study: Study) -> int:
     """Return how many bytes all lines take at most."""
-    return study.count * (len(study.names) + len(FIGURES)) * BYTES_OF_A_NUMBER
+    return study.count * (len(study.names) + len(FIGURES)) * _BYTES_OF_A_NUMBER
 
 
 def size_in_memory(study: Study) -> int:
@@ -39,19 +38,18 @@ def size_in_memory(study: Study) -> int:
     return study.count * (len(study.names) + len(FIGURES)) * 8
 
 
-def read_columns(path: Path, names: Sequence[str]) -> dict[str, Numbers]:
-    """Return the columns of a table by name; motions as numbers of `Motion`.  Raises InputError."""
+def read_columns(path: Path, study: Study) -> dict[str, Numbers]:
+    """Return the columns of the table of a study by name; motions as numbers of `Motion`.  Raises InputError."""
     try:
-        text = path.read_text(encoding='utf-8')
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError('points', str(path), 'a readable table of a sweep', str(error)) from None
-    titles, _, body = text.partition('\n')
-    if titles.split(',') != [*names, *FIGURES]:
-        raise InputError('points', str(path), 'the table of this study', 'it was changed; sweep again')
-    rows = [[_number(cell) for cell in line.split(',')] for line in io.StringIO(body)]
-    if any(len(row) != len(names) + len(FIGURES) for row in rows) or not rows:
-        raise InputError('points', str(path), 'a table of whole lines', 'it was changed; sweep again')
-    return dict(zip((*names, *FIGURES), np.array(rows).T.copy()))
+        with path.open(encoding='utf-8') as file:
+            titles = file.readline()
+            rows = np.array([[_number(cell) for cell in line.split(',')] for line in file])
+    except (OSError, ValueError):
+        titles, rows = '', np.array([])
+    if titles.encode() != header(study) or rows.shape != (study.count, len(study.names) + len(FIGURES)):
+        raise InputError('points', str(path), f'the table of its study, {study.count} whole lines',
+                         'it was changed or cannot be read; sweep again')
+    return dict(zip((*study.names, *FIGURES), rows.T.copy()))
 
 
 def figures_in(columns: Mapping[str, Numbers]) -> Figures:

@@ -32,7 +32,7 @@ class Axis:
 
     def __init__(self, node: Node, name: str, stop: threading.Event) -> None:
         self.name = name
-        self.namespace = name.rpartition('/')[0] or node.get_namespace()
+        self.namespace = name.rpartition('/')[0] or ('/' if name.startswith('/') else node.get_namespace())
         self._stop = stop
         self._clients = {service: node.create_client(kind, f'{name}/{service}') for service, kind in _SERVICES.items()}
         self._timing: StepTiming | None = None    # the latest

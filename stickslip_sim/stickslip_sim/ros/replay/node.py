@@ -1,6 +1,7 @@
 """The node `replay`: wires a recording, its script and the services of a player together."""
 
 import threading
+import time
 
 from rclpy.clock import Clock as SteadyClock
 from rclpy.clock import ClockType
@@ -21,6 +22,7 @@ from .states import States
 from .timeline import Timeline
 
 NAME = 'replay'
+_LINGER = 0.5    # s; what a process leaves behind in shared memory goes with it
 
 
 class Replay(ListedNode):
@@ -50,8 +52,9 @@ class Replay(ListedNode):
         self.player.start()
 
     def end(self) -> None:
-        """Stop playing."""
+        """Stop playing; let those who listen take what was said last."""
         self.player.end()
+        time.sleep(_LINGER)
 
     def values_changed(self) -> None:
         """Go on at another rate."""

@@ -22,6 +22,10 @@ class Act(NamedTuple):
     do: Callable[[], object]
 
 
+def nothing() -> None:
+    """Do nothing: what a script does at the end of its span, so that it lasts as long."""
+
+
 class Script(Protocol):
     """What is played, from the time `begin` of the recording (ns) on."""
 

@@ -6,9 +6,11 @@ from typing import Any
 from rclpy.node import Node
 
 from ...errors import InputError
-from ...recording import schema
+from ...recording import QosProfile, schema
 from ...recording.playback import RecordedTopic
 from ..topics import qos
+
+_DEPTH = 1000
 
 
 def publisher_of(node: Node, topic: RecordedTopic) -> Any:
@@ -20,7 +22,17 @@ def publisher_of(node: Node, topic: RecordedTopic) -> Any:
     if topic.type_hash not in ('', installed.hash):
         raise InputError(topic.name, topic.type_hash, f'{installed.hash}, the hash of {topic.type} here',
                          'it was recorded with another definition: use the version of then')
-    return node.create_publisher(message_class(topic.type), topic.name, qos(topic.qos))
+    return node.create_publisher(message_class(topic.type), topic.name, qos(_offered(topic.qos)))
+
+
+def _offered(recorded: QosProfile) -> QosProfile:
+    """Return what to offer: as recorded, but what is sent faster than it was may wait longer for its readers.
+
+    A depth is nobody's business but the publisher's, except where late joiners get so many messages.
+    """
+    if recorded.durability == 'transient_local':
+        return recorded
+    return recorded._replace(depth=max(recorded.depth, _DEPTH))
 
 
 def message_class(type_name: str) -> Any:

@@ -12,7 +12,7 @@ from ...recording.playback import Recording
 from ..topics import publisher
 from .axis import Axis
 from .orders import COMMANDS, refusal_in, request_of
-from .player import Act, wait_until
+from .player import Act, nothing, wait_until
 from .span import Span
 
 _PATIENCE = 10.0    # s for the axis to hear
@@ -41,7 +41,7 @@ class InRealTime:
             yield Act(self.begin, partial(self._give, message))
         for message in self._recording.messages(self._orders, *self._span):
             yield Act(message.log_time, partial(self._give, message))
-        yield Act(self._span.end, lambda: None)
+        yield Act(self._span.end, nothing)
 
     def _held(self) -> list[RecordedMessage]:
         before = self._recording.messages(self._out, self._recording.begin, self.begin - 1)

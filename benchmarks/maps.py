@@ -1,0 +1,156 @@
+"""Run the study of docs/maps.md and put its figures and pictures there: `python3 -m benchmarks.maps` (two minutes).
+
+`python3 -m benchmarks.maps throughput` measures again only what a point costs, here and by scipy.
+"""
+
+import pathlib
+import shlex
+import shutil
+import statistics
+import subprocess
+import sys
+import time
+from typing import NamedTuple
+
+import numpy as np
+
+from stickslip_sim.bench.peers import scipy_ivp
+from stickslip_sim.bench.peers.peer import Setting
+from stickslip_sim.bench.problem import Problem
+from stickslip_sim.scene import load_scene
+from stickslip_sim.study import Grid, Motion, Study, variation
+from stickslip_sim.study.table import lines
+from stickslip_sim.words import EventKind
+
+from .page import replace_generated
+
+PAGE = pathlib.Path('docs/maps.md')
+RUNS, IMAGES = pathlib.Path('runs/maps'), pathlib.Path('docs/images')
+CONSTANT = ('--set friction.static.law=constant --set friction.static.initial=0.24 '
+            '--set friction.kinetic.velocities=[0.0] --set friction.kinetic.coefficients=[0.12]')
+PICTURES = {   # by the name of the part of the page: the commands, the last of which draws
+    'stiffness': (
+        'sweep paper_fig7 --over drive.velocity=1e-4:0.1:160:log --over axis.drive_stiffness=1e5:1e7:100:log'
+        ' --out runs/maps/stiffness',
+        'map runs/maps/stiffness --out docs/images/map_stiffness.png --pick 0.002,6e5 --pick 0.02,6e5'
+        ' --pick 0.033,6e5 --pick 0.06,6e5'),
+    'damping': (
+        f'sweep paper_fig4_constant {CONSTANT} --over drive.velocity=1e-3:0.2:160:log'
+        ' --over axis.drive_damping=50:8000:100:log --out runs/maps/damping',
+        'map runs/maps/damping --out docs/images/map_damping.png --pick 0.005,1000 --pick 0.03,1000'
+        ' --pick 0.05,1000 --pick 0.04,6000'),
+    'load': (
+        'sweep paper_fig8 --over drive.velocity=1e-3:0.06:160 --over axis.normal_force=200:5000:100'
+        ' --out runs/maps/load',
+        'map runs/maps/load --out docs/images/map_load.png --show stick_share --pick 0.005,3432'
+        ' --pick 0.02,3432 --pick 0.025,2300 --pick 0.04,4800'),
+    'bifurcation': (
+        'sweep paper_fig8 --over drive.velocity=1e-4:0.06:400:log --out runs/maps/feed',
+        'map runs/maps/feed --out docs/images/bifurcation.png'),
+    'groups': (
+        'sweep paper_fig8 --over axis.drive_stiffness=5e5:6e6:600 --out runs/maps/groups',
+        'map runs/maps/groups --out docs/images/bifurcation_stiffness.png'),
+}
+CRITICAL = (
+    'critical paper_fig7 --of drive.velocity',
+    'critical paper_fig8 --of drive.velocity --set axis.normal_force=4500.0',
+    'critical paper_fig8 --of axis.normal_force --set drive.velocity=0.01 --between 200:5000',
+    f'critical paper_fig4_constant {CONSTANT} --of drive.velocity',
+    'critical stribeck --of drive.velocity',
+)
+SETTING = Setting(1e-8, 'tolerance')
+_ROUNDS, _BY_SCIPY = 3, 12   # sweeps that are timed; points that scipy runs
+
+
+class Cost(NamedTuple):
+    """Of a point of a grid: s of processor time by us and by scipy.
+
+    `difference` is how far the last periods are apart, relative, at most, where scipy finds all break-aways; in
+    `flawed` of `by_scipy` points it does not.
+    """
+
+    name: str
+    points: int
+    ours: float
+    scipy: float
+    difference: float
+    flawed: int
+    by_scipy: int
+
+
+def main() -> None:
+    """Write the parts of the page."""
+    if sys.argv[1:] != ['throughput']:
+        shutil.rmtree(RUNS, ignore_errors=True)
+        RUNS.mkdir(parents=True)
+        for name, commands in PICTURES.items():
+            replace_generated(PAGE, '\n'.join(map(_shown, commands)) + '\n', name)
+            for command in commands:
+                _said(command)
+        told = '\n'.join(f'{_shown(command)}\n\n{_quoted(command)}' for command in CRITICAL)
+        replace_generated(PAGE, told, 'critical')
+    replace_generated(PAGE, throughput_table([measured(name) for name in ('paper_fig7', 'paper_fig8')]), 'throughput')
+
+
+def measured(name: str) -> Cost:
+    """Sweep a grid of feeds and stiffnesses in this process, and some of its points by scipy, for as long each."""
+    scene = load_scene(name)
+    study = Study(scene.values, Grid((variation('drive.velocity=5e-4:0.03:50:log'),
+                                      variation('axis.drive_stiffness=3e5:3e6:40:log'))))
+    ours = statistics.median(_seconds(study) for _ in range(_ROUNDS)) / study.count
+    chosen = np.linspace(0, study.count - 1, _BY_SCIPY).astype(int)
+    figures, points = study.figures(0, study.count), study.points(0, study.count)
+    seconds, differences, flawed = [], [], 0
+    for k in chosen:
+        scene = study.scene_at(points[k])
+        problem = Problem(name, '', scene.axis, scene.initial, scene.drive, scene.force, float(figures.duration[k]))
+        run = scipy_ivp.PEERS[0].prepare(problem, SETTING)
+        begin = time.process_time()
+        events = run().events
+        seconds.append(time.process_time() - begin)
+        breaks = events[events[:, 1] == EventKind.BREAKAWAY, 0]
+        if len(breaks) != figures.cycles[k] + 1:
+            flawed += 1
+        elif figures.motion[k] == Motion.STICK_SLIP:
+            differences.append(abs((breaks[-1] - breaks[-2]) / figures.period[k] - 1.0))
+    return Cost(name, study.count, ours, statistics.mean(seconds), max(differences), flawed, len(chosen))
+
+
+def throughput_table(costs: list[Cost]) -> str:
+    """Return what a point costs as a table."""
+    rows = [f'| {c.name} | {c.points} | {1e6 * c.ours:.0f} µs | {1e3 * c.scipy:.0f} ms | {c.scipy / c.ours:,.0f} × '
+            f'| {c.difference:.0e} | {c.flawed} of {c.by_scipy} |\n' for c in costs]
+    return ('| scene | points | ours, a point | scipy, a point | ratio | periods differ by '
+            '| scipy misses break-aways |\n|---|---|---|---|---|---|---|\n' + ''.join(rows))
+
+
+def _seconds(study: Study) -> float:
+    """Return what all lines of the table of a study cost, s of processor time."""
+    begin = time.process_time()
+    lines(study, 0, study.count)
+    return time.process_time() - begin
+
+
+def _shown(command: str) -> str:
+    """Return a command as a user gives it, folded to the width of the page."""
+    rows = ['    python3 -m stickslip_sim']
+    for word in command.replace(' --', '\n--').split('\n'):   # an option stays with its value
+        if len(rows[-1]) + len(word) > 116:
+            rows[-1] += ' \\'
+            rows.append('       ')
+        rows[-1] += f' {word}'
+    return '\n'.join(rows)
+
+
+def _quoted(command: str) -> str:
+    return ''.join(f'    {line}\n' for line in _said(command).splitlines())
+
+
+def _said(command: str) -> str:
+    print(command, flush=True)
+    return subprocess.run([sys.executable, '-m', 'stickslip_sim', *shlex.split(command)], check=True,
+                          stdout=subprocess.PIPE, text=True).stdout
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,102 @@
+"""The records of an MCAP file as far as they are whole; what it says of its own sizes is not believed."""
+
+import os
+import struct
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from io import BytesIO
+from pathlib import Path
+from typing import BinaryIO
+
+import lz4.frame
+import zstandard
+from mcap.exceptions import McapError
+from mcap.reader import SeekingReader
+from mcap.records import Chunk, McapRecord
+from mcap.stream_reader import CRCValidationError, StreamReader, breakup_chunk
+from mcap.summary import Summary
+
+from ..errors import RecordingError
+
+SIZE_LIMIT = 32 << 20   # bytes of a record, and of what a chunk unpacks to; rosbag2 makes chunks of 1 to 4 MiB
+COMPRESSIONS = ('', 'zstd', 'lz4')
+
+# What a file that ends or is damaged anywhere makes the libraries stumble over (RuntimeError: lz4).
+CUT_OFF = (McapError, CRCValidationError, struct.error, zstandard.ZstdError, RuntimeError, UnicodeDecodeError,
+            OverflowError)
+
+
+def records(path: Path) -> Iterator[McapRecord]:
+    """Yield the records that are whole, also those in chunks; a file that is cut off just ends earlier.
+
+    Raises RecordingError when it is no MCAP file or cannot be read.
+    """
+    try:
+        with path.open('rb') as file:
+            begin = True
+            try:
+                for record in StreamReader(_Careful(file), validate_crcs=True,  # type: ignore[arg-type]
+                                           emit_chunks=True).records:
+                    begin = False
+                    yield from _unpacked(path, record)
+            except CUT_OFF as error:
+                if begin:
+                    raise RecordingError(f'{path} is not an MCAP file: {error}') from None
+    except OSError as error:
+        raise RecordingError(f'{path}: {error.strerror}') from None
+
+
+def summary_of(file: BinaryIO) -> Summary | None:
+    """Return what stands at the end of a file; None when there is nothing, as in one that was cut off."""
+    try:
+        return SeekingReader(_Careful(file)).get_summary()  # type: ignore[arg-type]
+    except (*CUT_OFF, OSError, StopIteration):    # OSError: the file is shorter than such an end
+        return None
+
+
+def chunk_at(path: Path, file: BinaryIO, offset: int) -> Iterable[McapRecord]:
+    """Return the records of the chunk at a place in an open file; raises one of CUT_OFF or RecordingError."""
+    file.seek(offset)
+    chunk = next(StreamReader(_Careful(file), skip_magic=True, emit_chunks=True).records)  # type: ignore[arg-type]
+    return _unpacked(path, chunk)
+
+
+class _Careful:
+    """A file that is never asked for more at once than a record may hold: it would make room for it first."""
+
+    def __init__(self, file: BinaryIO) -> None:
+        self._file = file
+
+    def read(self, size: int) -> bytes:
+        if not 0 <= size <= SIZE_LIMIT:
+            raise McapError(f'a part of {size} bytes')
+        return self._file.read(size)
+
+    def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
+        return self._file.seek(offset, whence)
+
+
+def _unpacked(path: Path, record: McapRecord) -> Iterable[McapRecord]:
+    """Return the records of a chunk, or any other record by itself."""
+    if not isinstance(record, Chunk):
+        return [record]
+    if record.compression not in COMPRESSIONS:
+        raise RecordingError(f'{path}: its chunks are compressed with {record.compression!r}; zstd, lz4 and none are '
+                             'read: convert it first (mcap compress)')
+    if record.uncompressed_size > SIZE_LIMIT:
+        raise RecordingError(f'{path}: a chunk of {record.uncompressed_size} bytes; at most {SIZE_LIMIT} are read: '
+                             'write it anew with smaller chunks (mcap compress --chunk-size)')
+    data = _decompressed(record)
+    if len(data) != record.uncompressed_size:
+        raise McapError('a chunk of another size than it says')
+    return breakup_chunk(replace(record, compression='', data=data), validate_crc=True)
+
+
+def _decompressed(chunk: Chunk) -> bytes:
+    """Return the content of a chunk, at most a byte more than it says."""
+    most = chunk.uncompressed_size + 1
+    if chunk.compression == 'zstd':
+        return zstandard.ZstdDecompressor().stream_reader(BytesIO(chunk.data)).read(most)
+    if chunk.compression == 'lz4':
+        return bytes(lz4.frame.LZ4FrameDecompressor().decompress(chunk.data, max_length=most))
+    return chunk.data

@@ -1,0 +1,4 @@
+"""Input that nobody meant well: what it is made of, and what must hold whatever comes.
+
+Some of it in every test run (tests/test_fuzz.py), more for as long as asked for (`make fuzz MINUTES=10`).
+"""

@@ -1,0 +1,106 @@
+"""Small runs to begin with: one of the tool, and one with everything that a node records."""
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from stickslip_sim.offline import run_offline
+from stickslip_sim.recording import MessageCodec, RunFacts, checkpoint_file, open_run, receipt_file, topics, write_bag
+from stickslip_sim.recording.bag import BagWriter
+from stickslip_sim.recording.messages import Packer, header, time_message
+from stickslip_sim.rig import Fault, Note, Rig
+from stickslip_sim.scene import Scene, changed, load_scene
+from stickslip_sim.words import EventKind
+
+_STEPS = 12
+_PLACES = {topic: place for place, topic in enumerate(topics.RECORDED)}
+_CODEC = [topics.RIG_EVENT.type, topics.PARAMETER_EVENTS.type, topics.DRIVE_VELOCITY.type]
+_SCENE = {'time.rate': 50.0, 'initial.rest_time': 0.0, 'drive.velocity': 0.02}
+
+
+def files(folder: Path) -> list[bytes]:
+    """Record both runs in a folder; return their files."""
+    return [next(record(folder / name).glob('*.mcap')).read_bytes()
+            for name, record in (('tool', _of_the_tool), ('node', _of_a_node))]
+
+
+def _of_the_tool(folder: Path) -> Path:
+    scene = load_scene('paper_fig8', _SCENE)
+    run = run_offline(scene, _STEPS / scene.time.rate, scene.time.step)
+    write_bag(folder, RunFacts.of(scene, run.duration, scene.time.step), run.sample_rows(), run.events, run.receipt)
+    return folder
+
+
+def _of_a_node(folder: Path) -> Path:
+    """Record from mid-run: a checkpoint, a command, a fault and a changed parameter, then steps."""
+    scene = load_scene('paper_fig8', _SCENE)
+    rig = scene.make_rig()
+    for _ in range(_STEPS):
+        rig.make_step()
+    writer = open_run(folder, RunFacts.of(scene))
+    writer.attach(checkpoint_file(rig.checkpoint()))
+    tape = _Tape(writer)
+    tape.order(rig, scene)
+    for _ in range(_STEPS):
+        tape.step(rig)
+    writer.close(receipt_file({'timing': {'valid': True, 'verdict': 'kept'}, 'dropped_messages': 0}))
+    return folder
+
+
+class _Tape:
+    """Writes what a node would."""
+
+    def __init__(self, writer: BagWriter) -> None:
+        self._writer = writer
+        self._codec = MessageCodec(_CODEC)
+        self._packers = {topic: Packer(topic) for topic in (topics.SLIDER_STATE, topics.FRICTION_FORCE,
+                                                            topics.MODE_EVENT)}
+
+    def order(self, rig: Rig, scene: Scene) -> None:
+        """Order one thing of every kind before the next step."""
+        at, step = rig.time_ns, rig.step + 1
+        rig.command_velocity(0.03)
+        self._encoded(topics.DRIVE_VELOCITY, {'header': header(at), 'velocity': 0.03}, at, step)
+        rig.change_axis(changed(scene, {'axis.mass': 300.0}).axis)
+        self._encoded(topics.PARAMETER_EVENTS, _parameter_event(at, 'axis.mass', 300.0), at, step)
+        rig.inject(Fault('dry', 'friction_scale', 0.04, 0.1, 1.5))
+
+    def step(self, rig: Rig) -> None:
+        """Make a step and write what came of it."""
+        before = rig.time_ns
+        product = rig.make_step()
+        self._notes(product.notes, before, product.step)
+        for event in product.events:
+            if event.kind == EventKind.KNOT:    # a node does not tell of them
+                continue
+            at = event.instant.nanoseconds
+            self._write(topics.MODE_EVENT, self._packers[topics.MODE_EVENT].pack(at, product.step, event), at,
+                        product.step)
+        for topic in (topics.SLIDER_STATE, topics.FRICTION_FORCE):
+            at = product.sample.instant.nanoseconds
+            self._write(topic, self._packers[topic].pack(at, product.step, product.sample), at, product.step)
+
+    def _notes(self, notes: Iterable[Note], at: int, step: int) -> None:
+        for note in notes:
+            fault = note.fault or Fault('', '', 0.0, 0.0, 0.0)
+            self._encoded(topics.RIG_EVENT, {
+                'header': header(at), 'step': step, 'time': at * 1e-9, 'kind': int(note.kind), 'id': note.id,
+                'fault': fault.kind, 'start': fault.start, 'duration': fault.duration, 'value': note.value,
+                'count': note.number, 'text': note.text}, at, step)
+
+    def _encoded(self, topic: topics.Topic, fields: dict[str, Any], at: int, step: int) -> None:
+        self._write(topic, self._codec.encode(topic.type, fields), at, step)
+
+    def _write(self, topic: topics.Topic, data: bytes, at: int, step: int) -> None:
+        self._writer.write(_PLACES[topic], data, at, at, step)
+
+
+def _parameter_event(at: int, name: str, value: float) -> dict[str, Any]:
+    empty = {f'{kind}_array_value': np.array([], dtype) for kind, dtype in (
+        ('byte', np.uint8), ('bool', np.bool_), ('integer', np.int64), ('double', np.float64))}
+    given = {'type': 3, 'bool_value': False, 'integer_value': 0, 'double_value': value, 'string_value': '',
+             'string_array_value': [], **empty}
+    return {'stamp': time_message(at), 'node': '/feed_axis', 'new_parameters': [], 'deleted_parameters': [],
+            'changed_parameters': [{'name': name, 'value': given}]}

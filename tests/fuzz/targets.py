@@ -1,0 +1,51 @@
+"""What is fuzzed, by name: what is made up, and who reads it."""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from hypothesis import strategies as st
+from hypothesis.strategies import SearchStrategy
+
+from stickslip_sim.scene import scene_names
+
+from . import bags, readers, recordings, texts
+from .bounds import within
+
+ROOT = Path(__file__).parents[2]
+_PATIENCE = 20.0   # s for one input; the host may stand still for a while
+
+
+class Target(NamedTuple):
+    """Inputs, and what must get along with each of them."""
+
+    inputs: SearchStrategy[object]
+    read: Callable[[object], None]
+
+
+def targets(folder: Path) -> Mapping[str, Target]:
+    """Return all targets; bags are put into a folder."""
+    scenes = [(ROOT / f'stickslip_sim/stickslip_sim/scenes/{name}.yaml').read_text() for name in scene_names()]
+    limits = [(ROOT / 'examples/limits.yaml').read_text()]
+    changes = st.tuples(st.sampled_from(scene_names()), texts.OVERRIDES, texts.OVERRIDES)
+    file = folder / 'run.mcap'
+
+    def bag(data: bytes) -> None:
+        file.write_bytes(data)
+        readers.bag(file)
+
+    found: dict[str, tuple[SearchStrategy[Any], Callable[..., None]]] = {
+        'scene': (texts.changed(scenes) | texts.ANYTHING, readers.scene),
+        'limits': (texts.changed(limits) | texts.ANYTHING, readers.limits),
+        'override': (changes, lambda given: readers.override(*given)),
+        'bag': (bags.changed(recordings.files(folder)), bag),
+    }
+    return {name: Target(inputs, _bounded(read)) for name, (inputs, read) in found.items()}
+
+
+def _bounded(read: Callable[..., None]) -> Callable[[object], None]:
+    def bounded(given: object) -> None:
+        with within(_PATIENCE):
+            read(given)
+
+    return bounded

@@ -1,0 +1,26 @@
+"""Made-up scenes, limits, overrides and bags: read, or refused in one line.  `make fuzz` makes up more."""
+
+from collections.abc import Mapping
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+
+from tests.fuzz.targets import Target, targets
+
+EXAMPLES = {'scene': 300, 'limits': 300, 'override': 300, 'bag': 150}
+ALWAYS_THE_SAME = settings(derandomize=True, database=None, deadline=None, suppress_health_check=list(HealthCheck))
+
+
+@pytest.fixture(scope='module')
+def all_targets(tmp_path_factory: pytest.TempPathFactory) -> Mapping[str, Target]:
+    return targets(tmp_path_factory.mktemp('fuzz'))
+
+
+@pytest.mark.parametrize('name', [*EXAMPLES])
+def test_reading(name: str, all_targets: Mapping[str, Target]) -> None:
+    target = all_targets[name]
+    settings(ALWAYS_THE_SAME, max_examples=EXAMPLES[name])(given(target.inputs)(target.read))()
+
+
+def test_every_target_is_tried(all_targets: Mapping[str, Target]) -> None:
+    assert set(all_targets) == set(EXAMPLES)

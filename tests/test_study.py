@@ -1,0 +1,228 @@
+"""Points of a study: the bits of runs of their own, samples, and what is refused."""
+
+import math
+import random
+from dataclasses import fields
+
+import numpy as np
+import pytest
+
+from stickslip_sim.analysis import cycle_figures
+from stickslip_sim.errors import InputError
+from stickslip_sim.offline import run_offline
+from stickslip_sim.scene import Scene, load_scene
+from stickslip_sim.study import MOTIONS, Figures, Grid, Motion, Sobol, Study, variation
+from stickslip_sim.study.figures import RUN_FIELDS
+from stickslip_sim.study.points import runs_alone
+from stickslip_sim.study.theory import critical_feed, feed_of_theory
+from stickslip_sim.words import EventKind
+
+CONSTANT = {'friction.static.law': 'constant', 'friction.static.initial': 0.24,
+            'friction.kinetic.velocities': [0.0], 'friction.kinetic.coefficients': [0.12]}
+OF_A_CYCLE = {'amplitude': 'slip_travel', 'period': 'period', 'peak_speed': 'peak_speed',
+              'break_away_force': 'break_away_force'}
+
+
+def grid(scene: Scene, *texts: str, duration: float | None = None) -> Study:
+    return Study(scene.values, Grid(tuple(map(variation, texts))), duration)
+
+
+def same(one: Figures, other: Figures) -> bool:
+    return all(getattr(one, field.name).tobytes() == getattr(other, field.name).tobytes() for field in fields(Figures))
+
+
+@pytest.mark.parametrize(('name', 'texts'), [
+    ('paper_fig7', ('drive.velocity=1e-4:0.06:7:log', 'axis.drive_stiffness=1e5:1e7:3:log')),
+    ('paper_fig8', ('drive.velocity=1e-3:0.06:5:log', 'contact.damping=0:3e4:2')),
+    ('paper_fig4_falling', ('axis.normal_force=500:5000:4', 'friction.kinetic.coefficients[1]=0.0:0.12:3')),
+    ('stribeck', ('friction.kinetic.stribeck_velocity=0.002:0.02:3:log', 'drive.velocity=0.001:0.05:3'))])
+def test_figures_are_those_of_runs_of_their_own(name: str, texts: tuple[str, ...]) -> None:
+    study = grid(load_scene(name), *texts)
+    figures, points = study.figures(0, study.count), study.points(0, study.count)
+    slips = 0
+    for k, point in enumerate(points):
+        run = run_offline(study.scene_at(point), float(figures.duration[k]))
+        cycles = cycle_figures(run.events)
+        assert figures.cycles[k] == len(cycles)
+        if figures.motion[k] != Motion.STICK_SLIP:
+            assert figures.motion[k] == Motion.SMOOTH_SLIDING
+            assert math.isnan(figures.period[k])
+            continue
+        slips += 1
+        for figure, field in OF_A_CYCLE.items():
+            assert getattr(figures, figure)[k] == getattr(cycles[-1], field)
+        assert figures.stick_share[k] == cycles[-1].stick_time / cycles[-1].period
+        if not figures.settled[k]:
+            assert figures.duration[k] > 100.0   # two cycles in turn
+            continue
+        assert figures.settling_time[k] in [cycle.begin for cycle in cycles]
+        settled = [cycle.period for cycle in cycles if cycle.begin >= figures.settling_time[k]]
+        assert np.abs(np.diff(settled)).max() < 1e-6 * settled[-1]
+    assert slips > 3
+
+
+@pytest.mark.parametrize('name', ['paper_fig7', 'paper_fig8', 'paper_fig4_constant'])
+def test_one_after_the_other_gives_the_bits_of_the_batch(name: str) -> None:
+    study = grid(load_scene(name), 'drive.velocity=1e-3:0.08:9:log', 'initial.rest_time=0:1:2', duration=7.5)
+    points = study.points(0, study.count)
+    batch, alone = study.runs(points), runs_alone(study.values, study.names, points, 7.5)
+    for field in RUN_FIELDS:
+        if field == 'stick_share':   # one sums exactly, one as it goes
+            assert batch.stick_share == pytest.approx(alone.stick_share, abs=1e-12)
+        elif field != 'settled':
+            assert getattr(batch, field).tobytes() == getattr(alone, field).tobytes(), field
+
+
+def test_where_the_points_are_cut_changes_no_bit() -> None:
+    study = grid(load_scene('paper_fig7'), 'drive.velocity=1e-4:0.06:40:log', 'axis.normal_force=1000:5000:3')
+    whole = study.figures(0, 120)
+    for first, last in ((0, 120), (7, 8), (31, 77)):
+        part = study.figures(first, last)
+        assert same(part, Figures(**{f.name: getattr(whole, f.name)[first:last] for f in fields(Figures)}))
+
+
+@pytest.mark.parametrize('damping', [100.0, 1000.0, 5000.0])
+def test_the_map_changes_at_the_critical_feed_of_the_theory(damping: float) -> None:
+    scene = load_scene('paper_fig4_constant', {**CONSTANT, 'axis.drive_damping': damping})
+    critical = feed_of_theory(scene.axis)
+    assert critical is not None
+    study = grid(scene, f'drive.velocity={0.5 * critical!r}:{2.0 * critical!r}:60')
+    slips = study.figures(0, 60).motion == Motion.STICK_SLIP
+    assert (slips == (study.points(0, 60)[:, 0] < critical)).all()
+
+
+def test_a_damper_in_the_friction_moves_the_critical_feed_as_one_in_the_drive() -> None:
+    both = {**CONSTANT, 'axis.drive_damping': 600.0, 'friction.kinetic.end_slope': 400.0 / 3432.3275}
+    moved, plain = (load_scene('paper_fig4_constant', changes).axis
+                    for changes in (both, {**CONSTANT, 'axis.drive_damping': 1000.0}))
+    expected = feed_of_theory(plain)
+    assert expected is not None
+    assert feed_of_theory(moved) == pytest.approx(expected, rel=1e-12)
+    feed = f'drive.velocity={expected * (1.0 - 1e-6)!r}:{expected * (1.0 + 1e-6)!r}:2'
+    motions = grid(load_scene('paper_fig4_constant', both), feed).figures(0, 2).motion
+    assert motions.tolist() == [Motion.STICK_SLIP, Motion.SMOOTH_SLIDING]
+
+
+@pytest.mark.parametrize(('changes', 'expected'), [
+    ({}, None), ({**CONSTANT, 'axis.drive_damping': 0.0}, math.inf), ({**CONSTANT, 'axis.drive_damping': 3e4}, 0.0),
+    ({**CONSTANT, 'contact.model': 'compliant', 'contact.stiffness': 5e6}, None),
+    ({**CONSTANT, 'axis.drive_stiffness': 0.0}, None),
+    ({**CONSTANT, 'friction.static.law': 'kato', 'friction.static.limit': 0.3, 'friction.static.initial': 0.12,
+      'friction.static.time_constant': 0.1, 'friction.static.exponent': 0.5, 'axis.drive_damping': 0.0}, math.inf)])
+def test_the_theory_says_only_what_it_knows(changes: dict[str, object], expected: float | None) -> None:
+    assert feed_of_theory(load_scene('paper_fig4_falling', changes).axis) == expected
+
+
+def test_motions_have_their_words() -> None:
+    scene = load_scene('paper_fig7', {'friction.static.initial': 0.2, 'drive.velocity': 0.0})
+    study = grid(scene, 'force.constant=0:2000:4', 'initial.velocity=0:1e-3:2')
+    words = [MOTIONS[Motion(int(code))] for code in study.figures(0, 8).motion]
+    assert words == ['at rest'] * 8   # the drive stands still: they stop, at once or after a slip
+    moved = grid(scene, 'drive.velocity=1e-3:2e-3:2', 'force.constant=0:200:2').figures(0, 4)
+    assert (moved.motion == Motion.STICK_SLIP).all()
+    assert [MOTIONS[Motion(int(code))] for code in
+            grid(load_scene('fast_feed'), 'drive.velocity=0.1:0.2:2').figures(0, 2).motion] == ['smooth sliding'] * 2
+
+
+def test_inputs_that_change_with_time_run_one_after_the_other() -> None:
+    study = grid(load_scene('cutting_force'), 'force.period=0.05:0.0625:2', duration=3.0)
+    figures = study.figures(0, 2)
+    run = run_offline(load_scene('cutting_force'), 3.0)
+    assert run.summary.last is not None
+    assert figures.period[1] == run.summary.last.period
+    assert not study.works_in_batches
+    assert study.chunk < 100
+
+
+def test_a_sobol_sample_fills_the_ranges_and_its_parts_are_those_of_the_whole() -> None:
+    ranges = tuple(variation(text, drawn=True) for text in ('drive.velocity=1e-4:1e-1:log', 'axis.mass=100:500'))
+    sample = Sobol(ranges, 256, seed=3)
+    points = sample.points(0, 256)
+    assert (points[:, 0] > 1e-4).all()
+    assert (points[:, 1] < 500.0).all()
+    assert np.histogram(np.log10(points[:, 0]), 16, (-4.0, -1.0))[0].tolist() == [16] * 16
+    assert np.array_equal(points[100:131], sample.points(100, 131))
+    assert np.array_equal(points[:100], Sobol(ranges, 100, seed=3).points(0, 100))
+    assert not np.array_equal(points, Sobol(ranges, 256, seed=4).points(0, 256))
+
+
+def test_a_grid_has_every_combination_with_both_ends() -> None:
+    points = Grid((variation('axis.mass=100:400:4'), variation('drive.velocity=1e-3:1e-1:3:log'))).points(0, 12)
+    assert points[:3, 1] == pytest.approx([1e-3, 1e-2, 1e-1])
+    assert sorted(set(points[:, 0])) == [100.0, 200.0, 300.0, 400.0]
+    assert len({*map(tuple, points.tolist())}) == 12
+
+
+@pytest.mark.parametrize(('text', 'said'), [
+    ('axis.masss=1:2:3', 'did you mean axis.mass?'), ('nonsense=1:2:3', 'a parameter of a scene'),
+    ('axis.mass', 'a.b=LOW:HIGH'),
+    ('axis.mass=1:2', 'LOW:HIGH:N'), ('axis.mass=1:2:3:lin', 'LOW:HIGH:N'), ('axis.mass=1:2:3:4:log', 'LOW:HIGH:N'),
+    ('axis.mass=2:1:3', 'swap the two'), ('axis.mass=2:2:3', '--set'), ('axis.mass=one:2:3', 'finite number'),
+    ('axis.mass=1:nan:3', 'finite number'), ('axis.mass=1:inf:3', 'finite number'), ('axis.mass=1:2:1', 'N >= 2'),
+    ('axis.mass=1:2:1e3', 'N >= 2'), ('axis.mass=1:2:-3', 'N >= 2'), ('axis.mass=-1:2:3', '>= 1e-09'),
+    ('axis.mass=0:2:3', '>= 1e-09'), ('axis.normal_force=0:2:3:log', '> 0 on a logarithmic scale'),
+    ('contact.model=1:2:3', 'a number'), ('friction.kinetic.coefficients=0:1:3', 'coefficients[0]'),
+    ('axis.mass[0]=1:2:3', 'a number'), ('time.rate=10:20:3', 'decides the motion'),
+    ('seed=1:2:3', 'decides the motion'),
+    ('friction.kinetic.coefficients[0]=-1:2:3', '>= 0'), ('axis.mass[x]=1:2:3', 'a parameter of a scene')])
+def test_a_variation_without_a_meaning_is_refused(text: str, said: str) -> None:
+    with pytest.raises(InputError) as refused:
+        variation(text)
+    assert said in str(refused.value)
+    assert '\n' not in str(refused.value)
+
+
+@pytest.mark.parametrize(('name', 'texts', 'said'), [
+    ('paper_fig7', ('contact.stiffness=1e6:1e7:3',), 'contact.model'),
+    ('paper_fig7', ('friction.static.initial=0.1:0.2:3',), 'friction.static.initial'),
+    ('paper_fig7', ('friction.static.initial=0.12:0.3:3',), 'friction.static.limit'),
+    ('paper_fig7', ('friction.kinetic.coefficients[2]=0.1:0.2:3',), 'has 2'),
+    ('paper_fig7', ('axis.mass=1:2:3', 'axis.mass=1:2:3'), 'once'),
+    ('paper_fig7', tuple(f'axis.mass=1:{k + 2}:2' for k in range(11)), 'once to 10'),
+    ('cutting_force', ('axis.mass=300:400:3',), 'duration')])
+def test_a_study_with_a_corner_that_is_no_scene_is_refused(name: str, texts: tuple[str, ...], said: str) -> None:
+    with pytest.raises(InputError) as refused:
+        grid(load_scene(name), *texts)
+    assert said in str(refused.value)
+
+
+@pytest.mark.parametrize('duration', [0.0, -1.0, math.nan, 1e12])
+def test_a_duration_without_a_meaning_is_refused(duration: float) -> None:
+    with pytest.raises(InputError, match='duration'):
+        grid(load_scene('paper_fig7'), 'axis.mass=300:400:3', duration=duration)
+
+
+@pytest.mark.parametrize('seed', range(3))
+def test_a_run_twice_as_long_ends_in_the_same_cycle(seed: int) -> None:
+    rng = random.Random(seed)
+    scene = load_scene(rng.choice(['paper_fig7', 'paper_fig8']),
+                       {'axis.mass': rng.uniform(100, 600), 'drive.velocity': rng.uniform(5e-4, 2e-2)})
+    study = grid(scene, 'axis.drive_damping=500:8000:6')
+    figures = study.figures(0, 6)
+    for k, point in enumerate(study.points(0, 6)):
+        longer = run_offline(study.scene_at(point), 2.0 * float(figures.duration[k])).summary
+        if figures.motion[k] == Motion.STICK_SLIP:
+            assert longer.last is not None
+            assert longer.last.period == pytest.approx(figures.period[k], rel=1e-6)
+            assert longer.last.slip_travel == pytest.approx(figures.amplitude[k], rel=1e-5)
+        else:
+            assert longer.events[EventKind.STICK] <= figures.cycles[k] + 1
+
+
+def test_where_the_slider_only_just_comes_to_rest_the_events_are_those_of_the_reference() -> None:
+    """The corner of the grid of docs/maps.md in which scipy misses break-aways."""
+    pytest.importorskip('mpmath')
+    from stickslip_sim.reference import simulate
+    scene = load_scene('paper_fig7', {'drive.velocity': 0.03, 'axis.drive_stiffness': 3e6})
+    events = run_offline(scene, 2.0).events
+    expected = simulate(scene.axis, scene.initial, scene.drive, scene.force, 2.0).events
+    assert [event.kind for event in events] == [event.kind for event in expected]
+    assert sum(event.kind == EventKind.BREAKAWAY for event in events) == 30
+    for event, other in zip(events, expected):
+        assert event.time == pytest.approx(other.time, abs=1e-12)
+
+
+def test_critical_feed_of_light_damping_is_infinite_in_the_limit_only() -> None:
+    from stickslip_sim.study.theory import Oscillator
+
+    assert critical_feed(Oscillator(350.0, 6e5, 1e-3), 412.0) > 1.0
