@@ -95,7 +95,7 @@ def test_two_axes(bag: Path, tmp_path: Path, capsys: Capture) -> None:
 def test_messages_of_another_version(bag: Path, tmp_path: Path, capsys: Capture) -> None:
     rewritten(bag, tmp_path / 'old', definition=lambda text: text.replace('float64 drive_force', 'float64 spring'))
     line = refused(capsys, tmp_path, tmp_path / 'old')
-    assert 'stickslip_msgs/msg/SliderState has no drive_force' in line
+    assert '/slider_state has no drive_force' in line
     assert 'recorded by another version?' in line
 
 
