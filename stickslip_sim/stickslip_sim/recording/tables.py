@@ -26,7 +26,8 @@ def name_of(run: 'Run', topic: Topic) -> str:
     if not names:
         raise RecordingError(f'{run.path}: no topic of type {topic.type}; there are {", ".join(run.topics) or "none"}')
     if len(names) > 1:
-        raise RecordingError(f'{run.path}: {" and ".join(names[:2])} are both of type {topic.type}; give a recording of one axis')
+        raise RecordingError(f'{run.path}: {" and ".join(names[:2])} are both of type {topic.type}; give a recording '
+                             'of one axis')
     return names[0]
 
 
