@@ -12,6 +12,11 @@ class Watchdog:
         self._timeout = math.ceil(timeout * _NANOSECONDS)
         self.forget()
 
+    @property
+    def is_on(self) -> bool:
+        """Whether there is a time-out at all."""
+        return self._timeout > 0
+
     def forget(self) -> None:
         """Begin anew, as if no command had come."""
         self._heard = self._since = self._before = 0
@@ -26,7 +31,7 @@ class Watchdog:
             self._heard, self._since, self._is_stale = heard, self._before, False
         self._before = now
         silence = now - self._since
-        if self._is_stale or not heard or not self._timeout or silence <= self._timeout:
+        if self._is_stale or not heard or not self.is_on or silence <= self._timeout:
             return 0.0
         self._is_stale = True
         return silence / _NANOSECONDS

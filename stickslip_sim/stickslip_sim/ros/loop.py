@@ -199,6 +199,8 @@ class StepLoop:
 
     def _watch(self) -> None:
         """Look for a time-out."""
+        if not self._watchdog.is_on:
+            return
         silence = self._watchdog.silence(self.rig.counts.heard, self._clock.watch_time(self.rig.time_ns))
         if silence:
             self.rig.time_out(silence)
