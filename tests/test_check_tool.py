@@ -277,7 +277,7 @@ class TestRefusals:
         assert 'no topic of type stickslip_msgs/msg/SliderState' in line
         cells = [*topics.recorded('/a'), *topics.recorded('/b')]
         BagWriter(tmp_path / 'two', [topic for topic in cells if topic is not topics.PARAMETER_EVENTS], {}, {}).close()
-        assert '2 topics of type' in refused(capsys, tmp_path / 'two', '--limits', limits)
+        assert 'are both of type' in refused(capsys, tmp_path / 'two', '--limits', limits)
 
     def test_a_bag_without_states(self, tmp_path: Path, capsys: Capture) -> None:
         BagWriter(tmp_path / 'empty', topics.recorded(), {}, {}).close()

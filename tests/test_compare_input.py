@@ -54,7 +54,7 @@ def test_a_bag_of_something_else(storage: StoragePlugin, tmp_path: Path, capsys:
         writer.write(connection, 0, store.serialize_cdr(text('hello'), 'std_msgs/msg/String'))
     line = refused(capsys, tmp_path, tmp_path / 'foreign')
     if storage == StoragePlugin.MCAP:
-        assert 'no topic slider_state' in line
+        assert 'no topic of type stickslip_msgs/msg/SliderState' in line
         assert '/chatter' in line
     else:
         assert 'foreign.db3 is not read' in line
@@ -69,13 +69,13 @@ def test_an_mcap_file_of_another_kind(tmp_path: Path, capsys: Capture) -> None:
         for topic, number in (('/pose', schema), ('/raw', 0)):
             writer.add_message(writer.register_channel(topic, 'protobuf', number), 0, b'\x00', 0)
         writer.finish()  # type: ignore[no-untyped-call]
-    assert 'no topic slider_state' in refused(capsys, tmp_path, tmp_path / 'robot.mcap')
+    assert 'no topic of type stickslip_msgs/msg/SliderState' in refused(capsys, tmp_path, tmp_path / 'robot.mcap')
 
 
 @pytest.mark.parametrize('topic', ['/slider_state', '/friction_force', '/mode_event'])
 def test_a_missing_topic(topic: str, bag: Path, tmp_path: Path, capsys: Capture) -> None:
     rewritten(bag, tmp_path / 'less', lambda name: None if name == topic else name)
-    assert f'no topic {topic[1:]} of type' in refused(capsys, tmp_path, tmp_path / 'less')
+    assert 'no topic of type stickslip_msgs/msg/' in refused(capsys, tmp_path, tmp_path / 'less')
 
 
 def test_two_axes(bag: Path, tmp_path: Path, capsys: Capture) -> None:
@@ -95,8 +95,8 @@ def test_two_axes(bag: Path, tmp_path: Path, capsys: Capture) -> None:
 def test_messages_of_another_version(bag: Path, tmp_path: Path, capsys: Capture) -> None:
     rewritten(bag, tmp_path / 'old', definition=lambda text: text.replace('float64 drive_force', 'float64 spring'))
     line = refused(capsys, tmp_path, tmp_path / 'old')
-    assert 'stickslip_msgs/msg/SliderState has no drive_force' in line
-    assert 'another version of stickslip_msgs' in line
+    assert '/slider_state has no drive_force' in line
+    assert 'recorded by another version?' in line
 
 
 def test_a_bag_without_its_scene(bag: Path, tmp_path: Path, capsys: Capture) -> None:

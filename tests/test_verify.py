@@ -11,8 +11,7 @@ from stickslip_sim.recording.topics import FRICTION_FORCE, SLIDER_STATE
 from stickslip_sim.rerun.recording import open_recording
 from stickslip_sim.rerun.verdict import verify
 from tests.rewritten_bags import rewritten
-
-Capture = pytest.CaptureFixture[str]
+from tests.verify_tool import Capture, verified
 
 STEPS, EVENTS = 3001, 17     # of the bag
 FAULTS = ('faults.ids=[dry, knock]', 'faults.kinds=[friction_scale, force_pulse]', 'faults.starts=[0.3, 0.7004]',
@@ -28,21 +27,6 @@ def simulated(folder: Path, scene: str, duration: float, *changes: str) -> Path:
     options = [word for change in changes for word in ('--set', change)]
     assert run(['simulate', scene, '--duration', str(duration), '--bag', str(folder), *options]) == 0
     return folder
-
-
-def verified(capsys: Capture, *arguments: str | Path) -> tuple[int, str, str]:
-    """Return the exit code, standard output and standard error of the tool."""
-    capsys.readouterr()
-    code = run(['verify', *map(str, arguments)])
-    out, err = capsys.readouterr()
-    assert err.count('\n') == (code != 0)
-    return code, out, err
-
-
-def refused(capsys: Capture, *arguments: str | Path) -> str:
-    code, out, err = verified(capsys, *arguments)
-    assert (code, out) == (2, '')
-    return err
 
 
 class TestIdentical:

@@ -14,8 +14,8 @@ from stickslip_sim.rerun.recording import open_recording
 from stickslip_sim.scene import load_scene
 from stickslip_sim.words import EventKind
 from tests.rewritten_bags import rewritten
+from tests.verify_tool import Capture, refused, verified
 
-Capture = pytest.CaptureFixture[str]
 STEPS = 3001   # of the bag
 
 
@@ -24,21 +24,6 @@ def bag(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp('runs') / 'eight'
     assert run(['simulate', 'paper_fig8', '--duration', '3', '--bag', str(folder)]) == 0
     return folder
-
-
-def verified(capsys: Capture, *arguments: str | Path) -> tuple[int, str, str]:
-    """Return the exit code, standard output and standard error of the tool."""
-    capsys.readouterr()
-    code = run(['verify', *map(str, arguments)])
-    out, err = capsys.readouterr()
-    assert err.count('\n') == (code != 0)
-    return code, out, err
-
-
-def refused(capsys: Capture, *arguments: str | Path) -> str:
-    code, out, err = verified(capsys, *arguments)
-    assert (code, out) == (2, '')
-    return err
 
 
 def data_of(bag: Path) -> bytes:

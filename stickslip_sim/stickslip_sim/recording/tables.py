@@ -21,10 +21,13 @@ _EVENT_FIELDS = ('time', 'kind', 'mode', 'direction', 'position', 'velocity', 'd
 def name_of(run: 'Run', topic: Topic) -> str:
     """Return the name of the one topic of this type; raises RecordingError when there is none, or more than one."""
     names = [name for name, type_name in run.topics.items() if type_name == topic.type]
+    if not run.topics and not run.is_complete:
+        raise RecordingError(f'{run.path}: cut off before the first of its messages was written')
     if not names:
         raise RecordingError(f'{run.path}: no topic of type {topic.type}; there are {", ".join(run.topics) or "none"}')
     if len(names) > 1:
-        raise RecordingError(f'{run.path}: {len(names)} topics of type {topic.type}; give a recording of one axis')
+        raise RecordingError(f'{run.path}: {" and ".join(names[:2])} are both of type {topic.type}; give a recording '
+                             'of one axis')
     return names[0]
 
 
