@@ -52,7 +52,9 @@ setup(
         'setuptools', 'numpy', 'scipy', 'numba', 'PyYAML', 'mcap', 'zstandard', 'lz4', 'rosbags',
         'matplotlib', 'click',
     ],
-    extras_require={'bench': ['mpmath'], 'tables': ['pandas', 'fastparquet'], 'test': ['pytest']},
+    extras_require={
+        'bench': ['mpmath'], 'cluster': ['distributed'], 'tables': ['pandas', 'fastparquet'], 'test': ['pytest'],
+    },
     entry_points={
         'console_scripts': [
             'cascade_controller = stickslip_sim.ros.cascade_controller:main',

@@ -2,7 +2,7 @@
 
 import difflib
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
@@ -12,10 +12,12 @@ from ..errors import InputError
 from ..scene import Parameter
 from ..scene.load import named, read_text
 from ..scene.ros_yaml import read_yaml
+from ..scene.strict import section
 from .kinds import FARTHEST, KINDS, TARGET, TIMING, Kind
 from .motion import Reference
 
 _LATEST = 1e15   # s, as in a scene
+_PAGE = 'docs/check.md'
 _SECTIONS = ('window', 'target', 'reference', 'limits')
 _TIME = Parameter('time', 'double', None, 's', 'of the run', low=0.0, high=_LATEST)
 _TIMES = Parameter('times', 'double_array', None, 's', 'of the run', low=0.0, high=_LATEST)
@@ -59,7 +61,7 @@ def load_limits(path: str) -> Limits:
 
 def limits_of(document: object) -> Limits:
     """Return the limits of a document as YAML gives it; raises InputError."""
-    given = _mapping('file', document, _SECTIONS)
+    given = section('file', document, _SECTIONS, _PAGE)
     entries = given.get('limits')
     if not isinstance(entries, Mapping) or not entries:
         raise InputError('limits', entries, 'a section with at least one limit', 'for example sticks: {max: 3}')
@@ -87,7 +89,8 @@ def _limit(name: str, entry: object, window: Window, defaults: Mapping[str, Any]
     if not isinstance(entry, Mapping):
         raise InputError(name, entry, 'a limit in braces', f'for example {name}: {{max: 1.0e-3}}')
     kind = _kind(name, entry)
-    given = _mapping(name, entry, ('check', 'max', 'window', *(setting.name for setting in kind.settings)))
+    known = ('check', 'max', 'window', *(setting.name for setting in kind.settings))
+    given = section(name, entry, known, _PAGE)
     settings = {setting.name: _setting(setting, name, given, defaults) for setting in kind.settings}
     own_window = _window(f'{name}.window', given.get('window'), window)
     return Limit(name, kind, _setting(kind.maximum, name, given, {}), own_window, settings)
@@ -121,7 +124,8 @@ def _timing(entries: Mapping[str, object]) -> bool:
 def _window(name: str, given: object, default: Window) -> Window:
     if given is None:
         return default
-    edges = {edge: _checked(_TIME, name, time, edge) for edge, time in _mapping(name, given, Window._fields).items()}
+    times = section(name, given, Window._fields, _PAGE)
+    edges = {edge: _checked(_TIME, name, time, edge) for edge, time in times.items()}
     window = default._replace(**edges)
     if window.begin is not None and not window.begin < (math.inf if window.end is None else window.end):
         raise InputError(name, [*window], 'begin before end', 'give both in seconds of the run')
@@ -131,7 +135,7 @@ def _window(name: str, given: object, default: Window) -> Window:
 def _reference(given: object) -> Reference | None:
     if given is None:
         return None
-    values = _mapping('reference', given, Reference._fields)
+    values = section('reference', given, Reference._fields, _PAGE)
     for name in Reference._fields:
         if name not in values:
             raise InputError(f'reference.{name}', None, 'given: times and positions make a course', 'add it')
@@ -143,19 +147,6 @@ def _reference(given: object) -> Reference | None:
     if not all(before < after for before, after in pairwise(reference.times)):
         raise InputError('reference.times', values['times'], 'strictly increasing', 'put them in order')
     return reference
-
-
-def _mapping(name: str, given: object, known: Iterable[str]) -> Mapping[str, object]:
-    """Return a section of known keys; raises InputError on anything else."""
-    names = [*known]
-    if not isinstance(given, Mapping):
-        raise InputError(name, given, 'a section of ' + ', '.join(names), 'see docs/check.md')
-    for key, value in given.items():
-        if key not in names:
-            close = difflib.get_close_matches(key, names, 1)
-            raise InputError(key if name == 'file' else f'{name}.{key}', value, 'one of ' + ', '.join(names),
-                             f'did you mean {close[0]}?' if close else 'drop it')
-    return given
 
 
 def _checked(entry: Parameter, section: str, value: object, name: str = '') -> Any:

@@ -28,6 +28,7 @@ from .map import map_
 from .scenes import scenes
 from .simulate import simulate
 from .sweep import sweep
+from .uncertainty import uncertainty
 from .verify import verify
 
 _INTERRUPTED = 130
@@ -41,7 +42,8 @@ def stickslip() -> None:
     """Stick-slip motion of a feed axis, simulated exactly."""
 
 
-for verb in (advise, bench, check, compare, critical, export, extremes, map_, scenes, simulate, sweep, verify):
+for verb in (advise, bench, check, compare, critical, export, extremes, map_, scenes, simulate, sweep, uncertainty,
+             verify):
     stickslip.add_command(verb)
 
 

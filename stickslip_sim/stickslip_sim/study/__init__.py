@@ -6,9 +6,11 @@
 A study is plain data and can be sent to other processes; `figures` of a stretch of its points depends on nothing else.
 """
 
+from .distribution import Distribution
 from .figures import MOTIONS, Figures, Motion
-from .sample import Grid, Sobol
+from .sample import Grid, Saltelli, Sobol
 from .study import Study
 from .variation import Variation, variation
 
-__all__ = ['MOTIONS', 'Figures', 'Grid', 'Motion', 'Sobol', 'Study', 'Variation', 'variation']
+__all__ = ['MOTIONS', 'Distribution', 'Figures', 'Grid', 'Motion', 'Saltelli', 'Sobol', 'Study', 'Variation',
+           'variation']

@@ -29,7 +29,7 @@ class Borders(NamedTuple):
 
 def borders(study: Study) -> Borders | None:
     """Return the lines for a study of the feed and one more parameter; None for any other study."""
-    variations = {one.name: one for one in study.sample.variations}
+    variations = {one.name: one for one in study.ranges}
     feed = variations.pop(FEED, None)
     if feed is None or len(variations) != 1 or not study.works_in_batches:
         return None

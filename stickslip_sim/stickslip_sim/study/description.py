@@ -2,13 +2,15 @@
 
 from collections.abc import Mapping
 from dataclasses import asdict, fields
+from importlib import metadata
 from typing import Any
 
 from ..receipt import versions
 from ..scene.load import scene_of_parameters
 from ..scene.ros_yaml import read_yaml
 from ..scene.sections import parameters_of
-from .sample import Grid, Sample, Sobol
+from .distribution import Distribution
+from .sample import Grid, Saltelli, Sample, Sobol
 from .study import Study
 from .variation import Variation
 
@@ -24,14 +26,27 @@ def description(study: Study, command: str = '') -> dict[str, Any]:
         'points': study.count, 'duration': study.duration,
         'over': [{**asdict(one), 'unit': one.unit} for one in sample.variations],
         'sobol': {'points': sample.count, 'seed': sample.seed} if isinstance(sample, Sobol) else None,
-        'versions': versions(), 'scene_text': study.scene.text,
+        'uncertain': {'samples': sample.samples, 'seed': sample.seed} if isinstance(sample, Saltelli) else None,
+        'versions': versions_of_a_study(), 'scene_text': study.scene.text,
     }
+
+
+def versions_of_a_study() -> dict[str, str]:
+    """Return the versions of everything that the points of a study and their figures depend on."""
+    return {**versions(), 'scipy': metadata.version('scipy')}
 
 
 def study_of(told: Mapping[str, Any]) -> Study:
     """Return the study that a description is of; raises InputError and KeyError."""
-    variations = tuple(Variation(**{name: one[name] for name in _VARIED}) for one in told['over'])
-    drawn = told['sobol']
-    sample: Sample = Sobol(variations, drawn['points'], drawn['seed']) if drawn else Grid(variations)
     scene = scene_of_parameters(parameters_of(read_yaml(told['scene_text'])), {})
-    return Study(scene.values, sample, told['duration'])
+    return Study(scene.values, _sample_of(told), told['duration'])
+
+
+def _sample_of(told: Mapping[str, Any]) -> Sample:
+    uncertain, drawn = told['uncertain'], told['sobol']
+    if uncertain:
+        laws = tuple(Distribution(one['name'], one['law'], tuple(one['numbers']), one['low'], one['high'])
+                     for one in told['over'])
+        return Saltelli(laws, uncertain['samples'], uncertain['seed'])
+    variations = tuple(Variation(**{name: one[name] for name in _VARIED}) for one in told['over'])
+    return Sobol(variations, drawn['points'], drawn['seed']) if drawn else Grid(variations)

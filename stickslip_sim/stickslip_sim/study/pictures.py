@@ -36,14 +36,14 @@ def draw_bifurcation(study: Study, columns: Columns, paths: Sequence[str],
                      progress: Callable[[float], None] | None = None) -> None:
     """Draw the last cycles over the one parameter of a study into each of `paths`."""
     found = bifurcation(study, figures_in(columns), progress)
-    (over,) = study.sample.variations
+    (over,) = study.ranges
     for path in paths:
         plot_bifurcation(_scale(over), found.cycles, found.sliding, path)
 
 
 def draw_map(study: Study, columns: Columns, shown: str, picks: Sequence[Pick], paths: Sequence[str]) -> None:
     """Draw one figure over the two parameters of a study, the feed along x, into each of `paths`."""
-    first, second = study.sample.variations
+    first, second = study.ranges
     turned = second.name == FEED
     x, y = (second, first) if turned else (first, second)
 
@@ -66,7 +66,7 @@ def point_of(study: Study, text: str) -> Numbers:
         point = np.array([float(word) for word in text.split(',')])
     except ValueError:
         point = np.array([])
-    variations = study.sample.variations
+    variations = study.ranges
     if len(point) != len(variations) or any(not one.low <= value <= one.high for one, value in zip(variations, point)):
         ranges = ', '.join(f'{one.name} from {one.low:g} to {one.high:g}' for one in variations)
         raise InputError('--pick', text, f'a number for each of {ranges}', 'give them with a comma: A,B')

@@ -1,4 +1,4 @@
-"""The points of a study: a grid over all variations, or a Sobol sample between their ends."""
+"""The points of a study: a grid over all variations, a Sobol sample between their ends, or one of distributions."""
 
 import math
 from dataclasses import dataclass
@@ -7,9 +7,11 @@ from functools import cached_property
 import numpy as np
 
 from ..errors import InputError
+from .distribution import Distribution
 from .variation import Numbers, Variation
 
 MOST_DRAWN = 1 << 30   # what a Sobol sequence of scipy has
+LEAST_SAMPLES, MOST_SAMPLES = 16, 1 << 24
 
 
 @dataclass(frozen=True)
@@ -50,17 +52,63 @@ class Sobol:
 
     def points(self, first: int, last: int) -> Numbers:
         """Return the points from `first` on, up to `last`: a row each, a column for each variation."""
-        import warnings
-
-        from scipy.stats import qmc
-
-        sequence = qmc.Sobol(len(self.variations), scramble=True, seed=self.seed)
-        if first:   # scipy cannot go forward by none
-            sequence.fast_forward(first)
-        with warnings.catch_warnings():
-            warnings.simplefilter('ignore', UserWarning)   # that a part of the sequence is no power of two
-            shares = sequence.random(last - first)
+        shares = sobol_shares(len(self.variations), self.seed, first, last)
         return np.stack([one.at(shares[:, k]) for k, one in enumerate(self.variations)], axis=1)
 
 
-Sample = Grid | Sobol
+@dataclass(frozen=True)
+class Saltelli:
+    """Points for Sobol' indices of d numbers that follow distributions (Saltelli et al., 2010).
+
+    For each of `samples` pairs of independent points A and B, d + 2 in turn: A, B, and A with one number of B, for each
+    number.  `samples` is a power of two.
+    """
+
+    variations: tuple[Distribution, ...]
+    samples: int
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        if not LEAST_SAMPLES <= self.samples <= MOST_SAMPLES or self.samples.bit_count() != 1:
+            raise InputError('--samples', self.samples, f'a power of two from {LEAST_SAMPLES} to {MOST_SAMPLES}',
+                             'a Sobol sequence of another length is uneven')
+
+    @property
+    def each(self) -> int:
+        """How many points belong to one sample."""
+        return len(self.variations) + 2
+
+    @property
+    def count(self) -> int:
+        """How many points there are."""
+        return self.samples * self.each
+
+    def points(self, first: int, last: int) -> Numbers:
+        """Return the points from `first` on, up to `last`: a row each, a column for each variation."""
+        d, begin = len(self.variations), first // self.each
+        shares = sobol_shares(2 * d, self.seed, begin, -(-last // self.each)).reshape(-1, 2, d)
+        a, b = (np.stack([one.at(shares[:, half, k]) for k, one in enumerate(self.variations)], axis=1)
+                for half in (0, 1))
+        blocks = np.repeat(a[:, None, :], self.each, axis=1)
+        blocks[:, 1] = b
+        for k in range(d):
+            blocks[:, 2 + k, k] = b[:, k]
+        rows: Numbers = blocks.reshape(-1, d)[first - begin * self.each:last - begin * self.each]
+        return rows
+
+
+def sobol_shares(dimensions: int, seed: int, first: int, last: int) -> Numbers:
+    """Return the points from `first` on, up to `last`, of a scrambled Sobol sequence in the unit cube."""
+    import warnings
+
+    from scipy.stats import qmc
+
+    sequence = qmc.Sobol(dimensions, scramble=True, seed=seed)
+    if first:   # scipy cannot go forward by none
+        sequence.fast_forward(first)
+    with warnings.catch_warnings():
+        warnings.simplefilter('ignore', UserWarning)   # that a part of the sequence is no power of two
+        return np.asarray(sequence.random(last - first))
+
+
+Sample = Grid | Sobol | Saltelli

@@ -14,7 +14,7 @@ from ..scene.load import named
 from .figures import Figures, Runs, figures_of
 from .points import runs_alone, runs_in_batches, scene_at, works_in_batches
 from .sample import Sample
-from .variation import Numbers
+from .variation import Numbers, Variation
 
 MOST_VARIATIONS = 10
 _IN_A_CHUNK, _ALONE_IN_A_CHUNK = 2000, 20   # points: a fraction of a second
@@ -47,6 +47,11 @@ class Study:
     def names(self) -> tuple[str, ...]:
         """The parameters that vary."""
         return tuple(one.name for one in self.sample.variations)
+
+    @property
+    def ranges(self) -> tuple[Variation, ...]:
+        """What varies between two ends; nothing of a sample of distributions."""
+        return tuple(one for one in self.sample.variations if isinstance(one, Variation))
 
     @property
     def count(self) -> int:

@@ -1,0 +1,77 @@
+"""What `sweep` and `uncertainty` have in common: where the table of a study goes, and who works on it."""
+
+import os
+import shlex
+import sys
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
+from typing import TYPE_CHECKING, Any
+
+import click
+
+if TYPE_CHECKING:
+    from ..study import Study
+    from ..study.crew import Crew
+    from ..study.folder import Folder
+
+_MOST_WORKERS = 1024
+_OPTIONS = (
+    click.option('--out', required=True, metavar='FOLDER', help='Write points.csv (with pandas .parquet too) there.'),
+    click.option('--duration', type=float, metavar='S', help='Simulated time, s [default: until the motion settles].'),
+    click.option('--workers', metavar='N|all', help='Processes to use [default: 1].'),
+    click.option('--scheduler', metavar='ADDRESS', help='Use the workers of this Dask scheduler instead.'),
+    click.option('--resume', is_flag=True, help='Go on with what was interrupted.'),
+    click.option('--set', 'changes', multiple=True, metavar='A.B=VALUE', help='Change a parameter of the scene.'),
+)
+Command = Callable[..., Any]
+
+
+def study_options(command: Command) -> Command:
+    """Give a command the options of every study."""
+    for option in reversed(_OPTIONS):
+        command = option(command)
+    return command
+
+
+def crew_of(workers: str | None, scheduler: str | None) -> AbstractContextManager['Crew | None']:
+    """Return who works on a study: nobody else, processes, or a cluster; raises InputError and UsageError."""
+    from ..study.cluster import cluster
+    from ..study.crew import processes
+
+    if scheduler is not None:
+        if workers is not None:
+            raise click.UsageError('--workers and --scheduler exclude each other.')
+        return cluster(scheduler)
+    count = _processes('1' if workers is None else workers)
+    return processes(count) if count > 1 else nullcontext()
+
+
+def carry_out(study: 'Study', out: str, crew: AbstractContextManager['Crew | None'],
+              resume: bool) -> tuple['Folder', int]:
+    """Run a study into its folder, new or resumed; return that and how many points had to be run."""
+    from ..study import sweep as work
+    from ..study.folder import Folder
+    from .progress import progress_bar
+
+    folder = Folder(out)
+    with crew as members:   # who cannot be had leaves no folder behind
+        if resume:
+            folder.check_same(study)
+        else:
+            folder.begin(study, shlex.join(['stickslip', *sys.argv[1:]]))
+        try:
+            with progress_bar('sweeping') as progress:
+                return folder, work.sweep(study, folder, members, progress)
+        except KeyboardInterrupt:
+            raise KeyboardInterrupt(f'interrupted; what is done is kept in {out}, --resume goes on') from None
+
+
+def _processes(workers: str) -> int:
+    from ..errors import InputError
+
+    if workers == 'all':
+        return len(os.sched_getaffinity(0))
+    if not workers.isascii() or not workers.isdigit() or not 1 <= int(workers[:5]) <= _MOST_WORKERS:
+        raise InputError('--workers', workers, f'a whole number from 1 to {_MOST_WORKERS}, or all',
+                         'leave it out for 1')
+    return int(workers)

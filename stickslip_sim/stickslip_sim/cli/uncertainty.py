@@ -1,0 +1,106 @@
+"""`stickslip uncertainty`: how sure the motion of a scene is whose numbers are known only roughly."""
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from .files import write_text
+from .format import quantity
+from .sweeping import carry_out, crew_of, study_options
+
+if TYPE_CHECKING:
+    from ..study import Saltelli
+    from ..study.uncertainty import Index, Uncertainty
+
+_RESULT = 'uncertainty.json'
+
+
+@click.command()
+@click.argument('scene', metavar='SCENE')
+@click.option('--with', 'file', required=True, metavar='FILE.yaml', help='The distributions of its parameters.')
+@click.option('--samples', type=int, default=1024, show_default=True, metavar='N',
+              help='A power of two; N (parameters + 2) points are run.')
+@study_options
+def uncertainty(scene: str, file: str, samples: int, out: str, duration: float | None, workers: str | None,
+                scheduler: str | None, resume: bool, changes: tuple[str, ...]) -> None:
+    """Run SCENE with parameters drawn from distributions: percentiles, and which parameter decides.
+
+    FOLDER gets uncertainty.json beside the table of all points.  Ctrl-C keeps what is done.
+    """
+    crew = crew_of(workers, scheduler)
+    from ..scene import load_scene, parse_override
+    from ..study import Saltelli, Study
+    from ..study.folder import TABLE
+    from ..study.table import read_columns
+    from ..study.uncertain_file import load_uncertain
+    from ..study.uncertainty import uncertainty_of
+
+    known = load_uncertain(file)
+    sample = Saltelli(known.distributions, samples, known.seed)
+    loaded = load_scene(scene, dict(parse_override(change) for change in changes))
+    study = Study(loaded.values, sample, duration)
+    folder, ran = carry_out(study, out, crew, resume)
+    found = uncertainty_of(sample, read_columns(folder.path / TABLE, study))
+    result = folder.path / _RESULT
+    write_text(str(result), [json.dumps(_plain(sample, found), indent=1, allow_nan=False), '\n'])
+    print(f'{loaded.name}: {samples} samples of {len(study.names)} parameters, {study.count} points, {ran} run now')
+    print('\n'.join((*_laws(sample), '', *_percentiles(found), '', *_indices(sample, found), '', str(result))))
+
+
+def _plain(sample: 'Saltelli', found: 'Uncertainty') -> dict[str, Any]:
+    """Return all that was found as JSON values."""
+    from ..study.uncertainty import PERCENTS
+
+    return {
+        'samples': sample.samples, 'seed': sample.seed, 'points': found.points, 'solved': found.solved,
+        'unsettled': found.unsettled,
+        'kept_of_distributions': {one.name: one.kept for one in sample.variations},
+        'stick_slip': found.stick_slip,
+        'percentiles': {name: values and {str(percent): value for percent, value in zip(PERCENTS, values)}
+                        for name, values in found.percentiles.items()},
+        'indices': {name: of and {key: index._asdict() for key, index in of.items()}
+                    for name, of in found.indices.items()},
+    }
+
+
+def _laws(sample: 'Saltelli') -> list[str]:
+    """Return a line for each parameter: its distribution, and what was cut off."""
+    from ..study.distribution import LAWS
+
+    lines = []
+    for one in sample.variations:
+        numbers = ', '.join(f'{name} {number:g}' for name, number in zip(LAWS[one.law].numbers, one.numbers))
+        cut = f', cut to {one.low:g} .. {one.high:g} ({1.0 - one.kept:.2g} off)' if LAWS[one.law].ends else ''
+        unit = f' ({one.unit})' if one.unit else ''
+        lines.append(f'  {one.name}{unit}: {one.law}, {numbers}{cut}')
+    return lines
+
+
+def _percentiles(found: 'Uncertainty') -> list[str]:
+    from ..study.uncertainty import PERCENTS, SPREAD
+
+    doubts = ((found.points - found.solved, 'unsolved'), (found.unsettled, 'had not settled'))
+    doubt = ''.join(f', {count} {what}' for count, what in doubts if count)
+    head = f'{"of those":22}' + ''.join(f'{f"{percent} %":>13}' for percent in PERCENTS)
+    return [f'stick-slip in {found.stick_slip:.2%} of {found.points} independent points{doubt}', head,
+            *(f'{name:22}' + ''.join(f'{quantity(value, SPREAD[name], 4):>13}' for value in values)
+              if values else f'{name:22}{"none":>13}' for name, values in found.percentiles.items())]
+
+
+def _indices(sample: 'Saltelli', found: 'Uncertainty') -> list[str]:
+    """Return a table of the first-order indices, a line for each figure that has them."""
+    names = [one.name for one in sample.variations]
+    width = max(22, *(len(name) for name in names)) + 2
+    lines = ['share of the variance that one parameter explains by itself (and with its interactions)']
+    for figure, of in found.indices.items():
+        if of is None:
+            lines.append(f'{figure:22} not told: not every point has it, or all have the same')
+            continue
+        lines.append(figure)
+        lines += [f'  {name:{width}}{_told(of[name])}' for name in sorted(names, key=lambda n: -of[n].first_order)]
+    return lines
+
+
+def _told(index: 'Index') -> str:
+    return f'{index.first_order:6.3f} ± {index.error:.3f}  ({index.total:.3f})'

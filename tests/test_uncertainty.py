@@ -1,0 +1,222 @@
+"""Uncertainty: distributions, their sample, and indices of functions and of an axis that have a closed form."""
+
+import math
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy import stats
+
+from stickslip_sim.errors import InputError
+from stickslip_sim.scene import load_scene
+from stickslip_sim.study import Distribution, Saltelli, Study
+from stickslip_sim.study.description import description, study_of
+from stickslip_sim.study.figures import FIGURES
+from stickslip_sim.study.uncertain_file import uncertain_of
+from stickslip_sim.study.uncertainty import PERCENTS, sobol_indices, uncertainty_of
+
+Numbers = NDArray[np.float64]
+
+SHARES: Numbers = np.arange(101) / 100.0
+STATIC, KINETIC, NORMAL = 0.24, 0.12, 3432.3275
+RIGID = {'friction.static.law': 'constant', 'friction.static.initial': STATIC, 'friction.kinetic.velocities': [0.0],
+         'friction.kinetic.coefficients': [KINETIC], 'axis.drive_damping': 0.0, 'drive.velocity': 1e-4}
+ENDS = {'friction.static.initial': (0.2, 0.28), 'axis.drive_stiffness': (5e5, 8e5), 'drive.velocity': (8e-5, 1.6e-4)}
+
+
+def uniform(name: str, low: float, high: float) -> Distribution:
+    return Distribution(name, 'uniform', (low, high), low, high)
+
+
+def uncertain_axis(samples: int, *names: str) -> Study:
+    scene = load_scene('paper_fig4_constant', RIGID)
+    return Study(scene.values, Saltelli(tuple(uniform(name, *ENDS[name]) for name in names), samples))
+
+
+def columns_of(study: Study) -> dict[str, Numbers]:
+    figures = study.figures(0, study.count)
+    return {name: getattr(figures, name) for name in FIGURES}
+
+
+def period(static: Numbers | float, stiffness: Numbers | float, feed: Numbers | float) -> Numbers:
+    """Return that of an undamped slider of 350 kg: it stands until the spring has gained twice ΔF, then swings."""
+    drop, impedance = NORMAL * (static - KINETIC), np.sqrt(stiffness * 350.0)
+    return np.asarray(2.0 * drop / (stiffness * feed)
+                      + 2.0 * (np.pi - np.arctan(drop / (feed * impedance))) / np.sqrt(stiffness / 350.0))
+
+
+def indices_of(sample: Saltelli, values: Numbers) -> NDArray[np.float64]:
+    found = sobol_indices(values.reshape(sample.samples, sample.each))
+    assert found is not None
+    return np.array(found)
+
+
+@pytest.mark.parametrize(('found', 'theory'), [
+    (Distribution('axis.mass', 'normal', (350.0, 10.0), 340.0, 380.0), stats.truncnorm(-1.0, 3.0, 350.0, 10.0)),
+    (Distribution('axis.mass', 'lognormal', (350.0, 1.2), 200.0, 600.0), None),
+    (Distribution('axis.mass', 'uniform', (300.0, 400.0), 300.0, 400.0), stats.uniform(300.0, 100.0)),
+    (Distribution('axis.mass', 'triangular', (300.0, 310.0, 400.0), 300.0, 400.0), None)])
+def test_values_follow_the_law(found: Distribution, theory: 'stats.rv_frozen | None') -> None:
+    values = found.at(SHARES)
+    assert (values[0], values[-1]) == pytest.approx((found.low, found.high), rel=1e-12)
+    if theory is not None:
+        assert values == pytest.approx(theory.ppf(SHARES), rel=1e-9)
+    elif found.law == 'lognormal':
+        cut = stats.truncnorm(*np.log(np.array([200.0, 600.0]) / 350.0) / math.log(1.2))
+        assert values == pytest.approx(350.0 * 1.2**cut.ppf(SHARES), rel=1e-9)
+    else:   # two parabolas, that meet at the mode with 1/10 below
+        assert values[:11] == pytest.approx(300.0 + np.sqrt(SHARES[:11] * 100.0 * 10.0), rel=1e-12)
+        assert values[10:] == pytest.approx(400.0 - np.sqrt((1.0 - SHARES[10:]) * 100.0 * 90.0), rel=1e-12)
+
+
+def test_where_a_sample_is_cut_changes_no_bit() -> None:
+    sample = Saltelli((Distribution('axis.mass', 'lognormal', (350.0, 1.2), 200.0, 600.0),
+                       uniform('drive.velocity', 1e-3, 2e-3)), 64, seed=3)
+    whole = sample.points(0, 256)
+    for first, last in ((0, 1), (3, 9), (100, 256)):
+        assert np.array_equal(sample.points(first, last), whole[first:last])
+    a, b, first_of_b, second_of_b = whole.reshape(64, 4, 2).transpose(1, 0, 2)
+    assert np.array_equal(first_of_b, np.stack([b[:, 0], a[:, 1]], axis=1))
+    assert np.array_equal(second_of_b, np.stack([a[:, 0], b[:, 1]], axis=1))
+    assert abs(np.corrcoef(a[:, 0], b[:, 0])[0, 1]) < 0.3
+
+
+def test_the_indices_of_ishigami_are_those_of_theory() -> None:
+    """f = sin x + 7 sin² y + 0.1 z⁴ sin x (Ishigami and Homma, 1990)."""
+    sample = Saltelli(tuple(uniform(name, -math.pi, math.pi) for name in 'xyz'), 4096)
+    x, y, z = sample.points(0, sample.count).T
+    first, error, total = indices_of(sample, np.sin(x) + 7.0 * np.sin(y)**2 + 0.1 * z**4 * np.sin(x)).T
+    one, two = 0.5 * (1.0 + 0.1 * math.pi**4 / 5.0)**2, 49.0 / 8.0
+    both = 0.01 * math.pi**8 * (1.0 / 18.0 - 1.0 / 50.0)
+    variance = one + two + both
+    assert first == pytest.approx(np.array([one, two, 0.0]) / variance, abs=0.01)
+    assert total == pytest.approx(np.array([one + both, two, both]) / variance, abs=0.02)
+    assert (np.abs(first - np.array([one, two, 0.0]) / variance) < 2.0 * error).all()
+
+
+def test_the_indices_of_a_sum_add_up_to_one() -> None:
+    sample = Saltelli(tuple(uniform(name, 0.0, 1.0) for name in 'xyz'), 1024)
+    first, _, total = indices_of(sample, sample.points(0, sample.count) @ np.array([3.0, 2.0, 0.0])).T
+    for index in (first, total):
+        assert index == pytest.approx([9.0 / 13.0, 4.0 / 13.0, 0.0], abs=0.005)
+
+
+def test_an_axis_has_the_indices_of_its_theory() -> None:
+    """Slow feed on constant friction: T = 2 ΔF/(c v) but for the slip, a product of three independent factors."""
+    study = uncertain_axis(512, *ENDS)
+    assert isinstance(study.sample, Saltelli)
+    columns = columns_of(study)
+    assert columns['period'] == pytest.approx(period(*study.points(0, study.count).T), rel=1e-9)
+    found = uncertainty_of(study.sample, columns)
+    factors = [_varied(*(end - KINETIC for end in ENDS['friction.static.initial']))]
+    factors += [_inverse_varied(*ENDS[name]) for name in list(ENDS)[1:]]
+    together = math.prod(1.0 + square for square in factors) - 1.0
+    of_period = found.indices['period']
+    assert of_period is not None
+    assert found.stick_slip == 1.0
+    assert [of_period[name].first_order for name in ENDS] == pytest.approx([f / together for f in factors], abs=0.02)
+    assert found.indices['stick_slip'] is None   # all stick and slip: there is nothing to explain
+
+
+def test_percentiles_of_one_number_are_those_of_the_monotonic_theory() -> None:
+    study = uncertain_axis(1024, 'drive.velocity')
+    assert isinstance(study.sample, Saltelli)
+    found = uncertainty_of(study.sample, columns_of(study))
+    low, high = ENDS['drive.velocity']
+    feeds = high - (high - low) * np.array(PERCENTS) / 100.0   # the slowest have the longest periods
+    assert found.percentiles['period'] == pytest.approx(period(STATIC, 6e5, feeds), rel=3e-3)
+    assert found.points == found.solved == 2048
+
+
+def test_points_without_a_cycle_have_a_share_and_no_percentile() -> None:
+    scene = load_scene('paper_fig7')
+    study = Study(scene.values, Saltelli((uniform('drive.velocity', 0.01, 0.06),), 64))
+    assert isinstance(study.sample, Saltelli)
+    columns = columns_of(study)
+    found = uncertainty_of(study.sample, columns)
+    drawn = columns['stick_slip'].reshape(64, 3)[:, :2]
+    assert 0.0 < found.stick_slip < 1.0
+    assert found.stick_slip == drawn.mean()
+    assert found.indices['period'] is None
+    assert found.percentiles['period'] is not None
+    slips = columns['period'].reshape(64, 3)[:, :2][drawn == 1.0]
+    assert found.percentiles['period'] == np.percentile(slips, PERCENTS).tolist()
+    decides = found.indices['stick_slip']
+    assert decides is not None
+    assert decides['drive.velocity'].total == pytest.approx(1.0, abs=0.1)   # the only one there is
+
+
+def test_the_sidecar_is_the_study() -> None:
+    study = uncertain_axis(16, *ENDS)
+    again = study_of(description(study))
+    assert again.sample == study.sample
+    assert description(again) == description(study)
+
+
+def test_a_file_says_what_is_known() -> None:
+    found = uncertain_of({'seed': 4, 'parameters': {
+        'axis.mass': {'distribution': 'normal', 'mean': 350, 'standard_deviation': 10.0, 'between': [330.0, 370.0]},
+        'friction.kinetic.coefficients[1]': {'distribution': 'triangular', 'low': 0.0, 'mode': 0.0, 'high': 0.1}}})
+    assert found.seed == 4
+    assert found.distributions == (Distribution('axis.mass', 'normal', (350.0, 10.0), 330.0, 370.0), Distribution(
+        'friction.kinetic.coefficients[1]', 'triangular', (0.0, 0.0, 0.1), 0.0, 0.1))
+    assert found.distributions[0].kept == pytest.approx(0.9545, abs=1e-4)
+
+
+NORMAL_MASS = {'distribution': 'normal', 'mean': 350.0, 'standard_deviation': 10.0}
+
+
+@pytest.mark.parametrize(('entry', 'words'), [
+    (NORMAL_MASS, ('axis.mass.between', 'None', '[310, 390]')),
+    ({**NORMAL_MASS, 'between': [370.0, 330.0]}, ('axis.mass.between', 'LOW < HIGH')),
+    ({**NORMAL_MASS, 'between': [-1.0, 390.0]}, ('axis.mass', '-1.0', 'kg')),
+    ({**NORMAL_MASS, 'between': [380.0, 390.0]}, ('axis.mass.between', 'keeps 0.0013')),
+    ({**NORMAL_MASS, 'between': [330.0, 370.0], 'standard_deviation': 0.0}, ('standard_deviation', '> 0')),
+    ({**NORMAL_MASS, 'between': [330.0, 370.0], 'mode': 1.0}, ('axis.mass.mode', 'mean')),
+    ({'distribution': 'gaussian'}, ('axis.mass.distribution', 'gaussian', 'normal, lognormal')),
+    ({'distribution': 'uniform', 'low': 300.0}, ('axis.mass.high', 'None')),
+    ({'distribution': 'uniform', 'low': 300.0, 'high': 300.0}, ('axis.mass.high', 'above low')),
+    ({'distribution': 'uniform', 'low': 300.0, 'high': math.inf}, ('axis.mass.high', 'inf')),
+    ({'distribution': 'uniform', 'low': 300.0, 'high': 400.0, 'between': [1.0, 2.0]}, ('axis.mass.between',)),
+    ({'distribution': 'lognormal', 'median': 350.0, 'geometric_standard_deviation': 0.9, 'between': [1.0, 2.0]},
+     ('geometric_standard_deviation', '> 1')),
+    ({'distribution': 'lognormal', 'median': 350.0, 'geometric_standard_deviation': 1.1},
+     ('axis.mass.between', '[239.055, 512.435]')),
+    ({'distribution': 'triangular', 'low': 300.0, 'mode': 420.0, 'high': 400.0}, ('axis.mass.mode', 'from low to')),
+    (350.0, ('axis.mass.distribution', '350.0'))])
+def test_a_distribution_that_makes_no_sense_is_refused(entry: object, words: tuple[str, ...]) -> None:
+    with pytest.raises(InputError) as refusal:
+        uncertain_of({'parameters': {'axis.mass': entry}})
+    for word in words:
+        assert word in str(refusal.value)
+
+
+@pytest.mark.parametrize(('document', 'words'), [
+    (None, ('file', 'parameters, seed')),
+    ({'parameters': {}}, ('parameters', '1 to 10')),
+    ({'parametres': {}}, ('parametres', 'did you mean parameters?')),
+    ({'parameters': {'axis.mas': {}}}, ('axis.mas', 'did you mean axis.mass?')),
+    ({'parameters': {'axis.mass': NORMAL_MASS}, 'seed': -1}, ('seed', '-1')),
+    ({'parameters': {'encoder.noise': NORMAL_MASS}}, ('encoder.noise', 'decides the motion'))])
+def test_a_file_that_makes_no_sense_is_refused(document: object, words: tuple[str, ...]) -> None:
+    with pytest.raises(InputError) as refusal:
+        uncertain_of(document)
+    for word in words:
+        assert word in str(refusal.value)
+
+
+@pytest.mark.parametrize('samples', [0, 8, 100, 1 << 25])
+def test_a_sample_is_a_power_of_two(samples: int) -> None:
+    with pytest.raises(InputError, match='power of two'):
+        Saltelli((uniform('axis.mass', 300.0, 400.0),), samples)
+
+
+def _varied(low: float, high: float) -> float:
+    """Return the squared coefficient of variation of a uniform number."""
+    return (high - low)**2 / 12.0 / (0.5 * (low + high))**2
+
+
+def _inverse_varied(low: float, high: float) -> float:
+    """Return that of one over it."""
+    mean = math.log(high / low) / (high - low)
+    return 1.0 / (low * high) / mean**2 - 1.0

@@ -1,0 +1,79 @@
+"""`stickslip uncertainty` as a user meets it: what it says and writes, resumed, misused."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from stickslip_sim.cli.main import run
+from stickslip_sim.study.description import study_of
+from stickslip_sim.study.folder import PARTIAL, TABLE, Folder
+
+Capture = pytest.CaptureFixture[str]
+
+KNOWN = """parameters:
+  friction.static.limit: {distribution: normal, mean: 0.24, standard_deviation: 0.02, between: [0.18, 0.3]}
+  friction.static.time_constant: {distribution: lognormal, median: 0.2, geometric_standard_deviation: 1.5,
+                                  between: [0.05, 0.8]}
+"""
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> str:
+    path = tmp_path / 'friction.yaml'
+    path.write_text(KNOWN)
+    return str(path)
+
+
+def test_it_tells_percentiles_and_indices_and_writes_them(tmp_path: Path, file: str, capsys: Capture) -> None:
+    out = tmp_path / 'out'
+    assert run(['uncertainty', 'paper_fig7', '--with', file, '--samples', '32', '--out', str(out)]) == 0
+    said = capsys.readouterr().out
+    told = json.loads((out / 'uncertainty.json').read_text())
+    assert '32 samples of 2 parameters, 128 points, 128 run now' in said
+    assert 'cut to 0.18 .. 0.3 (0.0027 off)' in said
+    assert told['stick_slip'] == 1.0
+    assert list(told['percentiles']['period']) == ['5', '25', '50', '75', '95']
+    index = told['indices']['period']['friction.static.time_constant']
+    assert f'{index["first_order"]:6.3f} ± {index["error"]:.3f}' in said
+    assert study_of(Folder(out).described()).count == 128
+
+
+def test_resumed_it_gives_the_same_files(tmp_path: Path, file: str) -> None:
+    common = ['uncertainty', 'paper_fig7', '--with', file, '--samples', '1024', '--duration', '4']   # three chunks
+    whole, cut = tmp_path / 'whole', tmp_path / 'cut'
+    assert run([*common, '--out', str(whole)]) == 0
+    assert run([*common, '--out', str(cut)]) == 0
+    lines = (cut / TABLE).read_bytes().splitlines(keepends=True)
+    (cut / TABLE).unlink()
+    (cut / 'uncertainty.json').unlink()
+    (cut / PARTIAL).write_bytes(b''.join(lines[:2500]))   # as a kill would leave it
+    assert run([*common, '--out', str(cut), '--resume']) == 0
+    for name in (TABLE, 'uncertainty.json'):
+        assert (cut / name).read_bytes() == (whole / name).read_bytes()
+
+
+@pytest.mark.parametrize(('arguments', 'words'), [
+    (['--samples', '100'], ('--samples', '100', 'power of two')),
+    (['--set', 'friction.static.limit=-1.0'], ('friction.static.limit',)),
+    (['--set', 'friction.static.initial=0.2'], ('at friction.static.limit=0.18', 'friction.static.limit')),
+    (['--workers', '0'], ('--workers', '0')),
+    (['--resume'], ('sweep',))])
+def test_misuse_gets_one_line_and_writes_nothing(arguments: list[str], words: tuple[str, ...], tmp_path: Path,
+                                                 file: str, capsys: Capture) -> None:
+    out = tmp_path / 'out'
+    assert run(['uncertainty', 'paper_fig7', '--with', file, '--out', str(out), *arguments]) == 2
+    said, error = capsys.readouterr()
+    assert (said, error.count('\n')) == ('', 1)
+    for word in words:
+        assert word in error
+    assert not out.exists()
+
+
+def test_a_wrong_file_is_named(tmp_path: Path, capsys: Capture) -> None:
+    path = tmp_path / 'friction.yaml'
+    path.write_text(KNOWN.replace('mean', 'meen'))
+    assert run(['uncertainty', 'paper_fig7', '--with', str(path), '--out', str(tmp_path / 'out')]) == 2
+    error = capsys.readouterr().err
+    assert 'friction.yaml: friction.static.limit.meen' in error
+    assert 'did you mean mean?' in error
