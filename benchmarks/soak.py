@@ -104,8 +104,7 @@ def page(minutes: float, figures: Mapping[str, float]) -> str:
         f'{machine()}.', '',
         f'`sim_node` on `{SCENE}` at {RATE:g} steps a second with its recording, for {minutes:g} minutes; a',
         'controller in a process of its own answers every state with a drive velocity.  What grows while the node',
-        'records: the index of the bag, which MCAP writes at its end, and the events that the figures of the run are',
-        'made of (the last 20 000 at most).', '',
+        'records is the index of the bag, which MCAP writes at its end.', '',
         '| figure | measured | at most |', '|---|---|---|', *rows, '',
         'Missed: ' + '; '.join(failures) + '.' if failures else 'Everything within its limits.', ''])
 
