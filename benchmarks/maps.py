@@ -1,8 +1,10 @@
 """Run the study of docs/maps.md and put its figures and pictures there: `python3 -m benchmarks.maps` (two minutes).
 
-`python3 -m benchmarks.maps throughput` measures again only what a point costs, here and by scipy.
+`python3 -m benchmarks.maps throughput` measures again only what a point costs, here and by scipy; other parts are
+`pictures`, `critical` and `uncertainty`.
 """
 
+import math
 import pathlib
 import shlex
 import shutil
@@ -18,8 +20,9 @@ from stickslip_sim.bench.peers import scipy_ivp
 from stickslip_sim.bench.peers.peer import Setting
 from stickslip_sim.bench.problem import Problem
 from stickslip_sim.scene import load_scene
-from stickslip_sim.study import Grid, Motion, Study, variation
+from stickslip_sim.study import Grid, Motion, Saltelli, Study, variation
 from stickslip_sim.study.table import lines
+from stickslip_sim.study.uncertain_file import load_uncertain
 from stickslip_sim.words import EventKind
 
 from .page import replace_generated
@@ -58,7 +61,11 @@ CRITICAL = (
     f'critical paper_fig4_constant {CONSTANT} --of drive.velocity',
     'critical stribeck --of drive.velocity',
 )
+UNCERTAIN = ('uncertainty paper_fig7 --with examples/friction.yaml --set drive.velocity=0.025 --samples 512'
+             ' --out runs/maps/uncertainty')
 SETTING = Setting(1e-8, 'tolerance')
+MACHINES, CORES = (1, 4, 16), 16   # of a cluster, and of each machine
+MILLION, CHUNKS = 1_000_000, 500   # points, and the pieces that are handed out
 _ROUNDS, _BY_SCIPY = 3, 12   # sweeps that are timed; points that scipy runs
 
 
@@ -79,17 +86,43 @@ class Cost(NamedTuple):
 
 
 def main() -> None:
-    """Write the parts of the page."""
-    if sys.argv[1:] != ['throughput']:
-        shutil.rmtree(RUNS, ignore_errors=True)
-        RUNS.mkdir(parents=True)
-        for name, commands in PICTURES.items():
-            replace_generated(PAGE, '\n'.join(map(_shown, commands)) + '\n', name)
-            for command in commands:
-                _said(command)
-        told = '\n'.join(f'{_shown(command)}\n\n{_quoted(command)}' for command in CRITICAL)
-        replace_generated(PAGE, told, 'critical')
-    replace_generated(PAGE, throughput_table([measured(name) for name in ('paper_fig7', 'paper_fig8')]), 'throughput')
+    """Write the parts of the page that are asked for, or all."""
+    for name in sys.argv[1:] or PARTS:
+        PARTS[name]()
+
+
+def pictures() -> None:
+    """Sweep and draw."""
+    shutil.rmtree(RUNS, ignore_errors=True)
+    RUNS.mkdir(parents=True)
+    for name, commands in PICTURES.items():
+        replace_generated(PAGE, '\n'.join(map(_shown, commands)) + '\n', name)
+        for command in commands:
+            _said(command)
+
+
+def critical() -> None:
+    """Find the critical values."""
+    replace_generated(PAGE, '\n'.join(f'{_shown(command)}\n\n{_quoted(command)}' for command in CRITICAL), 'critical')
+
+
+def uncertainty() -> None:
+    """Run an axis whose friction is known only roughly."""
+    RUNS.mkdir(parents=True, exist_ok=True)
+    shutil.rmtree(RUNS / 'uncertainty', ignore_errors=True)
+    replace_generated(PAGE, f'{_shown(UNCERTAIN)}\n\n{_quoted(UNCERTAIN)}', 'uncertainty')
+
+
+def throughput() -> None:
+    """Measure what a point costs, here and by scipy, and reckon what a million do."""
+    costs = [measured(name) for name in ('paper_fig7', 'paper_fig8')]
+    replace_generated(PAGE, throughput_table(costs), 'throughput')
+    known = [(f'{cost.name}: feed and stiffness', cost.ours) for cost in costs]
+    known.append(('paper_fig7: examples/friction.yaml', of_the_uncertain()))
+    replace_generated(PAGE, million_table(known), 'million')
+
+
+PARTS = {'pictures': pictures, 'critical': critical, 'uncertainty': uncertainty, 'throughput': throughput}
 
 
 def measured(name: str) -> Cost:
@@ -124,6 +157,28 @@ def throughput_table(costs: list[Cost]) -> str:
             '| scipy misses break-aways |\n|---|---|---|---|---|---|---|\n' + ''.join(rows))
 
 
+def million_table(costs: list[tuple[str, float]]) -> str:
+    """Return what a million points take on so many cores, each as fast as this one, by the s that one point costs."""
+    heads = ('study', 'a point', 'one core', *(f'{n} machine{"s" if n > 1 else ""}' for n in MACHINES))
+    rows = []
+    for name, cost in costs:
+        turns = (math.ceil(CHUNKS / cores) for cores in (1, *(CORES * n for n in MACHINES)))
+        times = ' | '.join(_duration(turn * MILLION / CHUNKS * cost) for turn in turns)
+        rows.append(f'| {name} | {1e6 * cost:.0f} µs | {times} |\n')
+    return f'| {" | ".join(heads)} |\n|{"---|" * len(heads)}\n' + ''.join(rows)
+
+
+def of_the_uncertain() -> float:
+    """Return what a point of examples/friction.yaml costs: each takes a scene of its own."""
+    distributions, seed = load_uncertain('examples/friction.yaml')
+    study = Study(load_scene('paper_fig7').values, Saltelli(distributions, 128, seed))
+    return statistics.median(_seconds(study) for _ in range(_ROUNDS)) / study.count
+
+
+def _duration(seconds: float) -> str:
+    return f'{seconds:.2g} s' if seconds < 60.0 else f'{seconds / 60.0:.2g} min'
+
+
 def _seconds(study: Study) -> float:
     """Return what all lines of the table of a study cost, s of processor time."""
     begin = time.process_time()
@@ -143,7 +198,7 @@ def _shown(command: str) -> str:
 
 
 def _quoted(command: str) -> str:
-    return ''.join(f'    {line}\n' for line in _said(command).splitlines())
+    return ''.join(f'    {line}'.rstrip() + '\n' for line in _said(command).splitlines())
 
 
 def _said(command: str) -> str:

@@ -1,10 +1,11 @@
 """docs/maps.md: its commands are those that make its pictures and figures."""
 
 import shlex
+from pathlib import Path
 
 import pytest
 
-from benchmarks.maps import CRITICAL, PAGE, PICTURES, _shown
+from benchmarks.maps import CRITICAL, PAGE, PICTURES, UNCERTAIN, _shown
 from stickslip_sim.cli.main import run
 
 Capture = pytest.CaptureFixture[str]
@@ -32,4 +33,12 @@ def test_a_critical_value_is_what_the_page_says(page: str, capsys: Capture) -> N
     """The one with a closed form: it takes no second."""
     assert run(shlex.split(CRITICAL[3])) == 0
     for line in capsys.readouterr().out.splitlines():
-        assert f'    {line}\n' in page
+        assert f'    {line}'.rstrip() + '\n' in page
+
+
+def test_the_uncertainty_is_what_the_page_says(page: str, tmp_path: Path, capsys: Capture) -> None:
+    """All but its last line, which names the folder."""
+    assert _shown(UNCERTAIN) in page
+    assert run(shlex.split(UNCERTAIN.replace('runs/maps', str(tmp_path)))) == 0
+    for line in capsys.readouterr().out.splitlines()[:-1]:
+        assert f'    {line}'.rstrip() + '\n' in page

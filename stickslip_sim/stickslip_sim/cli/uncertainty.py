@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .files import write_text
-from .format import quantity
 from .sweeping import carry_out, crew_of, study_options
 
 if TYPE_CHECKING:
@@ -79,6 +78,7 @@ def _laws(sample: 'Saltelli') -> list[str]:
 
 def _percentiles(found: 'Uncertainty') -> list[str]:
     from ..study.uncertainty import PERCENTS, SPREAD
+    from .format import quantity
 
     doubts = ((found.points - found.solved, 'unsolved'), (found.unsettled, 'had not settled'))
     doubt = ''.join(f', {count} {what}' for count, what in doubts if count)
