@@ -21,6 +21,7 @@ from .ledger import Ledger
 _IDLE = 0.05            # s between two looks at whether to stop while time stands still
 _PATIENCE = 5.0         # s that a request waits for its boundary
 
+
 class CommandTotals(NamedTuple):
     """What befell the commands of a run."""
 

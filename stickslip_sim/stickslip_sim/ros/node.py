@@ -49,7 +49,6 @@ class FeedAxis(SceneNode):
     def __init__(self, files: FileParameters, is_stopping: Callable[[], bool]) -> None:
         super().__init__(NAME, files)
         scene = self.scene
-        self._axis = scene.axis
         if scene.solver.name == 'adaptive':
             raise InputError('solver.name', 'adaptive', 'exact or fixed_step in the node',
                              'the steps of adaptive take any time, and no real-time loop can wait for them')
@@ -94,18 +93,15 @@ class FeedAxis(SceneNode):
     def scene_changed(self, scene: Scene, changed: Sequence[Parameter]) -> None:
         """Let changed parameters take effect together at the next boundary between two steps."""
         self._slots[0].limit, self._slots[1].limit = scene.command.max_velocity, scene.command.max_force
-        axis_before = self._axis
 
         def apply() -> None:
-            if scene.axis != axis_before:
-                self.loop.rig.change_axis(scene.axis)
+            self.loop.rig.change_axis(scene.axis)
             stamp_ns = self._outlet.start_ns + self.loop.time_ns
             event = conversion.parameter_event(self.get_fully_qualified_name(), stamp_ns,
                                                [parameter.to_parameter_msg() for parameter in changed])
             data = self._record_service.recordings.parameter_event(conversion.fields_of(event))
             self._outlet.record(RECORDED.index(names.PARAMETER_EVENTS), data, self.loop.time_ns, self.loop.step + 1)
 
-        self._axis = scene.axis
         if not self.loop.at_boundary(apply):
             self.get_logger().error('the step loop is busy: the changed parameters did not take effect')
 
