@@ -1,3 +1,6 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+
 # The two commands:  make run  (drive the axis and look at it),  make test
 # `make help` lists the rest.  PYTHON=python3.12 sets up with another Python than python3.
 

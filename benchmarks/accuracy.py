@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Put what `stickslip bench` wrote, and tick.py added to it, into docs/accuracy.md, between its markers.
 
     python3 -m benchmarks.accuracy runs/bench

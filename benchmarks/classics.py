@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The classical results beside the exact engine: shown in docs/paper.md, kept by tests/test_classics.py."""
 
 import math

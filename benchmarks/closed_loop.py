@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """A controller and the exact engine in lock-step, and the figures of what it does."""
 
 import math

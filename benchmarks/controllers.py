@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The two example controllers on the axis of the scene `positioning`: tables and picture of docs/controllers.md.
 
     python3 -m benchmarks.controllers

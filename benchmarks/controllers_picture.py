@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The picture of docs/controllers.md: speed, error and spring force, a column for each controller."""
 
 from collections.abc import Mapping

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The loop of cascade and axis without friction, as a linear recursion from step to step."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Measure the loops that could drive the node, and write the table that the choice rests on.
 
     python3 benchmarks/loop.py [--seconds 4] [--repeats 3] [--out docs/loop.md]

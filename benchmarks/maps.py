@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Run the study of docs/maps.md and put its figures and pictures there: `python3 -m benchmarks.maps` (two minutes).
 
 `python3 -m benchmarks.maps throughput` measures again only what a point costs, here and by scipy; other parts are

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """One slip of the paper's axis by a stepper that takes the branch of friction from the last sign of ẍ.
 
 Its friction flickers between the branches step by step, which on average is friction half way between them: what it

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Parts of a page that a program writes, between markers."""
 
 import pathlib

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Measure what docs/paper.md shows, and put it between its markers: `python3 -m benchmarks.paper` (seconds)."""
 
 import pathlib

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """What the paper's cycle owes to the choices that the paper leaves open: `python3 -m benchmarks.paper` shows it.
 
 One choice at a time is changed in a shipped scene, from prolonged rest, and the cycle is the mean of the last ten.

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The motion under a smooth friction law, integrated without a table: what the error of tables is measured against.
 
 Independent of the engine: the equations of docs/model.md, mode by mode, with DOP853 (Hairer, Nørsett and Wanner 1993)

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """What a table in place of a smooth law does to the motion: `python3 -m benchmarks.smooth_tables > docs/smooth.md`.
 
 The paper's axis with a Stribeck law of the paper's size, 3 s at 2 mm/s from prolonged rest: the exact engine with

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Let the recording node and a controller run for minutes: memory flat, no drift, nothing lost; write the table.
 
     python3 -m benchmarks.soak [--minutes 10] [--out docs/soak.md]

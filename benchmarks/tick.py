@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Measure one tick of the exact engine against what a bare ROS 2 timer costs; add it to a bench.json.
 
     python3 benchmarks/tick.py --json runs/bench/bench.json

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Send a drive velocity or a force to the axis: `drive.py 0.005` (m/s) or `drive.py --force 400` (N)."""
 
 import argparse

@@ -1,4 +1,6 @@
 #!/usr/bin/env python3
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Resolve requirements-DISTRO.in, requirements-test.in and requirements-bench.in into full locks.
 
     python3.10 lock.py [DISTRO]

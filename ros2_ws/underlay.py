@@ -1,4 +1,6 @@
 #!/usr/bin/env python3
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Turn a virtual environment that holds ROS 2 wheels into an underlay for colcon.
 
     .venv/bin/python underlay.py DISTRO

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Installation of stickslip_sim as a ROS 2 package."""
 
 import os

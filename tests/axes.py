@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Axes and runs that several tests use: those of the extremes suite."""
 
 from stickslip_sim.extremes.runs import COMPLIANT, RIGID, instant, make, of_kind, paper_axis, random_axis, run

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Limits files and evidence for tests of `stickslip check`."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Runs of the node in real time in which everything happens that a bag can tell of."""
 
 from collections.abc import Iterator

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """What `ros2 launch` would start: the launch files run on a small double of launch, which has no wheels.
 
 It knows what these files use and no more, with the rules of launch: a configuration that is set stays, a declared

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """A program for tests: records a message every millisecond and says on standard output how many it handed over."""
 
 import sys

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Recorded runs made again by a rig: from the commands, parameters and faults in the bag, by their steps."""
 
 from collections import defaultdict

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Bags with something wrong: a recorded run, written anew with a change."""
 
 from collections.abc import Callable

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Rigs without ROS, and orders for them by step, which can be given again."""
 
 import random

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """What ros2_control's topic-based hardware interface does on the wire, with a robot description and a controller.
 
 Follows, in names and order, topic_based_system.cpp of PickNikRobotics/topic_based_ros2_control and

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Real nodes in processes of their own, and a client that talks to them over DDS.  Conditions have deadlines."""
 
 import importlib

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Calls standard services of a simulator, in a process that finds their package; prints the answers as JSON.
 
 python3 -m tests.standard_client 'NAME {"field": value}' ...

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The ROS package simulation_interfaces as far as the node needs it, which is not in the wheels.
 
 Types, fields and constants are those of its release 1.0 and later (ros-simulation/simulation_interfaces).

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The adaptive solver: near the exact engine within its tolerance, with smooth laws and waves, and it always ends."""
 
 import math

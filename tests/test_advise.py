@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Advice: the parts that a scene has, what leaving them out changes, and the least scene for a tolerance."""
 
 import json

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The engine against an independent automaton at 40 digits (stickslip_sim.reference), event by event.
 
 `time_sensitivity` of an event is what the reference measured: seconds of shift per relative unit of rounding in the

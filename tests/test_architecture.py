@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The one-way rule, and code compiled ahead: kept by machines, so that nobody has to remember them."""
 
 import subprocess

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The benchmark: pairing of events, peers against known events, the report, and what is not installed."""
 
 import json

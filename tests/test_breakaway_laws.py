@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The exact break-away of every static law against 50-digit roots: rigid contact, a growing force, any rest before."""
 
 import math

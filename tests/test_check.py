@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Figures that limits are set for: against closed forms and the events of the exact engine."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """`stickslip check` as a user meets it: runs and scenes in, table, JUnit XML, JSON and exit code out."""
 
 import json

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Classical results on stick-slip, and the paper's gaps: the exact engine against closed forms, docs against both."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The tool `stickslip` as a user meets it: in a process of its own, except where a great many calls are made."""
 
 import csv

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """`--scheduler`: real Dask processes, one of which is killed in the middle; and what is told when there are none."""
 
 import json

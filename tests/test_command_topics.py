@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Commands are read from the bytes as they come, whatever their sender puts into the header."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """`stickslip compare`: the paper's figures and cycle figures, from scenes and from bags."""
 
 import base64

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """`stickslip compare` on what is no run of ours, or only part of one: one clear line, or as far as it goes."""
 
 import struct

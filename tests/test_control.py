@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The controllers without ROS: their moves, their loop with the exact engine, and what stick-slip is left."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Input courses: pieces follow each other to the last bit, and are what they say."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Critical values: the closed forms of the literature, bistability, and what is refused."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The container files against what they rely on; that they build and run is told in docs/docker.md."""
 
 import fnmatch

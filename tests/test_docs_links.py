@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Links within the repository: every file, folder and heading that a page points to is there.  No network."""
 
 import re

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Encoders: what they round, shift, delay and disturb, against the formula in their words."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The account of energy: it closes, it is no part of the motion, and its items are what they are called."""
 
 import dataclasses

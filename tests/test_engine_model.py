@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The exact engine against the check values of the model, and against a classical cycle in closed form."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The error estimate against the true error of runs that are known to 25 digits, and on runs that nobody can know."""
 
 import dataclasses

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The extremes in their reduced size; and that the suite calls a wrong engine wrong."""
 
 import json

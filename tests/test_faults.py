@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Faults: each equals what it stands for, to the last bit where that has another name; when, by which id, how often."""
 
 import math

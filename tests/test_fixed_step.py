@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Fixed steps: the order that is declared, the limits that are stated, and a motion that no question changes."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """No event under sines is missed, none is invented, and none depends on how a run is split."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Runs under sines, piece by piece against an integrator: the motion, every guard on the way, the event at its end."""
 
 import math

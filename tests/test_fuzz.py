@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Made-up scenes, limits, overrides and bags: read, or refused in one line.  `make fuzz` makes up more."""
 
 from collections.abc import Mapping

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Made-up joint commands, and bytes that are nearly some: a velocity, or refused in one line."""
 
 import pytest

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """A bag of a real node among other people's tools: readers, the ROS graph, the files of rosbag2, layouts of viewers."""
 
 import ast

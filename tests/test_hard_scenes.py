@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Scenes that once were wrong, each against the 40-digit automaton run on the spot."""
 
 from typing import Any

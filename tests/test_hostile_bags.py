@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Bags made to exhaust memory or time, or to lead out of their folder: refused in one line, and cheaply."""
 
 import struct

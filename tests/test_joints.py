@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The joints of the axis: what goes out on joint_states, what is taken from joint_commands."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The events that the node keeps for the figures of a run."""
 
 from stickslip_sim.ros import kept_events

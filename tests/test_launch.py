@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The launch files: what they declare, and what the nodes do that they would start."""
 
 from pathlib import Path

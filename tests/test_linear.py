@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The closed form of a linear mode against 40-digit arithmetic, and its first roots against dense sampling."""
 
 import math

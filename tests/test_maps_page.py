@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """docs/maps.md: its commands are those that make its pictures and figures."""
 
 import shlex

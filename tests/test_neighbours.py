@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Who else is on the topics of a node, and whose clock it follows."""
 
 from typing import Any

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """A part that a scene leaves out changes nothing: the motion is that of the part at its neutral value, to the bit."""
 
 import pytest

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The node as others see it: parameters, topics, motion, commands, services.  One node for all of it."""
 
 import itertools

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The life of the node as a process: refused starts, signals, recordings that end well, badly or not at all."""
 
 import itertools

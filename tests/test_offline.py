@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Offline runs: samples at exact instants, receipts, limits."""
 
 import json

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The faults of a scene act offline as they do step by step."""
 
 import pytest

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Deadlines: absolute, exact, caught up within bounds.  The clock is a fake; nothing waits."""
 
 from fractions import Fraction

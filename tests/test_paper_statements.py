@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The paper's statements, on the paper's scenes, on bags, and on runs that break them or have nothing to say."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Pictures of runs: they can be drawn without a display, from any run."""
 
 import subprocess

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Recorded messages are those of ROS itself: bytes, type hashes, quality of service."""
 
 import json

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """States and transitions read back from runs: of any namespace, and refused when another version wrote them."""
 
 from pathlib import Path

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The recorder: it never waits, never overwrites, and what is cut off can be read."""
 
 import signal

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Runs on disk: what is written, and that other people's readers read it."""
 
 from pathlib import Path

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The reference simulator against figures, closed forms, the law itself, and its stored data."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The reference with sines, periods, an end slope and long rests: closed forms, DOP853, and the law itself."""
 
 import math

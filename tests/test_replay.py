@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """replay_node as a process: recorded runs back onto topics."""
 
 import signal

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Parts of the replay, without ROS: the bag, its time line, the player."""
 
 import threading

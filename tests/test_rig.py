@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The rig as a whole: a function of scene, seed and orders by step, and of nothing else."""
 
 import math

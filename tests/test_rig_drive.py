@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The drive within its limits: closed forms, from the first second to the hundred-thousandth."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """ros2_control's hardware interface at a node, over DDS, with the description that is shipped."""
 
 import math

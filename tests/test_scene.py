@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Scenes from files, values and overrides, and the schema behind them."""
 
 import array

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Scene files with something wrong: one line that names the file, the thing, its value, the range and the fix."""
 
 import math

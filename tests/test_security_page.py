@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The limits that docs/security.md tells are those of the code."""
 
 from pathlib import Path

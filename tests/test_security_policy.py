@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The permissions for SROS 2 are those that the node needs: no endpoint is missing, none is too many."""
 
 import xml.etree.ElementTree as ET

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Storms of service calls, floods of commands, controllers that die: clear answers, and the state stays valid."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Every shipped scene shows what its first comment says."""
 
 import itertools

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Smooth laws as tables: the stated error holds at every speed, and the motion follows the smooth law as measured."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The standard services of simulators: those of the package simulation_interfaces, where it is installed."""
 
 import json

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The step loop without ROS: order within a step, commands, pausing, stepping on request, a solver that gives up."""
 
 import math

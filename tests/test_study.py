@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Points of a study: the bits of runs of their own, samples, and what is refused."""
 
 import math

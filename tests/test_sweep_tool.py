@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """`stickslip sweep` and `stickslip map` as a user meets them: interrupted, killed, resumed, on a full disk, misused."""
 
 import json

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The modes of time: the same course in real time, in lock-step, free and offline, with stalls thrown in; /clock."""
 
 import itertools

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Two axes on one machine, as axes.launch.py starts them: what is said to one does not reach the other."""
 
 from collections.abc import Iterator

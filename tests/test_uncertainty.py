@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Uncertainty: distributions, their sample, and indices of functions and of an axis that have a closed form."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """`stickslip uncertainty` as a user meets it: what it says and writes, resumed, misused."""
 
 import json

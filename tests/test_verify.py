@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """`stickslip verify` on bags of the tool: identical, or what differs; cut, damaged, foreign; what if."""
 
 import struct

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """`stickslip verify` on bags that are cut, damaged, altered or foreign, and with --set."""
 
 import json

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Recordings of a real node, run again without ROS: whatever was ordered while it ran."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The watchdog: on the steady clock in real time, on simulation time elsewhere, and not for the loop's own faults."""
 
 import math

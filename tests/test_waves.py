@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The closed-form answer to a sine, against 40 digits, and phases at late times."""
 
 import math

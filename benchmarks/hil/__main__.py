@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Measure the bench for controllers beside a bare node, and the highest rate that it holds; write the page.
 
     python3 -m benchmarks.hil [--seconds 10] [--repeats 5] [--out docs/hil_figures.md] [--json runs/bench/hil.json]

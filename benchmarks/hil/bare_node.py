@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """A node that does what sim_node does at each step except simulate: the measure of what rclpy itself costs.
 
     python3 -m benchmarks.hil.bare_node --rate 1000 [--bag FOLDER]

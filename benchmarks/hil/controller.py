@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """A controller in a process of its own: answers states with drive velocities, and tells what came of it.
 
     python3 -m benchmarks.hil.controller --pid PID --seconds 10

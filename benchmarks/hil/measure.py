@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """One run of a node beside its controller, in figures: from the controller, from the bag, from the node itself."""
 
 import json

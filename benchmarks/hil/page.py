@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The page with the figures of the bench: docs/hil_figures.md."""
 
 from collections.abc import Callable, Mapping

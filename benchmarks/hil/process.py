@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """A node beside a controller, each in a process of its own, and what the kernel accounts to the node."""
 
 import json

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Starts several axes on one machine, each in a namespace of its own.
 
 ros2 launch stickslip_sim axes.launch.py axes:='x:positioning y:cutting_force' record:=true

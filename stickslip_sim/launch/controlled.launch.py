@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Starts an axis, a controller and a recording.
 
 ros2 launch stickslip_sim controlled.launch.py controller:=compensating_controller feed:=0.0005

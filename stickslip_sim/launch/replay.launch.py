@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Plays a recorded run back onto its topics.
 
 ros2 launch stickslip_sim replay.launch.py bag:=runs/paper_fig8_20260101T120000Z rate:=0.5 clock:=100.0

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Starts the axis and ros2_control with a controller on it.
 
 ros2 launch stickslip_sim ros2_control.launch.py scene:=positioning controller:=position_controller record:=true

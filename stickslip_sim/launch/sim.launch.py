@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Starts an axis.
 
 ros2 launch stickslip_sim sim.launch.py scene:=paper_fig7 rate:=2000 namespace:=press record:=true

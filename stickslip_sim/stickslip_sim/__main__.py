@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """`python3 -m stickslip_sim` is the tool `stickslip`."""
 
 from .cli import main

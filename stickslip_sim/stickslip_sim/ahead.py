@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Compile the hot path ahead of time, into extension modules that start in a millisecond and need no numba.
 
     python3 -m stickslip_sim.ahead FOLDER

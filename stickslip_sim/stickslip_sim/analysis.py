@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Figures of a run, from its events alone: the cycles of stick-slip, and what they amount to.
 
 A cycle reaches from one break-away to the next.  Between two events the speed has no maximum of its own, so that the

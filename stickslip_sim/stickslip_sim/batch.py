@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Thousands of axes at once: arrays of parameters in, arrays of cycle figures out.
 
     figures = run_batch(axis, 10.0, drive_velocity=np.geomspace(1e-4, 1e-2, 10_000))

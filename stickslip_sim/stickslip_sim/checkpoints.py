@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Numbers of a simulator that were saved, checked before a solver goes on with them.
 
 A solver takes some of its numbers as places in tables and does not look twice.

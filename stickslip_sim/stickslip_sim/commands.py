@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Commands on their way in: checked when they arrive, the latest good one kept until the step loop takes it."""
 
 from typing import NamedTuple

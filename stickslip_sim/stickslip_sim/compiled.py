@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """One switch between machine code and plain Python for the hot path.
 
 An installed package brings its machine code along (`ahead` compiles it while it is built), and needs no compiler.  From

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Input courses v(t) and F(t): piecewise linear, with jumps, held after the last piece or repeated, plus sines."""
 
 import math

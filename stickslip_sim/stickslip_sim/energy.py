@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The energy balance of a run: what the drive and the load put in, what friction and dampers took, what is stored."""
 
 from typing import NamedTuple

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """How far a run may be off: an estimate from repeating it, with how it was obtained.
 
 The exact solver makes rounding errors only.  It runs again with every number of the scene off by one rounding unit,

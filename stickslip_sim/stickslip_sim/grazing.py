@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """A slow sine on the drive whose force grazes the static limit: the hardest break-away to see (and not to invent).
 
 From rest, the drive swings by A/w (cos θ − cos(wt + θ)).  The force that reaches the contact of the stuck slider peaks

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Run a scene as fast as the machine can, and keep what happened: events, samples, receipt."""
 
 import math

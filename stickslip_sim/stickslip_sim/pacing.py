@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The only wall clock: which step is due when, on the steady clock.  Everywhere else time is an argument.
 
 Deadlines are absolute: step n is due at start + n / (rate · factor), computed from the integer n, so that nothing

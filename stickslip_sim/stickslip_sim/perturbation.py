@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """A scene whose every number is off by one rounding unit: what the digits of the data decide shows in the difference.
 
 Numbers that are equal move alike, since an equality is part of the model: mu_s(0) = mu_k(0), a reversal to the same

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The receipt of an offline run: what ran, with which versions, what came out, what it cost.  JSON values only."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """One axis through time: advance, sample, command.  Deterministic; knows no clock, no file and no ROS."""
 
 import math

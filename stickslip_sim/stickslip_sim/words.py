@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The vocabulary of the hybrid system: modes, events, samples.  SI units throughout."""
 
 from enum import IntEnum

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Reads made-up input for as long as asked for: `python3 -m tests.fuzz --minutes 10`.
 
 What fails is made as small as it goes, shown, kept in .hypothesis/ and tried first the next time.

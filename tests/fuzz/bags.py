@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Bags that are nearly whole: taken apart into records, changed, and put together again."""
 
 import struct

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Every reader of what comes from outside, called as the product calls it."""
 
 import warnings

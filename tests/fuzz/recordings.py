@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Small runs to begin with: one of the tool, and one with everything that a node records."""
 
 from collections.abc import Iterable

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """What is fuzzed, by name: what is made up, and who reads it."""
 
 from collections.abc import Callable, Mapping

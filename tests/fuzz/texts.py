@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Texts that are nearly scene files, limits files or overrides."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Check a run against the set-valued law itself, not against the way it was computed.
 
 At any instant, with ẍ from differences of the positions and F_d from positions and the integrated feed:

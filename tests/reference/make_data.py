@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Write the stored reference: python -m tests.reference.make_data [--only NAME ...].
 
 The file holds, for each scene, the exact parameters (doubles, by their repr), the duration, the events with 25

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Scenes for the reference: the paper's, the benchmark scenes A to D, and seeded random ones.
 
 A scene is (name, parameters, duration).  Random numbers are rounded to four digits, so that a scene is the

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The parts that a scene leaves out, and the values with which each of them, given, does nothing."""
 
 from typing import NamedTuple

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Advice on a scene: everything on, without each part, with each solver; then the least that a tolerance needs."""
 
 from collections.abc import Callable, Iterable, Iterator

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """How long to simulate: what may be asked for, and what is enough when nobody says."""
 
 from ..errors import InputError

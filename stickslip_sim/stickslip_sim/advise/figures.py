@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The figures of a run that matter, and how far two runs are apart in them.
 
 Every difference is relative, so that one tolerance fits all: cycle figures to themselves, the share of stick and the

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """What a part of a scene is: a name, and one or more ways to leave it out."""
 
 from collections.abc import Callable, Mapping

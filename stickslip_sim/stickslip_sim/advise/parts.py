@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The parts of a scene: all that it models and could do without, each with the changes that leave it out."""
 
 from collections.abc import Iterator

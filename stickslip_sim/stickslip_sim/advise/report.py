@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Advice as tables for people and as JSON values."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Runs of changed scenes beside the reference: what comes of them, and what they cost."""
 
 import time

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The solvers that a scene is tried with, each with settings from quick to careful."""
 
 from ..scene import Scene

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The least scene for a tolerance, and the solver for it: from trials, and confirmed by runs of what is advised."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Where each number stands in the flat arrays that the compiled code works on.
 
 An axis is one array of parameters, followed by five numbers for each knot of the friction tables.  A state is one

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The motion of each mode from its anchor, and the forces along it.
 
 Every mode is m y″ + (h + …) y′ + (c + …) y = polynomial of the time, y the travel since the anchor:

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """One feed axis: its parameters, checked, and as the flat array that the compiled code reads."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """What happens between two modes: break-away, arrest, the choice of the slip sub-mode, jumps of the inputs.
 
 Ties are decided by where the force moves next: a residual within rounding of zero counts as zero, and the sign of its

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Sines in the inputs: v(t) and F_e(t) get A sin(2π f t + phase) each, t being simulation time.
 
 They stand in the state behind its other numbers, one record a wave.  V and F of the state are totals at the anchor;

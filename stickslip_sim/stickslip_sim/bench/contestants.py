@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Who races: the solvers of this product, and the peers."""
 
 from .own import own_solvers

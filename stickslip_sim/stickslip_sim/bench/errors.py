@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """How wrong a run is: its events paired with those of the reference; missed, invented, late, and out of place.
 
 What counts are the events at which the slider starts or stops (break-away, stick, reverse), because every solver has

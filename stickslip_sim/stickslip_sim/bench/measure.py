@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Cost: medians of interleaved runs in this process, in seconds of processor time."""
 
 import statistics

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """What can only be measured in a process of its own: plain Python, the first start, a start with cached code."""
 
 import json

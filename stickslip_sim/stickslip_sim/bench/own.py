@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The solvers of this product as contestants: no Python between two events where they are compiled."""
 
 import math

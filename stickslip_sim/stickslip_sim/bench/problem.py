@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """One problem for every contestant: an axis, its courses and a duration; and what a contestant gives back."""
 
 from collections.abc import Callable

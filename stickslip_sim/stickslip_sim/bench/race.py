@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The race: every contestant and setting over every case, in one process; errors first, then interleaved cost."""
 
 from collections.abc import Callable, Sequence

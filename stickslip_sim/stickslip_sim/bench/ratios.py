@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The marks: how many times the cost of the exact engine, rival by rival, and how wrong it is, from one race."""
 
 from collections.abc import Iterator, Sequence

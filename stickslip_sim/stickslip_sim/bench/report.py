@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The race as JSON values, and those as tables for people (plain text, Markdown)."""
 
 import os

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Many different axes at once: how many axis-seconds a second, beside the same axes one by one through scipy."""
 
 import os

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The outcome as JUnit XML, which CI servers read: one test case for each limit."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """What can be limited: every figure with its unit and what a limit on it must say."""
 
 from collections.abc import Callable

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Limits in a file: read strictly, so that a misspelt limit is refused and never passes unseen."""
 
 import difflib

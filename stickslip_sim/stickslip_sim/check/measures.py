@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The figures that limits are set for, as control engineering and ISO 230 have them; formulas in docs/check.md.
 
 The slider is known at the samples and, exactly, at the transitions: extremes of its motion in slip are transitions

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """What was seen of an axis: its state at the samples, its transitions at their exact times."""
 
 from collections.abc import Sequence

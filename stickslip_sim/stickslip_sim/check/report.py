@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The outcome as sentences and as JSON values; SI units."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Motions to check: those of a recorded run, and those of a simulation."""
 
 import os

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """`stickslip advise`: which parts of a scene, and which solver, a tolerance asks for, measured on this machine."""
 
 import json

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """`stickslip check`: a recorded run or a fresh simulation against the limits in a file."""
 
 import json

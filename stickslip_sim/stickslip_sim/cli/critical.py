@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """`stickslip critical`: the value of a parameter at which stick-slip begins or ends."""
 
 import math

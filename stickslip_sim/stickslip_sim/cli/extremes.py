@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """`stickslip extremes`: judge the engine by what breaks other simulators, and print the figures beside their marks."""
 
 import sys

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Where results go: checked before the work begins, and written whole or not at all."""
 
 import os

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The command `stickslip`: its verbs, and what becomes of errors.
 
 Exit codes: 0 done; 1 internal error; 2 wrong use, scene, parameter or file; 3 the verdict is "failed" or "differs";

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """`stickslip map`: a sweep as a picture - a map of two parameters, or a bifurcation diagram of one."""
 
 from contextlib import ExitStack

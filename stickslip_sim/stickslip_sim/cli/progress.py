@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """A progress bar on a terminal, for work that takes long."""
 
 import sys

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """`stickslip simulate`: run a scene as fast as possible and write what is asked for."""
 
 import json

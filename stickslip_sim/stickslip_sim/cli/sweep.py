@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """`stickslip sweep`: a scene at many values of its parameters, and the cycle figures of each point."""
 
 from typing import TYPE_CHECKING

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """What `sweep` and `uncertainty` have in common: where the table of a study goes, and who works on it."""
 
 import os

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Events and samples as CSV: a line of names, then numbers with 17 digits, which give the same floats back."""
 
 from collections.abc import Iterable, Iterator

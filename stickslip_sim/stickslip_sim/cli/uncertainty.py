@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """`stickslip uncertainty`: how sure the motion of a scene is whose numbers are known only roughly."""
 
 import json

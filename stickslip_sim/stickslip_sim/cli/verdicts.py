@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The outcome of a check as a table for people."""
 
 from collections.abc import Iterator, Sequence

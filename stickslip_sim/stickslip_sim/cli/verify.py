@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """`stickslip verify`: run a recorded run again, and compare; or ask what would have been."""
 
 import json

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Controllers of the drive: cascade, compensation of friction, and the moves that they follow.  Pure; knows no ROS."""
 
 from .cascade import Cascade

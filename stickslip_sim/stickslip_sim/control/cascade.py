@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The usual cascade: P for the position, PI for the velocity, the setpoint's velocity fed forward.
 
     w = v_set + K_v (x_set − x)                       position loop

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """A whole controller: cascade, with compensation or without, and the limit of its drive."""
 
 from dataclasses import dataclass

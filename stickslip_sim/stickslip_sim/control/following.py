@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """A controller that follows its moves over time, from one measurement to the next."""
 
 from dataclasses import dataclass

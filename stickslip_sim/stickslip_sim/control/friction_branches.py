@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Compensation of friction that has one branch for acceleration and another for deceleration.
 
 A slide at speed v takes N mu_k(v) while it slows down, and up to the force that it broke away with while it speeds up

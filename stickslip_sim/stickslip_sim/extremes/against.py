@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Events against the independent reference, event by event."""
 
 from collections.abc import Sequence

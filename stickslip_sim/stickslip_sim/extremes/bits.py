@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """X19 and X20: mirrored, in other units, and twice: the same bits."""
 
 import hashlib

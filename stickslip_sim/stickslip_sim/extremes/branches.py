@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """X4 and X5: branches apart below the limit velocity, and a break-away while the contact still rings."""
 
 import random

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """X2 and X18: a break-away is where it is, under a blow and exactly at the limit."""
 
 import random

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """X17: commands that no axis can follow, and those that come late, twice or in a burst."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """X15: the order of the fixed-step solvers, inside a mode and across events, against what they declare."""
 
 import math

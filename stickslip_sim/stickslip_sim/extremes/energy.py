@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """X16: the energy of a run, integrated over samples between events; the engine's closed forms take no part in it.
 
     ∫ F_d v dt + ∫ F_e ẋ dt = ∫ F ẋ dt + ∫ h (v − ẋ)² dt + Δ(m ẋ²/2 + c (s − x)²/2)

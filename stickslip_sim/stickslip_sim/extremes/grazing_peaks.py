@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """X1: a slow sine on the drive whose force peak just passes the static limit, or just does not."""
 
 import random

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """X6 and X9: linear modes that grow, and those on the edge between two kinds of motion, at any step."""
 
 import math

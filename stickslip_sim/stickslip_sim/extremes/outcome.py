@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """What the suite is made of: an extreme, the setup it is judged in, the tally of its cases, and its outcome."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """X7 and X10: rest that lasts, without creep, and the static coefficient over any rest time."""
 
 import random

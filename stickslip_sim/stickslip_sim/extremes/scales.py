@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """X11: from a nanometre a second to a metre, a clock at 1e9 s, a slider 1000 km from the origin."""
 
 import random

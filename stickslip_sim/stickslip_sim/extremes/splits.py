@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """X13 and X14: the same interval in one call or a million, and ten thousand events inside one tick."""
 
 import random

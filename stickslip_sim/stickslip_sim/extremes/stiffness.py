@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """X8: stiff and undamped contacts, light and heavy sliders: the same accuracy, the same cost per event."""
 
 import statistics

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The table of the extremes as text for people, as Markdown and as JSON."""
 
 import json

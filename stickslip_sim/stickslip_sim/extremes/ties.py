@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """X3 and X12: guards that stand at their limit already, and events that meet each other or a tick."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Friction characteristics: how the static coefficient grows at rest and the kinetic one falls with speed."""
 
 from .kinetic import ExcessTable, KineticTable

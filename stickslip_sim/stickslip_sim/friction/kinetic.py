@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Kinetic friction over speed, and the excess of its accelerating branch, as piecewise-linear tables.
 
 Both start at speed 0.  The kinetic coefficient continues beyond its last knot with `end_slope`; the excess shape psi

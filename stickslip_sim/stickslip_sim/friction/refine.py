@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """A smooth falling shape as a piecewise-linear table: few knots, an error that is proven, and no bias to speak of.
 
 The table p stays within `tolerance` of the shape g for every z >= 0; p(0) = g(0) = 1, and p ends at 0, the limit of g.

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Smooth shapes g(z) that fall from 1 at z = 0 to 0: the falling part of a kinetic law, or the excess psi.
 
 | shape     | g(z)                    | support  | inflection           |

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Smooth characteristics over the speed w: kinetic friction mu_k(w), and psi(w), the excess of its accelerating branch.
 
 | law         | mu_k(w)                                          | source                                              |

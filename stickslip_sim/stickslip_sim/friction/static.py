@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Static friction that rises with the rest time t⁻.
 
 | law         | mu_s(t)                                       | source                          |

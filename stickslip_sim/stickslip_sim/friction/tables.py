@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Smooth laws become the tables that the engine works on, with an error that is stated and proven."""
 
 import math

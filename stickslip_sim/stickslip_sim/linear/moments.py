@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Time integrals of one decaying or growing wave, e^(−γt) (a cos νt + b sin νt), in closed form.
 
 The wave is the real part of Z e^(λt) with Z = a − i b and λ = −γ + i ν.  The forms divide by λ, so they are for spans

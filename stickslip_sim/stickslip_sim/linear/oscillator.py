@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Closed-form motion of y″ + 2γ y′ + ω² y = q(t), q a polynomial of degree two.
 
 Everything is built on the impulse response g (g(0) = 0, g′(0) = 1) and its repeated integrals G₁, G₂, G₃, which start

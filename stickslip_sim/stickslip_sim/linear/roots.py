@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """First roots that cannot be missed.
 
 Three arguments cover every guard of a linear mode; none of them scans:

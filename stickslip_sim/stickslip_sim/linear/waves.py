@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The answer of y″ + 2γ y′ + ω² y to sines, in closed form.  Knows no friction and no axis.
 
 For a forcing Im[B e^{iwt}] of the velocity u = y′ from rest on, u = Im[B I], y = Im[B K] and u′ = Im[B I′] with

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The friction characteristics of an axis as curves, and where a run broke away (Fig. 6)."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Statement: the contact changes the course of the motion not essentially."""
 
 from dataclasses import replace

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Statement: with the contact, the friction force is continuous from stick to slip and back."""
 
 import math

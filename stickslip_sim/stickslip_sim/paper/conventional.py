@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """An axis with the conventional characteristics (Fig. 3), beside its own (Fig. 4 of the paper)."""
 
 from contextlib import suppress

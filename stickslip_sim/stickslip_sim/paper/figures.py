@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The cycle figures of a run, its ring-down, and how it converges: what `report.json` holds."""
 
 from collections.abc import Sequence

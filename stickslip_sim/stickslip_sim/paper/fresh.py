@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """A scene, simulated and sampled so densely that no sample rate shows: at every event, and finely in between."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The time history of a run, whether it was simulated just now or recorded: samples, exact events, and the scene."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Statement: from several starts the motion converges to one stable limit cycle."""
 
 import math

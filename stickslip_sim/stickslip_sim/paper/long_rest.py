@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Statement: a long rest raises the first break-away to mu_s(inf) N."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Statement: after a slip the slider oscillates a little, and soon no more, with the contact only."""
 
 from typing import NamedTuple

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The report as one HTML page that needs no network: tables and pictures inside."""
 
 import base64

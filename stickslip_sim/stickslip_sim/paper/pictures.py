@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The pictures of a comparison: what is drawn of each run, and of all side by side."""
 
 from collections.abc import Callable, Sequence

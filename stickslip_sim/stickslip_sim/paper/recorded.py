@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """A recorded run as a time history: states at its steps, events at their exact times, the scene that travels in it."""
 
 import warnings

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """A comparison as a folder: pictures, `report.json` with all figures, `report.html` with everything."""
 
 import json

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Runs of the same axis from other starts or with another contact, by the exact solver, for statements that compare."""
 
 from collections.abc import Sequence

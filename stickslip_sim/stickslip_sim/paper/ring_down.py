@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The ring-down of a compliant contact after each slip: identified from the motion, and in closed form.
 
 In stick m ẍ = c (s − x) + h (v − ẋ) − c_c δ − h_c ẋ + F_e; the difference to the standstill, under constant inputs,

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """What the paper says, as something to be judged on a run."""
 
 from collections.abc import Callable

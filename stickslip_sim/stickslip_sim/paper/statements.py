@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The statements of the paper: the one list that reports and tests go by."""
 
 from .contact_effect import CONTACT_EFFECT

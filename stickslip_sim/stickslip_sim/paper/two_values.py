@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Statement: within a slip, friction over velocity has two values."""
 
 from typing import NamedTuple

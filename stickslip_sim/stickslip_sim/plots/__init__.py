@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Pictures.  The only room that imports matplotlib."""
 
 from .beside import plot_beside

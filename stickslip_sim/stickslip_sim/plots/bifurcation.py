@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """A bifurcation diagram: the last cycles and steady sliding over a parameter, for a journal's double column."""
 
 from pathlib import Path

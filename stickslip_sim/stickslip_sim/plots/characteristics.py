@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The friction characteristics as in Fig. 6 of the paper: kinetic over velocity, static over rest time."""
 
 from collections.abc import Mapping

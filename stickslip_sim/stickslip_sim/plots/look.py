@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """How all pictures look: colours, lines, files.  Without matplotlib's global state, so that no display is needed."""
 
 from pathlib import Path

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The motion as in Fig. 7 and 8 of the paper: six panels, in its units, for a journal's double column."""
 
 from collections.abc import Iterator, Mapping

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """A run over time: position, velocity, forces and mode."""
 
 from collections.abc import Mapping, Sequence

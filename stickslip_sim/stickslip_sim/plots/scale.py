@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """An axis of a picture for any parameter: in the unit that people use, named as in a scene file."""
 
 from typing import NamedTuple

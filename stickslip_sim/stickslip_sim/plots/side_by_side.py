@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Runs below each other as in Fig. 4 of the paper: forces and velocity over time, friction over velocity."""
 
 from collections.abc import Mapping, Sequence

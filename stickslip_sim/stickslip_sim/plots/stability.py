@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """A map of the motion over two parameters, with what the theory says, and the phase planes of points picked from it."""
 
 from collections.abc import Iterator, Sequence

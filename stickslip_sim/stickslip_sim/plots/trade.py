@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Cost over error of the solvers, as pictures."""
 
 from collections.abc import Mapping, Sequence

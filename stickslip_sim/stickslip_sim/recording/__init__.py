@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Runs on disk as ROS bags: written by the node and by the offline tool, read back whole or cut off."""
 
 from .bag import BagWriter

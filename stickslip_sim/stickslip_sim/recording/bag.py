@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """A run folder that ROS tools read as a bag: metadata.yaml and one MCAP file."""
 
 import os

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Plain data as YAML text in block style, the way rosbag2 writes its metadata."""
 
 import json

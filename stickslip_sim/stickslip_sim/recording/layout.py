@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Messages that always have their numbers at the same places: packed and unpacked without looking at each field."""
 
 import struct

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The messages of a run, made from the words of the simulation; stamps in ns."""
 
 from operator import attrgetter

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """What `metadata.yaml` of a bag says: rosbag2, version 9."""
 
 import os

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Writes the bag of an offline run: topics, fields and conventions of the node's, stamps are simulation time."""
 
 from collections.abc import Iterable, Iterator, Mapping

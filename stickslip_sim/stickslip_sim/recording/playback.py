@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Recordings to be played: any MCAP bag of ROS 2, from any time on, without reading all that comes before."""
 
 from collections.abc import Collection, Iterator

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Reads runs back, also those of a process that was killed or of a disk that was full."""
 
 import json

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The records of an MCAP file as far as they are whole; what it says of its own sizes is not believed."""
 
 import os

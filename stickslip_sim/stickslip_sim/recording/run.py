@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """What every run folder holds beside its messages: the scene, the versions, the receipt."""
 
 import json

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Message definitions as bags carry them, their type hashes, and CDR encoding; no ROS needed beyond its .msg files.
 
 The files are those of the sourced workspace (AMENT_PREFIX_PATH), so a bag describes exactly what was built.

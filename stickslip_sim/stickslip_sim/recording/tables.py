@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """States and transitions of a recorded run, whatever the namespace of its node."""
 
 import math

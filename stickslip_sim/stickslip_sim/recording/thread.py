@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """A thread that writes a bag, so that whoever produces messages never waits for a disk."""
 
 from collections import deque

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Every topic of the node, once: name, type and quality of service.  ROS endpoints and bags are built from this."""
 
 from typing import NamedTuple

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """An independent judge: the same model in multiple precision, by other means than the engine.
 
 It shares no equation and no line of numerics with the engine: power series of the motion and roots isolated by

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The hybrid automaton of one axis with friction, event to event, in multiple precision."""
 
 from __future__ import annotations

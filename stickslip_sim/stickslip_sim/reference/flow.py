@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Motion of a linear mode as a power series of the time τ since a state.
 
     y'' = q(τ) - γ y' - ω² y,    q a power series (inputs), y the travel since the state, u = y'

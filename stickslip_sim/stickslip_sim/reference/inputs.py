@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """An input course in multiple precision: its pieces one after the other, periods included, with its waves on top."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Forces of the axis, and the sub-mode that they call for.
 
 F_d = c w + h (v - u)                 drive force

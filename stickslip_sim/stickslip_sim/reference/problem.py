@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """One axis, its start and its inputs in multiple precision.
 
 Every number is taken as the binary double it is: mpf(float).

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """First root of a power series on an interval, proved by Bernstein coefficients.
 
 A guard is a function g(τ) = Σ c_k τ^k on [0, h], positive while the mode lasts.  Written in the

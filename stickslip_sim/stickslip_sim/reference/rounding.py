@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """From multiple precision to the floats of the product."""
 
 from __future__ import annotations

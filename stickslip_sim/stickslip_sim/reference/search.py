@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """First event of a mode within a step: which guard falls below zero, and when."""
 
 from __future__ import annotations

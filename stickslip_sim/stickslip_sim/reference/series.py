@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Power series in τ as lists of coefficients."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Static coefficient mu_s(t^-) = mu_0 + (mu_inf - mu_0) q(t), with its power series about any age.
 
 constant     q = 0

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Recorded messages beside what was made again: every field, to the last bit."""
 
 import struct

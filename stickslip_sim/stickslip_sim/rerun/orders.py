@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """What was ordered in a recorded run, done again to a rig."""
 
 from collections.abc import Collection

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """A recorded run that is to be run again: what it began from, and what is doubtful about it."""
 
 import hashlib

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Steps made again: as a node made them, or as an offline run did."""
 
 from collections import deque

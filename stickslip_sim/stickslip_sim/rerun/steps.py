@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The messages of a recording, step by step."""
 
 from collections.abc import Iterable, Iterator

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Whether a recorded run comes out the same when it is run again."""
 
 from collections import deque

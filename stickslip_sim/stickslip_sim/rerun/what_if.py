@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """A recorded run beside what would have been with other parameters, under the same orders."""
 
 from collections.abc import Mapping

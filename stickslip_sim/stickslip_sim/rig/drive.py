@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The drive: how it follows what it is told, within its limits.
 
 Its course is made of constants and ramps, so that the motion of the axis stays exact.

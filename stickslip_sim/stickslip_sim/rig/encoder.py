@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Position encoders of slider and drive, and the velocity that a drive computes from them.
 
 measured(n) = resolution · round((position(n − delay) + offset + noise) / resolution)

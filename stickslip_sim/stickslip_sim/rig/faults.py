@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Faults: what may go wrong, how it is checked, and when it begins and ends."""
 
 import math

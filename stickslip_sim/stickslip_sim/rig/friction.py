@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Friction of an axis scaled as a whole, as when lubrication changes."""
 
 from dataclasses import replace

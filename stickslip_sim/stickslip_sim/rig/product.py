@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """What a step brings forth, and what a run counts."""
 
 from dataclasses import dataclass

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Random numbers of a run: one stream for each purpose, so that none disturbs another."""
 
 from collections.abc import Sequence

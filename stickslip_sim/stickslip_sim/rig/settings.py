@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """What a scene says of the rig."""
 
 from dataclasses import dataclass, field

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The wire on which drive velocities come: it may lose them or keep them for a while when a fault says so."""
 
 from collections import deque

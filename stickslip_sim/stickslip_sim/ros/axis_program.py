@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The executable `sim_node` as a program: its arguments, and its node."""
 
 from collections.abc import Iterator, Sequence

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """/clock: simulation time as the time of the ROS graph, where no real clock moves it."""
 
 from rclpy.node import Node

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The node of an example controller: measurements in on `joint_states`, drive velocities out on `joint_commands`.
 
 It acts on each measurement, and the stamp of that is its time.  So it goes with the bench in real time, in lock-step

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The parameters of the example controllers: their list, and what they make."""
 
 from collections.abc import Mapping

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """ROS messages that are sent now and then, to and from plain fields; those of every step are packed by the outlet."""
 
 from collections.abc import Mapping

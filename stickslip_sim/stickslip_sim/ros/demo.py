@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The demonstration, `make run`: drives the installed node from a process of its own, and shows what was recorded."""
 
 import argparse

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """What the demonstration tells about its recorded run: read back from the bag, with nothing else to go by."""
 
 from pathlib import Path

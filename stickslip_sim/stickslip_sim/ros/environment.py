@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """What the environment says to ROS, checked before ROS is: its libraries end the process on what they dislike."""
 
 import os

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The services that let things go wrong: ~/inject_fault, ~/clear_faults."""
 
 from collections.abc import Callable

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The executable `health`: whether an axis is well, for what watches over containers and services."""
 
 import sys

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The node `health`: hears /diagnostics until the axis of its namespace has said how it is."""
 
 import time

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Where commands come in: what arrives goes into the slots of the step loop, and what is refused is told."""
 
 from collections.abc import Callable

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The axis as joints, for ros2_control's topic-based hardware interface: its states out, its commands in.
 
 What that interface sends, and when it keeps silent, is in docs/ros2_control.md with the sources.

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The latest events of a run, for its figures, in memory that does not grow."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """A node whose parameters are those of a list, checked as those of a scene are."""
 
 import difflib

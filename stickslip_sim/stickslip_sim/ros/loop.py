@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The step loop: a thread that brings the rig from step to step, as its clock says.  Knows no ROS.
 
 Step n reaches from (n − 1)/rate to n/rate (step 0 is the start).  In real time it is made when its end is due on the

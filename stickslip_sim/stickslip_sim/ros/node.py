@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The node `feed_axis`: wires topics, services and parameters to the step loop.  No physics in here."""
 
 import gc

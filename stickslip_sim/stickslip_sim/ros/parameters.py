@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The scene as ROS parameters: declared from the one schema, and checked together whenever any of them changes."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Recordings of the node, begun and ended by the scene, by ~/record, or by a failure."""
 
 from collections.abc import Callable

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Recordings of the node: begun, watched and ended while the axis runs."""
 
 import os

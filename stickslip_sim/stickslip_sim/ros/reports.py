@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """What the node tells about itself once a second: StepTiming and the statuses of /diagnostics."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """What happens to the rig, told on `rig_event` and in the bag."""
 
 from rclpy.node import Node

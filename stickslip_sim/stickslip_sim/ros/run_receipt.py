@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The receipt that ends a bag of the node: the figures of the run, its timing and its commands."""
 
 from dataclasses import asdict

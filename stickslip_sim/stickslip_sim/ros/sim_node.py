@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The executable `sim_node`: takes the signals before anything else, also before the imports that take long."""
 
 import os

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The services that move time: ~/reset, ~/set_paused, ~/step."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """ROS endpoints made from the one list of topics in `recording.topics`."""
 
 from collections.abc import Callable

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """One line on whether a run can be trusted in real time, and what befell its commands."""
 
 from typing import NamedTuple

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """From effective values to a scene: each section becomes the object that the lower rooms know, which checks it."""
 
 import hashlib

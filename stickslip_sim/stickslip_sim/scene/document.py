@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The reference of all scene parameters as Markdown: `python3 -m stickslip_sim.scene.document > docs/scene.md`."""
 
 import sys

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """A scene: everything that decides a run, checked and ready for the simulator."""
 
 from dataclasses import dataclass, field

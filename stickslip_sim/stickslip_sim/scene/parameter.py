@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """One parameter of a scene: what it is called, what it may be, and the check of a value against that."""
 
 import math

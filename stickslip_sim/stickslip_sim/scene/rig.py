@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """What a scene says of the rig around the axis and of time, checked together."""
 
 import math

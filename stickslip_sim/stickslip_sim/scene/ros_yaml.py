@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """YAML as ROS 2 reads it, and nothing more: the only place that imports a YAML library.
 
 ROS has its own typing of plain words (6e5 is a number, 1:30 and null are texts), knows no aliases and no tags, and this

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Every parameter of a scene: the one list behind the check of files, the declaration in ROS, and the reference.
 
 Defaults are for what is left out.  The axis is the paper's; whatever else is left out is not modelled: no friction, a

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """How the motion is computed, and the solver that these settings make."""
 
 from collections.abc import Mapping

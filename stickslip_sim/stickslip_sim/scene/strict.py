@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Sections of the files beside a scene, read strictly: a key that nobody knows is an error."""
 
 import difflib

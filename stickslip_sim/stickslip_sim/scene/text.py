@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """A scene as text: one canonical ROS 2 parameter file for one set of effective values."""
 
 import json

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """From the values given to the effective ones: names known, types and ranges right, defaults in place."""
 
 import difflib

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Solvers: each brings a state to a time and writes the events on the way; all behind the same functions."""
 
 from collections.abc import Callable

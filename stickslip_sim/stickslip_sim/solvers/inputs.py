@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The inputs of solvers that step: v(t) and F_e(t) at any time, from what `set_inputs` gave them.
 
 Waves stand after the state, four numbers each.

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """How a state begins, and how it takes another contact, for solvers that step."""
 
 from ..axis.layout import (

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Design studies: many variants of one scene, the cycle figures of each, and where the motion changes.
 
     study = Study(load_scene('paper_fig7').values, Grid((variation('drive.velocity=1e-4:1e-1:100:log'),)))

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Where the cycles of a scene go as one of its parameters changes: a bifurcation diagram, in numbers."""
 
 from collections.abc import Callable

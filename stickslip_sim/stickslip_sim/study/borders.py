@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Lines that the theory draws into a map of feed against another parameter."""
 
 from typing import NamedTuple

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The workers of a Dask scheduler, on as many machines as it has; the only door to `distributed` (the extra `cluster`).
 
 A worker that dies is the scheduler's to notice: it gives its chunks to another one.

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Who works on the chunks of a study beside this process: other processes of this machine."""
 
 import os

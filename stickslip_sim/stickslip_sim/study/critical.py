@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Critical values: where an axis that starts from rest begins to stick and slip, and where steady sliding is lost.
 
 From rest: the scene as it is, run by the exact engine until its motion settles; is that stick-slip?  From sliding:

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """A study as JSON values, and back: what stands beside its table."""
 
 from collections.abc import Mapping

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """What is known of a number of a scene that is not known exactly: a distribution, cut where the user cuts it."""
 
 from collections.abc import Callable

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """What becomes of each point of a study, in numbers: the motion it ends in and the last cycle of that.
 
 | figure | unit | meaning |

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """A sweep on disk: `study.json` says what it is, and its table grows by whole chunks of lines.
 
 Until all points are there the table is `points.partial.csv`; then it becomes `points.csv`.

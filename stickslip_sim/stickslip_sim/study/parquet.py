@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The table of a sweep as Parquet, where pandas and a writer are installed (the extra `tables`)."""
 
 from importlib.util import find_spec

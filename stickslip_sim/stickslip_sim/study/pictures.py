@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The pictures of a study: a map of two parameters, or a bifurcation diagram of one."""
 
 from collections.abc import Callable, Mapping, Sequence

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The runs behind the points of a study: thousands at once where the compiled batch can, else one after the other."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The points of a study: a grid over all variations, a Sobol sample between their ends, or one of distributions."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Runs of as many axes as asked for, each long enough that its motion is the one that stays.
 
 An axis runs for at least eight times a natural period and the time in which its drive loads the spring to the static

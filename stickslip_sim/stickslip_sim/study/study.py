@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """A study: variants of one scene, and what becomes of each."""
 
 import itertools

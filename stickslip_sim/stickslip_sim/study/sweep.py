@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """All points of a study, chunk by chunk and in their order, by one process, several, or a cluster."""
 
 import signal

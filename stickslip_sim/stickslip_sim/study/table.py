@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The points of a study as lines of CSV, and those lines back as columns."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Where the verdict on a number changes: a scan, then nested sections of each stretch in which it does."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """What is not known exactly, in a file: read strictly, so that nothing misspelt passes unseen.
 
 seed: 0

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """What becomes of an axis that is known only roughly: percentiles of its figures, and which number decides them.
 
 Percentiles are over the independent points A and B of a sample, 2 N of them.  Sobol' indices are those of scipy

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """One parameter of a scene that a study varies: its name, from where to where, and how."""
 
 import difflib

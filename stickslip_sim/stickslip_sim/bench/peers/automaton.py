@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The axis between two resets, for any integrator: right-hand side and guards, written once for all peers.
 
 Between two resets the motion is an initial value problem of (x, ẋ) in the time τ since the last reset, smooth also a

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The strong generic rival: Dormand and Prince's order 8(5,3) with dense output and event location, all of it compiled.
 
 Events: change of sign over an accepted step, then a bracketed root on the interpolant.  Each

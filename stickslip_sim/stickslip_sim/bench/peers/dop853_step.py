@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """One step of Dormand and Prince's order 8(5,3) for the two states of the axis, its error and its dense output.
 
 Source: Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, sections II.5 and II.10; the coefficients

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Semi-implicit Euler on a fixed grid, all of it compiled: what most hand-written simulators are."""
 
 from collections.abc import Callable

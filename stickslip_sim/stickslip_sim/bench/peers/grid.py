@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """What simulators on a fixed grid of time share: inputs and events are looked at once a step, compiled.
 
 An event that falls within a step is acted on at its end, as in every simulator without event location.

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """MuJoCo: a slider on a joint, with spring, damper and friction as a force that is set in each step.
 
 Its own friction cannot be used: it has no static limit that grows with rest time, and creeps in stick.

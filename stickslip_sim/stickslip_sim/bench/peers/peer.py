@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """What a contestant is: a name, settings, and a run that can be timed."""
 
 from collections.abc import Callable

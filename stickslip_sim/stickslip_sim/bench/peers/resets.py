@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """What happens between two smooth pieces of the motion: start, event, jump of an input; written once for all peers."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """scipy's solve_ivp with events: what most people reach for.  Right-hand side and guards are compiled."""
 
 from collections.abc import Callable

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The automaton around an integrator that is called from Python, segment by segment."""
 
 from collections.abc import Callable

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """SUNDIALS CVODE as a Python user has it: scikit-sundae, its callbacks, right-hand side and root functions compiled."""
 
 import importlib.metadata

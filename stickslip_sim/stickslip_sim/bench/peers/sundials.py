@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """SUNDIALS CVODE with root finding, called as from C: no Python between two events.
 
 The C libraries are those that scikit-sundae brings along; right-hand side and root functions are compiled to C

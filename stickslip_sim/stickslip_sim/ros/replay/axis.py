@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The live axis that takes recorded orders: its services, called from the thread of the player."""
 
 import threading

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Recorded orders into a live axis: by time or by step, as the clock of the axis wants it."""
 
 from collections.abc import Iterator

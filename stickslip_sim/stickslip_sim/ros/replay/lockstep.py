@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Recorded orders into an axis in lock-step: each before the step that it was recorded with.
 
 So the axis does what it did then, to the last bit, as long as its scene is the recorded one.

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The node `replay`: wires a recording, its script and the services of a player together."""
 
 import threading

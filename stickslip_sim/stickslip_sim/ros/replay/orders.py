@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """What a recording says of the orders that its axis got: commands, faults, parameters."""
 
 from collections.abc import Mapping, Sequence

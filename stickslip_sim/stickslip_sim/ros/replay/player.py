@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Plays a script: lets things happen when their time in the recording has come.  Knows no ROS."""
 
 import threading

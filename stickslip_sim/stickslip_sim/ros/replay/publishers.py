@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Publishers of recorded topics: types as installed, quality of service as recorded, bytes as they are."""
 
 from importlib import import_module

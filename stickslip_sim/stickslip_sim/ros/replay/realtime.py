@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Recorded orders into an axis in real time: each when its time has come, as a controller would give it."""
 
 from collections.abc import Iterator, Mapping

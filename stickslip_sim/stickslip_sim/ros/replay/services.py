@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The services of the replay, with the names that rosbag2's player has for them."""
 
 from typing import Any

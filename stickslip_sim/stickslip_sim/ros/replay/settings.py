@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The parameters of the replay, in the words of `ros2 bag play`, and what they make."""
 
 from collections.abc import Mapping

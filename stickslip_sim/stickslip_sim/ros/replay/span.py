@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """What of a recording is played: its topics, and from when to when."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Everything recorded, back onto its topics: for viewers."""
 
 from collections.abc import Iterator, Sequence

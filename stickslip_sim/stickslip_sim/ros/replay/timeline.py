@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The time of a recording on the steady clock: at any rate, stopped and continued."""
 
 import math

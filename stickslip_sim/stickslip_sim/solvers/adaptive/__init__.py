@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Adaptive steps: scipy's `solve_ivp` with its events, mode by mode; for smooth laws too.
 
 | method | order | for                                                                 |

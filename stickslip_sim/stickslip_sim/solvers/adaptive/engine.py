@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """From event to event with `scipy.integrate.solve_ivp`; the transitions are those of every solver."""
 
 import math

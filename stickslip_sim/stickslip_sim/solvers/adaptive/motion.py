@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The motion of one mode as an initial value problem, with its guards, written as in docs/model.md.
 
 Everything counts from the state: t its time, y the slider's travel since.  The unknowns are (y, ẏ); the drive's travel

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The exact solver: from event to event in closed form."""
 
 from ...compiled import entry

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Keep the account of energy in the state: add up works and exchanges so that a run of any length loses nothing.
 
 Each sum carries what rounding has lost of it (Neumaier, ZAMM 54, 1974).

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """When the contact force of a compliant stick reaches N mu_s(t⁻).
 
 F_c = P(t) + H(t): P is linear (quadratic under a ramp of the drive), H a decaying free motion with |H| <= A exp(−d t).

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Many axes, one after the other: each runs under constant inputs, and only the figures of its cycles are kept.
 
 The figures are those of `analysis.Cycle` and `analysis.Summary`, from the same events.

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Advance a state to a time, event by event; read it in between; change its inputs.
 
 The anchor moves only at events and at jumps of an input.  Times between are read off the closed form, so that the

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The first event of the present mode: which guard is reached first, and when.
 
 No guard is scanned; `linear.roots` gives the arguments why none of its roots can be missed.

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """What the guards watch under sines: the force on a still slider, the contact force, or the acceleration of a slip.
 
 Each is a polynomial, a free motion and the answer to the waves: a *signal* f with f(t), f′(t), and a bound on |f″| over

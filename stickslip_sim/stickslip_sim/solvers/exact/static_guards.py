@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """When a known force reaches N mu_s(t⁻): the guards that hold the static law.
 
 N mu_s is concave for most laws.  A concave guard that is not negative at both ends of an interval has no root inside;

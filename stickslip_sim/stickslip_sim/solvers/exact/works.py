@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The work of each force along the motion from the anchor.
 
 Two ways, both integrals of the motion and neither of them the balance itself:

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """Fixed steps: the loop that most engineers would write, told honestly.
 
 | method | a step                                           | order in a mode | across transitions | evaluations |

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """The loop: from grid point to grid point; transitions are looked for at their ends only.
 
 The grid is k · step from time 0, counted in whole ticks, so that it does not drift.  A jump of an input or a parameter

@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """How long a step may be: a longer one lets a motion grow that the axis itself damps.
 
 A mode is y″ + 2γ y′ + ω² y.  Semi-implicit Euler is stable while h²ω² + 4γh < 4 (Jury's criterion for its step matrix,

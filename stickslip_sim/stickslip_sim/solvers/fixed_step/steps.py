@@ -1,3 +1,5 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
 """One step of each method, with stick or slip and its direction frozen within the step.
 
 The branches of friction are the set-valued law of docs/model.md, evaluated wherever the force is: along the slip,
