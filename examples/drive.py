@@ -4,11 +4,13 @@
 
 import argparse
 import time
+from contextlib import suppress
 
 import rclpy
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.utilities import remove_ros_args
 
 from stickslip_msgs.msg import DriveVelocity, ExternalForce, RigEvent
 
@@ -20,7 +22,7 @@ def parse() -> dict[str, DriveVelocity | ExternalForce]:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('velocity', type=float, nargs='?', help='of the drive, m/s; it is held until the next one')
     parser.add_argument('--force', type=float, help='on the slider, N; it is held until the next one')
-    options = parser.parse_args()
+    options = parser.parse_args(remove_ros_args()[1:])
     messages = {}
     if options.velocity is not None:
         messages['drive_velocity'] = DriveVelocity(velocity=options.velocity)
@@ -52,9 +54,5 @@ def send(node: Node, messages: dict[str, DriveVelocity | ExternalForce]) -> None
 
 messages = parse()
 rclpy.init()
-try:
+with suppress(KeyboardInterrupt, ExternalShutdownException):
     send(rclpy.create_node('driver'), messages)
-except (KeyboardInterrupt, ExternalShutdownException):
-    pass
-finally:
-    rclpy.try_shutdown()

@@ -1,7 +1,8 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""What README has a newcomer do first: `make run`, and examples/drive.py from a second terminal."""
+"""What README and docs/hil.md have a newcomer do first: `make run`, and the examples beside an axis."""
 
+import signal
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -10,11 +11,14 @@ from pathlib import Path
 import pytest
 
 from stickslip_sim.recording import read_run
-from tests.ros_nodes import Client, client, running
+from tests.ros_nodes import Client, client, restore_interrupt, running, wait_for
 
 pytestmark = pytest.mark.ros
 
-DRIVE = Path(__file__).parents[1] / 'examples' / 'drive.py'
+ROOT = Path(__file__).parents[1]
+DRIVE = ROOT / 'examples' / 'drive.py'
+CONTROLLER = ROOT / 'examples' / 'controller.py'
+LOCKSTEP = ROOT / 'examples' / 'lockstep.py'
 
 
 def python(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
@@ -54,3 +58,34 @@ def test_nothing_to_send_is_wrong_use() -> None:
     done = python(DRIVE)
     assert done.returncode == 2
     assert 'give a velocity in m/s' in done.stderr
+
+
+def test_the_controller_is_the_one_of_the_page() -> None:
+    _, _, code = CONTROLLER.read_text(encoding='utf-8').partition('DriveVelocity, SliderState\n\n\n')
+    shown = [line.strip() for line in (ROOT / 'docs/hil.md').read_text(encoding='utf-8').splitlines()]
+    assert code
+    assert [line.strip() for line in code.splitlines() if line.strip() and line.strip() not in shown] == []
+
+
+def test_the_controller_drives_the_axis_and_ends_quietly(axis: Client) -> None:
+    assert axis.trigger('reset').success    # to 0 mm
+    controller = subprocess.Popen([sys.executable, CONTROLLER], stderr=subprocess.PIPE, text=True,
+                                  preexec_fn=restore_interrupt)
+    try:
+        wait_for(lambda: axis.latest('slider_state').drive_velocity == 0.010, 'the command of the controller')
+        controller.send_signal(signal.SIGINT)
+        _, errors = controller.communicate(timeout=20)
+    finally:
+        controller.kill()
+    assert (controller.returncode, errors) == (0, '')
+
+
+def test_lock_step_gives_the_same_run_each_time(tmp_path: Path) -> None:
+    ends = []
+    for _ in range(2):
+        with running('-p', 'scene:=positioning', '-p', 'time.mode:=lockstep', '-r', '__ns:=/stepped', folder=tmp_path):
+            done = python(LOCKSTEP, '--duration', '0.3', '--ros-args', '-r', '__ns:=/stepped')
+            assert done.returncode == 0, done.stderr
+            ends.append(done.stderr.rpartition(']: ')[2])
+    assert ends[0] == ends[1]
+    assert ends[0].startswith('0.3 s: ')

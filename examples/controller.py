@@ -1,0 +1,31 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""A controller for the axis, to be replaced by yours: makes for 10 mm, with 10 mm/s at most."""
+
+from contextlib import suppress
+
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+
+from stickslip_msgs.msg import DriveVelocity, SliderState
+
+
+class Controller(Node):
+    """Answers each state with a velocity of the drive."""
+
+    def __init__(self) -> None:
+        super().__init__('controller')
+        latest_only = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+        self._out = self.create_publisher(DriveVelocity, 'drive_velocity', latest_only)
+        self.create_subscription(SliderState, 'slider_state', self._answer, latest_only)
+
+    def _answer(self, state: SliderState) -> None:
+        velocity = 20.0 * (0.010 - state.position)    # m/s
+        self._out.publish(DriveVelocity(velocity=min(max(velocity, -0.010), 0.010)))
+
+
+rclpy.init()
+with suppress(KeyboardInterrupt, ExternalShutdownException):
+    rclpy.spin(Controller())
