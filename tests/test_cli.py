@@ -46,7 +46,9 @@ def refused(capsys: Capture, code: int, *arguments: str | Path) -> str:
 def test_version_and_help() -> None:
     done = tool('--version')
     assert (done.returncode, done.stdout) == (0, f'stickslip {__version__}\n')
-    assert 'simulate' in tool('--help').stdout
+    _, _, verbs = tool('--help').stdout.partition('Commands:')
+    assert 'simulate' in verbs
+    assert '...' not in verbs    # each line is whole
     assert '--sample-period' in tool('simulate', '--help').stdout
 
 

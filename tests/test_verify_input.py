@@ -175,7 +175,7 @@ class TestWhatIf:
     def test_refused(self, bag: Path, tmp_path: Path, capsys: Capture) -> None:
         for words, told in (
                 (('--out', tmp_path / 'out'), '--out is of no use alone'),
-                (('--set', 'axis.mass'), "override = 'axis.mass'"),
+                (('--set', 'axis.mass'), "--set = 'axis.mass'"),
                 (('--set', 'axis.mass=-1.0'), 'axis.mass = -1.0'),
                 (('--set', 'axis.weight=1.0'), 'axis.weight'),
                 (('--set', 'axis.mass=300.0', '--out', tmp_path), 'a folder that does not exist')):

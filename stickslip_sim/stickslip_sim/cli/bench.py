@@ -16,7 +16,7 @@ _ROUNDS, _QUICK_ROUNDS = 7, 1
 _QUICK_CASES, _QUICK_DURATION = ('A', 'paper_fig8'), 2.0   # s
 
 
-@click.command()
+@click.command(short_help='Measure error against cost of every solver, and of others.')
 @click.option('--scenes', 'chosen', multiple=True, metavar='NAME...', help='A to D or shipped scenes [default: all].')
 @click.argument('more', nargs=-1, metavar='')
 @click.option('--out', metavar='FOLDER', help='Write bench.json, bench.md and the pictures there.')

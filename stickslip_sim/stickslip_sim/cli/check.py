@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from ..check.sources import Evidence
 
 
-@click.command()
+@click.command(short_help='Check a run against limits: pass or fail.')
 @click.argument('source', metavar='RUN_OR_SCENE')
 @click.option('--limits', 'limits_file', required=True, metavar='FILE.yaml', help='The limits (docs/check.md).')
 @click.option('--duration', type=float, metavar='S', help='Time to simulate a scene, s.')

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 _MOST = 8   # runs, rows of a picture
 
 
-@click.command()
+@click.command(short_help="Draw the paper's figures for a run, and judge its statements.")
 @click.argument('runs', nargs=-1, required=True, metavar='RUN_OR_SCENE...')
 @click.option('--out', required=True, metavar='FOLDER', help='New folder for the report and the pictures.')
 @click.option('--duration', type=float, metavar='S',

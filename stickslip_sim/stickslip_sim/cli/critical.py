@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 _ACCURACY = 1e-9
 
 
-@click.command()
+@click.command(short_help='Find the value at which stick-slip begins or ends.')
 @click.argument('scene', metavar='SCENE')
 @click.option('--of', 'name', required=True, metavar='A.B', help='The parameter, or an element of a list: A.B[1].')
 @click.option('--between', metavar='LOW:HIGH', help='Where to look [default: 1/100 to 100 times its value].')

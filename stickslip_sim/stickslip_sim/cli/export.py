@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 _BLOCK = 10_000   # rows
 
 
-@click.command()
+@click.command(short_help='Write a recorded run as a table, CSV or Parquet.')
 @click.argument('run', metavar='RUN')
 @click.option('--csv', 'csv_file', metavar='FILE.csv', help='Write numbers with 17 digits ("-": to standard output).')
 @click.option('--parquet', metavar='FILE.parquet', help='Write a typed, compressed table.')

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 _FORMATS = ('.json', '.md')
 
 
-@click.command()
+@click.command(short_help='Judge the engine by what breaks other simulators.')
 @click.option('--only', metavar='X1,X7', help='Judge only these.')
 @click.option('--quick', is_flag=True, help='In a reduced size, as the tests do.')
 @click.option('--out', metavar='FILE.json|FILE.md', help='Write the table to a file, too.')

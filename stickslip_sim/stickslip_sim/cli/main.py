@@ -38,7 +38,8 @@ _UNWRITABLE = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EBADF, 
 _TERMINATED = 143
 
 
-@click.group(context_settings={'help_option_names': ['-h', '--help'], 'max_content_width': 100})
+@click.group(context_settings={'help_option_names': ['-h', '--help'], 'max_content_width': 100},
+             epilog='For a start: stickslip simulate paper_fig8 --duration 10 --plot run.png')
 @click.version_option(__version__, message='stickslip %(version)s')
 def stickslip() -> None:
     """Stick-slip motion of a feed axis, simulated exactly."""

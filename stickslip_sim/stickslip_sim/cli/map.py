@@ -20,7 +20,7 @@ _MOST_EVENTS = 10_000   # that a phase plane shows
 _SHOWN = 'amplitude'
 
 
-@click.command('map')
+@click.command('map', short_help='Draw a sweep: a map, or a bifurcation diagram.')
 @click.argument('folder', metavar='FOLDER')
 @click.option('--out', 'pictures', multiple=True, required=True, metavar='FILE.png|FILE.svg',
               help='Write the picture; may be given again.')

@@ -33,7 +33,7 @@ class _Wishes(NamedTuple):
     plot: str | None
 
 
-@click.command()
+@click.command(short_help='Simulate a scene: figures, tables, picture, bag.')
 @click.argument('scene', metavar='SCENE')
 @click.option('--duration', type=float, required=True, metavar='S', help='Simulated time, s.')
 @click.option('--set', 'changes', multiple=True, metavar='A.B=VALUE', help='Change a parameter of the scene.')

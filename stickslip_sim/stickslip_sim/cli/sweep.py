@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from ..study.folder import Folder
 
 
-@click.command()
+@click.command(short_help='Run a scene at many values of its parameters.')
 @click.argument('scene', metavar='SCENE')
 @click.option('--over', 'ranges', multiple=True, required=True, metavar='A.B=LOW:HIGH:N[:log]',
               help='Vary a parameter, or an element of a list: A.B[1]. Given again: every combination.')

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 _RESULT = 'uncertainty.json'
 
 
-@click.command()
+@click.command(short_help='Run a scene with parameters that are known only roughly.')
 @click.argument('scene', metavar='SCENE')
 @click.option('--with', 'file', required=True, metavar='FILE.yaml', help='The distributions of its parameters.')
 @click.option('--samples', type=int, default=1024, show_default=True, metavar='N',

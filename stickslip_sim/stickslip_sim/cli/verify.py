@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from ..scene import Scene
 
 
-@click.command()
+@click.command(short_help='Run a recorded run again; with --set, what would have been.')
 @click.argument('run', metavar='RUN')
 @click.option('--set', 'changes', multiple=True, metavar='A.B=VALUE', help='What if this parameter had been another?')
 @click.option('--out', metavar='FOLDER', help='With --set: new folder for figures, picture and scene of what if.')

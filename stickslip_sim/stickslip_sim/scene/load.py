@@ -81,7 +81,7 @@ def parse_override(text: str) -> tuple[str, object]:
     name, equals, word = text.partition('=')
     name = name.strip()
     if not equals or not name or not word.strip():
-        raise InputError('override', text, 'a.b=value', 'for example axis.mass=400.0')
+        raise InputError('--set', text, 'A.B=VALUE', 'for example axis.mass=400.0')
     with named(text):
         value = read_yaml(word)
     if isinstance(value, dict) or value is None:
