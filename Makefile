@@ -53,7 +53,7 @@ fuzz: tools  ## made-up scenes, limits, overrides and bags for MINUTES=10; fails
 	@$(HERE) python3 -m tests.fuzz --minutes $(MINUTES)
 
 docs: tools  ## the pages in docs/ as a site in runs/docs/
-	@$(TOOLS)/mkdocs build --quiet && echo runs/docs/index.html
+	@$(TOOLS)/mkdocs build && echo runs/docs/index.html
 
 clean:  ## remove everything that was set up, built or cached in this tree
 	rm -rf ros2_ws/{.venv,build,install,log} runs .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache

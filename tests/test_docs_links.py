@@ -1,8 +1,10 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Links within the repository: every file, folder and heading that a page points to is there.  No network."""
+"""The pages: every file, folder and heading that one points to is there, and the site is made of them.  No network."""
 
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -38,6 +40,12 @@ def test_links(page: Path) -> None:
     assert broken(page, page.read_text(encoding='utf-8')) == []
 
 
+@pytest.mark.parametrize('page', PAGES, ids=lambda page: page.name)
+def test_fences_stand_at_the_left(page: Path) -> None:
+    """Python-Markdown, which makes the site, takes none within a list for one."""
+    assert re.findall(r'^ +```.*$', page.read_text(encoding='utf-8'), re.MULTILINE) == []
+
+
 def test_what_is_broken_is_found() -> None:
     text = ('[a](nowhere.md) [b](docs/model.md#nowhere) [c](#nowhere) ![d](docs/images/nowhere.png)'
             ' [good](docs/security.md#sros-2) [good](#stickslip) [good](https://example.org/x) `[code](nowhere)`')
@@ -49,3 +57,12 @@ def test_every_page_of_the_docs_is_on_their_front_page() -> None:
     front = (ROOT / 'docs/index.md').read_text(encoding='utf-8')
     assert {page.name for page in (ROOT / 'docs').glob('*.md')} - {'index.md'} == {
         link for link in _LINK.findall(front) if link.endswith('.md')}
+
+
+def test_the_site_is_made_without_a_warning(tmp_path: Path) -> None:
+    """As `make docs` does it.  (mkdocs --quiet would not even count its warnings.)"""
+    done = subprocess.run([sys.executable, '-m', 'mkdocs', 'build', '--site-dir', tmp_path], cwd=ROOT, timeout=60,
+                          capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert 'WARNING' not in done.stderr
+    assert (tmp_path / 'index.html').is_file()
