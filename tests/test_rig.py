@@ -12,7 +12,8 @@ import pytest
 from stickslip_sim.axis import InitialState
 from stickslip_sim.courses import Course, Wave, constant
 from stickslip_sim.errors import InputError, SolverError
-from stickslip_sim.pacing import Grid, Unpaced
+from stickslip_sim.grid import Grid
+from stickslip_sim.pacing import Unpaced
 from stickslip_sim.rig import Fault, Product, Rig
 from stickslip_sim.rig.drive import DriveLimits
 from stickslip_sim.rig.encoder import EncoderSettings

@@ -11,7 +11,8 @@ import pytest
 from stickslip_sim.axis import InitialState
 from stickslip_sim.commands import CommandSlot
 from stickslip_sim.courses import constant
-from stickslip_sim.pacing import Grid, Pacer
+from stickslip_sim.grid import Grid
+from stickslip_sim.pacing import Pacer
 from stickslip_sim.rig import Product, Rig
 from stickslip_sim.rig.settings import RigSettings
 from stickslip_sim.rig.watchdog import Watchdog

@@ -9,7 +9,8 @@ import pytest
 
 from stickslip_sim.commands import CommandSlot
 from stickslip_sim.errors import InputError
-from stickslip_sim.pacing import Grid, Pacer, StepClock, Unpaced
+from stickslip_sim.grid import Grid
+from stickslip_sim.pacing import Pacer, StepClock, Unpaced
 from stickslip_sim.rig import NoteKind, Product
 from stickslip_sim.rig.watchdog import Watchdog
 from stickslip_sim.ros.loop import StepLoop

@@ -9,7 +9,7 @@ from typing import Any
 from ..axis import Axis, InitialState
 from ..courses import Course, constant, course_of, plain_of
 from ..errors import InputError
-from ..pacing import Grid
+from ..grid import Grid
 from ..simulator import Simulator
 from ..solvers import Solver
 from ..words import Event, Instant

@@ -13,8 +13,9 @@ from rclpy.serialization import serialize_message
 
 from ..commands import CommandSlot
 from ..errors import InputError, SolverError
+from ..grid import Grid
 from ..offline import warm_up
-from ..pacing import Grid, step_clock
+from ..pacing import step_clock
 from ..recording import RECORDED, RunFacts, messages
 from ..recording import topics as names
 from ..rig import Note, NoteKind
