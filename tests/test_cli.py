@@ -281,7 +281,7 @@ def test_an_interrupted_bag_vanishes(tmp_path: Path) -> None:
 
 @pytest.mark.ros
 def test_bag(tmp_path: Path) -> None:
-    from stickslip_sim.recording.reader import read_run
+    from stickslip_sim.recording import read_run
 
     assert run(['simulate', 'paper_fig8', '--duration', '2', '--bag', str(tmp_path / 'bag'), '--samples',
                 str(tmp_path / 's.csv'), '--sample-period', '0.5']) == 0
