@@ -11,7 +11,8 @@ from sensor_msgs.msg import JointState
 from stickslip_sim.recording import topics as names
 from stickslip_sim.ros.neighbours import _Publishers
 from tests.ros2_control_client import THRESHOLD, Rule, always, hardware_interface, near_is_silent
-from tests.ros_nodes import Client, client, running, wait_for
+from tests.ros_nodes import Client, client, running
+from tests.waiting import wait_for
 
 pytestmark = pytest.mark.ros
 
