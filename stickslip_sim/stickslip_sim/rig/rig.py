@@ -131,10 +131,10 @@ class Rig:
 
         Raises InputError, KeyError, TypeError or ValueError when it is none; the rig is of no use then.
         """
+        self._plant.restore(saved)
         self._wire.restore(saved['wire'])
         self._faults.restore(saved['faults'])
         self.step, self.has_failed = int(saved['step']), bool(saved['has_failed'])
-        self._plant.restore(saved)
 
     # Steps
 
