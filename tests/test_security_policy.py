@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.ros_nodes import client, running, wait_for
+from tests.ros_nodes import client, running
+from tests.waiting import wait_for
 
 pytestmark = pytest.mark.ros
 

@@ -20,7 +20,8 @@ from stickslip_sim.recording import Run, read_run
 from stickslip_sim.scene import Scene, load_scene
 from tests.replays import FIELDS, assert_same_states, made_again
 from tests.rigs import run
-from tests.ros_nodes import Client, NodeProcess, client, running, wait_for
+from tests.ros_nodes import Client, NodeProcess, client, running
+from tests.waiting import wait_for
 
 rosgraph_msgs = pytest.importorskip('rosgraph_msgs.msg')
 from rclpy.node import Node  # noqa: E402
