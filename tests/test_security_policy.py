@@ -103,7 +103,8 @@ def test_structure() -> None:
     check(POLICY)
     assert POLICY.attrib['version'] == '0.2.0'
     groups = [*POLICY.iter('topics'), *POLICY.iter('services')]
-    assert groups and all(list(group.attrib.values()) == ['ALLOW'] for group in groups)
+    assert groups
+    assert all(list(group.attrib.values()) == ['ALLOW'] for group in groups)
 
 
 @pytest.fixture(scope='module')
