@@ -10,7 +10,7 @@ from typing import NamedTuple
 from stickslip_sim.axis import Axis, InitialState
 from stickslip_sim.control import Controller, Following, Moves, Setpoint
 from stickslip_sim.courses import constant
-from stickslip_sim.pacing import Grid
+from stickslip_sim.grid import Grid
 from stickslip_sim.rig import Rig
 from stickslip_sim.rig.encoder import EncoderSettings
 from stickslip_sim.rig.settings import RigSettings

@@ -14,7 +14,7 @@ from rclpy.utilities import remove_ros_args
 
 from stickslip_msgs.msg import DriveVelocity, ExternalForce, RigEvent
 
-_INSISTENCE = 1.0    # s
+_INSISTENCE = 1.5    # s; the axis repeats a refusal after 1 s
 
 
 def parse() -> dict[str, DriveVelocity | ExternalForce]:

@@ -1,16 +1,20 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Limits files and evidence for tests of `stickslip check`."""
+"""Limits files, evidence and bags for tests of `stickslip check`, and the tool itself."""
 
 import math
+import shutil
 from pathlib import Path
 
 from stickslip_sim.check.limits import limits_of
 from stickslip_sim.check.sources import Evidence, simulated
 from stickslip_sim.check.verdict import Outcome, judge
 from stickslip_sim.offline import run_offline
+from stickslip_sim.recording import RunFacts, write_bag
 from stickslip_sim.scene import Scene, load_scene, scene_from_values
 from stickslip_sim.scene.ros_yaml import read_yaml
+from tests import tool
+from tests.tool import Capture
 
 # An axis without friction that swings out from rest position 0: everything about it has a closed form.
 START_VELOCITY = 0.1                     # m/s
@@ -44,3 +48,30 @@ def limits_file(folder: Path, text: str) -> str:
     path = folder / 'limits.yaml'
     path.write_text(text, encoding='utf-8')
     return str(path)
+
+
+def node_bag(folder: Path, timing: object) -> Path:
+    """Write a bag as a node does, with this in its receipt."""
+    scene = load_scene('paper_fig7')
+    done = run_offline(scene, 0.2, scene.time.step)
+    write_bag(folder, RunFacts.of(scene), done.sample_rows(), done.events, {'timing': timing})
+    return folder
+
+
+def cut(bag: Path, folder: Path, share: float) -> Path:
+    """Return a copy of a bag that ends early, as a killed process leaves it."""
+    shutil.copytree(bag, folder)
+    (path,) = folder.glob('*.mcap')
+    data = path.read_bytes()
+    path.write_bytes(data[:int(share * len(data))])
+    return folder
+
+
+def checked(capsys: Capture, *arguments: str | Path) -> tuple[int, str, str]:
+    """Run `stickslip check` in this process; return its exit code, standard output and standard error."""
+    return tool.answered(capsys, 'check', *arguments)
+
+
+def refused(capsys: Capture, *arguments: str | Path) -> str:
+    """Return the one line on standard error."""
+    return tool.refused(capsys, 'check', *arguments)

@@ -5,9 +5,12 @@
 import os
 import subprocess
 import sys
+from pathlib import Path
 from typing import Protocol
 
 import pytest
+
+from stickslip_sim.cli.main import run
 
 
 class Program(Protocol):
@@ -20,7 +23,7 @@ class Program(Protocol):
 @pytest.fixture(scope='session')
 def in_a_process() -> Program:
 
-    def run(program: str, *, compiled: bool) -> str:
+    def in_it(program: str, *, compiled: bool) -> str:
         environment = {**os.environ, 'STICKSLIP_COMPILED': '1' if compiled else '0',
                        'PYTHONPATH': os.pathsep.join([os.getcwd(), *filter(None, sys.path)])}
         done = subprocess.run([sys.executable, '-c', program], env=environment, capture_output=True, text=True,
@@ -28,4 +31,12 @@ def in_a_process() -> Program:
         assert done.returncode == 0, done.stderr
         return done.stdout
 
-    return run
+    return in_it
+
+
+@pytest.fixture(scope='session')
+def fig8_bag(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A run of paper_fig8, 3 s long, as the tool writes it; not to be changed."""
+    folder = tmp_path_factory.mktemp('runs') / 'eight'
+    assert run(['simulate', 'paper_fig8', '--duration', '3', '--bag', str(folder)]) == 0
+    return folder

@@ -7,13 +7,10 @@ from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 
-from tests.ros_nodes import Client, client, running, wait_for
+from tests.ros_nodes import Client, client, recording_into, running
+from tests.waiting import wait_for
 
 from stickslip_msgs.srv import InjectFault  # isort: skip
-
-
-def recording_into(folder: Path) -> list[str]:
-    return ['-p', 'record.enabled:=true', '-p', f'record.folder:={folder}']
 
 
 @contextmanager

@@ -4,10 +4,8 @@
 
 import math
 import os
-import time
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 from mcap.reader import make_reader
 
@@ -68,11 +66,3 @@ def damage(file: Path) -> None:
         byte, = stream.read(1)
         stream.seek(-1, os.SEEK_CUR)
         stream.write(bytes([byte ^ 1]))
-
-
-def wait_for(look: Any, timeout: float = 10.0) -> Any:
-    end = time.monotonic() + timeout
-    while not (found := look()):
-        assert time.monotonic() < end
-        time.sleep(0.02)
-    return found

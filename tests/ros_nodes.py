@@ -7,7 +7,6 @@ import os
 import signal
 import subprocess
 import threading
-import time
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -39,12 +38,12 @@ from stickslip_msgs.msg import (  # noqa: E402
     SliderState,
     StepTiming,
 )
+from tests.waiting import DEADLINE, wait_for  # noqa: E402
 
 # Without `make test` every session still keeps to itself.
 os.environ.setdefault('ROS_DOMAIN_ID', str(1 + os.getpid() % 100))
 os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
 
-DEADLINE = 20.0   # s
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _ALL = QoSProfile(depth=5000)
 _COMMAND = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
@@ -54,15 +53,6 @@ _HEARD = {
 }
 
 
-def wait_for(look: Callable[[], Any], what: str, deadline: float = DEADLINE) -> Any:
-    """Return what `look` returns as soon as that is true."""
-    end = time.monotonic() + deadline
-    while not (found := look()):
-        assert time.monotonic() < end, f'waited {deadline} s for {what}'
-        time.sleep(0.01)
-    return found
-
-
 def executable(name: str) -> str:
     """Return an installed program, as `ros2 run` finds it."""
     for prefix in os.environ['AMENT_PREFIX_PATH'].split(os.pathsep):
@@ -70,6 +60,11 @@ def executable(name: str) -> str:
         if path.is_file():
             return str(path)
     raise AssertionError(f'{name} is not installed: run `make build`')
+
+
+def recording_into(folder: Path) -> list[str]:
+    """Return the arguments of a node that records from the start."""
+    return ['-p', 'record.enabled:=true', '-p', f'record.folder:={folder}']
 
 
 class NodeProcess:
@@ -105,6 +100,13 @@ class NodeProcess:
         if self._process.poll() is None:
             self._process.kill()
             self._process.communicate()
+
+
+def assert_clean(code: int, errors: str) -> None:
+    """Check how a process ended."""
+    assert code == 0, errors
+    assert 'Traceback' not in errors
+    assert 'Exception' not in errors
 
 
 def restore_interrupt() -> None:

@@ -22,8 +22,8 @@ from stickslip_sim.advise.verdict import best_trial, least_scene
 from stickslip_sim.bench.measure import Cost
 from stickslip_sim.cli.main import run
 from stickslip_sim.scene import Scene, changed, load_scene, scene_from_values
+from tests.tool import Capture
 
-Capture = pytest.CaptureFixture[str]
 DURATION = 2.0   # s; the second break-away of paper_fig7 comes at 1.33 s
 TWO_WAVES: dict[str, object] = {'force.amplitudes': [1.0, 1.0], 'force.frequencies': [5.0, 5.0],
                                'force.phases': [0.0, 0.0]}

@@ -4,7 +4,6 @@
 
 import json
 import re
-import shutil
 import signal
 from pathlib import Path
 from xml.etree import ElementTree
@@ -17,9 +16,9 @@ from stickslip_sim.offline import run_offline
 from stickslip_sim.recording import BagWriter, OfflineBag, RunFacts, read_run, topics, write_bag
 from stickslip_sim.scene import load_scene
 from stickslip_sim.words import Sample
-from tests.check_files import limits_file
+from tests.check_files import checked, cut, limits_file, node_bag, refused
+from tests.tool import Capture
 
-Capture = pytest.CaptureFixture[str]
 ROOT = Path(__file__).parents[1]
 EXAMPLE = str(ROOT / 'examples' / 'limits.yaml')
 LIMITS = 'limits: {sticks: {max: 1}, longest_stick: {max: 1.0}, peak_speed: {max: 0.02}}'
@@ -32,36 +31,6 @@ def bag(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp('runs') / 'jump'
     assert run(['simulate', 'paper_fig7', '--duration', DURATION, '--bag', str(folder)]) == 0
     return folder
-
-
-def node_bag(folder: Path, timing: object) -> Path:
-    """Write a bag as a node does, with this in its receipt."""
-    scene = load_scene('paper_fig7')
-    done = run_offline(scene, 0.2, scene.time.step)
-    write_bag(folder, RunFacts.of(scene), done.sample_rows(), done.events, {'timing': timing})
-    return folder
-
-
-def cut(bag: Path, folder: Path, share: float) -> Path:
-    """Return a copy of a bag that ends early, as a killed process leaves it."""
-    shutil.copytree(bag, folder)
-    (path,) = folder.glob('*.mcap')
-    data = path.read_bytes()
-    path.write_bytes(data[:int(share * len(data))])
-    return folder
-
-
-def checked(capsys: Capture, *arguments: str | Path) -> tuple[int, str, str]:
-    code = run(['check', *map(str, arguments)])
-    return code, *capsys.readouterr()
-
-
-def refused(capsys: Capture, *arguments: str | Path) -> str:
-    """Return the one line on standard error."""
-    code, out, err = checked(capsys, *arguments)
-    assert (code, out, err.count('\n')) == (2, '', 1)
-    assert err.startswith('stickslip: ')
-    return err
 
 
 class TestOutcome:

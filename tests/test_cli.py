@@ -5,7 +5,6 @@
 import csv
 import io
 import json
-import os
 import shutil
 import signal
 import subprocess
@@ -20,27 +19,10 @@ from stickslip_sim.cli.main import run
 from stickslip_sim.offline import run_offline
 from stickslip_sim.scene import load_scene, scene_names
 from stickslip_sim.words import EventKind, Mode
+from tests.tool import Capture, refused, tool
 
 EVENT_HEADER = 'time,kind,direction,position,velocity,drive_force,friction_force,static_coefficient,rest_time'
 SAMPLE_HEADER = 'time,position,velocity,acceleration,drive_position,drive_force,friction_force,mode'
-
-
-def tool(*arguments: str | Path, **environment: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run([sys.executable, '-m', 'stickslip_sim', *map(str, arguments)], capture_output=True, text=True,
-                          timeout=60, check=False, env={**os.environ, **environment})
-
-
-Capture = pytest.CaptureFixture[str]
-
-
-def refused(capsys: Capture, code: int, *arguments: str | Path) -> str:
-    """Run the tool in this process; return the one line that it says on standard error."""
-    assert run([*map(str, arguments)]) == code
-    out, err = capsys.readouterr()
-    assert out == ''
-    assert err.startswith('stickslip: ')
-    assert err.count('\n') == 1
-    return err
 
 
 def test_version_and_help() -> None:
@@ -184,23 +166,23 @@ def test_existing_files_are_replaced(tmp_path: Path) -> None:
     (['sing'], ['sing']),
 ])
 def test_wrong_use(arguments: list[str], words: list[str], capsys: Capture) -> None:
-    line = refused(capsys, 2, *arguments)
+    line = refused(capsys, *arguments)
     for word in words:
         assert word in line
 
 
 def test_an_existing_bag_folder_is_refused_before_the_work(tmp_path: Path, capsys: Capture) -> None:
-    assert str(tmp_path) in refused(capsys, 2, 'simulate', 'paper_fig7', '--duration', '1e8', '--bag', tmp_path)
+    assert str(tmp_path) in refused(capsys, 'simulate', 'paper_fig7', '--duration', '1e8', '--bag', tmp_path)
     assert list(tmp_path.iterdir()) == []
 
 
 def test_unwritable_folder(capsys: Capture) -> None:
     """In /sys not even root can make a file."""
-    assert 'written' in refused(capsys, 2, 'simulate', 'paper_fig7', '--duration', '1', '--events', '/sys/e.csv')
+    assert 'written' in refused(capsys, 'simulate', 'paper_fig7', '--duration', '1', '--events', '/sys/e.csv')
 
 
 def test_a_full_disk_gets_one_line(capsys: Capture) -> None:
-    line = refused(capsys, 2, 'simulate', 'paper_fig7', '--duration', '1', '--events', '/dev/full')
+    line = refused(capsys, 'simulate', 'paper_fig7', '--duration', '1', '--events', '/dev/full')
     assert 'No space left' in line
 
 
@@ -250,7 +232,7 @@ def test_internal_errors_get_one_line(monkeypatch: pytest.MonkeyPatch, capsys: C
         raise ZeroDivisionError('first\nsecond')
 
     monkeypatch.setattr('stickslip_sim.offline.run_offline', fail)
-    assert 'ZeroDivisionError: first' in refused(capsys, 1, 'simulate', 'paper_fig7', '--duration', '1')
+    assert 'ZeroDivisionError: first' in refused(capsys, 'simulate', 'paper_fig7', '--duration', '1', code=1)
     monkeypatch.setenv('STICKSLIP_DEBUG', '1')
     with pytest.raises(ZeroDivisionError):
         run(['simulate', 'paper_fig7', '--duration', '1'])
@@ -291,7 +273,7 @@ def test_an_interrupted_bag_vanishes(tmp_path: Path) -> None:
 
 @pytest.mark.ros
 def test_bag(tmp_path: Path) -> None:
-    from stickslip_sim.recording.reader import read_run
+    from stickslip_sim.recording import read_run
 
     assert run(['simulate', 'paper_fig8', '--duration', '2', '--bag', str(tmp_path / 'bag'), '--samples',
                 str(tmp_path / 's.csv'), '--sample-period', '0.5']) == 0

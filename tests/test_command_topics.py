@@ -12,7 +12,8 @@ import pytest
 
 from stickslip_sim.errors import InputError
 from stickslip_sim.recording import flat_layout, topics
-from tests.ros_nodes import Client, client, rclpy, running, wait_for
+from tests.ros_nodes import Client, client, rclpy, running
+from tests.waiting import wait_for
 
 pytestmark = pytest.mark.ros
 

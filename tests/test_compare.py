@@ -29,8 +29,8 @@ from stickslip_sim.plots.motion import plot_motion
 from stickslip_sim.scene import load_scene
 from stickslip_sim.words import EventKind
 from tests.rewritten_bags import rewritten
+from tests.tool import Capture
 
-Capture = pytest.CaptureFixture[str]
 PNG = b'\x89PNG\r\n\x1a\n'
 DRIVE = 0.002   # m/s
 

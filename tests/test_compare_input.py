@@ -14,26 +14,14 @@ from rosbags.typesys import Stores, get_typestore
 from stickslip_sim.cli.main import run
 from stickslip_sim.paper.recorded import history_of_run
 from stickslip_sim.recording import read_run
+from tests import tool
 from tests.rewritten_bags import rewritten
-
-Capture = pytest.CaptureFixture[str]
-
-
-@pytest.fixture(scope='module')
-def bag(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp('runs') / 'eight'
-    assert run(['simulate', 'paper_fig8', '--duration', '3', '--bag', str(folder)]) == 0
-    return folder
+from tests.tool import Capture
 
 
 def refused(capsys: Capture, tmp_path: Path, *arguments: str | Path) -> str:
     """Compare; return the one line that is said on standard error.  Nothing is left behind."""
-    capsys.readouterr()
-    assert run(['compare', *map(str, arguments), '--out', str(tmp_path / 'out')]) == 2
-    out, err = capsys.readouterr()
-    assert out == ''
-    assert err.startswith('stickslip: ')
-    assert err.count('\n') == 1
+    err = tool.refused(capsys, 'compare', *arguments, '--out', tmp_path / 'out')
     assert not [path for path in tmp_path.iterdir() if 'out' in path.name]
     return err
 
@@ -75,14 +63,14 @@ def test_an_mcap_file_of_another_kind(tmp_path: Path, capsys: Capture) -> None:
 
 
 @pytest.mark.parametrize('topic', ['/slider_state', '/friction_force', '/mode_event'])
-def test_a_missing_topic(topic: str, bag: Path, tmp_path: Path, capsys: Capture) -> None:
-    rewritten(bag, tmp_path / 'less', lambda name: None if name == topic else name)
+def test_a_missing_topic(topic: str, fig8_bag: Path, tmp_path: Path, capsys: Capture) -> None:
+    rewritten(fig8_bag, tmp_path / 'less', lambda name: None if name == topic else name)
     assert 'no topic of type stickslip_msgs/msg/' in refused(capsys, tmp_path, tmp_path / 'less')
 
 
-def test_two_axes(bag: Path, tmp_path: Path, capsys: Capture) -> None:
+def test_two_axes(fig8_bag: Path, tmp_path: Path, capsys: Capture) -> None:
     names = {'/slider_state': '/left/slider_state', '/friction_force': '/right/friction_force'}
-    both = rewritten(bag, tmp_path / 'both', lambda name: names.get(name, name))
+    both = rewritten(fig8_bag, tmp_path / 'both', lambda name: names.get(name, name))
     assert len(history_of_run(both).cycles) > 0    # in any one namespace, but not in two of the same kind
     with (tmp_path / 'two.mcap').open('wb') as out:
         writer = Writer(out)
@@ -94,20 +82,20 @@ def test_two_axes(bag: Path, tmp_path: Path, capsys: Capture) -> None:
     assert '/left/slider_state and /right/slider_state' in refused(capsys, tmp_path, tmp_path / 'two.mcap')
 
 
-def test_messages_of_another_version(bag: Path, tmp_path: Path, capsys: Capture) -> None:
-    rewritten(bag, tmp_path / 'old', definition=lambda text: text.replace('float64 drive_force', 'float64 spring'))
+def test_messages_of_another_version(fig8_bag: Path, tmp_path: Path, capsys: Capture) -> None:
+    rewritten(fig8_bag, tmp_path / 'old', definition=lambda text: text.replace('float64 drive_force', 'float64 spring'))
     line = refused(capsys, tmp_path, tmp_path / 'old')
     assert '/slider_state has no drive_force' in line
     assert 'recorded by another version?' in line
 
 
-def test_a_bag_without_its_scene(bag: Path, tmp_path: Path, capsys: Capture) -> None:
-    rewritten(bag, tmp_path / 'bare', attachment=lambda name: None)
+def test_a_bag_without_its_scene(fig8_bag: Path, tmp_path: Path, capsys: Capture) -> None:
+    rewritten(fig8_bag, tmp_path / 'bare', attachment=lambda name: None)
     assert 'no scene.yaml travels in it' in refused(capsys, tmp_path, tmp_path / 'bare')
 
 
-def test_a_cut_file_is_used_as_far_as_it_goes(bag: Path, tmp_path: Path, capsys: Capture) -> None:
-    data = next(bag.glob('*.mcap')).read_bytes()
+def test_a_cut_file_is_used_as_far_as_it_goes(fig8_bag: Path, tmp_path: Path, capsys: Capture) -> None:
+    data = next(fig8_bag.glob('*.mcap')).read_bytes()
     (tmp_path / 'cut.mcap').write_bytes(data[:len(data) * 2 // 3])
     assert run(['compare', str(tmp_path / 'cut.mcap'), '--out', str(tmp_path / 'out')]) == 0
     assert 'has no end: cut off' in capsys.readouterr().out
@@ -117,13 +105,13 @@ def test_a_cut_file_is_used_as_far_as_it_goes(bag: Path, tmp_path: Path, capsys:
 
 
 @pytest.mark.parametrize('compression', [CompressionType.LZ4, CompressionType.NONE])
-def test_other_compressions(compression: CompressionType, bag: Path, tmp_path: Path) -> None:
-    other = rewritten(bag, tmp_path / 'other', compression=compression)
-    assert read_run(other).counts['/slider_state'] == read_run(bag).counts['/slider_state']
+def test_other_compressions(compression: CompressionType, fig8_bag: Path, tmp_path: Path) -> None:
+    other = rewritten(fig8_bag, tmp_path / 'other', compression=compression)
+    assert read_run(other).counts['/slider_state'] == read_run(fig8_bag).counts['/slider_state']
 
 
-def test_unreadable_compressions(bag: Path, tmp_path: Path, capsys: Capture) -> None:
-    data = next(bag.glob('*.mcap')).read_bytes()
+def test_unreadable_compressions(fig8_bag: Path, tmp_path: Path, capsys: Capture) -> None:
+    data = next(fig8_bag.glob('*.mcap')).read_bytes()
     name = struct.pack('<I', 4) + b'zstd'
     (tmp_path / 'odd.mcap').write_bytes(data.replace(name, struct.pack('<I', 4) + b'lzma'))
     assert "compressed with 'lzma'" in refused(capsys, tmp_path, tmp_path / 'odd.mcap')
@@ -132,10 +120,10 @@ def test_unreadable_compressions(bag: Path, tmp_path: Path, capsys: Capture) -> 
     assert 'run_0.mcap.zstd is not read' in refused(capsys, tmp_path, tmp_path / 'packed')
 
 
-def test_damaged_chunks_end_the_run(bag: Path, tmp_path: Path) -> None:
+def test_damaged_chunks_end_the_run(fig8_bag: Path, tmp_path: Path) -> None:
     """Of any compression."""
     for compression in (CompressionType.LZ4, CompressionType.ZSTD):
-        source = rewritten(bag, tmp_path / compression.name, compression=compression)
+        source = rewritten(fig8_bag, tmp_path / compression.name, compression=compression)
         path = next(source.glob('*.mcap'))
         data = bytearray(path.read_bytes())
         middle = len(data) // 2
@@ -146,11 +134,11 @@ def test_damaged_chunks_end_the_run(bag: Path, tmp_path: Path) -> None:
         assert history.end < 2.9
 
 
-def test_an_existing_folder_stays(bag: Path, tmp_path: Path, capsys: Capture) -> None:
-    assert run(['compare', str(bag), '--out', str(tmp_path)]) == 2
+def test_an_existing_folder_stays(fig8_bag: Path, tmp_path: Path, capsys: Capture) -> None:
+    assert run(['compare', str(fig8_bag), '--out', str(tmp_path)]) == 2
     assert 'a folder that does not exist' in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
-    assert run(['compare', str(bag), '--out', str(tmp_path / 'no' / 'where')]) == 2
+    assert run(['compare', str(fig8_bag), '--out', str(tmp_path / 'no' / 'where')]) == 2
     assert 'make the folder' in capsys.readouterr().err
 
 
@@ -163,8 +151,8 @@ def test_wrong_use(arguments: list[str], word: str, tmp_path: Path, capsys: Capt
 
 
 @pytest.mark.parametrize('option', [['--duration', '1'], ['--set', 'axis.mass=1.0']])
-def test_options_for_scenes_alone(option: list[str], bag: Path, tmp_path: Path, capsys: Capture) -> None:
-    assert 'is for scenes' in refused(capsys, tmp_path, bag, *option)
+def test_options_for_scenes_alone(option: list[str], fig8_bag: Path, tmp_path: Path, capsys: Capture) -> None:
+    assert 'is for scenes' in refused(capsys, tmp_path, fig8_bag, *option)
 
 
 def test_a_failure_leaves_nothing(tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:

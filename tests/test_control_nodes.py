@@ -18,7 +18,8 @@ from benchmarks.controllers import AXIS, controllers
 from stickslip_sim.control import Moves
 from stickslip_sim.errors import InputError
 from stickslip_sim.words import EventKind
-from tests.ros_nodes import DEADLINE, Client, client, executable, running, wait_for
+from tests.ros_nodes import Client, client, executable, running
+from tests.waiting import DEADLINE, wait_for
 
 from rcl_interfaces.msg import Log  # isort: skip  # after tests.ros_nodes, which skips without ROS
 from rcl_interfaces.srv import SetParametersAtomically  # isort: skip

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from stickslip_sim.axis import Axis, InitialState
 from stickslip_sim.courses import constant, steps
 from stickslip_sim.errors import InputError
-from stickslip_sim.pacing import Grid
+from stickslip_sim.grid import Grid
 from stickslip_sim.rig import Fault, NoteKind
 from stickslip_sim.rig.faults import MAX_FAULTS, RULES, Faults
 from stickslip_sim.rig.wire import Wire

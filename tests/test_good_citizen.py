@@ -25,7 +25,8 @@ from rclpy.serialization import deserialize_message
 
 from stickslip_sim.ros.topics import message_type
 from tests.eventful_runs import eventful_run
-from tests.ros_nodes import Client, wait_for
+from tests.ros_nodes import Client
+from tests.waiting import wait_for
 
 pytestmark = pytest.mark.ros
 

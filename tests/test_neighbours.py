@@ -2,13 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Who else is on the topics of a node, and whose clock it follows."""
 
+import time
 from typing import Any
 
 import pytest
 from sensor_msgs.msg import JointState
 
+from stickslip_sim.recording import topics as names
+from stickslip_sim.ros.neighbours import _Publishers
 from tests.ros2_control_client import THRESHOLD, Rule, always, hardware_interface, near_is_silent
 from tests.ros_nodes import Client, client, running
+from tests.waiting import wait_for
 
 pytestmark = pytest.mark.ros
 
@@ -52,6 +56,22 @@ class TestNeighbours:
         assert [line.split(':')[0].split(' in force')[0] for line in told[-5:]] == [
             '2 controllers at once on /drive_velocity, /joint_commands', alone, gone.format(0.003), alone,
             gone.format(0.005)]
+
+    def test_a_controller_bears_its_name_from_the_first_look_on(self) -> None:
+        """ROS knows a publisher some 40 ms before it knows whose it is."""
+        with client() as watcher:
+            publishers = _Publishers(watcher.node, [names.JOINT_COMMANDS])
+
+            def changed() -> bool:
+                time.sleep(0.05)
+                return publishers.have_changed()
+
+            for _ in range(4):
+                with hardware_interface(always(0.0), name='other'):
+                    wait_for(changed, 'a controller')
+                    assert publishers.nodes == ['/other']
+                wait_for(changed, 'its end')
+                assert publishers.nodes == []
 
     def test_a_stranger_on_a_topic_of_the_node(self) -> None:
         with running(*ON) as process, client() as axis:

@@ -14,7 +14,8 @@ from stickslip_sim.scene import load_scene
 from stickslip_sim.scene.schema import PARAMETERS
 from stickslip_sim.simulator import Simulator
 from stickslip_sim.words import EventKind, Instant
-from tests.ros_nodes import Client, NodeProcess, client, running, wait_for
+from tests.ros_nodes import Client, NodeProcess, client, running
+from tests.waiting import wait_for
 
 pytestmark = pytest.mark.ros
 

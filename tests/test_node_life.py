@@ -17,13 +17,10 @@ from stickslip_sim.errors import InputError, RecordingWarning
 from stickslip_sim.recording import Run, read_run
 from stickslip_sim.scene import load_scene
 from stickslip_sim.words import EventKind
-from tests.ros_nodes import client, executable, restore_interrupt, running, wait_for
+from tests.ros_nodes import assert_clean, client, executable, recording_into, restore_interrupt, running
+from tests.waiting import wait_for
 
 pytestmark = pytest.mark.ros
-
-
-def recording_into(folder: Path) -> list[str]:
-    return ['-p', 'record.enabled:=true', '-p', f'record.folder:={folder}']
 
 
 class TestRefusedStart:
@@ -345,9 +342,3 @@ def assert_same(run: Run, topic: str, heard: dict[int, Any]) -> None:
 def with_small_files() -> None:
     restore_interrupt()
     resource.setrlimit(resource.RLIMIT_FSIZE, (200_000, 200_000))
-
-
-def assert_clean(code: int, errors: str) -> None:
-    assert code == 0, errors
-    assert 'Traceback' not in errors
-    assert 'Exception' not in errors

@@ -5,6 +5,7 @@
 import json
 import math
 import os
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +23,8 @@ from stickslip_sim.recording import (
 )
 from stickslip_sim.recording.messages import Packer, header
 from stickslip_sim.words import Event, Sample
-from tests.recorded_runs import friction_force, mode_event, slider_state, wait_for
+from tests.recorded_runs import friction_force, mode_event, slider_state
+from tests.waiting import wait_for
 
 # lark, which rosidl's Python brings in, imports modules that Python wants to rename.
 pytestmark = pytest.mark.filterwarnings("ignore:module 'sre_:DeprecationWarning")
@@ -97,7 +99,7 @@ class TestMessages:
                     depth=topic.qos.depth, reliability=QoSReliabilityPolicy[topic.qos.reliability.upper()],
                     durability=QoSDurabilityPolicy[topic.qos.durability.upper()]))
             for topic in topics.recorded(node.get_namespace()):
-                infos = wait_for(lambda name=topic.name: node.get_publishers_info_by_topic(name))
+                infos = wait_for(partial(node.get_publishers_info_by_topic, topic.name), 'its publisher')
                 info = next(info for info in infos if info.topic_type == topic.type)
                 assert str(info.topic_type_hash) == schema(topic.type).hash
                 found, wanted = info.qos_profile, topic.qos.as_yaml()

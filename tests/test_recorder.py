@@ -19,7 +19,8 @@ from stickslip_sim.recording import (
     receipt_file,
     write_bag,
 )
-from tests.recorded_runs import FACTS, events, samples, wait_for
+from tests.recorded_runs import FACTS, events, samples
+from tests.waiting import wait_for
 
 ROOT = Path(__file__).parent.parent
 
@@ -93,14 +94,15 @@ class TestThread:
     def test_few_messages_reach_the_disk_within_a_second(self, tmp_path: Path) -> None:
         recorder = RecorderThread(open_run(tmp_path / 'run', FACTS))
         recorder.put(0, b'only one', 0, 0, 0)
-        assert wait_for(lambda: list(read_run(tmp_path / 'run').messages()))[0].data == b'only one'
+        (first,) = wait_for(lambda: list(read_run(tmp_path / 'run').messages()), 'the message in the file')
+        assert first.data == b'only one'
         recorder.close()
 
     def test_any_failure_is_told_and_stops_nobody(self, tmp_path: Path) -> None:
         recorder = RecorderThread(open_run(tmp_path / 'run', FACTS))
         recorder.put(99, b'', 0, 0, 0)  # no such topic
         recorder.put(0, b'', 0, 0, 0)
-        assert wait_for(lambda: recorder.failure)
+        assert wait_for(lambda: recorder.failure, 'the failure')
         recorder.put(0, b'', 0, 0, 0)
         assert not recorder.close()
         assert recorder.dropped == 3

@@ -17,7 +17,8 @@ from stickslip_sim.errors import RecordingWarning
 from stickslip_sim.recording import open_run, read_run, schema, write_bag
 from stickslip_sim.recording.topics import PARAMETER_EVENTS, RECORDED, SLIDER_STATE, Topic
 from tests.recorded_runs import FACTS, damage, events, samples
-from tests.ros_nodes import Client, client, executable, running, wait_for
+from tests.ros_nodes import Client, assert_clean, client, executable, running
+from tests.waiting import wait_for
 
 from rcl_interfaces.srv import DescribeParameters, SetParametersAtomically  # isort: skip
 from rclpy.parameter import Parameter  # isort: skip
@@ -52,11 +53,6 @@ def call(viewer: Client, service: str, on: bool | None = None) -> Any:
     if on is None:
         return viewer.call(Trigger, service, 'replay')
     return viewer.call(SetBool, service, 'replay', data=on)
-
-
-def assert_clean(code: int, errors: str) -> None:
-    assert code == 0, errors
-    assert 'Traceback' not in errors
 
 
 class Ears:

@@ -12,9 +12,10 @@ import pytest
 from stickslip_sim.recording import RECORDED, Run, flat_layout, open_run, read_run
 from stickslip_sim.recording.messages import Packer
 from stickslip_sim.recording.topics import DRIVE_VELOCITY, RIG_EVENT, SLIDER_STATE, Topic
-from tests.eventful_runs import eventful_run, recording_into
+from tests.eventful_runs import eventful_run
 from tests.recorded_runs import FACTS, samples
-from tests.ros_nodes import NodeProcess, client, running, wait_for
+from tests.ros_nodes import NodeProcess, client, recording_into, running
+from tests.waiting import wait_for
 
 from rclpy.serialization import serialize_message  # isort: skip
 

@@ -17,7 +17,8 @@ from stickslip_sim.recording.playback import Recording
 from stickslip_sim.recording.topics import RECORDED
 from stickslip_sim.ros.replay.player import Act, Player
 from stickslip_sim.ros.replay.timeline import Timeline
-from tests.recorded_runs import FACTS, damage, events, samples, wait_for
+from tests.recorded_runs import FACTS, damage, events, samples
+from tests.waiting import wait_for
 
 SECOND = 1_000_000_000
 
@@ -110,7 +111,7 @@ class TestPlayer:
         script = Counting([0, SECOND // 20, SECOND // 20, SECOND // 10])
         begin = time.monotonic()
         player = play(script)
-        wait_for(lambda: player.is_over)
+        wait_for(lambda: player.is_over, 'the end')
         assert time.monotonic() - begin >= 0.1
         assert script.done == [0, 1, 2, 3]
         assert player.crash is None
@@ -118,9 +119,9 @@ class TestPlayer:
     def test_goes_faster_when_told(self, play: Callable[..., Player]) -> None:
         script = Counting([0, 3600 * SECOND])
         player = play(script)
-        wait_for(lambda: script.done == [0])
+        wait_for(lambda: script.done == [0], 'the first message')
         player.change_rate(1e6)
-        wait_for(lambda: player.is_over)
+        wait_for(lambda: player.is_over, 'the end')
         assert script.done == [0, 1]
 
     def test_one_at_a_time_while_paused(self, play: Callable[..., Player]) -> None:
@@ -129,8 +130,8 @@ class TestPlayer:
         for number in range(3):
             assert script.done == list(range(number))
             assert player.play_next()
-            wait_for(partial(script.done.__contains__, number))
-        wait_for(lambda: player.is_over)
+            wait_for(partial(script.done.__contains__, number), f'message {number}')
+        wait_for(lambda: player.is_over, 'the end')
         assert not player.play_next()
 
     def test_play_next_is_refused_while_it_plays(self, play: Callable[..., Player]) -> None:
@@ -138,12 +139,12 @@ class TestPlayer:
         assert not player.play_next()
         player.pause(True)
         assert player.play_next()
-        wait_for(lambda: player.is_over)
+        wait_for(lambda: player.is_over, 'the end')
 
     def test_again_and_again_until_it_is_stopped(self, play: Callable[..., Player]) -> None:
         script = Counting([0, 1000])
         player = play(script, loop=True)
-        wait_for(lambda: script.prepared > 3)
+        wait_for(lambda: script.prepared > 3, 'some messages')
         player.end()
         assert player.is_over
         assert script.done[:6] == [0, 1, 0, 1, 0, 1]
@@ -152,7 +153,7 @@ class TestPlayer:
         script = Counting([0])
         script.acts = lambda: iter([Act(0, lambda: 1 // 0)])  # type: ignore[method-assign]
         player = play(script)
-        wait_for(lambda: player.is_over)
+        wait_for(lambda: player.is_over, 'the end')
         assert isinstance(player.crash, ZeroDivisionError)
 
 

@@ -12,7 +12,8 @@ import pytest
 from stickslip_sim.axis import InitialState
 from stickslip_sim.courses import Course, Wave, constant
 from stickslip_sim.errors import InputError, SolverError
-from stickslip_sim.pacing import Grid, Unpaced
+from stickslip_sim.grid import Grid
+from stickslip_sim.pacing import Unpaced
 from stickslip_sim.rig import Fault, Product, Rig
 from stickslip_sim.rig.drive import DriveLimits
 from stickslip_sim.rig.encoder import EncoderSettings
@@ -23,8 +24,8 @@ from stickslip_sim.scene import load_scene
 from stickslip_sim.simulator import Simulator
 from stickslip_sim.solvers import Solver, exact
 from stickslip_sim.words import EventKind
-from tests.recorded_runs import wait_for
 from tests.rigs import AXIS, STUCK, Order, Script, bits, inject, make, random_script, run
+from tests.waiting import wait_for
 
 STEPS = 600
 FULL: dict[str, Any] = {
@@ -271,9 +272,9 @@ def test_a_paused_loop_that_is_reset_has_its_start() -> None:
     loop = StepLoop(make(), Unpaced(Grid(1000.0)), (), [products.append], Watchdog(0.0))
     loop.paused = True
     loop.start()
-    wait_for(lambda: loop.step == 0)
+    wait_for(lambda: loop.step == 0, 'the start')
     assert loop.at_boundary(lambda: loop.run_steps(10, None, None, lambda: False))
     assert loop.at_boundary(loop.restart)
-    wait_for(lambda: loop.step == 0)
+    wait_for(lambda: loop.step == 0, 'the start again')
     loop.stop()
     assert [product.step for product in products] == [*range(11), 0]

@@ -24,7 +24,8 @@ from tests.ros2_control_client import (
     hardware_interface,
     near_is_silent,
 )
-from tests.ros_nodes import Client, client, running, wait_for
+from tests.ros_nodes import Client, client, running
+from tests.waiting import wait_for
 
 pytestmark = pytest.mark.ros
 

@@ -9,7 +9,7 @@ import pytest
 from stickslip_sim import offline
 from stickslip_sim.courses import MAX_WAVES
 from stickslip_sim.friction.kinetic import MAX_KNOTS
-from stickslip_sim.recording import reader, records, schemas
+from stickslip_sim.recording import opening, reader, records, schemas
 from stickslip_sim.rerun import steps
 from stickslip_sim.rig.faults import MAX_FAULTS
 from stickslip_sim.scene import parameter, ros_yaml
@@ -22,7 +22,7 @@ ROWS = [line for line in (Path(__file__).parents[1] / 'docs/security.md').read_t
     ('a text in a scene', (parameter.TEXT_LIMIT,)),
     ('knots of a friction table', (MAX_KNOTS, MAX_WAVES, MAX_FAULTS)),
     ('a record of a bag', (records.SIZE_LIMIT >> 20,)),
-    ('schemas, attachments', (reader.MOST_TOLD >> 20,)),
+    ('schemas, attachments', (opening.MOST_TOLD >> 20,)),
     ('a definition', (schemas.LONGEST, schemas.MOST_ELEMENTS)),
     ('a topic of a bag', (reader.MOST_HELD >> 20,)),
     ('steps that a recording may lack', (steps.MOST_MISSING,)),

@@ -23,7 +23,8 @@ from stickslip_sim.rig.faults import RULES
 from stickslip_sim.scene import Scene, load_scene, scene_from_values
 from stickslip_sim.scene.ros_yaml import plain_value
 from tests.replays import FIELDS, assert_same_states, made_again
-from tests.ros_nodes import Client, NodeProcess, client, running, wait_for
+from tests.ros_nodes import Client, NodeProcess, client, recording_into, running
+from tests.waiting import wait_for
 
 from stickslip_msgs.srv import InjectFault, Step  # isort: skip
 
@@ -204,10 +205,6 @@ class TestStorm:
         assert recorded.counts['/rig_event'] > 10
         assert recorded.counts['/slider_state'] > 300
         assert_same_states(recorded, made_again(recorded, load_scene('paper_fig8')))
-
-
-def recording_into(folder: Path) -> list[str]:
-    return ['-p', 'record.enabled:=true', '-p', f'record.folder:={folder}']
 
 
 _SENDER = """

@@ -12,7 +12,8 @@ from typing import Any
 import pytest
 
 from tests import standard_package
-from tests.ros_nodes import client, running, wait_for
+from tests.ros_nodes import client, running
+from tests.waiting import wait_for
 
 pytestmark = pytest.mark.ros
 

@@ -11,7 +11,8 @@ import pytest
 from stickslip_sim.axis import InitialState
 from stickslip_sim.commands import CommandSlot
 from stickslip_sim.courses import constant
-from stickslip_sim.pacing import Grid, Pacer
+from stickslip_sim.grid import Grid
+from stickslip_sim.pacing import Pacer
 from stickslip_sim.rig import Product, Rig
 from stickslip_sim.rig.settings import RigSettings
 from stickslip_sim.rig.watchdog import Watchdog
@@ -19,7 +20,7 @@ from stickslip_sim.ros.loop import StepLoop
 from stickslip_sim.solvers import Solver, exact
 from stickslip_sim.words import Instant
 from tests.axes import COMPLIANT, make, paper_axis
-from tests.recorded_runs import wait_for
+from tests.waiting import wait_for
 
 RATE = 1000.0
 
@@ -35,7 +36,7 @@ class Bench:
         self.loop = StepLoop(rig, Pacer(grid, 20.0), self.slots, [self.products.append], Watchdog(0.0), by_request)
 
     def reach(self, step: int) -> None:
-        wait_for(lambda: self.loop.step >= step)
+        wait_for(lambda: self.loop.step >= step, f'step {step}')
 
 
 @pytest.fixture
@@ -130,11 +131,11 @@ def tired_after(time: float) -> Solver:
 def test_a_solver_that_gives_up_stops_time_not_the_thread() -> None:
     bench = Bench(tired_after(0.05))
     bench.loop.start()
-    wait_for(lambda: bench.loop.failure)
+    wait_for(lambda: bench.loop.failure, 'the failure')
     assert bench.loop.step == 50
     assert 'time hardly goes on' in bench.loop.failure
     assert bench.loop.at_boundary(bench.loop.restart)
-    wait_for(lambda: len(bench.products) > 80)
+    wait_for(lambda: len(bench.products) > 80, 'steps after the restart')
     bench.loop.stop()
 
 

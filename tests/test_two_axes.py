@@ -12,7 +12,8 @@ from rosgraph_msgs.msg import Clock
 
 from stickslip_sim.recording import read_run
 from tests.launch_files import launched
-from tests.ros_nodes import Client, NodeProcess, client, running, wait_for
+from tests.ros_nodes import Client, NodeProcess, client, running
+from tests.waiting import wait_for
 
 pytestmark = pytest.mark.ros
 

@@ -13,7 +13,8 @@ from stickslip_sim.recording.topics import FRICTION_FORCE, SLIDER_STATE
 from stickslip_sim.rerun.recording import open_recording
 from stickslip_sim.rerun.verdict import verify
 from tests.rewritten_bags import rewritten
-from tests.verify_tool import Capture, verified
+from tests.tool import Capture
+from tests.verify_tool import verified
 
 STEPS, EVENTS = 3001, 17     # of the bag
 FAULTS = ('faults.ids=[dry, knock]', 'faults.kinds=[friction_scale, force_pulse]', 'faults.starts=[0.3, 0.7004]',

@@ -16,7 +16,8 @@ from stickslip_sim.rerun.recording import open_recording
 from stickslip_sim.scene import load_scene
 from stickslip_sim.words import EventKind
 from tests.rewritten_bags import rewritten
-from tests.verify_tool import Capture, refused, verified
+from tests.tool import Capture
+from tests.verify_tool import refused, verified
 
 STEPS = 3001   # of the bag
 

@@ -9,14 +9,15 @@ import pytest
 
 from stickslip_sim.commands import CommandSlot
 from stickslip_sim.errors import InputError
-from stickslip_sim.pacing import Grid, Pacer, StepClock, Unpaced
+from stickslip_sim.grid import Grid
+from stickslip_sim.pacing import Pacer, StepClock, Unpaced
 from stickslip_sim.rig import NoteKind, Product
 from stickslip_sim.rig.watchdog import Watchdog
 from stickslip_sim.ros.loop import StepLoop
 from stickslip_sim.scene import load_scene
-from tests.recorded_runs import wait_for
 from tests.rigs import make, told
 from tests.test_pacing import FakeClock
+from tests.waiting import wait_for
 
 MS = 1_000_000
 TIMEOUT = 0.1
@@ -48,9 +49,9 @@ class Bench:
         self._acts, self._last = acts, steps
         self.loop.start()
         if self.loop.by_request:
-            wait_for(lambda: self.loop.step == 0)
+            wait_for(lambda: self.loop.step == 0, 'the start')
             assert self.loop.at_boundary(lambda: self.loop.run_steps(steps, None, None, lambda: False))
-        wait_for(lambda: self.loop.step >= steps or self.loop.crash)
+        wait_for(lambda: self.loop.step >= steps or self.loop.crash, 'the steps')
         self.loop.stop()
         assert self.loop.crash is None
         return [step for step, kind in told(self.products) if kind == NoteKind.COMMAND_TIMEOUT]

@@ -4,23 +4,17 @@
 
 from pathlib import Path
 
-import pytest
-
-from stickslip_sim.cli.main import run
-
-Capture = pytest.CaptureFixture[str]
+from tests import tool
+from tests.tool import Capture, answered
 
 
 def verified(capsys: Capture, *arguments: str | Path) -> tuple[int, str, str]:
     """Return the exit code, standard output and standard error of the tool."""
-    capsys.readouterr()
-    code = run(['verify', *map(str, arguments)])
-    out, err = capsys.readouterr()
+    code, out, err = answered(capsys, 'verify', *arguments)
     assert err.count('\n') == (code != 0)
     return code, out, err
 
 
 def refused(capsys: Capture, *arguments: str | Path) -> str:
-    code, out, err = verified(capsys, *arguments)
-    assert (code, out) == (2, '')
-    return err
+    """Return the one line on standard error."""
+    return tool.refused(capsys, 'verify', *arguments)

@@ -23,7 +23,8 @@ from rclpy.serialization import serialize_message
 from rclpy.signals import SignalHandlerOptions
 
 from stickslip_msgs.msg import DriveVelocity, ExternalForce, FrictionForce, SliderState
-from stickslip_sim.pacing import Grid, Pacer, wake_precisely
+from stickslip_sim.grid import Grid
+from stickslip_sim.pacing import Pacer, wake_precisely
 from stickslip_sim.recording import RECORDED, RecorderThread, RunFacts, open_run
 from stickslip_sim.recording import topics as names
 from stickslip_sim.ros.conversion import set_stamp

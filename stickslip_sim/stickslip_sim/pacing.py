@@ -11,10 +11,9 @@ import math
 import time
 from contextlib import suppress
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import Protocol
 
-from .words import Instant
+from .grid import Grid, decimal
 
 NANOSECONDS = 1_000_000_000
 _MAX_BACKLOG = NANOSECONDS // 2   # ns that a stalled loop catches up
@@ -72,27 +71,6 @@ class StepClock(Protocol):
         """Return the time by which silence is measured: on the steady clock, or simulation `time`."""
 
 
-class Grid:
-    """The times of the steps: step n ends at n / rate, exact for every rate (1/s, > 0)."""
-
-    def __init__(self, rate: float) -> None:
-        self.rate = rate
-        self._up, self._down = _decimal(rate).as_integer_ratio()
-
-    def instant(self, step: int) -> Instant:
-        """Return the simulation time at which a step ends."""
-        second, rest = divmod(step * self._down, self._up)
-        return Instant(float(second), rest / self._up)
-
-    def nanoseconds(self, step: int) -> int:
-        """Return that time rounded to nanoseconds."""
-        return self.instant(step).nanoseconds
-
-    def steps(self, seconds: float) -> int:
-        """Return in how many steps this much time has passed; exact, as both numbers are meant as decimals."""
-        return math.ceil(_decimal(seconds) * self._up / self._down)
-
-
 @dataclass(slots=True)
 class Account:
     """How the steps kept their time; durations in ns."""
@@ -117,7 +95,7 @@ class Pacer:
 
     def __init__(self, grid: Grid, factor: float = 1.0, clock: Clock | None = None,
                  watches_steady: bool = True) -> None:
-        up, down = (_decimal(grid.rate) * _decimal(factor)).as_integer_ratio()
+        up, down = (decimal(grid.rate) * decimal(factor)).as_integer_ratio()
         self._numerator, self._denominator = NANOSECONDS * down, up
         self.period = self._numerator // self._denominator
         self.account = Account()
@@ -205,8 +183,3 @@ def step_clock(grid: Grid, mode: str, factor: float) -> StepClock:
     if mode == 'lockstep' or factor == math.inf:
         return Unpaced(grid)
     return Pacer(grid, factor, watches_steady=mode == 'realtime')
-
-
-def _decimal(number: float) -> Fraction:
-    """Return the decimal number that a float was written as, so that 3333 steps at 333.3 Hz take 10 s."""
-    return Fraction(repr(number))

@@ -4,7 +4,8 @@
 
 from .bag import BagWriter
 from .offline import OfflineBag, samples_of, write_bag
-from .reader import RecordedMessage, Run, read_run
+from .opening import read_run
+from .reader import RecordedMessage, Run
 from .run import RunFacts, checkpoint_file, open_run, receipt_file
 from .schemas import MessageCodec, Schema, flat_layout, schema
 from .tables import columns_of, events_of, name_of

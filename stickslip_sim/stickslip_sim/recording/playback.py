@@ -13,7 +13,8 @@ from rosbags.rosbag2 import ReaderError
 from rosbags.rosbag2.metadata import parse_qos
 
 from ..errors import RecordingError
-from .reader import RecordedMessage, file_of
+from .opening import file_of
+from .reader import RecordedMessage
 from .records import CUT_OFF, chunk_at, records, summary_of
 from .topics import QosProfile
 

@@ -1,9 +1,8 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Reads runs back, also those of a process that was killed or of a disk that was full."""
+"""A recorded run: its messages, its figures, and its topics as arrays."""
 
 import json
-import warnings
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -12,11 +11,11 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from mcap.records import Attachment, Channel, Footer, McapRecord, Message, Metadata, Schema
+from mcap.records import Channel, Message
 from numpy.typing import NDArray
 from rosbags.typesys.store import Typestore
 
-from ..errors import InputError, RecordingError, RecordingWarning
+from ..errors import InputError, RecordingError
 from ..scene import Scene, parse_scene
 from ..words import Event
 from .layout import Layout, layout_of, numbers_of, texts_of
@@ -26,8 +25,7 @@ from .schemas import store_of, understood
 from .tables import events_of
 
 MOST_HELD = 4 << 30    # bytes of a topic in memory at once
-_OVERHEAD = 300        # bytes of a message there beside its own
-MOST_TOLD = 64 << 20   # bytes of all that a file holds beside messages
+OVERHEAD = 300         # bytes of a message there beside its own
 
 
 class RecordedMessage(NamedTuple):
@@ -140,7 +138,7 @@ class Run:
         held, size = [], 0
         for message in self.messages([topic]):
             held.append(message)
-            size += len(message.data) + _OVERHEAD
+            size += len(message.data) + OVERHEAD
             if size > MOST_HELD:
                 raise RecordingError(f'{self.path}: {topic} has more than {len(held)} messages of {size >> 20} MiB in '
                                      'all, which do not fit: take messages() one by one, or a part of the recording')
@@ -173,70 +171,3 @@ class Run:
             yield
         except RecordingError as error:
             raise RecordingError(': '.join([str(self.path), *part, str(error)])) from None
-
-
-def read_run(path: Path | str) -> Run:
-    """Return the run in a folder, or in an MCAP file by itself; raises RecordingError when there is none.
-
-    A run without an end (its process was killed, its disk was full, or it is still being written) is read as far as it
-    goes, with a RecordingWarning.
-    """
-    run = Run(file_of(Path(path)))
-    names: dict[int, str] = {}
-    channels: dict[int, str] = {}
-    told = 0
-    for record in records(run.path):
-        if isinstance(record, Message):
-            if record.channel_id not in channels:
-                raise RecordingError(f'{run.path}: damaged: a message on channel {record.channel_id}, which is nowhere')
-            run.counts[channels[record.channel_id]] += 1
-            continue
-        told += _size(record)
-        if told > MOST_TOLD:
-            raise RecordingError(f'{run.path}: more than {MOST_TOLD >> 20} MiB beside its messages; no run has that')
-        _note(run, record, names, channels)
-    if not run.is_complete:
-        warnings.warn(f'{run.path} has no end: cut off, or still being written; {sum(run.counts.values())} messages are'
-                      ' whole, and metadata.yaml does not count them', RecordingWarning, stacklevel=2)
-    return run
-
-
-def _note(run: Run, record: McapRecord, names: dict[int, str], channels: dict[int, str]) -> None:
-    """Take what a record tells of the run; `names` of schemas and topics of `channels` by their numbers."""
-    if isinstance(record, Schema) and record.id not in names:    # the index repeats them
-        names[record.id] = record.name
-        if record.encoding == 'ros2msg':
-            run.schemas[record.name] = record.data.decode(errors='replace')
-    elif isinstance(record, Channel) and record.id not in channels:
-        channels[record.id] = record.topic
-        run.topics[record.topic] = names.get(record.schema_id, '')    # other programs may give none
-        run.channel_metadata[record.topic] = record.metadata
-        run.counts.setdefault(record.topic, 0)
-    elif isinstance(record, Attachment):
-        run.attachments[record.name] = record.data
-    elif isinstance(record, Metadata):
-        run.metadata[record.name] = record.metadata
-    elif isinstance(record, Footer):
-        run.is_complete = True
-
-
-def _size(record: McapRecord) -> int:
-    """Return about how many bytes of a record are kept."""
-    if isinstance(record, (Attachment, Schema)):
-        return len(record.name) + len(record.data)
-    if isinstance(record, (Channel, Metadata)):
-        return sum(len(key) + len(value) for key, value in record.metadata.items()) + _OVERHEAD
-    return 0
-
-
-def file_of(path: Path) -> Path:
-    """Return the MCAP file of a bag, given by its folder or by itself; raises RecordingError when there is no one."""
-    files = sorted(path.glob('*.mcap')) if path.is_dir() else [path]
-    for foreign in [*path.glob('*.mcap.*'), *path.glob('*.db3*')] if not files else []:
-        raise RecordingError(f'{path}: {foreign.name} is not read, only .mcap is; decompress or convert it first '
-                             '(zstd -d, ros2 bag convert)')
-    if not files or not files[0].is_file():
-        raise RecordingError(f'{path}: no recorded run there; give the folder of a run or an .mcap file')
-    if len(files) > 1:
-        raise RecordingError(f'{path}: {len(files)} .mcap files; give the one to read')
-    return files[0]

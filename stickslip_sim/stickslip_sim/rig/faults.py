@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from ..errors import InputError
-from ..pacing import Grid
+from ..grid import Grid
 
 MAX_FAULTS = 1000      # planned or in force
 MAX_TIME = 1e9         # s

@@ -1,22 +1,22 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""One axis and its rig, from step to step."""
+"""One axis and its rig, from step to step: orders come in, products go out."""
 
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ..axis import Axis, InitialState
-from ..courses import Course, constant, course_of, plain_of
+from ..courses import Course
 from ..errors import InputError
-from ..pacing import Grid
+from ..grid import Grid
 from ..simulator import Simulator
 from ..solvers import Solver
 from ..words import Event, Instant
 from .drive import Drive
 from .encoder import Encoder
 from .faults import Fault, Faults
-from .friction import with_friction_scaled
+from .plant import Plant
 from .product import Counts, Note, NoteKind, Product
 from .settings import RigSettings
 from .wire import Wire
@@ -33,13 +33,11 @@ class Rig:
         self.simulator = Simulator(axis, initial, drive, force, solver, accounting=True)
         self._grid, self._settings = grid, settings
         self._courses = drive, force
-        self._axis = axis                     # without faults
         self._begin()
 
     def reset(self) -> None:
         """Begin anew with step 0; the parameters of the axis stay as they are."""
-        self._change_axis(1.0)
-        self.simulator.reset()
+        self._plant.rewind()
         self._begin()
 
     def _begin(self) -> None:
@@ -50,11 +48,7 @@ class Rig:
         self.has_failed = False               # on_timeout: fault; until cleared
         self._faults = Faults(self._grid, settings.faults)
         self._wire = Wire(self._grid, settings.seed)
-        self._drive = Drive(drive, settings.limits)
-        self._course = drive
-        self._force, self._acting_force = force, force
-        self._friction_scale = 1.0
-        self._is_changed = False              # axis, force or faults, since they last took effect
+        self._plant = Plant(self.simulator, Drive(drive, settings.limits), force, self._faults)
         self._velocity_order: float | None = None
         self._force_order: float | None = None
         self._encoder = Encoder(settings.encoder, self._grid.rate, settings.encoder_delay_steps, settings.seed)
@@ -93,7 +87,7 @@ class Rig:
                                 silence))
         self.has_failed = reaction == 'fault'
         if reaction != 'hold':
-            self._drive.follow(0.0, self.simulator.time, self._settings.timeout_deceleration)
+            self._plant.drive.follow(0.0, self.simulator.time, self._settings.timeout_deceleration)
 
     def inject(self, fault: Fault) -> Fault:
         """Plan a fault from now on; return it with its id.  Raises InputError."""
@@ -105,7 +99,7 @@ class Rig:
         """End a fault now, or before it begins; raises InputError when there is none by that id."""
         fault = self._faults.clear(fault_id)
         self._notes.append(Note(NoteKind.FAULT_CLEARED, fault.id, f'{fault.kind} cleared', fault.value, fault=fault))
-        self._is_changed = True
+        self._plant.change_faults()
 
     def clear_faults(self) -> list[str]:
         """End all faults, that of a command time-out among them; return their ids."""
@@ -119,8 +113,7 @@ class Rig:
 
     def change_axis(self, axis: Axis) -> None:
         """Go on with other parameters."""
-        self._axis = axis
-        self._is_changed = True
+        self._plant.change_axis(axis)
 
     # Checkpoints
 
@@ -129,26 +122,19 @@ class Rig:
 
         The encoders are left out: what they measure moves nothing.
         """
-        self._act()
-        return {'step': self.step, 'drive': self._drive.checkpoint(), 'wire': self._wire.checkpoint(),
-                'faults': self._faults.checkpoint(), 'force': plain_of(self._force),
-                'acting_force': plain_of(self._acting_force), 'friction_scale': self._friction_scale,
-                'has_failed': self.has_failed, 'notes': len(self._notes), 'simulator': self.simulator.checkpoint()}
+        self._plant.act()
+        return {'step': self.step, 'wire': self._wire.checkpoint(), 'faults': self._faults.checkpoint(),
+                'has_failed': self.has_failed, 'notes': len(self._notes), **self._plant.checkpoint()}
 
     def restore(self, saved: Mapping[str, Any]) -> None:
         """Go on from a checkpoint of a rig of the same scene, with the parameters of the axis that held then.
 
         Raises InputError, KeyError, TypeError or ValueError when it is none; the rig is of no use then.
         """
-        self._drive.restore(saved['drive'])
+        self._plant.restore(saved)
         self._wire.restore(saved['wire'])
         self._faults.restore(saved['faults'])
-        self._course = self._drive.course
-        self._force, self._acting_force = course_of(saved['force']), course_of(saved['acting_force'])
-        self._friction_scale = float(saved['friction_scale'])
         self.step, self.has_failed = int(saved['step']), bool(saved['has_failed'])
-        axis = with_friction_scaled(self._axis, self._friction_scale)
-        self.simulator.restore(saved['simulator'], axis, self._course, self._acting_force)
 
     # Steps
 
@@ -161,8 +147,9 @@ class Rig:
         if velocity is not None or not self._wire.is_empty:
             self._obey_velocity(velocity, step)
         if force is not None:
-            self._force, self._force_order, self._is_changed = constant(force), None, True
-        self._act()
+            self._force_order = None
+            self._plant.command_force(force)
+        self._plant.act()
         notes, self._notes = self._notes, []
         events = self.simulator.advance(self._grid.instant(step))
         sample = self.simulator.sample()
@@ -176,7 +163,7 @@ class Rig:
         while (begin := self._grid.instant(int(min(self._faults.next_change, _NEVER)) - 1)) < to:
             events += self.simulator.advance(begin)
             self._enter_faults(int(self._faults.next_change))
-            self._act()
+            self._plant.act()
         return events + self.simulator.advance(to)
 
     @property
@@ -199,10 +186,11 @@ class Rig:
             self.is_silent = False
             self._notes.append(Note(NoteKind.COMMAND_RESUMED, 'velocity', 'drive velocities come again', velocity))
         self._tell_limits(velocity)
-        self._drive.follow(velocity, self.simulator.time)
+        self._plant.drive.follow(velocity, self.simulator.time)
 
     def _tell_limits(self, velocity: float) -> None:
-        was_limited, self._is_limited = self._is_limited, not self._drive.can_follow(velocity, self.simulator.time)
+        can_follow = self._plant.drive.can_follow(velocity, self.simulator.time)
+        was_limited, self._is_limited = self._is_limited, not can_follow
         self.counts.limited += self._is_limited
         if self._is_limited and not was_limited:
             self._notes.append(Note(NoteKind.COMMAND_LIMITED, 'velocity',
@@ -213,40 +201,7 @@ class Rig:
         for kind, word, faults in ((NoteKind.FAULT_END, 'ends', ended), (NoteKind.FAULT_BEGIN, 'begins', begun)):
             self._notes.extend(Note(kind, fault.id, f'{fault.kind} {word}', fault.value, fault=fault)
                                for fault in faults)
-        self._is_changed = True
-
-    def _act(self) -> None:
-        """Let all that changed take effect at once."""
-        if not self._is_changed:
-            self._command_drive()
-            return
-        self._is_changed = False
-        scale = math.prod(self._faults.values('friction_scale'))
-        falls, self._friction_scale = scale < self._friction_scale, scale
-        self._drive.freeze(bool(self._faults.values('drive_freeze')), self.simulator.time)
-        if not falls:
-            self._change_axis(scale)
-        self._command_force()
-        self._command_drive()
-        if falls:    # last: what held before and holds afterwards must not break away in between
-            self._change_axis(scale)
-
-    def _change_axis(self, friction_scale: float) -> None:
-        axis = with_friction_scaled(self._axis, friction_scale)
-        if axis != self.simulator.axis:
-            self.simulator.change_axis(axis)
-
-    def _command_force(self) -> None:
-        pulse = math.fsum(self._faults.values('force_pulse'))
-        course = self._force.plus(pulse) if pulse else self._force
-        if course != self._acting_force:
-            self._acting_force = course
-            self.simulator.command_force(course)
-
-    def _command_drive(self) -> None:
-        if self._drive.course is not self._course:
-            self._course = self._drive.course
-            self.simulator.command_drive(self._course)
+        self._plant.change_faults()
 
 
 _NEVER = 2**62    # a step that no run reaches

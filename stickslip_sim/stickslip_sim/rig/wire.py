@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ..pacing import Grid
+from ..grid import Grid
 from .faults import Fault
 from .randomness import Stream, restore, state_of, stream
 

@@ -6,7 +6,7 @@ from rclpy.node import Node
 from rosgraph_msgs.msg import Clock
 
 from ..errors import InputError
-from ..pacing import Grid
+from ..grid import Grid
 from ..recording.topics import CLOCK
 from ..rig import Product
 from ..scene.model import TimeSettings

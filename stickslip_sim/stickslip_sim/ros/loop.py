@@ -11,37 +11,19 @@ import threading
 from collections import deque
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from typing import NamedTuple
 
-from ..commands import Command, CommandSlot
+from ..commands import CommandSlot
 from ..errors import SolverError
 from ..pacing import StepClock, wake_precisely
 from ..rig import Product, Rig
 from ..rig.watchdog import Watchdog
+from .command_inputs import CommandInputs, CommandTotals
 from .ledger import Ledger
 
 _IDLE = 0.05            # s between two looks at whether to stop while time stands still
 _PATIENCE = 5.0         # s that a request waits for its boundary
 
-
-class CommandTotals(NamedTuple):
-    """What befell the commands of a run."""
-
-    received: int
-    refused: int
-    lost: int         # to a fault
-    limited: int      # the drive could not follow at once
-    timed_out: int    # times that they stopped coming
-
-
 Taker = Callable[[Product], None]
-
-
-class _Input(NamedTuple):
-    """A slot and what to do with a command in it."""
-
-    slot: CommandSlot
-    order: Callable[[float], None]
 
 
 class StepLoop:
@@ -57,10 +39,9 @@ class StepLoop:
         self.by_request = by_request
         self.failure = ''                    # why the solver gave up; time stands still then
         self.crash: BaseException | None = None
-        self.ledger, self.account, self.slots = Ledger(), clock.account, slots
+        self.ledger, self.account = Ledger(), clock.account
         self._clock, self._takers, self._watchdog = clock, takers, watchdog
-        self._inputs = [_Input(slot, order) for slot, order in zip(slots, (rig.command_velocity, rig.command_force))]
-        self._held: list[Command | None] = [None] * len(self._inputs)
+        self._inputs = CommandInputs(slots, (rig.command_velocity, rig.command_force))
         self._requests: deque[Callable[[], None]] = deque()
         self._is_over, self._wake = threading.Event(), threading.Event()
         self._thread = threading.Thread(target=self._run, name='steps', daemon=True)
@@ -76,17 +57,19 @@ class StepLoop:
         return self.rig.time_ns
 
     @property
+    def slots(self) -> Sequence[CommandSlot]:
+        """Where commands arrive: drive velocity and force."""
+        return self._inputs.slots
+
+    @property
     def held(self) -> list[float | None]:
         """The commands in force, by input; None where the course of the scene is."""
-        return [command.value if command else None for command in self._held]
+        return self._inputs.held
 
     @property
     def command_totals(self) -> CommandTotals:
         """What befell the commands so far."""
-        counts = self.rig.counts
-        return CommandTotals(sum(slot.received for slot in self.slots),
-                             sum(slot.refused for slot in self.slots) + counts.refused,
-                             counts.lost, counts.limited, counts.timed_out)
+        return self._inputs.totals(self.rig.counts)
 
     def start(self) -> None:
         """Begin with step 0, now."""
@@ -123,9 +106,7 @@ class StepLoop:
 
     def restart(self) -> None:
         """Begin anew with step 0 and the initial state, without commands; at a boundary only."""
-        for i, taken in enumerate(self._inputs):
-            taken.slot.forget()
-            self._held[i] = None
+        self._inputs.forget()
         self.rig.reset()
         self._watchdog.forget()
         self.ledger.forget()
@@ -139,9 +120,7 @@ class StepLoop:
 
         Returns what came of them; when the solver gives up on the way, `failure` says why.
         """
-        for taken, value in zip(self._inputs, (velocity, force)):
-            if value is not None:
-                taken.slot.latest = Command(value, self._clock.now())
+        self._inputs.put((velocity, force), self._clock.now())
         products: list[Product] = []
         try:
             while len(products) < count and not stop() and not self._is_over.is_set():
@@ -177,7 +156,7 @@ class StepLoop:
         return bool(self.failure) or (self.step >= 0 and (self.paused or self.by_request))
 
     def _make_step(self, begin: int, lateness: int) -> Product:
-        age, fresh = self._take_commands(begin)
+        age, fresh = self._inputs.take(begin)
         self._watch()
         product = self.rig.make_step()
         for take in self._takers:
@@ -185,20 +164,6 @@ class StepLoop:
         end = self._clock.now()
         self.ledger.add(self.rig.time_ns, end - begin, lateness, age, end - fresh if fresh else None)
         return product
-
-    def _take_commands(self, now: int) -> tuple[int | None, int]:
-        """Order what is new; return the age of the newest command in force, and when the newest new one arrived."""
-        newest = fresh = 0
-        for kind, (slot, order) in enumerate(self._inputs):
-            command = slot.latest
-            if command is None:
-                continue
-            newest = max(newest, command.arrival)
-            if command is not self._held[kind]:
-                order(command.value)
-                self._held[kind] = command
-                fresh = max(fresh, command.arrival)
-        return (now - newest if newest else None), fresh
 
     def _watch(self) -> None:
         """Look for a time-out."""

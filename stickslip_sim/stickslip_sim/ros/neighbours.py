@@ -16,7 +16,8 @@ from ..scene.model import Scene
 from .loop import StepLoop
 
 _OUTPUTS = (names.SLIDER_STATE, names.FRICTION_FORCE, names.MODE_EVENT, names.RIG_EVENT, names.TIMING, names.RUN_INFO)
-_PATIENCE = 3   # looks at a bridge that sends nothing
+_PATIENCE = 3            # looks at a bridge that sends nothing, or at a publisher whose node is not known
+_UNKNOWN = '_UNKNOWN_'   # in the name of such a node: ROS hears of it a moment after its topics, and never of plain DDS
 
 
 class Neighbours:
@@ -48,6 +49,7 @@ class _Publishers:
         self._node = node
         self._topics = [node.resolve_topic_name(topic.name) for topic in topics]
         self._counts: list[int] = []
+        self._unnamed = 0    # looks
         self.nodes: list[str] = []
 
     def have_changed(self) -> bool:
@@ -55,10 +57,13 @@ class _Publishers:
         counts = [self._node.count_publishers(topic) for topic in self._topics]
         if counts == self._counts:
             return False
-        before, self._counts = self.nodes, counts
-        self.nodes = sorted(f'{info.node_namespace.rstrip("/")}/{info.node_name}' for topic in self._topics
-                            for info in self._node.get_publishers_info_by_topic(topic))
-        return self.nodes != before
+        nodes = sorted(f'{info.node_namespace.rstrip("/")}/{info.node_name}' for topic in self._topics
+                       for info in self._node.get_publishers_info_by_topic(topic))
+        self._unnamed = self._unnamed + 1 if any(_UNKNOWN in node for node in nodes) else 0
+        if 0 < self._unnamed < _PATIENCE:
+            return False
+        before, self._counts, self.nodes = self.nodes, counts, nodes
+        return nodes != before
 
 
 class _Output:

@@ -3,42 +3,38 @@
 """The node `feed_axis`: wires topics, services and parameters to the step loop.  No physics in here."""
 
 import gc
-import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from rclpy.clock import Clock, ClockType
 from rclpy.parameter import Parameter
-from rclpy.serialization import serialize_message
 
 from ..commands import CommandSlot
 from ..errors import InputError, SolverError
+from ..grid import Grid
 from ..offline import warm_up
-from ..pacing import Grid, step_clock
+from ..pacing import step_clock
 from ..recording import RECORDED, RunFacts, messages
 from ..recording import topics as names
-from ..rig import Note, NoteKind
 from ..rig.watchdog import Watchdog
 from ..scene.model import Scene
-from . import conversion, reports
+from . import conversion
 from .clock import ClockOut
 from .fault_services import FaultServices
 from .inlet import Inlet
 from .joints import JointStates
 from .loop import StepLoop, Taker
-from .neighbours import Neighbours
 from .outlet import Outlet
 from .parameters import FileParameters, SceneNode
 from .record_service import RecordService
 from .rig_events import RigEvents
-from .run_receipt import run_receipt
+from .run_receipt import CostMeter, run_receipt
+from .second_report import SecondReport
 from .standard_services import offer_standard_services
 from .time_services import TimeServices
 from .topics import publisher
 from .verdict import verdict
 
 NAME = 'feed_axis'
-_REPORT_PERIOD = 1.0     # s
 
 
 class FeedAxis(SceneNode):
@@ -63,9 +59,7 @@ class FeedAxis(SceneNode):
         self._step_clock = step_clock(grid, scene.time.mode, scene.time.factor)
         self.loop = StepLoop(scene.make_rig(), self._step_clock, self._slots, self._takers(grid),
                              Watchdog(scene.command.timeout), by_request=scene.time.mode == 'lockstep')
-        self._reporter = reports.Reporter(self.loop)
-        self._told = ''          # the failure of the solver that was logged
-        self._wall, self._cpu = time.monotonic(), time.process_time()
+        self._cost = CostMeter()
         self._open_endpoints(is_stopping)
 
     def begin(self) -> None:
@@ -78,8 +72,8 @@ class FeedAxis(SceneNode):
             self._record_service.begin(lambda attach: attach())
         else:
             self._publish_run_info()
-        self._wall, self._cpu = time.monotonic(), time.process_time()
-        self._reporter.begin(self._step_clock.now())
+        self._cost.begin()
+        self._report.begin()
         self.loop.start()
         self.get_logger().info(f'{self.scene.name}: {self.scene.time.rate:g} steps a second, {self.scene.time.mode}')
 
@@ -87,7 +81,7 @@ class FeedAxis(SceneNode):
         """Stop the steps and close the bag; raises RecordingError when it could not be written to its end."""
         self.loop.stop()
         if self._record_service.is_recording:
-            self._report()       # the second that was cut short
+            self._report.tell()    # the second that was cut short
         if self.loop.step >= 0:
             self.get_logger().info(verdict(self.scene, self.loop).text)
         self._record_service.close()
@@ -117,17 +111,15 @@ class FeedAxis(SceneNode):
 
     def _open_endpoints(self, is_stopping: Callable[[], bool]) -> None:
         self._run_info_out = publisher(self, names.RUN_INFO)
-        self._timing_out = publisher(self, names.TIMING)
-        self._diagnostics_out = publisher(self, names.DIAGNOSTICS)
         Inlet(self, *self._slots, self._step_clock.now, with_joints=self.scene.rig.measures)
-        self._neighbours = Neighbours(self, self.scene, self.loop)
         self._record_service: RecordService = RecordService(self, self.loop, self._outlet, self._publish_run_info,
                                                             self._receipt)
         times = TimeServices(self, self.loop, self._outlet, self._restart,
                              lambda: self._record_service.is_recording, is_stopping)
         offer_standard_services(self, self.loop, times)
         FaultServices(self, self.loop)
-        self.create_timer(_REPORT_PERIOD, self._report, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        self._report = SecondReport(self, self.loop, self._step_clock, self._outlet, self._rig_events,
+                                    self._record_service, self._stamp_ns)
 
     def _restart(self) -> bool:
         def restart() -> None:
@@ -136,64 +128,31 @@ class FeedAxis(SceneNode):
 
         done = self.loop.at_boundary(restart)
         if done:
-            self._reporter.forget_counts()
-            self._wall, self._cpu = time.monotonic(), time.process_time()
+            self._report.forget_counts()
+            self._cost.begin()
         self._publish_run_info()
         return done
 
     def _receipt(self) -> dict[str, Any]:
-        cost = (time.process_time() - self._cpu, time.monotonic() - self._wall)
         try:
             dropped = self._record_service.recordings.total_dropped
-            return run_receipt(self.scene, self.loop, self._outlet, dropped, cost)
+            return run_receipt(self.scene, self.loop, self._outlet, dropped, self._cost.so_far())
         except SolverError as error:    # the state has left the range of numbers
             return {'failure': str(error)}
-
-    def _report(self) -> None:
-        stamp_ns = self._outlet.start_ns + self.loop.time_ns if self.scene.time.makes_clock else self._now_ns()
-        second = self._reporter.look(self._step_clock.now())
-        judged = verdict(self.scene, self.loop)
-        self._tell_troubles(second)
-        period = self._step_clock.period * 1e-9
-        message = reports.timing_message(second, self.loop, period, bool(judged.valid), stamp_ns)
-        self._timing_out.publish(message)
-        self._record(names.TIMING, message, max(self.loop.step, 0))
-        self._diagnostics_out.publish(reports.diagnostics(stamp_ns, self.get_fully_qualified_name(), [
-            reports.loop_status(self.loop, second, judged),
-            reports.command_status(self.loop, second),
-            reports.solver_status(self.loop, self.scene.solver.name, self._outlet.events.latest_time),
-            reports.recorder_status(self._record_service.recordings),
-            reports.neighbours_status(self._neighbours.look())]))
-
-    def _tell_troubles(self, second: reports.Second) -> None:
-        log = self.get_logger()
-        if second.skipped > 0.0:
-            text = f'{second.skipped:.3f} s behind the clock were given up; simulation time lags by that much'
-            log.warning(text)
-            self._tell(Note(NoteKind.TIME_LOST, '', text, second.skipped))
-        if second.refused:
-            reasons = [slot.last_refusal for slot in self._slots if slot.last_refusal]
-            self._tell(Note(NoteKind.COMMAND_REFUSED, '', '; '.join(reasons), number=second.refused))
-        if self.loop.failure and self.loop.failure != self._told:
-            log.error(f'the axis stands still: {self.loop.failure}; ~/reset begins anew')
-        self._told = self.loop.failure
-        self._record_service.look()
-
-    def _tell(self, note: Note) -> None:
-        self._rig_events.tell(self.loop.step + 1, self.loop.time_ns, note)
 
     def _publish_run_info(self) -> None:
         message = conversion.run_info(messages.run_info(
             RunFacts.of(self.scene), self._now_ns(), self._outlet.start_ns, self._record_service.recordings.folder))
         self._run_info_out.publish(message)
-        self._record(names.RUN_INFO, message, max(self.loop.step, 0))
-
-    def _record(self, topic: names.Topic, message: Any, step: int) -> None:
-        self._outlet.record(RECORDED.index(topic), serialize_message(message), self.loop.time_ns, step)
+        self._outlet.record_message(names.RUN_INFO, message, self.loop.time_ns, max(self.loop.step, 0))
 
     def _start_ns(self) -> int:
         """Return the stamp of simulation time 0: 0 where simulation time is the time of the graph."""
         return 0 if self.scene.time.makes_clock else self._now_ns()
+
+    def _stamp_ns(self) -> int:
+        """Return the time of the graph."""
+        return self._outlet.start_ns + self.loop.time_ns if self.scene.time.makes_clock else self._now_ns()
 
     def _now_ns(self) -> int:
         nanoseconds: int = self.get_clock().now().nanoseconds

@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Where the products of the steps go: each message is packed once, and its bytes are published and recorded."""
 
-from typing import Protocol
+from typing import Any, Protocol
 
 from rclpy.node import Node
-from rclpy.serialization import deserialize_message
+from rclpy.serialization import deserialize_message, serialize_message
 
 from stickslip_msgs.msg import FrictionForce, ModeEvent, SliderState
 
@@ -100,6 +100,10 @@ class Outlet:
         """Hand a message to the recorder, if there is one."""
         if self.recorder is not None:
             self.recorder.put(index, data, time_ns, self.start_ns + time_ns, step)
+
+    def record_message(self, topic: Topic, message: Any, time_ns: int, step: int) -> None:
+        """Hand a message that is published elsewhere to the recorder, if there is one."""
+        self.record(RECORDED.index(topic), serialize_message(message), time_ns, step)
 
     def _send(self, port: '_Port', time_ns: int, step: int, word: Sample | Event) -> None:
         data = port.pack(self.start_ns + time_ns, step, word)

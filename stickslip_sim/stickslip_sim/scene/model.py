@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from ..axis import Axis, InitialState
 from ..courses import Course
-from ..pacing import Grid
+from ..grid import Grid
 from ..rig.rig import Rig
 from ..rig.settings import RigSettings
 from .solver import SolverSettings

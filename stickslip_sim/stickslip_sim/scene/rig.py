@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from ..errors import InputError
-from ..pacing import Grid
+from ..grid import Grid
 from ..rig.drive import DriveLimits
 from ..rig.encoder import EncoderSettings
 from ..rig.faults import Fault, Faults

@@ -4,32 +4,16 @@
 
 Defaults are for what is left out.  The axis is the paper's; whatever else is left out is not modelled: no friction, a
 rigid contact, a drive that stands still, no force.  (A node without any file runs the scene `paper_fig8`, not this.)
-
-Every number has bounds, so that no product of them (an energy, a square of a rate) leaves the range of doubles: far
-beyond any machine, from the tip of an atomic force microscope to a tectonic plate, and far within 1e±308.
 """
 
 import math
 
-from ..courses import FREQUENCIES, MAX_WAVES
 from ..friction.shapes import MAX_EXPONENT, MIN_EXPONENT
 from ..rig.faults import MAX_TIME
+from . import bounds
+from .course_schema import course
+from .declare import choice, number, numbers, texts
 from .parameter import Parameter, When
-
-_MASS = 1e-9, 1e12              # kg
-_STIFFNESS = 1e18               # N/m
-_SOFTEST = 1e-6                 # N/m, of a contact: softer is none
-_DAMPING = 1e15                 # N s/m
-_FORCE, _FORCE_RATE = 1e15, 1e18          # N, N/s
-_COEFFICIENT = 1e3
-_SLOPE = 1e9                    # s/m, of a coefficient
-_SPEED, _ACCELERATION = 1e6, 1e9          # m/s, m/s²
-_LOWEST_SPEED = 1e-12           # m/s, at which something may lie in a law: an atom in two minutes
-_PLACE = 1e12                   # m
-_TIME, _SHORTEST = 1e15, 1e-12  # s
-_PHASE = 1e6                    # rad
-_KATO = 1e-2, 1e2               # exponents
-_FINEST = 1e-12                 # tolerance of a table
 
 _SOLVERS = ('exact', 'fixed_step', 'adaptive')
 _METHODS = ('euler', 'rk4', 'RK45', 'DOP853', 'Radau', 'BDF', 'LSODA')
@@ -38,7 +22,6 @@ _REACTIONS = ('hold', 'ramp_to_zero', 'fault')
 _LAWS = ('constant', 'exponential', 'kato', 'hyperbolic', 'logarithmic')
 _KINETIC = ('table', 'stribeck', 'exponential', 'hyperbolic')
 _EXCESS = ('table', 'cosine', 'power')
-_COURSES = ('constant', 'ramp', 'steps', 'sine', 'table')
 
 _GROWS = When('friction.static.law', _LAWS[1:])
 _COMPLIANT = When('contact.model', ('compliant',))
@@ -52,202 +35,143 @@ _EXCESS_SMOOTH = When('friction.excess.law', _EXCESS[1:])
 _OWN_CLOCK = When('time.mode', _MODES[1:])
 _STOPS = When('command.on_timeout', _REACTIONS[1:])
 
-
-def _number(name: str, default: float | None, unit: str, description: str, *, low: float, high: float,
-            above: bool = False, infinite: bool = False, live: bool = False, when: When | None = None) -> Parameter:
-    """Return a double from `low` (excluded with `above`) to `high`; required when it has no default."""
-    return Parameter(name, 'double', default, unit, description, low, high, above, infinite, (), live, when,
-                     default is None)
-
-
-def _numbers(name: str, default: tuple[float, ...] | None, unit: str, description: str, *, low: float, high: float,
-             infinite: bool = False, live: bool = False, when: When | None = None, required: bool = True) -> Parameter:
-    """Return a list of doubles."""
-    return Parameter(name, 'double_array', default, unit, description, low, high, infinite=infinite, live=live,
-                     when=when, required=required and default is None)
-
-
-def _texts(name: str, description: str) -> Parameter:
-    """Return a list of texts that may be left out."""
-    return Parameter(name, 'string_array', None, '', description)
-
-
-def _choice(name: str, default: str, description: str, choices: tuple[str, ...], when: When | None = None) -> Parameter:
-    return Parameter(name, 'string', default, '', description, choices=choices, when=when)
-
-
-def _course(section: str, value: str, rate: str, values: str, unit: str, what: str, most: float,
-            fastest_change: float) -> tuple[Parameter, ...]:
-    """Return the parameters of an input course of `what`, which is a `unit` and at most `most` of them."""
-    ramp = When(f'{section}.course', ('ramp',))
-    knots = When(f'{section}.course', ('steps', 'table'))
-    sine = When(f'{section}.course', ('sine',))
-    slowest, fastest = FREQUENCIES
-    return (
-        _choice(f'{section}.course', 'constant',
-                f'how the {what} goes on offline, and in the node until a command arrives: constant; ramp (to a'
-                ' constant); steps (jumps); sine; table (linear between knots); sines may come on top', _COURSES),
-        _number(f'{section}.{value}', 0.0, unit, f'{what}; of a ramp the one at its start, of a sine its mean',
-                low=-most, high=most, when=When(f'{section}.course', ('constant', 'ramp', 'sine'))),
-        _number(f'{section}.{rate}', None, f'{unit}/s' if unit == 'N' else 'm/s²', f'change of the {what}, of a ramp',
-                low=-fastest_change, high=fastest_change, when=ramp),
-        _number(f'{section}.duration', math.inf, 's', 'of a ramp; then its last value holds', low=0.0, high=_TIME,
-                above=True, infinite=True, when=ramp),
-        _numbers(f'{section}.times', None, 's', 'when the values of steps or a table begin: 0, then each later',
-                 low=0.0, high=_TIME, when=knots),
-        _numbers(f'{section}.{values}', None, unit, f'{what} at these times; the last one holds', low=-most, high=most,
-                 when=knots),
-        _number(f'{section}.period', math.inf, 's', 'after which steps or a table begin again (.inf: never); a table is'
-                ' linear from its last knot back to the first', low=1e-6, high=_TIME,
-                infinite=True, when=knots),
-        _number(f'{section}.amplitude', None, unit, 'of a sine: amplitude sin(2π frequency t + phase), t since the'
-                ' start of the run', low=-most, high=most, when=sine),
-        _number(f'{section}.frequency', None, 'Hz', 'of a sine', low=slowest, high=fastest, when=sine),
-        _number(f'{section}.phase', 0.0, 'rad', 'of a sine', low=-_PHASE, high=_PHASE, when=sine),
-        _numbers(f'{section}.amplitudes', None, unit, f'of sines on top of any course, at most {MAX_WAVES}',
-                 low=-most, high=most, required=False),
-        _numbers(f'{section}.frequencies', None, 'Hz', 'of these sines', low=slowest, high=fastest, required=False),
-        _numbers(f'{section}.phases', None, 'rad', 'of these sines; left out: 0', low=-_PHASE, high=_PHASE,
-                 required=False),
-    )
-
-
 PARAMETERS: tuple[Parameter, ...] = (
     Parameter('scene', 'string', 'unnamed', '', 'name of the scene, for people'),
 
-    _number('axis.mass', 350.0, 'kg', "slider m; default: the paper's", low=_MASS[0], high=_MASS[1],
-            live=True),
-    _number('axis.drive_stiffness', 6.0e5, 'N/m', "drive spring c; default: the paper's", low=0.0,
-            high=_STIFFNESS, live=True),
-    _number('axis.drive_damping', 4000.0, 'N s/m', "drive damper h; default: the paper's", low=0.0,
-            high=_DAMPING, live=True),
-    _number('axis.normal_force', 3432.3275, 'N', 'normal force N, friction = coefficient times N; not in the paper,'
-            ' default: the weight of its 350 kg (it does not follow axis.mass)', low=0.0, high=_FORCE, live=True),
+    number('axis.mass', 350.0, 'kg', "slider m; default: the paper's", low=bounds.MASS[0], high=bounds.MASS[1],
+           live=True),
+    number('axis.drive_stiffness', 6.0e5, 'N/m', "drive spring c; default: the paper's", low=0.0, high=bounds.STIFFNESS,
+           live=True),
+    number('axis.drive_damping', 4000.0, 'N s/m', "drive damper h; default: the paper's", low=0.0, high=bounds.DAMPING,
+           live=True),
+    number('axis.normal_force', 3432.3275, 'N', 'normal force N, friction = coefficient times N; not in the paper,'
+           ' default: the weight of its 350 kg (it does not follow axis.mass)', low=0.0, high=bounds.FORCE, live=True),
 
-    _choice('contact.model', 'rigid', 'contact in stick: rigid (the slider stands still) or compliant (a spring and a'
-            ' damper)', ('rigid', 'compliant')),
-    _number('contact.stiffness', None, 'N/m', 'tangential contact spring c_c, in stick only', low=_SOFTEST,
-            high=_STIFFNESS, live=True, when=_COMPLIANT),
-    _number('contact.damping', 0.0, 'N s/m', 'tangential contact damper h_c, in stick only', low=0.0, high=_DAMPING,
-            live=True, when=_COMPLIANT),
+    choice('contact.model', 'rigid', 'contact in stick: rigid (the slider stands still) or compliant (a spring and a'
+           ' damper)', ('rigid', 'compliant')),
+    number('contact.stiffness', None, 'N/m', 'tangential contact spring c_c, in stick only', low=bounds.SOFTEST,
+           high=bounds.STIFFNESS, live=True, when=_COMPLIANT),
+    number('contact.damping', 0.0, 'N s/m', 'tangential contact damper h_c, in stick only', low=0.0,
+           high=bounds.DAMPING, live=True, when=_COMPLIANT),
 
-    _choice('friction.static.law', 'constant', 'growth of the static coefficient mu_s with the rest time', _LAWS),
-    _number('friction.static.initial', 0.0, '', 'mu_s at zero rest time', low=0.0, high=_COEFFICIENT, live=True),
-    _number('friction.static.limit', None, '', 'mu_s upon infinite rest (logarithmic: initial + one unit of growth)',
-            low=0.0, high=_COEFFICIENT, live=True, when=_GROWS),
-    _number('friction.static.time_constant', None, 's', 'tau of the growth of mu_s', low=_SHORTEST, high=_TIME,
-            live=True, when=_GROWS),
-    _number('friction.static.exponent', None, '', "n of Kato's law exp(-(t/tau)^n)", low=_KATO[0], high=_KATO[1],
-            live=True, when=When('friction.static.law', ('kato',))),
-    _choice('friction.kinetic.law', 'table', 'kinetic coefficient mu_k over the speed: a table of knots, linear between'
-            ' them; or mu_c + (mu_0 - mu_c) g(speed/v_s) + k_v speed with g(z) = exp(-z^exponent) (stribeck), exp(-z)'
-            ' (exponential) or 1/(1 + z) (hyperbolic)', _KINETIC),
-    _numbers('friction.kinetic.velocities', (0.0,), 'm/s', 'knots of the kinetic coefficient; the first is 0, each is'
-             ' higher, the last is v_gr', low=0.0, high=_SPEED, live=True, when=_KNOTS),
-    _numbers('friction.kinetic.coefficients', (0.0,), '', 'mu_k at these speeds', low=0.0,
-             high=_COEFFICIENT, live=True, when=_KNOTS),
-    _number('friction.kinetic.end_slope', 0.0, 's/m', 'slope of mu_k beyond the last knot', low=0.0, high=_SLOPE,
-            live=True, when=_KNOTS),
-    _number('friction.kinetic.initial', None, '', 'mu_0, mu_k at rest; not above friction.static.initial', low=0.0,
-            high=_COEFFICIENT, live=True, when=_SMOOTH),
-    _number('friction.kinetic.limit', None, '', 'mu_c, what the falling part tends to at high speed', low=0.0,
-            high=_COEFFICIENT, live=True, when=_SMOOTH),
-    _number('friction.kinetic.stribeck_velocity', None, 'm/s', 'v_s, at which the falling part has dropped to 1/e'
-            ' (hyperbolic: to 1/2)', low=_LOWEST_SPEED, high=_SPEED, live=True, when=_SMOOTH),
-    _number('friction.kinetic.exponent', 2.0, '', 'of the law stribeck; 2: Gaussian', low=MIN_EXPONENT,
-            high=MAX_EXPONENT, live=True, when=When('friction.kinetic.law', ('stribeck',))),
-    _number('friction.kinetic.viscous', 0.0, 's/m', 'k_v, what mu_k rises by with the speed', low=0.0, high=_SLOPE,
-            live=True, when=_SMOOTH),
-    _number('friction.kinetic.tolerance', 1e-4, '', 'largest difference, in mu, between the smooth law and the table'
-            ' that is computed with', low=_FINEST, high=1.0, live=True, when=_SMOOTH),
+    choice('friction.static.law', 'constant', 'growth of the static coefficient mu_s with the rest time', _LAWS),
+    number('friction.static.initial', 0.0, '', 'mu_s at zero rest time', low=0.0, high=bounds.COEFFICIENT, live=True),
+    number('friction.static.limit', None, '', 'mu_s upon infinite rest (logarithmic: initial + one unit of growth)',
+           low=0.0, high=bounds.COEFFICIENT, live=True, when=_GROWS),
+    number('friction.static.time_constant', None, 's', 'tau of the growth of mu_s', low=bounds.SHORTEST,
+           high=bounds.TIME, live=True, when=_GROWS),
+    number('friction.static.exponent', None, '', "n of Kato's law exp(-(t/tau)^n)", low=bounds.KATO[0],
+           high=bounds.KATO[1], live=True, when=When('friction.static.law', ('kato',))),
+    choice('friction.kinetic.law', 'table', 'kinetic coefficient mu_k over the speed: a table of knots, linear between'
+           ' them; or mu_c + (mu_0 - mu_c) g(speed/v_s) + k_v speed with g(z) = exp(-z^exponent) (stribeck), exp(-z)'
+           ' (exponential) or 1/(1 + z) (hyperbolic)', _KINETIC),
+    numbers('friction.kinetic.velocities', (0.0,), 'm/s', 'knots of the kinetic coefficient; the first is 0, each is'
+            ' higher, the last is v_gr', low=0.0, high=bounds.SPEED, live=True, when=_KNOTS),
+    numbers('friction.kinetic.coefficients', (0.0,), '', 'mu_k at these speeds', low=0.0,
+            high=bounds.COEFFICIENT, live=True, when=_KNOTS),
+    number('friction.kinetic.end_slope', 0.0, 's/m', 'slope of mu_k beyond the last knot', low=0.0, high=bounds.SLOPE,
+           live=True, when=_KNOTS),
+    number('friction.kinetic.initial', None, '', 'mu_0, mu_k at rest; not above friction.static.initial', low=0.0,
+           high=bounds.COEFFICIENT, live=True, when=_SMOOTH),
+    number('friction.kinetic.limit', None, '', 'mu_c, what the falling part tends to at high speed', low=0.0,
+           high=bounds.COEFFICIENT, live=True, when=_SMOOTH),
+    number('friction.kinetic.stribeck_velocity', None, 'm/s', 'v_s, at which the falling part has dropped to 1/e'
+           ' (hyperbolic: to 1/2)', low=bounds.LOWEST_SPEED, high=bounds.SPEED, live=True, when=_SMOOTH),
+    number('friction.kinetic.exponent', 2.0, '', 'of the law stribeck; 2: Gaussian', low=MIN_EXPONENT,
+           high=MAX_EXPONENT, live=True, when=When('friction.kinetic.law', ('stribeck',))),
+    number('friction.kinetic.viscous', 0.0, 's/m', 'k_v, what mu_k rises by with the speed', low=0.0, high=bounds.SLOPE,
+           live=True, when=_SMOOTH),
+    number('friction.kinetic.tolerance', 1e-4, '', 'largest difference, in mu, between the smooth law and the table'
+           ' that is computed with', low=bounds.FINEST, high=1.0, live=True, when=_SMOOTH),
     Parameter('friction.acceleration_dependence', 'bool', False, '', 'whether the accelerating branch of mu_k lies'
               ' above the decelerating one (Fig. 6) instead of one curve for both (Fig. 3)'),
-    _choice('friction.excess.law', 'table', 'psi over the speed, the shape of the excess of the accelerating branch: a'
-            ' table of knots; or (1 + cos(pi z))/2 (cosine) or (1 - z)^exponent (power) with z = speed/limit_velocity,'
-            ' 0 beyond', _EXCESS, _BRANCHES),
-    _numbers('friction.excess.velocities', None, 'm/s', 'knots of psi; left out: linear to 0 at the last knot of'
-             ' mu_k (a smooth law: where its falling part has dropped to 1 %)', low=0.0, high=_SPEED, live=True,
-             when=_EXCESS_KNOTS, required=False),
-    _numbers('friction.excess.fractions', None, '', 'psi at these speeds: 1 at the first, 0 at the last', low=0.0,
-             high=1.0, live=True, when=_EXCESS_KNOTS, required=False),
+    choice('friction.excess.law', 'table', 'psi over the speed, the shape of the excess of the accelerating branch: a'
+           ' table of knots; or (1 + cos(pi z))/2 (cosine) or (1 - z)^exponent (power) with z = speed/limit_velocity,'
+           ' 0 beyond', _EXCESS, _BRANCHES),
+    numbers('friction.excess.velocities', None, 'm/s', 'knots of psi; left out: linear to 0 at the last knot of'
+            ' mu_k (a smooth law: where its falling part has dropped to 1 %)', low=0.0, high=bounds.SPEED, live=True,
+            when=_EXCESS_KNOTS, required=False),
+    numbers('friction.excess.fractions', None, '', 'psi at these speeds: 1 at the first, 0 at the last', low=0.0,
+            high=1.0, live=True, when=_EXCESS_KNOTS, required=False),
     Parameter('friction.excess.limit_velocity', 'double', None, 'm/s', 'where psi ends; left out: as for a table',
-              _LOWEST_SPEED, _SPEED, live=True, when=_EXCESS_SMOOTH),
-    _number('friction.excess.exponent', None, '', 'n of the law power', low=1.0, high=MAX_EXPONENT, above=True,
-            live=True, when=When('friction.excess.law', ('power',))),
-    _number('friction.excess.tolerance', 1e-3, '', 'largest difference between the smooth psi and its table',
-            low=_FINEST, high=1.0, live=True, when=_EXCESS_SMOOTH),
+              bounds.LOWEST_SPEED, bounds.SPEED, live=True, when=_EXCESS_SMOOTH),
+    number('friction.excess.exponent', None, '', 'n of the law power', low=1.0, high=MAX_EXPONENT, above=True,
+           live=True, when=When('friction.excess.law', ('power',))),
+    number('friction.excess.tolerance', 1e-3, '', 'largest difference between the smooth psi and its table',
+           low=bounds.FINEST, high=1.0, live=True, when=_EXCESS_SMOOTH),
 
-    *_course('drive', 'velocity', 'acceleration', 'velocities', 'm/s', 'velocity of the drive end of the spring',
-             _SPEED, _ACCELERATION),
-    *_course('force', 'constant', 'rate', 'forces', 'N', 'external force on the slider, along +x', _FORCE, _FORCE_RATE),
+    *course('drive', 'velocity', 'acceleration', 'velocities', 'm/s', 'velocity of the drive end of the spring',
+            bounds.SPEED, bounds.ACCELERATION),
+    *course('force', 'constant', 'rate', 'forces', 'N', 'external force on the slider, along +x', bounds.FORCE,
+            bounds.FORCE_RATE),
 
-    _number('initial.position', 0.0, 'm', 'slider and drive at the start; the spring is unstretched', low=-_PLACE,
-            high=_PLACE),
-    _number('initial.velocity', 0.0, 'm/s', 'slider at the start', low=-_SPEED, high=_SPEED),
-    _number('initial.rest_time', math.inf, 's', 'rest before the start (.inf: prolonged rest)', low=0.0, high=_TIME,
-            infinite=True),
+    number('initial.position', 0.0, 'm', 'slider and drive at the start; the spring is unstretched', low=-bounds.PLACE,
+           high=bounds.PLACE),
+    number('initial.velocity', 0.0, 'm/s', 'slider at the start', low=-bounds.SPEED, high=bounds.SPEED),
+    number('initial.rest_time', math.inf, 's', 'rest before the start (.inf: prolonged rest)', low=0.0,
+           high=bounds.TIME, infinite=True),
 
-    _choice('solver.name', 'exact', 'exact: closed form, from event to event; fixed_step: the usual loop, to compare'
-            ' with; adaptive: steps of a stated tolerance, offline only (docs/solvers.md)', _SOLVERS),
+    choice('solver.name', 'exact', 'exact: closed form, from event to event; fixed_step: the usual loop, to compare'
+           ' with; adaptive: steps of a stated tolerance, offline only (docs/solvers.md)', _SOLVERS),
     Parameter('solver.method', 'string', None, '', 'with fixed_step euler or rk4, left out: euler; with adaptive one of'
               ' the others, left out: DOP853', choices=_METHODS, when=When('solver.name', _SOLVERS[1:])),
-    _number('solver.step', 1e-3, 's', 'length of a step', low=1e-9, high=1.0, when=_FIXED_STEP),
-    _number('solver.rtol', 1e-8, '', 'error of a step relative to travel and velocity', low=2.3e-14, high=1e-2,
-            when=_ADAPTIVE),
-    _number('solver.atol', 1e-10, 'm, m/s', 'error of a step in travel and velocity', low=1e-300, high=1.0,
-            when=_ADAPTIVE),
+    number('solver.step', 1e-3, 's', 'length of a step', low=1e-9, high=1.0, when=_FIXED_STEP),
+    number('solver.rtol', 1e-8, '', 'error of a step relative to travel and velocity', low=2.3e-14, high=1e-2,
+           when=_ADAPTIVE),
+    number('solver.atol', 1e-10, 'm, m/s', 'error of a step in travel and velocity', low=1e-300, high=1.0,
+           when=_ADAPTIVE),
 
-    _choice('time.mode', 'realtime', 'of the node: realtime follows the clock of the machine; lockstep moves with'
-            ' ~/step only; free_run goes at time.factor, or as fast as it can with .inf; the last two publish /clock',
-            _MODES),
-    _number('time.rate', 1000.0, 'Hz', 'steps per second of simulation time', low=1.0, high=20_000.0),
-    _number('time.factor', 1.0, '', 'simulation time per real time; .inf with free_run only', low=1e-3, high=1e3,
-            infinite=True),
+    choice('time.mode', 'realtime', 'of the node: realtime follows the clock of the machine; lockstep moves with'
+           ' ~/step only; free_run goes at time.factor, or as fast as it can with .inf; the last two publish /clock',
+           _MODES),
+    number('time.rate', 1000.0, 'Hz', 'steps per second of simulation time', low=1.0, high=20_000.0),
+    number('time.factor', 1.0, '', 'simulation time per real time; .inf with free_run only', low=1e-3, high=1e3,
+           infinite=True),
     Parameter('clock.rate', 'double', None, 'Hz', 'of /clock, per second of simulation time, at most time.rate; left'
               ' out: with every step', 1e-3, 20_000.0, when=_OWN_CLOCK),
 
-    _number('command.max_velocity', 1.0, 'm/s', 'a drive_velocity beyond it, either way, is refused', low=0.0,
-            high=_SPEED, above=True, live=True),
-    _number('command.max_force', 1.0e5, 'N', 'an external_force beyond it, either way, is refused', low=0.0,
-            high=_FORCE, above=True, live=True),
+    number('command.max_velocity', 1.0, 'm/s', 'a drive_velocity beyond it, either way, is refused', low=0.0,
+           high=bounds.SPEED, above=True, live=True),
+    number('command.max_force', 1.0e5, 'N', 'an external_force beyond it, either way, is refused', low=0.0,
+           high=bounds.FORCE, above=True, live=True),
 
-    _number('command.timeout', 0.0, 's', 'silence after the first drive_velocity that counts as a time-out, in real'
-            ' time on the steady clock, else in simulation time; 0: off', low=0.0, high=_TIME),
-    _choice('command.on_timeout', 'hold', 'what follows: the drive holds the velocity; stops until the next command; or'
-            ' stops and takes none until ~/clear_faults or ~/reset', _REACTIONS),
-    _number('command.timeout_deceleration', 1.0, 'm/s²', 'with which the drive stops then', low=1e-9,
-            high=_ACCELERATION, when=_STOPS),
-    _number('command.velocity_limit', math.inf, 'm/s', 'what the drive can do: it follows commands beyond it as far as'
-            ' this, counted as limited', low=0.0, high=_SPEED, above=True, infinite=True),
-    _number('command.acceleration_limit', math.inf, 'm/s²', 'with which the drive can follow commands: a ramp, counted'
-            ' as limited', low=1e-9, high=_ACCELERATION, infinite=True),
+    number('command.timeout', 0.0, 's', 'silence after the first drive_velocity that counts as a time-out, in real'
+           ' time on the steady clock, else in simulation time; 0: off', low=0.0, high=bounds.TIME),
+    choice('command.on_timeout', 'hold', 'what follows: the drive holds the velocity; stops until the next command; or'
+           ' stops and takes none until ~/clear_faults or ~/reset', _REACTIONS),
+    number('command.timeout_deceleration', 1.0, 'm/s²', 'with which the drive stops then', low=1e-9,
+           high=bounds.ACCELERATION, when=_STOPS),
+    number('command.velocity_limit', math.inf, 'm/s', 'what the drive can do: it follows commands beyond it as far as'
+           ' this, counted as limited', low=0.0, high=bounds.SPEED, above=True, infinite=True),
+    number('command.acceleration_limit', math.inf, 'm/s²', 'with which the drive can follow commands: a ramp, counted'
+           ' as limited', low=1e-9, high=bounds.ACCELERATION, infinite=True),
 
-    _number('encoder.resolution', 0.0, 'm', 'of the positions on joint_states; 0: none', low=0.0, high=1.0),
-    _number('encoder.offset', 0.0, 'm', 'added to the positions before they are rounded to the resolution', low=-1e3,
-            high=1e3),
-    _number('encoder.noise', 0.0, 'm', 'standard deviation of the noise before rounding, normal, seeded', low=0.0,
-            high=1.0),
-    _number('encoder.delay', 0.0, 's', 'of the measurement: whole steps', low=0.0, high=1.0),
+    number('encoder.resolution', 0.0, 'm', 'of the positions on joint_states; 0: none', low=0.0, high=1.0),
+    number('encoder.offset', 0.0, 'm', 'added to the positions before they are rounded to the resolution', low=-1e3,
+           high=1e3),
+    number('encoder.noise', 0.0, 'm', 'standard deviation of the noise before rounding, normal, seeded', low=0.0,
+           high=1.0),
+    number('encoder.delay', 0.0, 's', 'of the measurement: whole steps', low=0.0, high=1.0),
     Parameter('encoder.velocity_steps', 'integer', 1, '', 'steps over which the measured velocity is the difference of'
               ' measured positions (with all else 0: the true velocity)', 1, 1000),
 
     Parameter('joint_interface.enabled', 'bool', False, '', 'whether the node speaks joint_states and joint_commands,'
               ' with the joints axis_slider and axis_drive as measured (docs/hil.md)'),
 
-    _texts('faults.ids', 'of faults from the start on, as with ~/inject_fault (docs/hil.md)'),
-    _texts('faults.kinds', 'of these faults, like friction_scale or force_pulse'),
-    _numbers('faults.starts', None, 's', 'when they begin', low=0.0, high=MAX_TIME, required=False),
-    _numbers('faults.durations', None, 's', 'how long they last', low=_SHORTEST, high=MAX_TIME, infinite=True,
-             required=False),
-    _numbers('faults.values', None, 'by kind', 'of these faults; left out: 0', low=-_FORCE, high=_FORCE,
-             required=False),
+    texts('faults.ids', 'of faults from the start on, as with ~/inject_fault (docs/hil.md)'),
+    texts('faults.kinds', 'of these faults, like friction_scale or force_pulse'),
+    numbers('faults.starts', None, 's', 'when they begin', low=0.0, high=MAX_TIME, required=False),
+    numbers('faults.durations', None, 's', 'how long they last', low=bounds.SHORTEST, high=MAX_TIME, infinite=True,
+            required=False),
+    numbers('faults.values', None, 'by kind', 'of these faults; left out: 0', low=-bounds.FORCE, high=bounds.FORCE,
+            required=False),
 
-    _number('timing.max_lateness', 0.01, 's', 'a run is real-time valid while no step begins later than this', low=0.0,
-            high=_TIME, above=True, infinite=True),
-    _number('timing.max_overruns', 0.01, '', 'and no larger share of the steps begins more than a period late', low=0.0,
-            high=1.0),
-    _number('timing.max_latency', math.inf, 's', 'and no command takes longer to the first state that it moved',
-            low=0.0, high=_TIME, above=True, infinite=True),
+    number('timing.max_lateness', 0.01, 's', 'a run is real-time valid while no step begins later than this', low=0.0,
+           high=bounds.TIME, above=True, infinite=True),
+    number('timing.max_overruns', 0.01, '', 'and no larger share of the steps begins more than a period late', low=0.0,
+           high=1.0),
+    number('timing.max_latency', math.inf, 's', 'and no command takes longer to the first state that it moved',
+           low=0.0, high=bounds.TIME, above=True, infinite=True),
 
     Parameter('record.enabled', 'bool', False, '', 'whether the node records a bag from the start'),
     Parameter('record.folder', 'string', '', '', 'folder of the bag, which must not exist; empty: the node chooses;'

@@ -14,7 +14,7 @@ from rclpy.node import Node
 from rclpy.serialization import deserialize_message
 
 from ...errors import InputError, RecordingError
-from ...pacing import Grid
+from ...grid import Grid
 from ...recording import RecordedMessage, Topic
 from ...recording.playback import Recording
 from ...recording.topics import DRIVE_VELOCITY, EXTERNAL_FORCE

@@ -1,0 +1,29 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Short ways to declare the parameters of a scene."""
+
+from .parameter import Parameter, When
+
+
+def number(name: str, default: float | None, unit: str, description: str, *, low: float, high: float,
+           above: bool = False, infinite: bool = False, live: bool = False, when: When | None = None) -> Parameter:
+    """Return a double from `low` (excluded with `above`) to `high`; required when it has no default."""
+    return Parameter(name, 'double', default, unit, description, low, high, above, infinite, (), live, when,
+                     default is None)
+
+
+def numbers(name: str, default: tuple[float, ...] | None, unit: str, description: str, *, low: float, high: float,
+            infinite: bool = False, live: bool = False, when: When | None = None, required: bool = True) -> Parameter:
+    """Return a list of doubles."""
+    return Parameter(name, 'double_array', default, unit, description, low, high, infinite=infinite, live=live,
+                     when=when, required=required and default is None)
+
+
+def texts(name: str, description: str) -> Parameter:
+    """Return a list of texts that may be left out."""
+    return Parameter(name, 'string_array', None, '', description)
+
+
+def choice(name: str, default: str, description: str, choices: tuple[str, ...], when: When | None = None) -> Parameter:
+    """Return a text that is one of a few."""
+    return Parameter(name, 'string', default, '', description, choices=choices, when=when)

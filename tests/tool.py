@@ -1,0 +1,34 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The tool `stickslip`: in this process, and in one of its own."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from stickslip_sim.cli.main import run
+
+Capture = pytest.CaptureFixture[str]
+
+
+def answered(capsys: Capture, *arguments: str | Path) -> tuple[int, str, str]:
+    """Run the tool in this process; return its exit code, standard output and standard error."""
+    capsys.readouterr()
+    return run([*map(str, arguments)]), *capsys.readouterr()
+
+
+def refused(capsys: Capture, *arguments: str | Path, code: int = 2) -> str:
+    """Run the tool in this process; return the one line that it says on standard error."""
+    found, out, err = answered(capsys, *arguments)
+    assert (found, out, err.count('\n')) == (code, '', 1)
+    assert err.startswith('stickslip: ')
+    return err
+
+
+def tool(*arguments: str | Path, **environment: str) -> subprocess.CompletedProcess[str]:
+    """Run the tool in a process of its own."""
+    return subprocess.run([sys.executable, '-m', 'stickslip_sim', *map(str, arguments)], capture_output=True, text=True,
+                          timeout=60, check=False, env={**os.environ, **environment})

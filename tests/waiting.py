@@ -1,0 +1,18 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Waiting for what another thread or process does: on a condition, with a deadline."""
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+DEADLINE = 20.0   # s
+
+
+def wait_for(look: Callable[[], Any], what: str, deadline: float = DEADLINE) -> Any:
+    """Return what `look` returns as soon as that is true."""
+    end = time.monotonic() + deadline
+    while not (found := look()):
+        assert time.monotonic() < end, f'waited {deadline} s for {what}'
+        time.sleep(0.01)
+    return found
