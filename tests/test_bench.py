@@ -14,7 +14,7 @@ from stickslip_sim.bench.contestants import PEERS
 from stickslip_sim.bench.errors import Truth, errors_of, pair
 from stickslip_sim.bench.own import exact_solver
 from stickslip_sim.bench.peers import dop853, euler, scipy_ivp
-from stickslip_sim.bench.peers.peer import EXACT, Setting
+from stickslip_sim.bench.peers.peer import EXACT, Peer, Setting
 from stickslip_sim.bench.problem import Outcome, Problem
 from stickslip_sim.bench.race import race
 from stickslip_sim.bench.ratios import Ratio, at_least, at_most, ratios
@@ -38,7 +38,7 @@ def paper(contact: str, duration: float) -> Problem:
 
 @pytest.mark.parametrize(('peer', 'setting', 'within'), [
     (dop853.PEER, FINEST, 1e-10), (scipy_ivp.PEERS[0], FINEST, 1e-6), (euler.PEER, Setting(1e-5, 'step'), 1e-4)])
-def test_peers_find_the_events_of_the_paper(peer, setting, within) -> None:  # type: ignore[no-untyped-def]
+def test_peers_find_the_events_of_the_paper(peer: Peer, setting: Setting, within: float) -> None:
     outcome = peer.prepare(paper('rigid', 1.43), setting)()
     assert [int(kind) for kind in outcome.events[:, 1]] == [kind for _, kind in KNOWN]
     assert np.abs(outcome.events[:, 0] - [time for time, _ in KNOWN]).max() < within
