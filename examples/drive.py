@@ -3,34 +3,58 @@
 """Send a drive velocity or a force to the axis: `drive.py 0.005` (m/s) or `drive.py --force 400` (N)."""
 
 import argparse
+import time
 
 import rclpy
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 
-from stickslip_msgs.msg import DriveVelocity, ExternalForce
+from stickslip_msgs.msg import DriveVelocity, ExternalForce, RigEvent
 
-parser = argparse.ArgumentParser(description=__doc__)
-parser.add_argument('velocity', type=float, nargs='?', help='of the drive, m/s; it is held until the next one')
-parser.add_argument('--force', type=float, help='on the slider, N; it is held until the next one')
-options = parser.parse_args()
-if options.velocity is None and options.force is None:
-    parser.error('give a velocity in m/s, or --force in N')
+_INSISTENCE = 1.0    # s
 
-rclpy.init()
-node = rclpy.create_node('driver')
-latest_only = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE)
-messages = {}
-if options.velocity is not None:
-    messages['drive_velocity'] = DriveVelocity(velocity=options.velocity)
-if options.force is not None:
-    messages['external_force'] = ExternalForce(force=options.force)
-for topic, message in messages.items():
-    publisher = node.create_publisher(type(message), topic, latest_only)
-    while publisher.get_subscription_count() == 0:    # wait for the axis to be found
+
+def parse() -> dict[str, DriveVelocity | ExternalForce]:
+    """Return what to send, by topic."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('velocity', type=float, nargs='?', help='of the drive, m/s; it is held until the next one')
+    parser.add_argument('--force', type=float, help='on the slider, N; it is held until the next one')
+    options = parser.parse_args()
+    messages = {}
+    if options.velocity is not None:
+        messages['drive_velocity'] = DriveVelocity(velocity=options.velocity)
+    if options.force is not None:
+        messages['external_force'] = ExternalForce(force=options.force)
+    if not messages:
+        parser.error('give a velocity in m/s, or --force in N')
+    return messages
+
+
+def send(node: Node, messages: dict[str, DriveVelocity | ExternalForce]) -> None:
+    """Send the messages as soon as the axis listens, and say what it has against them."""
+    log = node.get_logger()
+    node.create_subscription(RigEvent, 'rig_event', lambda event: log.warning(event.text), 10)
+    latest_only = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE)
+    out = {topic: node.create_publisher(type(message), topic, latest_only) for topic, message in messages.items()}
+    while not (all(each.get_subscription_count() for each in out.values()) and node.count_publishers('rig_event')):
+        log.info(f'waiting for an axis that listens on {", ".join(out)}', throttle_duration_sec=5.0)
         rclpy.spin_once(node, timeout_sec=0.1)
-    message.header.stamp = node.get_clock().now().to_msg()
-    publisher.publish(message)
-    publisher.wait_for_all_acked()
-    node.get_logger().info(f'{topic}: {message}')
-node.destroy_node()
-rclpy.try_shutdown()
+    log.info(f'sending {" and ".join(messages)}')
+    # Best effort: an axis that has not quite found its sender yet loses the first ones.
+    end = time.monotonic() + _INSISTENCE
+    while time.monotonic() < end:
+        for topic, message in messages.items():
+            message.header.stamp = node.get_clock().now().to_msg()
+            out[topic].publish(message)
+        rclpy.spin_once(node, timeout_sec=0.1)
+
+
+messages = parse()
+rclpy.init()
+try:
+    send(rclpy.create_node('driver'), messages)
+except (KeyboardInterrupt, ExternalShutdownException):
+    pass
+finally:
+    rclpy.try_shutdown()

@@ -42,6 +42,7 @@ setup(
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         (SHARE, ['package.xml']),
+        ('bin', ['bin/stickslip']),
         (f'{SHARE}/scenes', sorted(glob(f'{NAME}/scenes/*.yaml'))),
         (f'{SHARE}/launch', sorted(glob('launch/*.launch.py'))),
         (f'{SHARE}/layouts', sorted(glob('layouts/*'))),

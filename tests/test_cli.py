@@ -5,6 +5,7 @@
 import csv
 import io
 import json
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -27,6 +28,13 @@ def test_version_and_help() -> None:
     assert (done.returncode, done.stdout) == (0, f'stickslip {__version__}\n')
     assert 'simulate' in tool('--help').stdout
     assert '--sample-period' in tool('simulate', '--help').stdout
+
+
+def test_the_installed_tool_has_a_bare_name(tmp_path: Path) -> None:
+    program = shutil.which('stickslip')
+    assert program, 'the workspace is not sourced'
+    done = subprocess.run(['stickslip', 'scenes'], capture_output=True, text=True, timeout=60, check=True, cwd=tmp_path)
+    assert done.stdout.splitlines() == tool('scenes').stdout.splitlines()
 
 
 def test_scenes_are_listed_with_a_line_each(capsys: Capture) -> None:

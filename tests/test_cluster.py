@@ -44,7 +44,7 @@ class Cluster:
         self.scheduler = started('dask', 'scheduler', '--host', '127.0.0.1', '--port', '0', '--no-dashboard',
                                  '--scheduler-file', self.file)
         self.workers: list[subprocess.Popen[str]] = []
-        wait_until(self.file.exists, 'a scheduler')
+        wait_until(lambda: self.file.exists() and self.file.stat().st_size, 'a scheduler')
         self.address = str(json.loads(self.file.read_text())['address'])
         self.client = distributed.Client(self.address, set_as_default=False)
 

@@ -34,3 +34,8 @@ def test_joint_commands(names: list[str], position: list[float], velocity: list[
         found = accepts_or_refuses(message_of, JOINT_COMMANDS, sent)
         if isinstance(found, JointState) and accepts_or_refuses(commanded_velocity, found) is not None:
             disregarded(found)
+
+
+@pytest.mark.parametrize('data', [b'', b'\x00\x01\x00', b'\x00\x01\x00\x01', b'\x00\x01\x00\x03ab'])
+def test_fewer_bytes_than_their_header_says(data: bytes) -> None:
+    assert accepts_or_refuses(message_of, JOINT_COMMANDS, data) is None

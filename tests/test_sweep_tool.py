@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from stickslip_sim.cli.main import run
-from stickslip_sim.study import Study
+from stickslip_sim.study import Study, room
 from stickslip_sim.study.description import study_of
 from stickslip_sim.study.figures import FIGURES
 from stickslip_sim.study.folder import PARQUET, PARTIAL, SIDECAR, TABLE, Folder
@@ -181,6 +181,7 @@ def test_resuming_another_study_is_refused(tmp_path: Path, capsys: Capture) -> N
 @pytest.mark.parametrize(('arguments', 'said'), [
     (['paper_fig7', '--over', 'axis.masss=1:2:3'], 'did you mean axis.mass?'),
     (['paper_fig7', '--over', 'contact.model=1:2:3'], 'a number'),
+    (['paper_fig7', '--over', 'friction.kinetic.coefficients[01]=0.04:0.06:3'], 'did you mean'),
     (['paper_fig7', '--over', 'axis.mass=2:1:3'], 'swap'), (['paper_fig7', '--over', 'axis.mass=1:2:1'], 'N >= 2'),
     (['paper_fig7', '--over', 'axis.normal_force=0:2:3:log'], 'logarithmic'),
     (['paper_fig7', '--over', 'axis.mass=0:2:3'], '>= 1e-09'),
@@ -217,6 +218,42 @@ def test_a_table_of_something_else_is_not_gone_on_with(tmp_path: Path, capsys: C
     capsys.readouterr()
     assert 'was changed' in refused(capsys, 'sweep', *SMALL, '--out', out, '--resume')
     assert (out / PARTIAL).read_text() == 'a,b\n1,2\n'
+
+
+@pytest.mark.parametrize('flaw', ['a line is gone', 'no motion', 'zeros', 'no text', 'a number of another point'])
+def test_a_chunk_that_is_not_whole_is_run_again(flaw: str, tmp_path: Path, uninterrupted: bytes) -> None:
+    out = tmp_path / 'out'
+    assert run(['sweep', *LONG, '--out', str(out)]) == 0
+    rows = uninterrupted.splitlines(keepends=True)
+    bad = {'a line is gone': b'', 'no motion': rows[3000].replace(b'stick-slip', b'slick-stip'), 'no text': b'\xff\n',
+           'zeros': b'\0' * 100 + b'\n', 'a number of another point': b'1' + rows[3000]}
+    (out / TABLE).unlink()
+    (out / PARTIAL).write_bytes(b''.join([*rows[:3000], bad[flaw], *rows[3001:]]))
+    assert Folder(out).whole_chunks(study_of(Folder(out).described())) == 1
+    assert run(['sweep', *LONG, '--out', str(out), '--resume']) == 0
+    assert (out / TABLE).read_bytes() == uninterrupted
+
+
+def test_two_processes_do_not_share_a_folder(tmp_path: Path, uninterrupted: bytes, capsys: Capture) -> None:
+    out = tmp_path / 'out'
+    process = started(*LONG, '--out', out)
+    wait_for_lines(out / PARTIAL, process)
+    process.send_signal(signal.SIGSTOP)   # so that it surely works on the folder all the time
+    try:
+        assert 'no other process' in refused(capsys, 'sweep', *LONG, '--out', out, '--resume')
+    finally:
+        process.send_signal(signal.SIGCONT)
+    error = process.communicate(timeout=60)[1]
+    assert process.returncode == 0, error
+    assert (out / TABLE).read_bytes() == uninterrupted
+
+
+def test_more_workers_than_memory_holds_are_refused(tmp_path: Path, capsys: Capture,
+                                                    monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(room, 'free_memory', lambda: 200_000_000)
+    error = refused(capsys, 'sweep', *SMALL, '--workers', '5', '--out', tmp_path / 'out')
+    assert 'at most 4: they would take 250 MB of memory, of which 200 MB are free' in error
+    assert not (tmp_path / 'out').exists()
 
 
 def test_parquet_has_the_same_table(tmp_path: Path) -> None:
@@ -296,6 +333,14 @@ def test_what_is_no_complete_sweep_of_one_or_two_parameters_is_refused(swept: Pa
     assert run(['sweep', 'paper_fig7', *drawn]) == 0
     capsys.readouterr()
     assert 'a grid of two parameters' in refused(capsys, 'map', tmp_path / 's', *picture)
+    told = json.loads((swept / SIDECAR).read_text())
+    over = told['over']
+    for changed in ({'over': None}, {'over': [{**one, 'count': '7'} for one in over]}, {'scene_text': 3}, {'points': 7},
+                    {'over': [{**one, 'low': 'a'} for one in over]}, {'duration': '1'}, {'sobol': {'points': 4}}):
+        (tmp_path / 'part' / SIDECAR).write_text(json.dumps({**told, **changed}))
+        assert 'it was changed' in refused(capsys, 'map', tmp_path / 'part', *picture), changed
+    (tmp_path / 'part' / SIDECAR).write_text('[' * 100_000)
+    assert 'study.json' in refused(capsys, 'map', tmp_path / 'part', *picture)
     shutil.copytree(swept, tmp_path / 'cut')
     (tmp_path / 'cut' / TABLE).write_bytes((swept / TABLE).read_bytes()[:-300])
     assert 'points' in refused(capsys, 'map', tmp_path / 'cut', *picture)

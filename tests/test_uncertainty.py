@@ -13,7 +13,7 @@ from stickslip_sim.errors import InputError
 from stickslip_sim.scene import load_scene
 from stickslip_sim.study import Distribution, Saltelli, Study
 from stickslip_sim.study.description import description, study_of
-from stickslip_sim.study.figures import FIGURES
+from stickslip_sim.study.figures import FIGURES, Motion
 from stickslip_sim.study.uncertain_file import uncertain_of
 from stickslip_sim.study.uncertainty import PERCENTS, sobol_indices, uncertainty_of
 
@@ -137,7 +137,7 @@ def test_points_without_a_cycle_have_a_share_and_no_percentile() -> None:
     columns = columns_of(study)
     found = uncertainty_of(study.sample, columns)
     drawn = columns['stick_slip'].reshape(64, 3)[:, :2]
-    assert 0.0 < found.stick_slip < 1.0
+    assert 0.0 < drawn.mean() < 1.0
     assert found.stick_slip == drawn.mean()
     assert found.indices['period'] is None
     assert found.percentiles['period'] is not None
@@ -146,6 +146,15 @@ def test_points_without_a_cycle_have_a_share_and_no_percentile() -> None:
     decides = found.indices['stick_slip']
     assert decides is not None
     assert decides['drive.velocity'].total == pytest.approx(1.0, abs=0.1)   # the only one there is
+
+
+def test_of_points_that_nobody_could_solve_nothing_is_told() -> None:
+    sample = Saltelli((uniform('axis.mass', 300.0, 400.0),), 16)
+    columns = {**{name: np.full(sample.count, np.nan) for name in FIGURES}, 'settled': np.zeros(sample.count),
+               'motion': np.full(sample.count, float(Motion.UNSOLVED))}
+    found = uncertainty_of(sample, columns)
+    assert (found.solved, found.stick_slip) == (0, None)
+    assert {*found.percentiles.values(), *found.indices.values()} == {None}
 
 
 def test_the_sidecar_is_the_study() -> None:

@@ -90,8 +90,8 @@ def main() -> int:
     folder = first_free(lambda number: options.out / f'{SCENE}_{utc_stamp()}{f"_{number}" if number > 1 else ""}')
     try:
         print(f'starting sim_node on {SCENE} for {options.duration:g} s of real time')
-        with _node_process(folder) as process:
-            _drive(process, options.duration)
+        with _driver(options.duration) as driver, _node_process(folder) as process:
+            _drive(driver, process, options.duration)
         print('\n'.join(report(folder)))
     except (StickslipError, OSError) as error:
         sys.stderr.write(f'demo: {error}\n')
@@ -138,10 +138,20 @@ def _executable(name: str) -> str:
     raise RecordingError(f'{name} is not installed; run `make build` and source ros2_ws/install/setup.bash')
 
 
-def _drive(process: subprocess.Popen[bytes], duration: float) -> None:
-    """Send the course; Ctrl-C ends it early and well."""
+@contextmanager
+def _driver(duration: float) -> Iterator[Driver]:
+    """Keep the driver until the node has ended, which would warn that its controller is gone."""
     rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
     driver = Driver(duration)
+    try:
+        yield driver
+    finally:
+        driver.destroy_node()
+        rclpy.try_shutdown()
+
+
+def _drive(driver: Driver, process: subprocess.Popen[bytes], duration: float) -> None:
+    """Send the course; Ctrl-C ends it early and well."""
     begin = time.monotonic()
     try:
         while driver.time < duration and process.poll() is None:
@@ -150,9 +160,6 @@ def _drive(process: subprocess.Popen[bytes], duration: float) -> None:
                 raise RecordingError(f'no sign of sim_node within {_PATIENCE:g} s; is another ROS_DOMAIN_ID in force?')
     except KeyboardInterrupt:
         print('  interrupted; the run ends here')
-    finally:
-        driver.destroy_node()
-        rclpy.try_shutdown()
 
 
 if __name__ == '__main__':

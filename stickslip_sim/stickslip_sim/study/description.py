@@ -7,6 +7,7 @@ from dataclasses import asdict, fields
 from importlib import metadata
 from typing import Any
 
+from ..errors import InputError
 from ..receipt import versions
 from ..scene.load import scene_of_parameters
 from ..scene.ros_yaml import read_yaml
@@ -18,6 +19,7 @@ from .variation import Variation
 
 FORM = 'stickslip study 1'
 _VARIED = tuple(field.name for field in fields(Variation))
+_OF_THE_SAMPLE = ('points', 'duration', 'over', 'sobol', 'uncertain')
 
 
 def description(study: Study, command: str = '') -> dict[str, Any]:
@@ -26,7 +28,7 @@ def description(study: Study, command: str = '') -> dict[str, Any]:
     return {
         'form': FORM, 'command': command, 'scene': study.scene.name, 'scene_hash': study.scene.hash,
         'points': study.count, 'duration': study.duration,
-        'over': [{**asdict(one), 'unit': one.unit} for one in sample.variations],
+        'over': [{**_json(asdict(one)), 'unit': one.unit} for one in sample.variations],
         'sobol': {'points': sample.count, 'seed': sample.seed} if isinstance(sample, Sobol) else None,
         'uncertain': {'samples': sample.samples, 'seed': sample.seed} if isinstance(sample, Saltelli) else None,
         'versions': versions_of_a_study(), 'scene_text': study.scene.text,
@@ -39,9 +41,19 @@ def versions_of_a_study() -> dict[str, str]:
 
 
 def study_of(told: Mapping[str, Any]) -> Study:
-    """Return the study that a description is of; raises InputError and KeyError."""
-    scene = scene_of_parameters(parameters_of(read_yaml(told['scene_text'])), {})
-    return Study(scene.values, _sample_of(told), told['duration'])
+    """Return the study that a description is of; raises InputError."""
+    try:
+        scene = scene_of_parameters(parameters_of(read_yaml(told['scene_text'])), {})
+        study = Study(scene.values, _sample_of(told), told['duration'])
+        if all(told[name] == value for name, value in description(study).items() if name in _OF_THE_SAMPLE):
+            return study
+    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError):
+        pass
+    raise InputError('study', str(told.get('scene')), 'as a sweep describes it', 'it was changed; sweep again')
+
+
+def _json(values: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: list(value) if isinstance(value, tuple) else value for name, value in values.items()}
 
 
 def _sample_of(told: Mapping[str, Any]) -> Sample:

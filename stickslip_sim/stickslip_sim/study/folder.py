@@ -5,19 +5,22 @@
 Until all points are there the table is `points.partial.csv`; then it becomes `points.csv`.
 """
 
+import fcntl
 import json
 import os
 import shutil
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
 from ..errors import InputError
 from .description import FORM, description
 from .parquet import write_parquet
+from .room import check_room
 from .study import Study
-from .table import header, size_in_memory, size_on_disk
+from .table import header, numbers_of
 
 SIDECAR, TABLE, PARTIAL, PARQUET = 'study.json', 'points.csv', 'points.partial.csv', 'points.parquet'
 
@@ -34,23 +37,41 @@ class Folder:
         return (self.path / TABLE).exists()
 
     def begin(self, study: Study, command: str) -> None:
-        """Make the folder and say in it what will come; one that cannot be begun is not left behind."""
+        """Make the folder and say in it what will come: it is there with all of that, or not at all."""
         if os.path.lexists(self.path):
             raise InputError('--out', str(self.path), 'a folder that does not exist',
                              'choose another name, or add --resume to go on with it')
         parent = self.path.absolute().parent
         if not parent.is_dir():
             raise InputError('--out', str(self.path), 'in a folder that exists', f'make the folder {parent} first')
+        temporary = parent / f'.{os.getpid()}.{self.path.name}'
         with _refusing(self.path):
-            self.path.mkdir()
             try:
-                self._check_room(study)
-                (self.path / SIDECAR).write_text(json.dumps(description(study, command), indent=1) + '\n',
+                temporary.mkdir()
+                check_room(study, temporary)
+                (temporary / SIDECAR).write_text(json.dumps(description(study, command), indent=1) + '\n',
                                                  encoding='utf-8')
-                (self.path / PARTIAL).write_bytes(header(study))
-            except BaseException:
-                shutil.rmtree(self.path, ignore_errors=True)
-                raise
+                (temporary / PARTIAL).write_bytes(header(study))
+                temporary.rename(self.path)
+            finally:
+                shutil.rmtree(temporary, ignore_errors=True)
+
+    @contextmanager
+    def taken(self) -> Iterator[None]:
+        """Keep other processes away from the folder; raises InputError where one works on it.
+
+        The lock ends with the process that has it, however that ends.
+        """
+        with ExitStack() as held:
+            try:
+                file = held.enter_context((self.path / SIDECAR).open('r+b'))
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                raise InputError('--out', str(self.path), 'a folder that no other process works on',
+                                 'wait for that one, or end it and add --resume') from None
+            except OSError as error:
+                raise _refusal(self.path, error) from None
+            yield
 
     def described(self) -> dict[str, Any]:
         """Return what the folder says it is; raises InputError when it is not of a sweep."""
@@ -58,32 +79,32 @@ class Folder:
             told = json.loads((self.path / SIDECAR).read_text(encoding='utf-8'))
             if told['form'] == FORM:
                 return dict(told)
-        except (OSError, ValueError, KeyError, TypeError):
+        except (OSError, ValueError, KeyError, TypeError, RecursionError):
             pass
         raise InputError('folder', str(self.path), f'that of a sweep, with {SIDECAR} in it', 'sweep into a new one')
 
     def check_same(self, study: Study) -> None:
         """Raise InputError unless what stands in the folder is of this study, by the same versions."""
         told = self.described()
-        for name, value in json.loads(json.dumps(description(study))).items():
+        for name, value in description(study).items():
             if name != 'command' and told.get(name) != value:
                 raise InputError('--resume', str(self.path), f'the folder of this very study; its {name} is another',
                                  f'give the command that stands in its {SIDECAR}, or another folder')
 
     def whole_chunks(self, study: Study) -> int:
-        """Return how many chunks of points are there; what a crash left behind of another is taken away."""
+        """Return how many chunks of points are there; what a crash left behind them is taken away."""
         path, titles = self.path / PARTIAL, header(study)
         with _refusing(path), path.open('r+b') as file:
             if file.readline() != titles:
                 raise InputError('points', str(path), 'the table of this study', 'it was changed; sweep into a new one')
-            chunks = rows = 0
-            end = place = len(titles)
-            for line in file:
-                if not line.endswith(b'\n'):
+            chunks, end = 0, len(titles)
+            for first, last in study.stretches():
+                rows = list(islice(file, last - first))
+                try:
+                    numbers_of(rows, study, first, last)
+                except ValueError:
                     break
-                place, rows = place + len(line), rows + 1
-                if rows == min((chunks + 1) * study.chunk, study.count):
-                    end, chunks = place, chunks + 1
+                chunks, end = chunks + 1, end + sum(map(len, rows))
             file.truncate(end)
         return chunks
 
@@ -105,19 +126,6 @@ class Folder:
             write_parquet(self.path / PARTIAL, self.path / PARQUET)
             (self.path / PARTIAL).replace(self.path / TABLE)
 
-    def _check_room(self, study: Study) -> None:
-        """Raise InputError when the table would not fit into memory or onto the disk."""
-        memory = os.sysconf('SC_AVPHYS_PAGES') * os.sysconf('SC_PAGE_SIZE')
-        _check_size(study, 'memory', size_in_memory(study), memory)
-        _check_size(study, 'disk', size_on_disk(study), shutil.disk_usage(self.path).free)
-
-
-def _check_size(study: Study, where: str, needed: int, free: int) -> None:
-    if needed > free:
-        raise InputError('points', study.count, f'at most {study.count * free // needed}: their table would take '
-                         f'{needed / 1e6:,.0f} MB of {where}, of which {free / 1e6:,.0f} MB are free',
-                         'take fewer values for each parameter, or --sobol N')
-
 
 @contextmanager
 def _refusing(path: Path) -> Iterator[None]:
@@ -125,5 +133,9 @@ def _refusing(path: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        raise InputError('--out', str(path), 'a place that can be written',
-                         f'{error.strerror or error}; what is done is kept, --resume goes on') from None
+        raise _refusal(path, error) from None
+
+
+def _refusal(path: Path, error: OSError) -> InputError:
+    return InputError('--out', str(path), 'a place that can be written',
+                      f'{error.strerror or error}; what is done is kept, --resume goes on')

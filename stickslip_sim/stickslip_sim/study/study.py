@@ -3,7 +3,7 @@
 """A study: variants of one scene, and what becomes of each."""
 
 import itertools
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -74,6 +74,11 @@ class Study:
     def chunk(self) -> int:
         """How many points to work on between two looks at the clock; the figures do not depend on it."""
         return _IN_A_CHUNK if self.works_in_batches else _ALONE_IN_A_CHUNK
+
+    def stretches(self, done: int = 0) -> Iterator[tuple[int, int]]:
+        """Yield the first point of each chunk after `done` of them, and the one after its last."""
+        for first in range(min(done * self.chunk, self.count), self.count, self.chunk):
+            yield first, min(first + self.chunk, self.count)
 
     def points(self, first: int, last: int) -> Numbers:
         """Return the points from `first` on, up to `last`: a row each, a column for each of `names`."""

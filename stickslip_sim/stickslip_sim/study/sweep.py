@@ -25,17 +25,16 @@ def sweep(study: Study, folder: Folder, crew: Crew | None = None,
     """
     if folder.is_complete:
         return 0
-    done = folder.whole_chunks(study)
-    begin = min(done * study.chunk, study.count)
-    starts = range(begin, study.count, study.chunk)
-    chunks = ((study, start, min(start + study.chunk, study.count)) for start in starts)
-    results = _in_order(crew, chunks) if crew else (lines(*chunk) for chunk in chunks)
-    for start, text in zip(starts, results):
-        folder.append(text)
-        if progress:
-            progress(min(start + study.chunk, study.count) / study.count)
-    folder.finish()
-    return study.count - begin
+    with folder.taken():
+        done = folder.whole_chunks(study)
+        chunks = ((study, first, last) for first, last in study.stretches(done))
+        results = _in_order(crew, chunks) if crew else (lines(*chunk) for chunk in chunks)
+        for (_, last), text in zip(study.stretches(done), results):
+            folder.append(text)
+            if progress:
+                progress(last / study.count)
+        folder.finish()
+    return max(study.count - done * study.chunk, 0)
 
 
 def _in_order(crew: Crew, chunks: Iterator[tuple[Study, int, int]]) -> Iterator[bytes]:

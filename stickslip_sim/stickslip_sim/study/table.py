@@ -3,8 +3,10 @@
 """The points of a study as lines of CSV, and those lines back as columns."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from itertools import islice
 from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 
@@ -13,7 +15,6 @@ from .figures import FIGURES, MOTIONS, Figures, Motion
 from .study import Study
 from .variation import Numbers
 
-_BYTES_OF_A_NUMBER = 24   # 17 digits, sign, point, exponent, comma
 _CODES = {word: float(motion) for motion, word in MOTIONS.items()}
 
 
@@ -30,28 +31,30 @@ def lines(study: Study, first: int, last: int) -> bytes:
     return ''.join(','.join(row) + '\n' for row in zip(*columns, strict=True)).encode()
 
 
-def size_on_disk(study: Study) -> int:
-    """Return how many bytes all lines take at most."""
-    return study.count * (len(study.names) + len(FIGURES)) * _BYTES_OF_A_NUMBER
+def numbers_of(rows: Sequence[bytes], study: Study, first: int, last: int) -> Numbers:
+    """Return the numbers in the lines of the points from `first` on, up to `last`; raises ValueError for any other."""
+    place = len(study.names)
+    numbers = np.array([_numbers(row, place) for row in rows])
+    if numbers.shape != (last - first, width(study)) or not np.array_equal(numbers[:, :place],
+                                                                           study.points(first, last)):
+        raise ValueError('these are the lines of other points')
+    return numbers
 
 
-def size_in_memory(study: Study) -> int:
-    """Return how many bytes the columns take when they are read."""
-    return study.count * (len(study.names) + len(FIGURES)) * 8
+def width(study: Study) -> int:
+    """Return how many columns the table has."""
+    return len(study.names) + len(FIGURES)
 
 
 def read_columns(path: Path, study: Study) -> dict[str, Numbers]:
     """Return the columns of the table of a study by name; motions as numbers of `Motion`.  Raises InputError."""
     try:
-        with path.open(encoding='utf-8') as file:
-            titles = file.readline()
-            rows = np.array([[_number(cell) for cell in line.split(',')] for line in file])
+        with path.open('rb') as file:
+            columns = _columns_in(file, study)
     except (OSError, ValueError):
-        titles, rows = '', np.array([])
-    if titles.encode() != header(study) or rows.shape != (study.count, len(study.names) + len(FIGURES)):
         raise InputError('points', str(path), f'the table of its study, {study.count} whole lines',
-                         'it was changed or cannot be read; sweep again')
-    return dict(zip((*study.names, *FIGURES), rows.T.copy()))
+                         'it was changed or cannot be read; sweep again') from None
+    return dict(zip((*study.names, *FIGURES), columns))
 
 
 def figures_in(columns: Mapping[str, Numbers]) -> Figures:
@@ -67,6 +70,22 @@ def _word(motion: float) -> str:
     return MOTIONS[Motion(int(motion))]
 
 
-def _number(cell: str) -> float:
-    cell = cell.strip()
-    return _CODES[cell] if cell in _CODES else float(cell or 'nan')
+def _columns_in(file: BinaryIO, study: Study) -> Numbers:
+    """Return the columns of the table of a study, an array each; raises ValueError where it is another one."""
+    if file.readline() != header(study):
+        raise ValueError('this is the table of another study')
+    columns = np.empty((width(study), study.count))
+    for first, last in study.stretches():
+        columns[:, first:last] = numbers_of(list(islice(file, last - first)), study, first, last).T
+    if file.readline():
+        raise ValueError('there are more lines than points')
+    return columns
+
+
+def _numbers(row: bytes, place: int) -> list[float]:
+    """Return the numbers in a line, whose motion stands at a `place`; raises ValueError."""
+    cells = row.decode('ascii').split(',')
+    if not row.endswith(b'\n') or len(cells) <= place or cells[place] not in _CODES:
+        raise ValueError('this is no whole line')
+    cells[place] = str(_CODES[cells[place]])
+    return [float(cell.strip() or 'nan') for cell in cells]

@@ -35,7 +35,7 @@ class Index(NamedTuple):
 
 
 class Uncertainty(NamedTuple):
-    """`stick_slip` is the share of those of `points` that were `solved`; `unsettled` cycles still differ at the end.
+    """`stick_slip` is the share of those of `points` that were `solved`; cycles of `unsettled` still differ at the end.
 
     `percentiles` are for each figure, of the points that stick and slip and have it.  `indices` are for each figure and
     each number; None where a point does not have the figure, or all have the same.
@@ -44,7 +44,7 @@ class Uncertainty(NamedTuple):
     points: int
     solved: int
     unsettled: int
-    stick_slip: float
+    stick_slip: float | None
     percentiles: Mapping[str, list[float] | None]
     indices: Mapping[str, Mapping[str, Index] | None]
 
@@ -60,7 +60,7 @@ def uncertainty_of(sample: Saltelli, columns: Mapping[str, Numbers]) -> Uncertai
     names = [one.name for one in sample.variations]
     indices = {name: sobol_indices(values) for name, values in {'stick_slip': slips, **known}.items()}
     return Uncertainty(
-        drawn.size, solved, int(unsettled.sum()), float(np.nansum(drawn)) / solved if solved else np.nan,
+        drawn.size, solved, int(unsettled.sum()), float(np.nansum(drawn)) / solved if solved else None,
         {name: _percentiles(values[:, :2][drawn == 1.0]) for name, values in known.items()},
         {name: dict(zip(names, found, strict=True)) if found else None for name, found in indices.items()})
 

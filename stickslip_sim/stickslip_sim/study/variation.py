@@ -92,7 +92,7 @@ def parameter_of(name: str) -> tuple[Parameter, int | None]:
 
     It must be a number that decides the motion.
     """
-    found = re.fullmatch(r'([^\[\]]+)(?:\[(\d+)\])?', name)
+    found = re.fullmatch(r'([^\[\]]+)(?:\[(0|[1-9][0-9]{0,8})\])?', name)
     entry = BY_NAME.get(found[1]) if found else None
     if found is None or entry is None:
         raise InputError('parameter', name, 'a parameter of a scene (docs/scene.md)', _advice(name))

@@ -7,6 +7,7 @@ import time
 
 from rclpy.clock import Clock as SteadyClock
 from rclpy.clock import ClockType
+from rclpy.duration import Duration
 from rosgraph_msgs.msg import Clock
 
 from ...pacing import NANOSECONDS
@@ -24,7 +25,7 @@ from .states import States
 from .timeline import Timeline
 
 NAME = 'replay'
-_LINGER = 0.5    # s; what a process leaves behind in shared memory goes with it
+_PATIENCE = 5.0    # s; what did not fit into shared memory is sent again after 3 s (the heartbeat of Fast DDS)
 
 
 class Replay(ListedNode):
@@ -54,9 +55,11 @@ class Replay(ListedNode):
         self.player.start()
 
     def end(self) -> None:
-        """Stop playing; let those who listen take what was said last."""
+        """Stop playing; wait for those who listen to have it all, but not for ever."""
         self.player.end()
-        time.sleep(_LINGER)
+        last = time.monotonic() + _PATIENCE
+        for out in self.publishers:
+            out.wait_for_all_acked(Duration(seconds=max(0.0, last - time.monotonic())))
 
     def values_changed(self) -> None:
         """Go on at another rate."""

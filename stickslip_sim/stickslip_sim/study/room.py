@@ -1,0 +1,47 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""What a study takes of the memory and the disk of this machine: asked before it begins."""
+
+import os
+import shutil
+from pathlib import Path
+
+from ..errors import InputError
+from .study import Study
+from .table import width
+
+_ON_DISK, _IN_MEMORY = 24, 8   # bytes of a number: 17 digits, sign, point, exponent, comma; a double
+_MEGA = 1e6
+_OF_A_WORKER = 50_000_000   # bytes: Python, numpy and the compiled engine, each process for itself
+
+
+def check_room(study: Study, folder: Path) -> None:
+    """Raise InputError when the table of a study would not fit into memory or onto the disk of a folder."""
+    disk = shutil.disk_usage(folder).free
+    for where, size, free in (('memory', _IN_MEMORY, free_memory()), ('disk', _ON_DISK, disk)):
+        of_a_point = size * width(study)
+        if study.count * of_a_point > free:
+            raise InputError('points', study.count, f'at most {free // of_a_point}: their table would take '
+                             f'{_mega(study.count * of_a_point)} of {where}, of which {_mega(free)} are free',
+                             'take fewer values for each parameter, or --sobol N')
+
+
+def check_room_for_workers(count: int) -> None:
+    """Raise InputError when so many processes would not fit into memory."""
+    free = free_memory()
+    if count * _OF_A_WORKER > free:
+        raise InputError('--workers', count, f'at most {free // _OF_A_WORKER}: they would take '
+                         f'{_mega(count * _OF_A_WORKER)} of memory, of which {_mega(free)} are free',
+                         'use all for one on each core')
+
+
+def free_memory() -> int:
+    """Return how many bytes can be had, those among them that only hold copies of files."""
+    for line in Path('/proc/meminfo').read_text(encoding='ascii').splitlines():
+        if line.startswith('MemAvailable:'):
+            return int(line.split()[1]) * 1024
+    return os.sysconf('SC_AVPHYS_PAGES') * os.sysconf('SC_PAGE_SIZE')
+
+
+def _mega(size: int) -> str:
+    return f'{size / _MEGA:,.0f} MB'
