@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from stickslip_sim.axis import InitialState
 from stickslip_sim.bench.cases import case_names, make_case
 from stickslip_sim.bench.contestants import PEERS
 from stickslip_sim.bench.errors import Truth, errors_of, pair
@@ -20,6 +21,7 @@ from stickslip_sim.bench.race import race
 from stickslip_sim.bench.ratios import Ratio, at_least, at_most, ratios
 from stickslip_sim.bench.report import as_case, as_json, markdown, text_table
 from stickslip_sim.cli.main import run
+from stickslip_sim.courses import constant
 from stickslip_sim.words import EventKind
 from tests.axes import COMPLIANT, RIGID, instant, make, paper_axis
 from tests.conftest import Program
@@ -32,8 +34,8 @@ KNOWN = [(0.67979883333333, EventKind.BREAKAWAY), (0.76770114503556598, EventKin
 
 
 def paper(contact: str, duration: float) -> Problem:
-    simulator = make(paper_axis(RIGID if contact == 'rigid' else COMPLIANT), 0.002)
-    return Problem('paper', contact, simulator.axis, simulator._initial, *simulator._courses, duration)
+    axis = paper_axis(RIGID if contact == 'rigid' else COMPLIANT)
+    return Problem('paper', contact, axis, InitialState(), constant(0.002), constant(0.0), duration)
 
 
 @pytest.mark.parametrize(('peer', 'setting', 'within'), [
