@@ -11,6 +11,7 @@ import pytest
 
 from stickslip_sim.recording import read_run
 from tests.ros_nodes import Client, client, running
+from tests.waiting import wait_for
 
 pytestmark = pytest.mark.ros
 
@@ -40,13 +41,12 @@ def test_the_demonstration_records_and_has_nothing_to_complain_of(tmp_path: Path
 def test_what_is_sent_holds(axis: Client) -> None:
     done = python(DRIVE, '0.005', '--force', '400')
     assert done.returncode == 0, done.stderr
-    assert axis.latest('slider_state').drive_velocity == 0.005
+    wait_for(lambda: axis.latest('slider_state').drive_velocity == 0.005, 'its effect')
 
 
 def test_a_wrong_unit_is_told_to_the_sender(axis: Client) -> None:
     before = axis.latest('slider_state').drive_velocity
-    done = python(DRIVE, '5')
-    assert 'velocity = 5.0 is refused' in done.stderr
+    wait_for(lambda: 'velocity = 5.0 is refused' in python(DRIVE, '5').stderr, 'a refusal that is heard in its second')
     assert axis.latest('slider_state').drive_velocity == before
 
 
