@@ -20,7 +20,6 @@ from stickslip_sim.axis import Axis, CompliantContact
 from stickslip_sim.words import EventKind, Mode
 
 State = NDArray[np.float64]   # position, velocity
-Rates = Callable[[float, State], list[float]]
 Guard = Callable[[float, State], float]
 
 _RTOL, _ATOL, _STEP = 1e-13, 1e-19, 5e-4

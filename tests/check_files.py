@@ -16,6 +16,9 @@ from stickslip_sim.scene.ros_yaml import read_yaml
 from tests import tool
 from tests.tool import Capture
 
+LIMITS = 'limits: {sticks: {max: 1}, longest_stick: {max: 1.0}, peak_speed: {max: 0.02}}'
+DURATION = '1.4'   # s; paper_fig7 sticks once
+
 # An axis without friction that swings out from rest position 0: everything about it has a closed form.
 START_VELOCITY = 0.1                     # m/s
 DECAY = 4000.0 / (2.0 * 350.0)           # 1/s

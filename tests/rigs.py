@@ -13,7 +13,7 @@ from stickslip_sim.grid import Grid
 from stickslip_sim.rig import Fault, NoteKind, Product, Rig
 from stickslip_sim.rig.faults import RULES
 from stickslip_sim.rig.settings import RigSettings
-from stickslip_sim.solvers import exact
+from stickslip_sim.solvers import Solver, exact
 from tests.axes import COMPLIANT, RIGID, paper_axis
 
 Order = Callable[[Rig], object]
@@ -30,6 +30,16 @@ def make(axis: Axis = AXIS, drive: Course | float = 0.002, force: Course | float
         return given if isinstance(given, Course) else constant(given)
 
     return Rig(axis, InitialState(), course(drive), course(force), exact.SOLVER, Grid(rate), RigSettings(**settings))
+
+
+def tired_after(time: float) -> Solver:
+    """Return the exact solver, which gives up at a time."""
+    def advance(p: Any, s: Any, second: float, fraction: float, events: Any, row: int) -> Any:
+        if second + fraction > time:
+            return row, -1
+        return exact.SOLVER.advance(p, s, second, fraction, events, row)
+
+    return exact.SOLVER._replace(advance=advance)
 
 
 def run(rig: Rig, steps: int, script: Script | None = None) -> list[Product]:

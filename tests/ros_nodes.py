@@ -234,3 +234,12 @@ def client(namespace: str = '/') -> Iterator[Client]:
         yield it
     finally:
         it.close()
+
+
+@contextmanager
+def node_and_client(folder: Path, mode: str, *ros_args: str) -> Iterator[tuple[NodeProcess, Client]]:
+    """Run a node in a mode of time, connected; it ends clean."""
+    with running('-p', f'time.mode:={mode}', *ros_args, folder=folder) as process, client() as axis:
+        axis.connect(is_moving=mode != 'lockstep')
+        yield process, axis
+        assert_clean(*process.end())

@@ -5,6 +5,7 @@
 import math
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import Any
 
 import pytest
 
@@ -206,9 +207,9 @@ class TestItEnds:
     ({'rtol': math.nan}, 'solver.rtol'), ({'rtol': 1.0}, 'solver.rtol'), ({'atol': 0.0}, 'solver.atol'),
     ({'atol': math.inf}, 'solver.atol'), ({'atol': -1.0}, 'solver.atol'),
 ])
-def test_bad_settings_are_refused(settings: dict[str, object], name: str) -> None:
+def test_bad_settings_are_refused(settings: dict[str, Any], name: str) -> None:
     with pytest.raises(InputError) as caught:
-        adaptive.solver(**settings)  # type: ignore[arg-type]
+        adaptive.solver(**settings)
     assert caught.value.name == name
 
 

@@ -6,19 +6,17 @@
 data; a chaotic or nearly grazing run has a large one, and there no double-precision result can do better.
 """
 
-import json
 import math
 from itertools import pairwise
-from pathlib import Path
-from typing import Any
 
 import pytest
 
 from stickslip_sim.simulator import Simulator
 from tests.axes import instant
 from tests.reference.objects import inputs_of
+from tests.reference.stored import stored
 
-RUNS: dict[str, Any] = json.loads((Path(__file__).parent / 'data' / 'reference_events.json').read_text())
+RUNS = stored()
 ROUNDING = 2.220446049250313e-16
 
 

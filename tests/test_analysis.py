@@ -11,15 +11,15 @@ from stickslip_sim.analysis import Cycle, Span, cycle_figures, mode_spans, summa
 from stickslip_sim.axis import InitialState
 from stickslip_sim.courses import table
 from stickslip_sim.words import Event, EventKind, Mode
-from tests.axes import COMPLIANT, RIGID, paper_axis, run
+from tests.axes import COMPLIANT, RIGID, Contact, paper_axis, run
 
 
 @pytest.mark.parametrize(('contact', 'period', 'jump', 'peak', 'break_force', 'stick_force'), [
     (RIGID, 0.619075168, 1.238150336e-3, 1.23285921663e-2, 781.443710909, 235.301790949),
     (COMPLIANT, 0.659065697, 1.31813139e-3, 1.16642823367e-2, 788.081203029, 246.606758267)])
-def test_limit_cycle_of_the_model(contact: object, period: float, jump: float, peak: float, break_force: float,
+def test_limit_cycle_of_the_model(contact: Contact, period: float, jump: float, peak: float, break_force: float,
                                   stick_force: float) -> None:
-    figures = summary(run(paper_axis(contact), 0.002, 60.0), 60.0)  # type: ignore[arg-type]
+    figures = summary(run(paper_axis(contact), 0.002, 60.0), 60.0)
     last = figures.last
     assert figures.motion == 'stick-slip'
     assert figures.settled

@@ -9,17 +9,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from stickslip_sim.axis import InitialState
 from stickslip_sim.bench.cases import case_names, make_case
 from stickslip_sim.bench.contestants import PEERS
 from stickslip_sim.bench.errors import Truth, errors_of, pair
 from stickslip_sim.bench.own import exact_solver
 from stickslip_sim.bench.peers import dop853, euler, scipy_ivp
-from stickslip_sim.bench.peers.peer import EXACT, Setting
+from stickslip_sim.bench.peers.peer import EXACT, Peer, Setting
 from stickslip_sim.bench.problem import Outcome, Problem
 from stickslip_sim.bench.race import race
 from stickslip_sim.bench.ratios import Ratio, at_least, at_most, ratios
 from stickslip_sim.bench.report import as_case, as_json, markdown, text_table
 from stickslip_sim.cli.main import run
+from stickslip_sim.courses import constant
 from stickslip_sim.words import EventKind
 from tests.axes import COMPLIANT, RIGID, instant, make, paper_axis
 from tests.conftest import Program
@@ -32,13 +34,13 @@ KNOWN = [(0.67979883333333, EventKind.BREAKAWAY), (0.76770114503556598, EventKin
 
 
 def paper(contact: str, duration: float) -> Problem:
-    simulator = make(paper_axis(RIGID if contact == 'rigid' else COMPLIANT), 0.002)
-    return Problem('paper', contact, simulator.axis, simulator._initial, *simulator._courses, duration)
+    axis = paper_axis(RIGID if contact == 'rigid' else COMPLIANT)
+    return Problem('paper', contact, axis, InitialState(), constant(0.002), constant(0.0), duration)
 
 
 @pytest.mark.parametrize(('peer', 'setting', 'within'), [
     (dop853.PEER, FINEST, 1e-10), (scipy_ivp.PEERS[0], FINEST, 1e-6), (euler.PEER, Setting(1e-5, 'step'), 1e-4)])
-def test_peers_find_the_events_of_the_paper(peer, setting, within) -> None:  # type: ignore[no-untyped-def]
+def test_peers_find_the_events_of_the_paper(peer: Peer, setting: Setting, within: float) -> None:
     outcome = peer.prepare(paper('rigid', 1.43), setting)()
     assert [int(kind) for kind in outcome.events[:, 1]] == [kind for _, kind in KNOWN]
     assert np.abs(outcome.events[:, 0] - [time for time, _ in KNOWN]).max() < within

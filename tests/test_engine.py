@@ -14,7 +14,7 @@ from stickslip_sim.courses import Course, ramp, steps, table
 from stickslip_sim.errors import SolverError
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
 from stickslip_sim.words import Event, EventKind, Instant, Mode
-from tests.axes import COMPLIANT, RIGID, instant, make, of_kind, paper_axis, run
+from tests.axes import COMPLIANT, RIGID, Contact, instant, make, of_kind, paper_axis, run
 from tests.conftest import Program
 
 
@@ -76,7 +76,7 @@ def test_compiled_and_plain_python_agree_bit_by_bit(in_a_process: Program) -> No
     """The same source with and without numba, in two processes."""
     program = '''
 import random
-from tests.axes import random_axis, run
+from tests.axes import random_axis, run, Contact
 for seed in range(25):
     rng = random.Random(seed)
     axis = random_axis(rng)
@@ -107,9 +107,9 @@ def test_grazing_the_limit_is_neither_missed_nor_invented() -> None:
 @pytest.mark.parametrize('law', ['CONSTANT', 'EXPONENTIAL', 'KATO', 'HYPERBOLIC', 'LOGARITHMIC'])
 @pytest.mark.parametrize('exponent', [0.4, 1.0, 2.5])
 @pytest.mark.parametrize('contact', [RIGID, COMPLIANT])
-def test_break_away_of_every_static_law_is_on_the_limit(law: str, exponent: float, contact: object) -> None:
+def test_break_away_of_every_static_law_is_on_the_limit(law: str, exponent: float, contact: Contact) -> None:
     """At every break-away |F| = N mu_s(t⁻), and at no sampled instant of stick before it is |F| beyond the limit."""
-    axis = paper_axis(contact)  # type: ignore[arg-type]
+    axis = paper_axis(contact)
     static = StaticLaw(StaticLawKind[law], 0.12, 0.24, 0.2, exponent)
     axis = replace(axis, friction=replace(axis.friction, static=static))
     drive = table('drive', [0.0, 1.0, 2.0, 4.0], [0.006, 0.002, -0.008, 0.004])

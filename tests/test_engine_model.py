@@ -9,7 +9,7 @@ import pytest
 from stickslip_sim.axis import Axis, Friction
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
 from stickslip_sim.words import EventKind
-from tests.axes import COMPLIANT, RIGID, of_kind, paper_axis, run
+from tests.axes import COMPLIANT, RIGID, Contact, of_kind, paper_axis, run
 
 # model.md: kind, t / s, x / m, ẋ / (m/s), F_d / N, from 40-digit arithmetic
 RIGID_EVENTS = [
@@ -40,8 +40,8 @@ CONVENTIONAL_EVENTS = [
 
 @pytest.mark.parametrize(('contact', 'branches', 'expected'), [
     (RIGID, True, RIGID_EVENTS), (COMPLIANT, True, COMPLIANT_EVENTS), (RIGID, False, CONVENTIONAL_EVENTS)])
-def test_check_values_of_the_model(contact: object, branches: bool, expected: list[tuple[object, ...]]) -> None:
-    events = run(paper_axis(contact, branches=branches), 0.002, 1.6)  # type: ignore[arg-type]
+def test_check_values_of_the_model(contact: Contact, branches: bool, expected: list[tuple[object, ...]]) -> None:
+    events = run(paper_axis(contact, branches=branches), 0.002, 1.6)
     assert [e.kind for e in events[:len(expected)]] == [row[0] for row in expected]
     for event, (_, *values) in zip(events, expected):
         got = (event.time, event.position, event.velocity, event.drive_force)
@@ -53,9 +53,9 @@ def test_check_values_of_the_model(contact: object, branches: bool, expected: li
 @pytest.mark.parametrize(('contact', 'period', 'jump', 'peak', 'break_force', 'stick_force'), [
     (RIGID, 0.619075168, 1.238150336e-3, 1.23285921663e-2, 781.443710909, 235.301790949),
     (COMPLIANT, 0.659065697, 1.31813139e-3, 1.16642823367e-2, 788.081203029, 246.606758267)])
-def test_limit_cycle_of_the_model(contact: object, period: float, jump: float, peak: float, break_force: float,
+def test_limit_cycle_of_the_model(contact: Contact, period: float, jump: float, peak: float, break_force: float,
                                   stick_force: float) -> None:
-    events = run(paper_axis(contact), 0.002, 60.0)  # type: ignore[arg-type]
+    events = run(paper_axis(contact), 0.002, 60.0)
     first, second = of_kind(events, EventKind.BREAKAWAY)[-2:]
     assert second.time - first.time == pytest.approx(period, abs=6e-10)
     assert second.position - first.position == pytest.approx(jump, abs=6e-12)

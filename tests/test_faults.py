@@ -1,12 +1,10 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Faults: each equals what it stands for, to the last bit where that has another name; when, by which id, how often."""
+"""Faults: each equals what it stands for, to the last bit where that has another name; when it begins and ends."""
 
 import math
-import random
 from dataclasses import replace
 from fractions import Fraction
-from typing import Any, ClassVar
 
 import pytest
 from hypothesis import example, given
@@ -14,16 +12,13 @@ from hypothesis import strategies as st
 
 from stickslip_sim.axis import Axis, InitialState
 from stickslip_sim.courses import constant, steps
-from stickslip_sim.errors import InputError
 from stickslip_sim.grid import Grid
 from stickslip_sim.rig import Fault, NoteKind
-from stickslip_sim.rig.faults import MAX_FAULTS, RULES, Faults
-from stickslip_sim.rig.wire import Wire
+from stickslip_sim.rig.faults import Faults
 from stickslip_sim.scene import load_scene
 from stickslip_sim.simulator import Simulator
 from stickslip_sim.words import Instant
-from tests.rigs import AXIS, STUCK, Order, Script, bits, inject, make, run, told
-from tests.scene_files import refusal
+from tests.rigs import AXIS, STUCK, Script, bits, inject, make, run, told
 
 GRID = Grid(1000.0)
 
@@ -144,203 +139,6 @@ class TestTimes:
         assert forces[10:30] == [5.0] * 10 + [7.0] * 10
 
 
-class TestIds:
-    def test_are_chosen_when_left_out(self) -> None:
-        rig = make()
-        names = [rig.inject(Fault(name, 'drive_freeze', 1.0, 1.0, 0.0)).id for name in ('', 'drive_freeze_2', '', '')]
-        assert len(set(names)) == 4
-        assert list(rig.fault_ids) == names
-
-    @pytest.mark.parametrize('started', [False, True])
-    def test_in_use_are_refused(self, started: bool) -> None:
-        rig = make()
-        rig.inject(Fault('a', 'drive_freeze', 0.0 if started else 9.0, 1.0, 0.0))
-        run(rig, 5)
-        error = refusal(lambda: rig.inject(Fault('a', 'force_pulse', 0.0, 1.0, 0.0)))
-        assert "id = 'a' is refused: must be not in use" in str(error)
-        rig.clear_fault('a')
-        assert rig.inject(Fault('a', 'force_pulse', 0.0, 1.0, 0.0)).id == 'a'
-
-    def test_are_free_again_after_the_end(self) -> None:
-        rig = make()
-        run(rig, 50, {step: [inject('force_pulse', 0.0, 0.005, 1.0, 'a')] for step in (10, 20, 30)})
-        assert list(rig.fault_ids) == []
-
-    def test_unknown_are_refused_with_those_there_are(self) -> None:
-        rig = make()
-        assert 'none at the moment' in str(refusal(lambda: rig.clear_fault('x')))
-        rig.inject(Fault('a', 'drive_freeze', 1.0, 1.0, 0.0))
-        assert "id = 'x' is refused: must be the id of a fault: a;" in str(refusal(lambda: rig.clear_fault('x')))
-
-    def test_a_planned_one_is_cleared_before_it_begins(self) -> None:
-        rig = make()
-        products = run(rig, 100, {10: [inject('force_pulse', 0.05, 0.02, 1.0, 'a'), inject('drive_freeze', 0.05)],
-                                  20: [lambda rig: rig.clear_fault('a')]})
-        assert not any(product.sample.external_force for product in products)
-        assert products[60].sample.drive_velocity == 0.0
-
-    def test_the_most_there_can_be(self) -> None:
-        rig = make()
-        for _ in range(MAX_FAULTS):
-            rig.inject(Fault('', 'force_pulse', 0.001, 0.001, 1.0))
-        error = refusal(lambda: rig.inject(Fault('', 'force_pulse', 0.001, 0.001, 1.0)))
-        assert f'at most {MAX_FAULTS} at a time' in str(error)
-        assert len(str(refusal(lambda: rig.clear_fault('x')))) < 500
-        assert [product.sample.external_force for product in run(rig, 4)] == [0.0, 0.0, MAX_FAULTS, 0.0]
-        assert list(rig.fault_ids) == []
-
-
-class TestRefused:
-    @pytest.mark.parametrize(('change', 'told'), [
-        ({'kind': 'gremlin'}, "kind = 'gremlin'"), ({'kind': ''}, 'one of friction_scale'),
-        ({'start': -1e-9}, 'start = -1e-09'), ({'start': math.nan}, 'start = nan'),
-        ({'start': math.inf}, 'start = inf'),
-        ({'duration': 0.0}, 'duration = 0.0'), ({'duration': 0.0009}, 'from a step (0.001 s)'),
-        ({'duration': math.nan}, 'duration = nan'), ({'duration': -math.inf}, 'duration = -inf'),
-        ({'value': math.nan}, 'value = nan'), ({'value': math.inf}, 'value = inf'),
-        ({'id': 'a' * 65}, '1 to 64 characters'), ({'id': 'a\nb'}, 'printable'), ({'id': '\x00'}, 'printable'),
-    ])
-    def test_without_a_meaning(self, change: dict[str, Any], told: str) -> None:
-        fault = Fault('a', 'force_pulse', 0.0, 1.0, 5.0)._replace(**change)
-        rig = make()
-        assert told in str(refusal(lambda: rig.inject(fault)))
-        assert list(rig.fault_ids) == []
-        assert bits(run(rig, 20)) == bits(run(make(), 20))
-
-    @pytest.mark.parametrize(('kind', 'good', 'bad'), [
-        ('friction_scale', [0.0, 100.0], [-1e-9, 100.1]), ('force_pulse', [-1e9, 1e9], [-1.1e9, 1.1e9]),
-        ('encoder_freeze', [0.0], [1.0, -1.0]), ('encoder_step', [-1e3, 1e3], [1001.0, -1001.0]),
-        ('encoder_dropout', [1e-9, 1.0], [0.0, 1.1, -0.1]), ('command_loss', [1e-9, 1.0], [0.0, 1.1, -0.1]),
-        ('command_delay', [1e-9, 60.0], [0.0, 60.1, -1.0]), ('drive_freeze', [0.0], [0.1]),
-    ])
-    def test_values_by_kind(self, kind: str, good: list[float], bad: list[float]) -> None:
-        rig = make(measures=True)
-        for value in good:
-            rig.inject(Fault('', kind, 0.0, 0.005, value))
-        for value in bad:
-            assert f'with {kind}: ' in str(refusal(rig.inject, Fault('', kind, 0.0, 1.0, value)))
-        run(rig, 20, {5: [lambda rig: rig.command_velocity(0.01)]})
-
-    def test_every_kind_has_a_rule_that_was_tried(self) -> None:
-        assert set(RULES) == {'friction_scale', 'force_pulse', 'encoder_freeze', 'encoder_step', 'encoder_dropout',
-                              'command_loss', 'command_delay', 'drive_freeze'}
-
-
-class TestScene:
-    GIVEN: ClassVar[dict[str, Any]] = {'faults.ids': ['a', 'b'], 'faults.kinds': ['force_pulse', 'drive_freeze'],
-                             'faults.starts': [0.5, 1.0], 'faults.durations': [0.5, math.inf],
-                             'faults.values': [300.0, 0.0]}
-
-    def test_are_those_injected_at_the_start(self) -> None:
-        of_scene = run(load_scene('paper_fig8', self.GIVEN).make_rig(), 1500)
-        rig = load_scene('paper_fig8').make_rig()
-        injected = run(rig, 1500, {0: [inject('force_pulse', 0.5, 0.5, 300.0, 'a'),
-                                       inject('drive_freeze', 1.0, math.inf, 0.0, 'b')]})
-        assert bits(product.sample for product in of_scene) == bits(product.sample for product in injected)
-        assert told(of_scene) == [(501, NoteKind.FAULT_BEGIN), (1001, NoteKind.FAULT_END), (1001, NoteKind.FAULT_BEGIN)]
-
-    @pytest.mark.parametrize(('change', 'told'), [
-        ({'faults.ids': ['a', 'a']}, "faults (a): id = 'a'"),
-        ({'faults.ids': ['a', 'a'], 'faults.kinds': ['drive_freeze'] * 2, 'faults.starts': [1.0] * 2,
-          'faults.durations': [1.0] * 2, 'faults.values': [0.0] * 2}, "faults (a): id = 'a'"),
-        ({'faults.kinds': ['force_pulse', 'goblin']}, "faults (b): kind = 'goblin'"),
-        ({'faults.values': [300.0, 1.0]}, 'faults (b): value = 1.0'),
-        ({'faults.durations': [1e-4, 1.0]}, 'faults (a): duration = 0.0001'),
-        ({'faults.starts': [0.5]}, 'faults.starts = [0.5]'),
-        ({'faults.starts': [-0.5, 0.5]}, 'faults.starts'),
-    ])
-    def test_refused_when_the_scene_is_read(self, change: dict[str, Any], told: str) -> None:
-        error = refusal(lambda: load_scene('paper_fig8', {**self.GIVEN, **change}))
-        assert told in str(error)
-
-    @pytest.mark.parametrize('missing', ['ids', 'kinds', 'starts', 'durations'])
-    def test_lists_belong_together(self, missing: str) -> None:
-        given = {name: value for name, value in self.GIVEN.items() if name != f'faults.{missing}'}
-        with pytest.raises(InputError, match='as many as there are faults'):
-            load_scene('paper_fig8', given)
-
-    def test_values_may_be_left_out(self) -> None:
-        given = {name: value for name, value in self.GIVEN.items() if name != 'faults.values'}
-        assert [fault.value for fault in load_scene('paper_fig8', given).rig.faults] == [0.0, 0.0]
-
-    def test_as_many_as_there_can_be_are_read_in_no_time(self) -> None:
-        count = MAX_FAULTS
-        given = {'faults.ids': [f'f{i}' for i in range(count)], 'faults.kinds': ['force_pulse'] * count,
-                 'faults.starts': [float(i) for i in range(count)], 'faults.durations': [1.0] * count}
-        assert len(load_scene('paper_fig8', given).rig.faults) == count
-
-
-class TestLoss:
-    @pytest.mark.parametrize('shares', [[0.3], [0.9], [0.5, 0.5]])
-    def test_share(self, shares: list[float]) -> None:
-        count, kept = 4000, math.prod(1.0 - share for share in shares)
-        rig = make(seed=11, faults=tuple(Fault('', 'command_loss', 0.0, math.inf, share) for share in shares))
-        products = run(rig, count + 1, {step: [lambda rig: rig.command_velocity(0.01)] for step in range(1, count + 1)})
-        assert rig.counts.lost + rig.counts.heard == count
-        assert rig.counts.heard / count == pytest.approx(kept, abs=4 * math.sqrt(kept * (1 - kept) / count))
-        assert [kind for _, kind in told(products)].count(NoteKind.COMMAND_LOST) == rig.counts.lost
-
-    def test_of_all(self) -> None:
-        products = run(make(), 60, {10: [inject('command_loss', duration=0.02, value=1.0)],
-                                    15: [lambda rig: rig.command_velocity(0.05)],
-                                    40: [lambda rig: rig.command_velocity(0.07)]})
-        assert [products[step].sample.drive_velocity for step in (15, 39, 40)] == [0.002, 0.002, 0.07]
-
-    def test_forces_are_not_lost(self) -> None:
-        products = run(make(), 30, {10: [inject('command_loss', value=1.0), lambda rig: rig.command_force(9.0)]})
-        assert products[10].sample.external_force == 9.0
-
-
-class TestDelay:
-    @pytest.mark.parametrize(('rate', 'delay', 'late'), [
-        (1000.0, 0.005, 5), (1000.0, 0.0051, 6), (1000.0, 1e-9, 1), (333.3, 0.03, 10), (3.0, 1.0, 3), (500.0, 0.3, 150),
-    ])
-    def test_is_exact_in_steps(self, rate: float, delay: float, late: int) -> None:
-        rig = make(rate=rate, faults=(Fault('d', 'command_delay', 0.0, math.inf, delay),))
-        products = run(rig, 12 + late, {10: [lambda rig: rig.command_velocity(0.01)]})
-        speeds = [product.sample.drive_velocity for product in products]
-        assert speeds[10 + late - 1:10 + late + 1] == [0.002, 0.01]
-        assert rig.counts.heard == 1
-
-    def test_those_that_overlap_add_up_in_steps(self) -> None:
-        rig = make(faults=tuple(Fault('', 'command_delay', 0.0, math.inf, delay) for delay in (0.1, 0.2)))
-        speeds = [product.sample.drive_velocity
-                  for product in run(rig, 320, {10: [lambda rig: rig.command_velocity(0.01)]})]
-        assert speeds.index(0.01) == 310
-
-    def test_all_commands_come_in_their_order(self) -> None:
-        def velocity(step: int) -> Order:
-            return lambda rig: rig.command_velocity(step * 1e-4)
-
-        script: Script = {step: [velocity(step)] for step in range(10, 40)}
-        speeds = [product.sample.drive_velocity
-                  for product in run(make(faults=(Fault('d', 'command_delay', 0.0, math.inf, 0.02),)), 70, script)]
-        assert speeds[30:60] == [step * 1e-4 for step in range(10, 40)]
-
-    def test_what_comes_undelayed_overtakes(self) -> None:
-        script: Script = {10: [inject('command_delay', 0.0, 0.005, 0.02), lambda rig: rig.command_velocity(0.03)],
-                          20: [lambda rig: rig.command_velocity(0.01)]}
-        speeds = [product.sample.drive_velocity for product in run(make(), 60, script)]
-        assert set(speeds[20:]) == {0.01}
-
-    @given(st.lists(st.tuples(st.integers(0, 20), st.integers(0, 60)), max_size=12), st.integers(0, 2**32))
-    def test_a_command_never_undoes_a_later_one(self, sends: list[tuple[int, int]], seed: int) -> None:
-        wire, luck = Wire(GRID, 0), random.Random(seed)
-        under_way: list[tuple[int, int]] = []      # arrival, number
-        step = newest = 0
-        for number, (pause, delay) in enumerate(sends, 1):
-            for _ in range(pause + 1):
-                step += 1
-                taken = wire.take(step)
-                due = [sent for arrival, sent in under_way if arrival == step and sent > newest]
-                assert taken == (max(due) if due else None)
-                newest = max([newest, *due])
-            parts = [delay // 3, delay - delay // 3] if luck.random() < 0.5 else [delay]
-            faults = {str(i): Fault(str(i), 'command_delay', 0.0, 1.0, part / 1000) for i, part in enumerate(parts)}
-            assert wire.put(number, step + 1, faults)
-            under_way.append((step + 1 + delay, number))
-
-
 def test_a_reset_plans_the_faults_of_the_scene_again_and_forgets_the_others() -> None:
     rig = make(faults=(Fault('s', 'force_pulse', 0.01, 0.01, 5.0),))
     first = run(rig, 40)
@@ -361,4 +159,3 @@ def test_offline_runs_go_through_the_same_faults() -> None:
     ours = [event for product in products for event in product.events]
     assert [event.kind for event in events] == [event.kind for event in ours]
     assert [event.time for event in events] == pytest.approx([event.time for event in ours], abs=1e-12)
-

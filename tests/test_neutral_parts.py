@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A part that a scene leaves out changes nothing: the motion is that of the part at its neutral value, to the bit."""
 
+from pathlib import Path
+
 import pytest
 
 from stickslip_sim.offline import Trajectory, run_offline
@@ -39,7 +41,7 @@ def test_a_neutral_value_is_as_good_as_none(name: str, neutral: dict[str, object
     assert_same(with_values(name, neutral), with_values(name, {}))
 
 
-def test_dampers_of_nothing_are_none(tmp_path) -> None:  # type: ignore[no-untyped-def]
+def test_dampers_of_nothing_are_none(tmp_path: Path) -> None:
     given = load_scene('paper_fig8', {'contact.damping': 0.0})
     path = tmp_path / 'scene.yaml'
     path.write_text('\n'.join(line for line in given.text.splitlines() if 'damping: 0.0' not in line))

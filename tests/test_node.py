@@ -7,6 +7,7 @@ import math
 import statistics
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -265,6 +266,6 @@ def refused_since(before: list[int], count: int) -> Callable[[dict[str, str]], b
     return lambda values: refusals(values) == [refused + count for refused in before]
 
 
-def stamp(message: object) -> int:
-    header = message.header.stamp  # type: ignore[attr-defined]
+def stamp(message: Any) -> int:
+    header = message.header.stamp
     return int(header.sec) * 1_000_000_000 + int(header.nanosec)

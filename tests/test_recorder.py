@@ -75,7 +75,7 @@ class TestThread:
             gate.wait()
             write(*item)
 
-        writer.write = slow  # type: ignore
+        writer.write = slow  # type: ignore[assignment, method-assign]
         recorder = RecorderThread(writer, capacity=10)
         for step in range(100):
             recorder.put(0, b'', step, step, step)

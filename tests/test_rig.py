@@ -5,6 +5,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import pytest
@@ -22,10 +23,8 @@ from stickslip_sim.rig.watchdog import Watchdog
 from stickslip_sim.ros.loop import StepLoop
 from stickslip_sim.scene import load_scene
 from stickslip_sim.simulator import Simulator
-from stickslip_sim.solvers import Solver, exact
 from stickslip_sim.words import EventKind
-from tests.rigs import AXIS, STUCK, Order, Script, bits, inject, make, random_script, run
-from tests.waiting import wait_for
+from tests.rigs import AXIS, STUCK, Order, Script, bits, inject, make, random_script, run, tired_after
 
 STEPS = 600
 FULL: dict[str, Any] = {
@@ -116,7 +115,7 @@ def in_groups(rig: Rig, groups: Sequence[int], script: Script) -> list[Product]:
     loop = StepLoop(rig, Unpaced(Grid(1000.0)), (), [take], Watchdog(0.0), by_request=True)
     loop.start()
     for count in groups:
-        assert loop.at_boundary(lambda count=count: loop.run_steps(count, None, None, lambda: False))  # type: ignore[misc]
+        assert loop.at_boundary(partial(loop.run_steps, count, None, None, lambda: False))
     loop.stop()
     assert loop.crash is None
     return products
@@ -214,16 +213,6 @@ class TestAtOnce:
         assert first.friction_force == pytest.approx(2.0 * 823.7586, rel=1e-12)
 
 
-def tired_after(time: float) -> Solver:
-    """Return the exact solver, which gives up at a time."""
-    def advance(p: Any, s: Any, second: float, fraction: float, events: Any, row: int) -> Any:
-        if second + fraction > time:
-            return row, -1
-        return exact.SOLVER.advance(p, s, second, fraction, events, row)
-
-    return exact.SOLVER._replace(advance=advance)
-
-
 class TestFailure:
     def test_reset_after_a_solver_gave_up(self) -> None:
         rig = Rig(AXIS, InitialState(), constant(0.002), constant(0.0), tired_after(0.0495), Grid(1000.0),
@@ -244,37 +233,3 @@ class TestFailure:
             run(rig, 100)
         rig.reset()
         assert bits(run(rig, 100)) == bits(first)
-
-
-def test_the_loop_makes_step_0_before_it_hears_requests() -> None:
-    products: list[Product] = []
-    loop = StepLoop(make(), Unpaced(Grid(1000.0)), (), [products.append], Watchdog(0.0), by_request=True)
-    loop.start()
-    counts: list[int] = []
-
-    def step_twice() -> None:
-        counts.append(len(loop.run_steps(2, None, None, lambda: False)))
-
-    def restart() -> None:
-        loop.restart()
-        loop._requests.append(step_twice)    # as one that came meanwhile
-
-    for _ in range(20):
-        assert loop.at_boundary(restart)
-        assert loop.at_boundary(lambda: None)
-    loop.stop()
-    assert counts == [2] * 20
-    assert [product.step for product in products][-3:] == [0, 1, 2]
-
-
-def test_a_paused_loop_that_is_reset_has_its_start() -> None:
-    products: list[Product] = []
-    loop = StepLoop(make(), Unpaced(Grid(1000.0)), (), [products.append], Watchdog(0.0))
-    loop.paused = True
-    loop.start()
-    wait_for(lambda: loop.step == 0, 'the start')
-    assert loop.at_boundary(lambda: loop.run_steps(10, None, None, lambda: False))
-    assert loop.at_boundary(loop.restart)
-    wait_for(lambda: loop.step == 0, 'the start again')
-    loop.stop()
-    assert [product.step for product in products] == [*range(11), 0]

@@ -3,6 +3,7 @@
 """Smooth laws as tables: the stated error holds at every speed, and the motion follows the smooth law as measured."""
 
 import math
+from collections.abc import Callable
 from itertools import pairwise
 
 import pytest
@@ -124,9 +125,10 @@ def test_tables_beyond_the_range_of_numbers_are_refused(law: SmoothKinetic, tole
     (stribeck, (0.1, 0.05, 0.1, 0.0, 0.1), 'kinetic.exponent'), (cosine, (0.0,), 'excess.limit_velocity'),
     (stribeck, (0.1, 0.05, 0.1, 0.0, math.nan), 'kinetic.exponent'), (power, (0.1, 1.0), 'excess.exponent'),
 ])
-def test_laws_without_a_meaning_are_refused(make: object, arguments: tuple[float, ...], name: str) -> None:
+def test_laws_without_a_meaning_are_refused(make: Callable[..., object], arguments: tuple[float, ...],
+                                               name: str) -> None:
     with pytest.raises(InputError) as caught:
-        make(*arguments)   # type: ignore[operator]
+        make(*arguments)
     assert caught.value.name == f'friction.{name}'
 
 

@@ -4,7 +4,6 @@
 
 import math
 from collections.abc import Iterator
-from typing import Any
 
 import pytest
 
@@ -12,7 +11,7 @@ from stickslip_sim.axis import InitialState
 from stickslip_sim.commands import CommandSlot
 from stickslip_sim.courses import constant
 from stickslip_sim.grid import Grid
-from stickslip_sim.pacing import Pacer
+from stickslip_sim.pacing import Pacer, Unpaced
 from stickslip_sim.rig import Product, Rig
 from stickslip_sim.rig.settings import RigSettings
 from stickslip_sim.rig.watchdog import Watchdog
@@ -20,6 +19,8 @@ from stickslip_sim.ros.loop import StepLoop
 from stickslip_sim.solvers import Solver, exact
 from stickslip_sim.words import Instant
 from tests.axes import COMPLIANT, make, paper_axis
+from tests.rigs import make as make_rig
+from tests.rigs import tired_after
 from tests.waiting import wait_for
 
 RATE = 1000.0
@@ -118,16 +119,6 @@ def test_steps_on_request() -> None:
     assert [product.step for product in bench.products] == list(range(10))
 
 
-def tired_after(time: float) -> Solver:
-    """Return the exact solver, which gives up at a time."""
-    def advance(p: Any, s: Any, second: float, fraction: float, events: Any, row: int) -> Any:
-        if second + fraction > time:
-            return row, -1
-        return exact.SOLVER.advance(p, s, second, fraction, events, row)
-
-    return exact.SOLVER._replace(advance=advance)
-
-
 def test_a_solver_that_gives_up_stops_time_not_the_thread() -> None:
     bench = Bench(tired_after(0.05))
     bench.loop.start()
@@ -147,3 +138,37 @@ def test_a_bad_command_leaves_the_one_before(value: float) -> None:
     assert refusal == (f'velocity = {value!r} is refused: must be finite and within ±1.0 m/s;'
                        ' the previous command stays')
     assert (slot.received, slot.refused, slot.latest) == (2, 1, (1.0, 7))
+
+
+def test_the_loop_makes_step_0_before_it_hears_requests() -> None:
+    products: list[Product] = []
+    loop = StepLoop(make_rig(), Unpaced(Grid(1000.0)), (), [products.append], Watchdog(0.0), by_request=True)
+    loop.start()
+    counts: list[int] = []
+
+    def step_twice() -> None:
+        counts.append(len(loop.run_steps(2, None, None, lambda: False)))
+
+    def restart() -> None:
+        loop.restart()
+        loop._requests.append(step_twice)    # as one that came meanwhile
+
+    for _ in range(20):
+        assert loop.at_boundary(restart)
+        assert loop.at_boundary(lambda: None)
+    loop.stop()
+    assert counts == [2] * 20
+    assert [product.step for product in products][-3:] == [0, 1, 2]
+
+
+def test_a_paused_loop_that_is_reset_has_its_start() -> None:
+    products: list[Product] = []
+    loop = StepLoop(make_rig(), Unpaced(Grid(1000.0)), (), [products.append], Watchdog(0.0))
+    loop.paused = True
+    loop.start()
+    wait_for(lambda: loop.step == 0, 'the start')
+    assert loop.at_boundary(lambda: loop.run_steps(10, None, None, lambda: False))
+    assert loop.at_boundary(loop.restart)
+    wait_for(lambda: loop.step == 0, 'the start again')
+    loop.stop()
+    assert [product.step for product in products] == [*range(11), 0]

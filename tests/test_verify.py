@@ -3,13 +3,14 @@
 """`stickslip verify` on bags of the tool: identical, or what differs; cut, damaged, foreign; what if."""
 
 import struct
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from stickslip_sim.cli.main import run
 from stickslip_sim.recording import flat_layout, read_run
-from stickslip_sim.recording.topics import FRICTION_FORCE, SLIDER_STATE
+from stickslip_sim.recording.topics import FRICTION_FORCE, SLIDER_STATE, Topic
 from stickslip_sim.rerun.recording import open_recording
 from stickslip_sim.rerun.verdict import verify
 from tests.rewritten_bags import rewritten
@@ -56,9 +57,9 @@ class TestIdentical:
 
 class TestDifferent:
     @pytest.mark.parametrize('topic', [SLIDER_STATE, FRICTION_FORCE])
-    def test_every_field_to_the_last_bit(self, topic: object, bag: Path, tmp_path: Path) -> None:
-        layout = flat_layout(topic.type)  # type: ignore[attr-defined]
-        name = f'/{topic.name}'           # type: ignore[attr-defined]
+    def test_every_field_to_the_last_bit(self, topic: Topic, bag: Path, tmp_path: Path) -> None:
+        layout = flat_layout(topic.type)
+        name = f'/{topic.name}'
         original = next(item.data for item in read_run(bag).messages([name]) if item.sequence == 1500)
         numbers = layout.numbers(original)
         assert numbers is not None
@@ -127,5 +128,5 @@ def nudged(number: float) -> float:
     return nearest
 
 
-def replacing(topic: str, sequence: int, data: bytes):  # type: ignore[no-untyped-def]
+def replacing(topic: str, sequence: int, data: bytes) -> Callable[[str, int, bytes], bytes]:
     return lambda name, number, original: data if (name, number) == (topic, sequence) else original

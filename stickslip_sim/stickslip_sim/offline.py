@@ -3,7 +3,6 @@
 """Run a scene as fast as the machine can, and keep what happened: events, samples, receipt."""
 
 import math
-import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
@@ -14,7 +13,7 @@ from numpy.typing import NDArray
 
 from .analysis import Summary, summary
 from .errors import InputError
-from .receipt import receipt_of
+from .receipt import CostMeter, receipt_of
 from .rig import Rig
 from .scene import Scene
 from .words import Event, Instant, Mode, Sample
@@ -56,7 +55,19 @@ def run_offline(scene: Scene, duration: float, sample_period: float | Fraction |
     rig = _loaded_rig(scene)
     simulator = rig.simulator
     start = simulator.sample().mode
-    cpu, wall = time.process_time(), time.perf_counter()
+    cost = CostMeter()
+    events, rows = _run(rig, duration, sample_period, progress)
+    spent = cost.so_far()
+    figures = summary(events, duration, start)
+    receipt = receipt_of(scene, duration, float(sample_period) if sample_period else None, figures,
+                         simulator.root_iterations, simulator.sample(), simulator.energy, *spent)
+    period = _decimal(sample_period) if sample_period else None
+    return Trajectory(scene, duration, period, events, _columns(rows, period or Fraction(0)), figures, receipt)
+
+
+def _run(rig: Rig, duration: float, sample_period: float | Fraction | None, progress: Callable[[float], None] | None
+         ) -> tuple[list[Event], NDArray[np.float64]]:
+    """Return the events, and a row for each sample."""
     events: list[Event] = []
     rows = np.empty((_sample_count(duration, sample_period), len(Sample._fields)))
     done = 0
@@ -65,18 +76,13 @@ def run_offline(scene: Scene, duration: float, sample_period: float | Fraction |
         taken = int(end / _decimal(sample_period)) + 1 if sample_period else 0
         for k, instant in zip(range(done, taken), _sample_instants(sample_period, done)):
             events += rig.advance(instant)
-            rows[k] = simulator.sample()
+            rows[k] = rig.simulator.sample()
         events += rig.advance(_instant(end))
         done = taken
         _check_count(events, duration)
         if progress:
             progress(part / _PARTS)
-    cpu, wall = time.process_time() - cpu, time.perf_counter() - wall
-    figures = summary(events, duration, start)
-    receipt = receipt_of(scene, duration, float(sample_period) if sample_period else None, figures,
-                         simulator.root_iterations, simulator.sample(), simulator.energy, cpu, wall)
-    period = _decimal(sample_period) if sample_period else None
-    return Trajectory(scene, duration, period, events, _columns(rows, period or Fraction(0)), figures, receipt)
+    return events, rows
 
 
 def check_times(duration: float, sample_period: float | Fraction | None) -> None:

@@ -4,6 +4,7 @@
 
 import math
 import platform
+import time
 from collections.abc import Mapping
 from enum import Enum
 from typing import Any
@@ -16,6 +17,21 @@ from .compiled import hot_path
 from .energy import EnergyBalance
 from .scene import Scene
 from .words import Mode, Sample
+
+
+class CostMeter:
+    """What a run costs, from `begin` on; it begins at once."""
+
+    def __init__(self) -> None:
+        self.begin()
+
+    def begin(self) -> None:
+        """Begin to count anew."""
+        self._cpu, self._wall = time.process_time(), time.perf_counter()
+
+    def so_far(self) -> tuple[float, float]:
+        """Return the CPU and the wall time, s."""
+        return time.process_time() - self._cpu, time.perf_counter() - self._wall
 
 
 def receipt_of(scene: Scene, duration: float, sample_period: float | None, figures: Summary, root_iterations: int,

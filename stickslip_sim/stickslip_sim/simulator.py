@@ -12,9 +12,10 @@ from .axis.layout import (
 )
 from .checkpoints import event_of, state_of
 from .compiled import IS_COMPILED
-from .courses import Course, constant
+from .courses import Course
 from .energy import EnergyBalance
 from .errors import InputError, SolverError
+from .inputs import Inputs
 from .solvers import DONE, FULL, OUT_OF_RANGE, Solver, exact
 from .words import Event, EventKind, Instant, Mode, Sample
 
@@ -34,14 +35,12 @@ class Simulator:
     def __init__(self, axis: Axis, initial: InitialState, drive: Course, force: Course,
                  solver: Solver = exact.SOLVER, accounting: bool = False) -> None:
         check_start(axis, initial)
-        drive.check('drive')
-        force.check('force')
+        self._inputs = Inputs(drive, force)
         self._solver = solver
         self._initial = initial
-        self._courses = (drive, force)
         self._axis = axis
         self._parameters = _numbers(pack(axis))
-        self._state = _numbers([0.0] * (STATE_SIZE + WAVE_SIZE * (len(drive.waves) + len(force.waves))))
+        self._state = _numbers([0.0] * (STATE_SIZE + WAVE_SIZE * self._inputs.most_waves))
         self._state[ACCOUNTING] = float(accounting and solver.energy is not None)
         self._row = _numbers([0.0] * SAMPLE_SIZE)
         self._energies = _numbers([0.0] * ENERGY_SIZE)
@@ -50,12 +49,10 @@ class Simulator:
 
     def reset(self) -> list[Event]:
         """Begin anew at time 0 with the initial state and the original courses; return the events at time 0."""
-        self._drive, self._force = self._courses
+        self._inputs.reset()
+        self._waves = _numbers(self._inputs.waves())
         self._time = Instant(0.0, 0.0)
-        self._commanded = False
-        self._waves = _waves(self._drive, self._force)
-        v, f = self._drive.piece_at(0.0), self._force.piece_at(0.0)
-        self._until = min(v.end, f.end)
+        v, f = self._inputs.enter(0.0)
         start = self._initial
         rows = self._solver.start(self._parameters, self._state, start.position, start.velocity, start.rest_time,
                                   v.value, v.rate, f.value, f.rate, self._waves, self._table, 0)
@@ -102,8 +99,8 @@ class Simulator:
                              'time does not go back: reset to begin anew')
         self._obey()
         events, self._waiting = self._waiting, []
-        while self._until <= to.seconds:
-            self._advance(Instant(math.floor(self._until), self._until - math.floor(self._until)), events)
+        while (until := self._inputs.until) <= to.seconds:
+            self._advance(Instant(math.floor(until), until - math.floor(until)), events)
             self._enter_pieces(events)
         self._advance(to, events)
         for event in events:
@@ -116,13 +113,11 @@ class Simulator:
         Events that this causes come with `advance`.  Raises InputError; a course must have no more waves than that of
         the start.
         """
-        self._drive = _command('velocity', velocity, 'm/s', self._courses[0])
-        self._commanded = True
+        self._inputs.command_drive(velocity)
 
     def command_force(self, force: float | Course) -> None:
         """Let a constant external force (N), or a course over simulation time, act from now on, as `command_drive`."""
-        self._force = _command('force', force, 'N', self._courses[1])
-        self._commanded = True
+        self._inputs.command_force(force)
 
     def change_axis(self, axis: Axis) -> None:
         """Go on with other parameters from now on; position, velocity and the spring stay continuous."""
@@ -146,7 +141,8 @@ class Simulator:
     def checkpoint(self) -> dict[str, Any]:
         """Return the state as plain data, from which a simulator of the same scene goes on to the last bit."""
         self._obey()
-        return {'time': list(self._time), 'until': self._until, 'state': [float(number) for number in self._state],
+        return {'time': list(self._time), 'until': self._inputs.until,
+                'state': [float(number) for number in self._state],
                 'waiting': [[*map(float, event)] for event in self._waiting]}
 
     def restore(self, saved: Mapping[str, Any], axis: Axis, drive: Course, force: Course) -> None:
@@ -154,21 +150,21 @@ class Simulator:
 
         Raises InputError on impossible courses; KeyError, TypeError or ValueError when it is no checkpoint.
         """
-        drive, force = (_command(name, course, '', first) for name, course, first in
-                        zip(('velocity', 'force'), (drive, force), self._courses))
+        self._inputs.command_drive(drive)
+        self._inputs.command_force(force)
         parameters = _numbers(pack(axis))
         state = state_of(saved['state'], len(self._state), parameters)
         second, fraction = map(float, saved['time'])
-        self._until, self._waiting = float(saved['until']), [event_of(event) for event in saved['waiting']]
+        until, self._waiting = float(saved['until']), [event_of(event) for event in saved['waiting']]
         self._axis, self._parameters, self._state = axis, parameters, _numbers(state)
-        self._drive, self._force, self._waves = drive, force, _waves(drive, force)
-        self._time, self._commanded = Instant(second, fraction), False
+        self._inputs.go_on(until)
+        self._waves = _numbers(self._inputs.waves())
+        self._time = Instant(second, fraction)
 
     def _obey(self) -> None:
         """Let the commands of this instant take effect, all at once: their order does not matter."""
-        if self._commanded:
-            self._commanded = False
-            self._waves = _waves(self._drive, self._force)
+        if self._inputs.are_commanded:
+            self._waves = _numbers(self._inputs.waves())
             self._enter_pieces(self._waiting)
 
     def _advance(self, to: Instant, events: list[Event]) -> None:
@@ -190,8 +186,7 @@ class Simulator:
 
     def _enter_pieces(self, events: list[Event]) -> None:
         time = self._time.seconds
-        v, f = self._drive.piece_at(time), self._force.piece_at(time)
-        self._until = min(v.end, f.end)
+        v, f = self._inputs.enter(time)
         rows = self._solver.set_inputs(self._parameters, self._state, *self._time,
                                        v.value + v.rate * (time - v.start), v.rate,
                                        f.value + f.rate * (time - f.start), f.rate, self._waves, self._table, 0)
@@ -202,26 +197,6 @@ class Simulator:
             row = self._table[i]
             second, fraction, kind, mode, direction, *rest = row.tolist() if IS_COMPILED else row
             yield Event(second, fraction, _KINDS[int(kind)], _MODES[int(mode)], int(direction), *rest)
-
-
-def _command(name: str, value: float | Course, unit: str, first: Course) -> Course:
-    if isinstance(value, Course):
-        value.check(name)
-        if len(value.waves) > len(first.waves):
-            raise InputError(f'{name}.waves', len(value.waves), f'at most {len(first.waves)}, as at the start',
-                             'give the simulator a course with as many waves at its start')
-        return value
-    if not math.isfinite(value):
-        raise InputError(name, value, f'finite, in {unit}', 'the command before it stays in force')
-    return constant(value)
-
-
-def _waves(drive: Course, force: Course) -> Any:
-    """Return the waves of both courses as `solvers.Solver` wants them, without those that are nothing."""
-    of_drive = [(wave.frequency, wave.phase, wave.amplitude, 0.0) for wave in drive.waves]
-    of_force = [(wave.frequency, wave.phase, 0.0, wave.amplitude) for wave in force.waves]
-    return _numbers([number for frequency, phase, v, f in of_drive + of_force
-                     if v != 0.0 or f != 0.0 for number in (frequency, math.fmod(0.5 * phase / math.pi, 1.0), v, f)])
 
 
 def _numbers(values: Any) -> Any:

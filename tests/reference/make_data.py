@@ -16,7 +16,6 @@ import sys
 import time
 from collections.abc import Iterator
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import mpmath
@@ -28,8 +27,8 @@ from stickslip_sim.reference.problem import problem
 
 from .objects import exact_run, inputs_of
 from .scenes import Scene, named_scenes, random_scenes, shipped_scenes
+from .stored import FILE
 
-FILE = Path(__file__).parents[1] / 'data' / 'reference_events.json'
 SEED = 2026
 RANDOM_SCENES = 56
 FEWEST, MOST = 5, 40

@@ -5,10 +5,11 @@
 import math
 import random
 from collections.abc import Callable
+from functools import partial
 
 from ..axis import Axis, InitialState
 from ..commands import CommandSlot
-from ..courses import ramp, steps, table
+from ..courses import Course, ramp, steps, table
 from ..errors import InputError, StickslipError
 from ..friction import KineticTable, StaticLaw, StaticLawKind
 from ..scene import load_scene
@@ -142,6 +143,10 @@ def _refused_by_the_slot(bad: float) -> float:
     return 0.0
 
 
+def _simulator_on(make_course: Callable[[], Course]) -> Simulator:
+    return Simulator(paper_axis(RIGID), InitialState(), make_course(), make_course())
+
+
 def _refused_courses(bad: float) -> float:
     """See that a course or an axis made in Python is as strict as a scene."""
     for make_course in (lambda: steps('drive', [0.0, bad], [0.0, 0.0]), lambda: table('drive', [0.0, bad], [0.0, 0.0])):
@@ -151,6 +156,6 @@ def _refused_courses(bad: float) -> float:
     _check_refused(lambda: InitialState(position=bad), 'position')
     _check_refused(lambda: KineticTable((0.0,), (bad,)), 'coefficients')
     _check_refused(lambda: StaticLaw(StaticLawKind.CONSTANT, bad, 1.0), 'initial')
-    for course in (lambda: ramp(0.0, bad, 1.0), lambda: steps('drive', [0.0], [bad])):
-        _check_refused(lambda course=course: Simulator(paper_axis(RIGID), InitialState(), course(), course()), 'drive')  # type: ignore[misc]
+    for make_course in (lambda: ramp(0.0, bad, 1.0), lambda: steps('drive', [0.0], [bad])):
+        _check_refused(partial(_simulator_on, make_course), 'drive')
     return 0.0

@@ -11,7 +11,7 @@ from mpmath import mpf, workdps
 from ..axis import Axis, CompliantContact, Friction, InitialState
 from ..friction import KineticTable, StaticLaw, StaticLawKind
 from ..solvers import Solver
-from ..words import EventKind, Instant, Mode
+from ..words import EventKind, Instant, Mode, Sample
 from .closed_form import DIGITS, LinearMode, exact
 from .outcome import Finding, Setup, Tally, check
 from .runs import RIGID, instant, make, paper_axis
@@ -99,15 +99,9 @@ def _slides_freely(solver: Solver, kind: str, seed: int) -> float:
     """Error of position and speed of a slip, each relative to the largest term it is made of."""
     rng = random.Random(f'{kind} {seed}')
     mass, stiffness, damping = _spring_and_damper(rng, kind)
-    normal, slope = 0.0, 0.0
-    friction = _FREE
-    if damping < 0.0:   # on a falling branch
-        wanted, damping, normal = damping, rng.choice((0.0, 0.3 * abs(damping))), 1e3 * abs(damping)
-        reach = 16.0
-        at_rest = -(wanted - damping) / normal * reach
-        kinetic = KineticTable((0.0, reach), (at_rest, 0.0))
-        friction = Friction(StaticLaw(StaticLawKind.CONSTANT, at_rest, at_rest), kinetic, None)
-        slope = (0.0 - at_rest) / reach
+    normal, slope, friction = 0.0, 0.0, _FREE
+    if damping < 0.0:
+        damping, normal, slope, friction = _falling_branch(rng, damping)
     axis = Axis(mass, stiffness, damping, normal, RIGID, friction)
     rate = (abs(damping + normal * slope) + math.sqrt(stiffness * mass)) / mass or 1.0
     start, drive = 1.0, 1.0 + rng.uniform(0.0, 0.2)
@@ -118,19 +112,33 @@ def _slides_freely(solver: Solver, kind: str, seed: int) -> float:
         to = Instant(0.0, min(10 ** rng.uniform(-3, 0.7) / rate, 0.999))
         if simulator.advance(to):
             continue
-        sample = simulator.sample()
-        with workdps(DIGITS):
-            mode = LinearMode(mass, mpf(damping) + mpf(normal) * mpf(slope), stiffness)
-            at_rest = mpf(friction.kinetic.coefficients[0])
-            held = mpf(normal) * (at_rest + mpf(slope))
-            push = (mpf(damping) * (mpf(drive) - 1) + mpf(normal) * at_rest - held) / mass
-            pull = mpf(stiffness) * (mpf(drive) - 1) / mass
-            t = mpf(to.fraction)
-            terms = [[t, push * mode.integral(1, t), pull * mode.integral(2, t)],
-                     [mpf(1), push * mode.integral(0, t), pull * mode.integral(1, t)]]
-            for got, parts in zip((sample.position, sample.velocity), terms):
-                worst = max(worst, abs(float((mpf(got) - sum(parts)) / max(map(abs, parts)))))
+        worst = max(worst, _error(axis, slope, drive, simulator.sample()))
     return worst
+
+
+def _falling_branch(rng: random.Random, wanted: float) -> tuple[float, float, float, Friction]:
+    """Return damping, normal force, slope of mu_k and friction that make the damping of a slip `wanted`, below 0."""
+    damping, normal, reach = rng.choice((0.0, 0.3 * abs(wanted))), 1e3 * abs(wanted), 16.0
+    at_rest = -(wanted - damping) / normal * reach
+    kinetic = KineticTable((0.0, reach), (at_rest, 0.0))
+    friction = Friction(StaticLaw(StaticLawKind.CONSTANT, at_rest, at_rest), kinetic, None)
+    return damping, normal, (0.0 - at_rest) / reach, friction
+
+
+def _error(axis: Axis, slope: float, drive: float, sample: Sample) -> float:
+    """Return the larger error of position and speed of a slip that began at 1 m/s, at time 0 and position 0."""
+    with workdps(DIGITS):
+        mass, normal, damping = axis.mass, mpf(axis.normal_force), mpf(axis.drive_damping)
+        mode = LinearMode(mass, damping + normal * mpf(slope), axis.drive_stiffness)
+        at_rest = mpf(axis.friction.kinetic.coefficients[0])
+        held = normal * (at_rest + mpf(slope))
+        push = (damping * (mpf(drive) - 1) + normal * at_rest - held) / mass
+        pull = mpf(axis.drive_stiffness) * (mpf(drive) - 1) / mass
+        t = mpf(sample.fraction)
+        terms = [[t, push * mode.integral(1, t), pull * mode.integral(2, t)],
+                 [mpf(1), push * mode.integral(0, t), pull * mode.integral(1, t)]]
+        return max(abs(float((mpf(got) - sum(parts)) / max(map(abs, parts))))
+                   for got, parts in zip((sample.position, sample.velocity), terms))
 
 
 def _spring_and_damper(rng: random.Random, kind: str) -> tuple[float, float, float]:

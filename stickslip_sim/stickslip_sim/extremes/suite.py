@@ -8,7 +8,7 @@ from collections.abc import Collection, Iterator
 from ..errors import InputError
 from .bits import mirrored_and_scaled, run_twice
 from .branches import coasting, ringing
-from .breakaways import at_the_limit, blows
+from .break_aways import at_the_limit, blows
 from .commands import bad_commands
 from .convergence import orders
 from .energy import energy_balance

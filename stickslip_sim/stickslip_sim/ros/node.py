@@ -13,6 +13,7 @@ from ..errors import InputError, SolverError
 from ..grid import Grid
 from ..offline import warm_up
 from ..pacing import step_clock
+from ..receipt import CostMeter
 from ..recording import RECORDED, RunFacts, messages
 from ..recording import topics as names
 from ..rig.watchdog import Watchdog
@@ -27,7 +28,7 @@ from .outlet import Outlet
 from .parameters import FileParameters, SceneNode
 from .record_service import RecordService
 from .rig_events import RigEvents
-from .run_receipt import CostMeter, run_receipt
+from .run_receipt import run_receipt
 from .second_report import SecondReport
 from .standard_services import offer_standard_services
 from .time_services import TimeServices

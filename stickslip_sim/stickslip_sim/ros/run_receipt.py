@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The receipt that ends a bag of the node: the figures of the run, its timing and its commands."""
 
-import time
 from dataclasses import asdict
 from typing import Any
 
@@ -13,21 +12,6 @@ from .ledger import Worst
 from .loop import StepLoop
 from .outlet import Outlet
 from .verdict import verdict
-
-
-class CostMeter:
-    """What a run costs from `begin` on."""
-
-    def __init__(self) -> None:
-        self.begin()
-
-    def begin(self) -> None:
-        """Begin to count anew."""
-        self._cpu, self._wall = time.process_time(), time.monotonic()
-
-    def so_far(self) -> tuple[float, float]:
-        """Return the CPU and the wall time, s."""
-        return time.process_time() - self._cpu, time.monotonic() - self._wall
 
 
 def run_receipt(scene: Scene, loop: StepLoop, outlet: Outlet, dropped: int, cost: tuple[float, float]

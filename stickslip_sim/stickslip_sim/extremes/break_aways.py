@@ -3,6 +3,7 @@
 """X2 and X18: a break-away is where it is, under a blow and exactly at the limit."""
 
 import random
+from collections.abc import Callable
 from dataclasses import replace
 
 from mpmath import mpf, workdps
@@ -44,9 +45,9 @@ def _blow(solver: Solver, contact: Contact, seed: int) -> float:
     return _distance(first, force, axis.normal_force * mpf(0.24), begin, end)
 
 
-def _distance(event: Event, force: object, limit: Number, low: float, high: float) -> float:
+def _distance(event: Event, force: Callable[[Number], Number], limit: Number, low: float, high: float) -> float:
     with workdps(DIGITS):
-        root = root_near(lambda t: force(t) - limit, low, high)  # type: ignore[operator]
+        root = root_near(lambda t: force(t) - limit, low, high)
         return abs(float(exact(event.second, event.fraction) - root))
 
 
