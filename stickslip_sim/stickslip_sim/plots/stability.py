@@ -80,12 +80,12 @@ def _map(panel: Axes, scales: tuple[Scale, Scale, Scale], field: Field, lines: L
          picks: Sequence[Pick]) -> None:
     x, y, colour = scales
     handles: list[Artist] = []
-    at = (x.shown(field.x), y.shown(field.y))
+    at = x.edges(field.x), y.edges(field.y)
     bar = panel.pcolormesh(*at, colour.shown(field.values), norm=_norm(field.values, colour), cmap='cividis',
-                           shading='nearest', rasterized=True)
+                           shading='flat', rasterized=True)
     plain = np.where(np.isnan(field.values), field.plain, np.nan)
     panel.pcolormesh(*at, plain, cmap=ListedColormap(_PLAIN_COLOURS), vmin=-0.5, vmax=len(PLAIN) - 0.5,
-                     shading='nearest', rasterized=True)
+                     shading='flat', rasterized=True)
     handles += [Patch(facecolor=_PLAIN_COLOURS[k], edgecolor=GREY, linewidth=0.4, label=PLAIN[k])
                 for k in range(len(PLAIN)) if (plain == k).any()]
     if not np.isnan(field.values).all():
