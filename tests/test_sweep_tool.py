@@ -206,7 +206,9 @@ def test_places_that_cannot_be_are_refused(tmp_path: Path, capsys: Capture) -> N
     assert 'study.json' in refused(capsys, 'sweep', *SMALL, '--out', tmp_path / 'there', '--resume')
     assert 'study.json' in refused(capsys, 'sweep', *SMALL, '--out', tmp_path / 'nowhere', '--resume')
     assert 'make the folder' in refused(capsys, 'sweep', *SMALL, '--out', tmp_path / 'no' / 'where')
-    assert 'can be written' in refused(capsys, 'sweep', *SMALL, '--out', '/sys/sweep')
+    error = refused(capsys, 'sweep', *SMALL, '--out', '/sys/sweep')
+    assert 'can be written' in error
+    assert 'nothing is left behind' in error
     assert sorted(path.name for path in tmp_path.rglob('*')) == ['there']
 
 
