@@ -14,14 +14,15 @@ import statistics
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from stickslip_sim.bench.peers import scipy_ivp
 from stickslip_sim.bench.peers.peer import Setting
-from stickslip_sim.bench.problem import Problem
-from stickslip_sim.scene import load_scene
+from stickslip_sim.bench.problem import Outcome, Problem
+from stickslip_sim.scene import Scene, load_scene
 from stickslip_sim.study import Grid, Motion, Saltelli, Study, variation
 from stickslip_sim.study.table import lines
 from stickslip_sim.study.uncertain_file import load_uncertain
@@ -64,7 +65,7 @@ CRITICAL = (
     'critical stribeck --of drive.velocity',
 )
 UNCERTAIN = ('uncertainty paper_fig7 --with examples/friction.yaml --set drive.velocity=0.025 --samples 512'
-             ' --out runs/maps/uncertainty')
+             ' --out runs/maps/uncertainty --plot docs/images/uncertainty.png')
 SETTING = Setting(1e-8, 'tolerance')
 MACHINES, CORES = (1, 4, 16), 16   # of a cluster, and of each machine
 MILLION, CHUNKS = 1_000_000, 500   # points, and the pieces that are handed out
@@ -136,10 +137,9 @@ def measured(name: str) -> Cost:
     chosen = np.linspace(0, study.count - 1, _BY_SCIPY).astype(int)
     figures, points = study.figures(0, study.count), study.points(0, study.count)
     seconds, differences, flawed = [], [], 0
+    _run_of_scipy(study.scene, 1.0)()   # what it compiles is not in the times
     for k in chosen:
-        scene = study.scene_at(points[k])
-        problem = Problem(name, '', scene.axis, scene.initial, scene.drive, scene.force, float(figures.duration[k]))
-        run = scipy_ivp.PEERS[0].prepare(problem, SETTING)
+        run = _run_of_scipy(study.scene_at(points[k]), float(figures.duration[k]))
         begin = time.process_time()
         events = run().events
         seconds.append(time.process_time() - begin)
@@ -149,6 +149,12 @@ def measured(name: str) -> Cost:
         elif figures.motion[k] == Motion.STICK_SLIP:
             differences.append(abs((breaks[-1] - breaks[-2]) / figures.period[k] - 1.0))
     return Cost(name, study.count, ours, statistics.mean(seconds), max(differences), flawed, len(chosen))
+
+
+def _run_of_scipy(scene: Scene, duration: float) -> Callable[[], Outcome]:
+    """Return what runs a scene with scipy."""
+    problem = Problem(scene.name, '', scene.axis, scene.initial, scene.drive, scene.force, duration)
+    return scipy_ivp.PEERS[0].prepare(problem, SETTING)
 
 
 def throughput_table(costs: list[Cost]) -> str:

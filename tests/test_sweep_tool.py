@@ -15,7 +15,10 @@ import numpy as np
 import pytest
 
 from stickslip_sim.cli.main import run
-from stickslip_sim.study import Study, room
+from stickslip_sim.scene import load_scene
+from stickslip_sim.study import Grid, Study, room, variation
+from stickslip_sim.study.bifurcation import bifurcation
+from stickslip_sim.study.borders import borders
 from stickslip_sim.study.description import study_of
 from stickslip_sim.study.figures import FIGURES
 from stickslip_sim.study.folder import PARQUET, PARTIAL, SIDECAR, TABLE, Folder
@@ -206,7 +209,9 @@ def test_places_that_cannot_be_are_refused(tmp_path: Path, capsys: Capture) -> N
     assert 'study.json' in refused(capsys, 'sweep', *SMALL, '--out', tmp_path / 'there', '--resume')
     assert 'study.json' in refused(capsys, 'sweep', *SMALL, '--out', tmp_path / 'nowhere', '--resume')
     assert 'make the folder' in refused(capsys, 'sweep', *SMALL, '--out', tmp_path / 'no' / 'where')
-    assert 'can be written' in refused(capsys, 'sweep', *SMALL, '--out', '/sys/sweep')
+    error = refused(capsys, 'sweep', *SMALL, '--out', '/sys/sweep')
+    assert 'can be written' in error
+    assert 'nothing is left behind' in error
     assert sorted(path.name for path in tmp_path.rglob('*')) == ['there']
 
 
@@ -298,6 +303,19 @@ def test_the_feed_lies_along_x_and_the_critical_feed_is_drawn(tmp_path: Path) ->
     text = (tmp_path / 'map.svg').read_text()
     assert 'critical feed, closed form' in text
     assert text.index('drive velocity') < text.index('drive damping')
+
+
+def test_a_feed_that_rests_has_no_steady_sliding_that_could_be_lost() -> None:
+    scene = load_scene('paper_fig7')
+    study = Study(scene.values, Grid((variation('drive.velocity=0:0.06:3'), variation('axis.mass=300:400:2'))))
+    known = borders(study)
+    assert known is not None
+    assert np.isnan(known.is_lost[:, 0]).all()
+    assert (known.is_lost[:, 1:] == (known.feeds[1:] < 0.035)).all()
+    through_rest = Study(scene.values, Grid((variation('drive.velocity=-0.01:0.01:3'),)))
+    sliding = bifurcation(through_rest, through_rest.figures(0, 3)).sliding
+    friction = scene.axis.normal_force * (0.12 - 0.07 * 0.01 / 0.035)
+    assert sliding[:, 1] == pytest.approx([-friction, np.nan, friction], rel=1e-9, nan_ok=True)
 
 
 def test_a_bifurcation_diagram(tmp_path: Path) -> None:

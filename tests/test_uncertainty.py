@@ -87,7 +87,7 @@ def test_the_indices_of_ishigami_are_those_of_theory() -> None:
     """f = sin x + 7 sin² y + 0.1 z⁴ sin x (Ishigami and Homma, 1990)."""
     sample = Saltelli(tuple(uniform(name, -math.pi, math.pi) for name in 'xyz'), 4096)
     x, y, z = sample.points(0, sample.count).T
-    first, error, total = indices_of(sample, np.sin(x) + 7.0 * np.sin(y)**2 + 0.1 * z**4 * np.sin(x)).T
+    first, error, total, _ = indices_of(sample, np.sin(x) + 7.0 * np.sin(y)**2 + 0.1 * z**4 * np.sin(x)).T
     one, two = 0.5 * (1.0 + 0.1 * math.pi**4 / 5.0)**2, 49.0 / 8.0
     both = 0.01 * math.pi**8 * (1.0 / 18.0 - 1.0 / 50.0)
     variance = one + two + both
@@ -98,9 +98,29 @@ def test_the_indices_of_ishigami_are_those_of_theory() -> None:
 
 def test_the_indices_of_a_sum_add_up_to_one() -> None:
     sample = Saltelli(tuple(uniform(name, 0.0, 1.0) for name in 'xyz'), 1024)
-    first, _, total = indices_of(sample, sample.points(0, sample.count) @ np.array([3.0, 2.0, 0.0])).T
+    first, _, total, _ = indices_of(sample, sample.points(0, sample.count) @ np.array([3.0, 2.0, 0.0])).T
     for index in (first, total):
         assert index == pytest.approx([9.0 / 13.0, 4.0 / 13.0, 0.0], abs=0.005)
+
+
+def test_errors_are_those_of_points_drawn_at_random() -> None:
+    """Of the g-function of Sobol' (1993), whose indices have a closed form; 64 samples of 256 points."""
+    weights = np.array([0.0, 1.0, 4.5])
+    parts = 1.0 / (3.0 * (1.0 + weights)**2)
+    variance = np.prod(1.0 + parts) - 1.0
+    theory = np.array([parts, parts * np.prod(1.0 + parts) / (1.0 + parts)]) / variance
+    rng = np.random.default_rng(1)
+    found = []
+    for _ in range(64):
+        a, b = rng.random((2, 256, 3))
+        points = np.stack([a, b, *(np.where(np.arange(3) == k, b, a) for k in range(3))], axis=1)
+        values = np.prod((np.abs(4.0 * points - 2.0) + weights) / (1.0 + weights), axis=2)
+        found.append(np.array(sobol_indices(values)).T)
+    first, error, total, total_error = np.array(found).transpose(1, 0, 2)
+    for values, errors, exact in zip((first, total), (error, total_error), theory):
+        off = (values - exact) / errors
+        assert off.mean(axis=0) == pytest.approx(0.0, abs=0.5)
+        assert off.std(axis=0) == pytest.approx(1.0, abs=0.35)
 
 
 def test_an_axis_has_the_indices_of_its_theory() -> None:

@@ -41,6 +41,25 @@ def test_it_tells_percentiles_and_indices_and_writes_them(tmp_path: Path, file: 
     assert study_of(Folder(out).described()).count == 128
 
 
+def test_a_picture_of_it(tmp_path: Path, file: str) -> None:
+    common = ['uncertainty', 'paper_fig7', '--with', file, '--samples', '32', '--out', str(tmp_path / 'out')]
+    assert run([*common, '--plot', str(tmp_path / 'one.svg')]) == 0
+    assert run([*common, '--plot', str(tmp_path / 'two.svg'), '--resume']) == 0
+    text = (tmp_path / 'one.svg').read_text()
+    for words in ('100 % of 64 points stick and slip', 'amplitude / mm', 'points / %', '5 and 95 %',
+                  'with its interactions', 'friction static time constant'):
+        assert words in text
+    assert text == (tmp_path / 'two.svg').read_text()
+
+
+def test_a_picture_where_nothing_sticks_and_slips(tmp_path: Path, file: str) -> None:
+    picture = tmp_path / 'none.svg'
+    assert run(['uncertainty', 'paper_fig7', '--with', file, '--samples', '16', '--set', 'drive.velocity=0.0', '--out',
+                str(tmp_path / 'out'), '--plot', str(picture)]) == 0
+    assert '0 % of 32 points stick and slip' in picture.read_text()
+    assert 'with its interactions' not in picture.read_text()
+
+
 def test_resumed_it_gives_the_same_files(tmp_path: Path, file: str) -> None:
     common = ['uncertainty', 'paper_fig7', '--with', file, '--samples', '1024', '--duration', '4']   # three chunks
     whole, cut = tmp_path / 'whole', tmp_path / 'cut'
@@ -60,6 +79,8 @@ def test_resumed_it_gives_the_same_files(tmp_path: Path, file: str) -> None:
     (['--set', 'friction.static.limit=-1.0'], ('friction.static.limit',)),
     (['--set', 'friction.static.initial=0.2'], ('at friction.static.limit=0.18', 'friction.static.limit')),
     (['--workers', '0'], ('--workers', '0')),
+    (['--plot', 'picture.jpg'], ('--plot', '.png or .svg')),
+    (['--plot', '/no/where.png'], ('--plot', '/no')),
     (['--resume'], ('sweep',))])
 def test_misuse_gets_one_line_and_writes_nothing(arguments: list[str], words: tuple[str, ...], tmp_path: Path,
                                                  file: str, capsys: Capture) -> None:

@@ -24,6 +24,13 @@ def check_file(option: str, path: str) -> None:
         raise InputError(option, path, 'a file that can be written', 'change its permissions or choose another name')
 
 
+def check_picture(option: str, path: str) -> None:
+    """Raise InputError unless a picture can be written there."""
+    if Path(path).suffix.lower() not in ('.png', '.svg'):
+        raise InputError(option, path, 'a file ending in .png or .svg', 'name it so')
+    check_file(option, path)
+
+
 def check_new_folder(option: str, path: str) -> None:
     """Raise InputError unless a new folder can be made there."""
     place = Path(os.path.abspath(path))

@@ -3,12 +3,11 @@
 """`stickslip map`: a sweep as a picture - a map of two parameters, or a bifurcation diagram of one."""
 
 from contextlib import ExitStack
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from .files import check_distinct, check_file, whole
+from .files import check_distinct, check_picture, whole
 
 if TYPE_CHECKING:
     from ..plots.stability import Pick
@@ -52,12 +51,8 @@ def map_(folder: str, pictures: tuple[str, ...], show: str, picks: tuple[str, ..
 
 
 def _check_pictures(pictures: tuple[str, ...]) -> None:
-    from ..errors import InputError
-
     for path in pictures:
-        if Path(path).suffix.lower() not in ('.png', '.svg'):
-            raise InputError('--out', path, 'a file ending in .png or .svg', 'name it so')
-        check_file('--out', path)
+        check_picture('--out', path)
     check_distinct([('--out', path) for path in pictures])
 
 

@@ -6,12 +6,11 @@ import json
 import shutil
 from dataclasses import replace
 from fractions import Fraction
-from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
-from .files import STDOUT, check_distinct, check_file, check_new_folder, whole, write_text
+from .files import STDOUT, check_distinct, check_file, check_new_folder, check_picture, whole, write_text
 
 if TYPE_CHECKING:
     from ..offline import Trajectory
@@ -74,20 +73,14 @@ def _check(wishes: _Wishes) -> None:
     files = {'--events': wishes.events, '--samples': wishes.samples, '--receipt': wishes.receipt, '--plot': wishes.plot}
     targets = [(option, path) for option, path in files.items() if path is not None]
     for option, path in targets:
-        if path != STDOUT or option == '--plot':
+        if option == '--plot':
+            check_picture(option, path)
+        elif path != STDOUT:
             check_file(option, path)
-    if wishes.plot is not None:
-        _check_picture(wishes.plot)
     if wishes.bag is not None:
         check_new_folder('--bag', wishes.bag)
         targets.append(('--bag', wishes.bag))
     check_distinct(targets)
-
-
-def _check_picture(path: str) -> None:
-    from ..errors import InputError
-    if Path(path).suffix.lower() not in ('.png', '.svg'):
-        raise InputError('--plot', path, 'a file ending in .png or .svg', 'name it so')
 
 
 def _sample_period(wishes: _Wishes, scene: 'Scene') -> Fraction | float | None:

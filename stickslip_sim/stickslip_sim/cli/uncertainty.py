@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .files import write_text
+from .files import check_picture, whole, write_text
 from .sweeping import carry_out, crew_of, study_options
 
 if TYPE_CHECKING:
     from ..study import Saltelli
+    from ..study.pictures import Columns
     from ..study.uncertainty import Index, Uncertainty
 
 _RESULT = 'uncertainty.json'
@@ -22,13 +23,16 @@ _RESULT = 'uncertainty.json'
 @click.option('--with', 'file', required=True, metavar='FILE.yaml', help='The distributions of its parameters.')
 @click.option('--samples', type=int, default=1024, show_default=True, metavar='N',
               help='A power of two; N (parameters + 2) points are run.')
+@click.option('--plot', metavar='FILE.png', help='Draw the spread of the figures and the indices (.png or .svg).')
 @study_options
-def uncertainty(scene: str, file: str, samples: int, out: str, duration: float | None, workers: str | None,
-                scheduler: str | None, resume: bool, changes: tuple[str, ...]) -> None:
+def uncertainty(scene: str, file: str, samples: int, plot: str | None, out: str, duration: float | None,
+                workers: str | None, scheduler: str | None, resume: bool, changes: tuple[str, ...]) -> None:
     """Run SCENE with parameters drawn from distributions: percentiles, and which parameter decides.
 
     FOLDER gets uncertainty.json beside the table of all points.  Ctrl-C keeps what is done.
     """
+    if plot is not None:
+        check_picture('--plot', plot)
     crew = crew_of(workers, scheduler)
     from ..scene import load_scene, parse_override
     from ..study import Saltelli, Study
@@ -42,11 +46,21 @@ def uncertainty(scene: str, file: str, samples: int, out: str, duration: float |
     loaded = load_scene(scene, dict(parse_override(change) for change in changes))
     study = Study(loaded.values, sample, duration)
     folder, ran = carry_out(study, out, crew, resume)
-    found = uncertainty_of(sample, read_columns(folder.path / TABLE, study))
+    columns = read_columns(folder.path / TABLE, study)
+    found = uncertainty_of(sample, columns)
     result = folder.path / _RESULT
     write_text(str(result), [json.dumps(_plain(sample, found), indent=1, allow_nan=False), '\n'])
+    if plot is not None:
+        _draw(sample, columns, found, plot)
     print(f'{loaded.name}: {samples} samples of {len(study.names)} parameters, {study.count} points, {ran} run now')
     print('\n'.join((*_laws(sample), '', *_percentiles(found), '', *_indices(sample, found), '', str(result))))
+
+
+def _draw(sample: 'Saltelli', columns: 'Columns', found: 'Uncertainty', path: str) -> None:
+    from ..study.pictures import draw_uncertainty
+
+    with whole(path) as temporary:
+        draw_uncertainty(sample, columns, found, str(temporary))
 
 
 def _plain(sample: 'Saltelli', found: 'Uncertainty') -> dict[str, Any]:
@@ -106,4 +120,4 @@ def _indices(sample: 'Saltelli', found: 'Uncertainty') -> list[str]:
 
 
 def _told(index: 'Index') -> str:
-    return f'{index.first_order:6.3f} ± {index.error:.3f}  ({index.total:.3f})'
+    return f'{index.first_order:6.3f} ± {index.error:.3f}  ({index.total:.3f} ± {index.total_error:.3f})'

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from .look import BLACK, BLUE, DOUBLE_COLUMN, JOURNAL, MILLI, ORANGE, RED, Numbers, letter, save
+from .look import BLACK, BLUE, DOUBLE_COLUMN, GREEN, JOURNAL, MILLI, ORANGE, Numbers, letter, save
 from .scale import Scale
 
 _DOT: dict[str, Any] = {'linestyle': '', 'marker': 'o', 'markersize': 1.6, 'markeredgewidth': 0.0}
@@ -26,7 +26,7 @@ def plot_bifurcation(over: Scale, cycles: Numbers, sliding: Numbers, path: Path 
         figure = Figure(figsize=(DOUBLE_COLUMN, 2.9), layout=ConstrainedLayoutEngine(w_pad=0.06, h_pad=0.06))
         force, jump = figure.subplots(1, 2, sharex=True)
         _forces(force, over, cycles, sliding)
-        jump.plot(over.shown(cycles[:, 0]), cycles[:, 3] * MILLI, color=BLUE, **_DOT)
+        jump.plot(over.shown(cycles[:, 0]), cycles[:, 3] * MILLI, color=GREEN, **_DOT)
         jump.set(ylabel='jump from cycle to cycle / mm')
         for panel, name in zip((force, jump), 'ab'):
             panel.set(xlabel=over.label, xscale=over.kind)
@@ -38,10 +38,11 @@ def plot_bifurcation(over: Scale, cycles: Numbers, sliding: Numbers, path: Path 
 
 def _forces(panel: Axes, over: Scale, cycles: Numbers, sliding: Numbers) -> None:
     values = over.shown(cycles[:, 0])
-    panel.plot(values, cycles[:, 1], color=RED, label='at break-away', **_DOT)
-    panel.plot(values, cycles[:, 2], color=ORANGE, label='at arrest', **_DOT)
-    for stable, style, label in ((True, 'solid', 'steady sliding'), (False, (0, (3.0, 2.0)), 'unstable')):
+    panel.plot(values, cycles[:, 1], color=ORANGE, label='at break-away', **_DOT)
+    panel.plot(values, cycles[:, 2], color=BLUE, label='at arrest', **_DOT)
+    for stable, style, label in ((True, 'solid', 'stable'), (False, (0, (3.0, 2.0)), 'unstable')):
         shown = sliding.copy()
         shown[shown[:, 2] != float(stable), 1] = float('nan')
-        panel.plot(over.shown(shown[:, 0]), shown[:, 1], color=BLACK, linestyle=style, linewidth=1.2, label=label)
+        panel.plot(over.shown(shown[:, 0]), shown[:, 1], color=BLACK, linestyle=style, linewidth=1.2,
+                   label=f'steady sliding, {label}')
     panel.set(ylabel='drive force / N')

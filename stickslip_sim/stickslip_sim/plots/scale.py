@@ -22,6 +22,15 @@ class Scale(NamedTuple):
         """Return SI values in the unit of the picture."""
         return np.asarray(values) * _SHOWN.get(self.unit, (1.0, ''))[0]
 
+    def edges(self, values: Numbers) -> Numbers:
+        """Return where the cells about increasing values begin and end, in the unit of the picture.
+
+        They meet half way on this scale; the outermost end at their values.
+        """
+        places = np.log(self.shown(values)) if self.log else self.shown(values)
+        edges = np.concatenate([places[:1], 0.5 * (places[1:] + places[:-1]), places[-1:]])
+        return np.asarray(np.exp(edges)) if self.log else edges
+
     @property
     def label(self) -> str:
         """What stands at the axis."""

@@ -45,12 +45,12 @@ class Field(NamedTuple):
 
 
 class Lines(NamedTuple):
-    """What the theory says, over y: the critical feed; and for each x of `feeds` whether steady sliding is lost."""
+    """What the theory says, over y: the critical feed; and for each x of `feeds` 1 where sliding is lost, or NaN."""
 
     y: Numbers
     critical_feed: Numbers
     feeds: Numbers
-    is_lost: NDArray[np.bool_]
+    is_lost: Numbers
 
 
 class Pick(NamedTuple):
@@ -80,12 +80,12 @@ def _map(panel: Axes, scales: tuple[Scale, Scale, Scale], field: Field, lines: L
          picks: Sequence[Pick]) -> None:
     x, y, colour = scales
     handles: list[Artist] = []
-    at = (x.shown(field.x), y.shown(field.y))
+    at = x.edges(field.x), y.edges(field.y)
     bar = panel.pcolormesh(*at, colour.shown(field.values), norm=_norm(field.values, colour), cmap='cividis',
-                           shading='nearest', rasterized=True)
+                           shading='flat', rasterized=True)
     plain = np.where(np.isnan(field.values), field.plain, np.nan)
     panel.pcolormesh(*at, plain, cmap=ListedColormap(_PLAIN_COLOURS), vmin=-0.5, vmax=len(PLAIN) - 0.5,
-                     shading='nearest', rasterized=True)
+                     shading='flat', rasterized=True)
     handles += [Patch(facecolor=_PLAIN_COLOURS[k], edgecolor=GREY, linewidth=0.4, label=PLAIN[k])
                 for k in range(len(PLAIN)) if (plain == k).any()]
     if not np.isnan(field.values).all():
@@ -104,9 +104,10 @@ def _map(panel: Axes, scales: tuple[Scale, Scale, Scale], field: Field, lines: L
 def _norm(values: Numbers, scale: Scale) -> Normalize:
     """Return a logarithmic scale of colours for values that go over more than one decade."""
     known = scale.shown(values[np.isfinite(values)])
-    if len(known) and known.min() > 0.0 and known.max() > _DECADE * known.min():
-        return LogNorm(known.min(), known.max())
-    return Normalize(known.min(initial=0.0), known.max(initial=0.0))
+    if not len(known):
+        return Normalize(0.0, 1.0)
+    kind = LogNorm if known.min() > 0.0 and known.max() > _DECADE * known.min() else Normalize
+    return kind(known.min(), known.max())
 
 
 def _theory(panel: Axes, x: Scale, y: Scale, lines: Lines) -> Iterator[Artist]:
@@ -116,8 +117,8 @@ def _theory(panel: Axes, x: Scale, y: Scale, lines: Lines) -> Iterator[Artist]:
         feed = np.where(known, lines.critical_feed, np.nan)
         yield from panel.plot(x.shown(feed), y.shown(lines.y), color=RED, linewidth=1.6,
                               label='critical feed, closed form')
-    if lines.is_lost.any() and not lines.is_lost.all():
-        panel.contour(x.shown(lines.feeds), y.shown(lines.y), lines.is_lost.astype(float), levels=[0.5],
+    if (lines.is_lost == 1.0).any() and (lines.is_lost == 0.0).any():
+        panel.contour(x.shown(lines.feeds), y.shown(lines.y), lines.is_lost, levels=[0.5],
                       colors=[BLACK], linestyles=[_LOST], linewidths=1.2)
         yield Line2D([], [], color=BLACK, linestyle=_LOST, linewidth=1.2, label='steady sliding loses stability')
 

@@ -21,8 +21,8 @@ _LAST = 40   # cycles of each point that are shown, or half of all
 class Bifurcation(NamedTuple):
     """`cycles`: a row (value, drive force at break-away and at arrest in N, jump in m) for each of the last cycles.
 
-    `sliding`: a row (value, drive force of steady sliding in N, 1 where it is stable) for each value; empty for inputs
-    that change with time.
+    `sliding`: a row (value, drive force of steady sliding in N, 1 where it is stable) for each value, NaN where the
+    drive rests; empty for inputs that change with time.
     """
 
     cycles: Numbers
@@ -40,10 +40,11 @@ def bifurcation(study: Study, figures: Figures, progress: Callable[[float], None
             found = cycle_figures(events)
             cycles += [_row(value, cycle) for cycle in found[len(found) // 2:][-_LAST:]]
         feed = scene.drive.values[0]
-        if study.works_in_batches and feed != 0.0:
+        if study.works_in_batches:
             friction = scene.axis.normal_force * scene.axis.friction.kinetic.coefficient(abs(feed))
             slope = sliding_slope(scene.axis, {'drive_velocity': np.array([feed])})[0]
-            sliding.append((value, np.copysign(friction, feed) - scene.force.values[0], float(slope >= 0.0)))
+            force = np.copysign(friction, feed) - scene.force.values[0] if feed else np.nan
+            sliding.append((value, force, float(slope >= 0.0)))
         if progress:
             progress((k + 1) / len(values))
     return Bifurcation(np.array(cycles).reshape(-1, 4), np.array(sliding).reshape(-1, 3))

@@ -5,7 +5,6 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .points import scene_at
 from .steady import sliding_slope
@@ -20,13 +19,13 @@ _FINE = 300   # values of either parameter
 class Borders(NamedTuple):
     """Over `others`, values of the other parameter: the critical feed (m/s) in closed form, NaN where there is none.
 
-    `is_lost` says for each of them (rows) and each of `feeds` whether steady sliding is unstable.
+    `is_lost` has for each of them (rows) and each of `feeds` 1 where steady sliding is unstable, NaN without any.
     """
 
     others: Numbers
     critical_feed: Numbers
     feeds: Numbers
-    is_lost: NDArray[np.bool_]
+    is_lost: Numbers
 
 
 def borders(study: Study) -> Borders | None:
@@ -40,8 +39,8 @@ def borders(study: Study) -> Borders | None:
     axes = [scene_at(study.values, [other.name], np.array([value])).axis for value in others]
     known = [feed_of_theory(axis) for axis in axes]
     critical = np.array([np.nan if value is None else value for value in known], dtype=float)
-    lost = np.array([sliding_slope(axis, {'drive_velocity': feeds}) < 0.0 for axis in axes])
-    return Borders(others, critical, feeds, lost)
+    slopes = np.array([sliding_slope(axis, {'drive_velocity': feeds}) for axis in axes])
+    return Borders(others, critical, feeds, np.where(np.isnan(slopes), np.nan, slopes < 0.0))
 
 
 def _finely(one: Variation) -> Numbers:

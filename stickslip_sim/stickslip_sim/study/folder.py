@@ -23,6 +23,7 @@ from .study import Study
 from .table import header, numbers_of
 
 SIDECAR, TABLE, PARTIAL, PARQUET = 'study.json', 'points.csv', 'points.partial.csv', 'points.parquet'
+_KEPT = 'what is done is kept, --resume goes on'
 
 
 class Folder:
@@ -45,7 +46,7 @@ class Folder:
         if not parent.is_dir():
             raise InputError('--out', str(self.path), 'in a folder that exists', f'make the folder {parent} first')
         temporary = parent / f'.{os.getpid()}.{self.path.name}'
-        with _refusing(self.path):
+        with _refusing(self.path, 'nothing is left behind'):
             try:
                 temporary.mkdir()
                 check_room(study, temporary)
@@ -128,14 +129,13 @@ class Folder:
 
 
 @contextmanager
-def _refusing(path: Path) -> Iterator[None]:
+def _refusing(path: Path, comfort: str = _KEPT) -> Iterator[None]:
     """Turn what the disk says into an InputError."""
     try:
         yield
     except OSError as error:
-        raise _refusal(path, error) from None
+        raise _refusal(path, error, comfort) from None
 
 
-def _refusal(path: Path, error: OSError) -> InputError:
-    return InputError('--out', str(path), 'a place that can be written',
-                      f'{error.strerror or error}; what is done is kept, --resume goes on')
+def _refusal(path: Path, error: OSError, comfort: str = _KEPT) -> InputError:
+    return InputError('--out', str(path), 'a place that can be written', f'{error.strerror or error}; {comfort}')

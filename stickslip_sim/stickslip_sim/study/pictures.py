@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The pictures of a study: a map of two parameters, or a bifurcation diagram of one."""
+"""The pictures of a study: a map of two parameters, a bifurcation diagram of one, or how figures spread."""
 
 from collections.abc import Callable, Mapping, Sequence
 
@@ -11,12 +11,14 @@ from ..errors import InputError
 from ..plots.bifurcation import plot_bifurcation
 from ..plots.scale import Scale
 from ..plots.stability import Field, Lines, Pick, plot_stability
+from ..plots.uncertainty import Shares, Spread, plot_uncertainty
 from .bifurcation import bifurcation
 from .borders import FEED, borders
 from .figures import Motion
-from .sample import Grid
+from .sample import Grid, Saltelli
 from .study import Study
 from .table import figures_in
+from .uncertainty import SPREAD, Index, Uncertainty, spread_of
 from .variation import Numbers, Variation
 
 UNITS = {'amplitude': 'm', 'period': 's', 'stick_share': '', 'peak_speed': 'm/s', 'break_away_force': 'N',
@@ -60,6 +62,21 @@ def draw_map(study: Study, columns: Columns, shown: str, picks: Sequence[Pick], 
     lines = Lines(known.others, known.critical_feed, known.feeds, known.is_lost) if known else None
     for path in paths:
         plot_stability((_scale(x), _scale(y), Scale(shown, UNITS[shown])), field, lines, picks, path)
+
+
+def draw_uncertainty(sample: Saltelli, columns: Columns, found: Uncertainty, path: str) -> None:
+    """Draw how the figures of a sample spread, and the indices of those that have them."""
+    spreads = [Spread(Scale(name, SPREAD[name]), values, found.percentiles[name] or ())
+               for name, values in spread_of(sample, columns).items()]
+    heading = ('no point could be solved' if found.stick_slip is None else
+               f'{100.0 * found.stick_slip:.3g} % of {found.solved} points stick and slip')
+    names = [one.name for one in sample.variations]
+    shares = [_shares(figure, [of[name] for name in names]) for figure, of in found.indices.items() if of]
+    plot_uncertainty(spreads, heading, names, shares, path)
+
+
+def _shares(figure: str, indices: Sequence[Index]) -> Shares:
+    return Shares(figure, *np.array(indices).T)
 
 
 def point_of(study: Study, text: str) -> Numbers:

@@ -10,7 +10,7 @@ from ..errors import InputError
 from .study import Study
 from .table import width
 
-_ON_DISK, _IN_MEMORY = 24, 8   # bytes of a number: 17 digits, sign, point, exponent, comma; a double
+_ON_DISK, _IN_MEMORY = 24, 40   # bytes of a number: 17 digits, sign, point, exponent, comma; what pandas takes for it
 _MEGA = 1e6
 _OF_A_WORKER = 50_000_000   # bytes: Python, numpy and the compiled engine, each process for itself
 

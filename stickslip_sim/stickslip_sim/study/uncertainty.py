@@ -26,12 +26,13 @@ _SAME = 1e-12   # of its size: a figure that varies less has no variance but tha
 class Index(NamedTuple):
     """Shares of the variance of a figure: by one number alone, and with all that it takes part in.
 
-    `error` is the standard error of the first, as of points drawn at random; those of a Sobol sequence are nearer.
+    `error` and `total_error` are their standard errors as of points drawn at random; a Sobol sequence is nearer.
     """
 
     first_order: float
     error: float
     total: float
+    total_error: float
 
 
 class Uncertainty(NamedTuple):
@@ -52,8 +53,7 @@ class Uncertainty(NamedTuple):
 def uncertainty_of(sample: Saltelli, columns: Mapping[str, Numbers]) -> Uncertainty:
     """Return what the columns of the table of a sample say."""
     known = {name: columns[name].reshape(sample.samples, sample.each) for name in SPREAD}
-    motion = columns['motion'].reshape(sample.samples, sample.each)
-    slips = np.where(motion == Motion.UNSOLVED, np.nan, (motion == Motion.STICK_SLIP).astype(float))
+    slips = _slips(sample, columns)
     drawn = slips[:, :2]
     unsettled = (columns['settled'].reshape(slips.shape)[:, :2] == 0.0) & ~np.isnan(drawn)
     solved = int((~np.isnan(drawn)).sum())
@@ -61,8 +61,15 @@ def uncertainty_of(sample: Saltelli, columns: Mapping[str, Numbers]) -> Uncertai
     indices = {name: sobol_indices(values) for name, values in {'stick_slip': slips, **known}.items()}
     return Uncertainty(
         drawn.size, solved, int(unsettled.sum()), float(np.nansum(drawn)) / solved if solved else None,
-        {name: _percentiles(values[:, :2][drawn == 1.0]) for name, values in known.items()},
+        {name: _percentiles(values) for name, values in spread_of(sample, columns).items()},
         {name: dict(zip(names, found, strict=True)) if found else None for name, found in indices.items()})
+
+
+def spread_of(sample: Saltelli, columns: Mapping[str, Numbers]) -> dict[str, Numbers]:
+    """Return each figure of the independent points that stick and slip and have it."""
+    chosen = _slips(sample, columns)[:, :2] == 1.0
+    found = {name: columns[name].reshape(sample.samples, sample.each)[:, :2][chosen] for name in SPREAD}
+    return {name: values[~np.isnan(values)] for name, values in found.items()}
 
 
 def sobol_indices(values: Numbers) -> list[Index] | None:
@@ -76,10 +83,16 @@ def sobol_indices(values: Numbers) -> list[Index] | None:
     found = stats.sobol_indices(func=twice, n=len(values))   # scipy fails on one figure of one number
     first, total = (np.reshape(order, (2, -1))[0].tolist() for order in (found.first_order, found.total_order))
     products = (b - values[:, :2].mean()) * (mixed - a) / values[:, :2].var()   # whose means are the first orders
-    errors = (products.std(axis=1) / np.sqrt(len(values))).tolist()
-    return [Index(*row) for row in zip(first, errors, total, strict=True)]
+    squares = 0.5 * (mixed - a)**2 / values[:, :2].var()   # whose means are the totals
+    errors, total_errors = ((parts.std(axis=1) / np.sqrt(len(values))).tolist() for parts in (products, squares))
+    return [Index(*row) for row in zip(first, errors, total, total_errors, strict=True)]
+
+
+def _slips(sample: Saltelli, columns: Mapping[str, Numbers]) -> Numbers:
+    """Return for each sample and each of its points 1 for stick-slip, 0 without, NaN where nobody could solve it."""
+    motion = columns['motion'].reshape(sample.samples, sample.each)
+    return np.where(motion == Motion.UNSOLVED, np.nan, (motion == Motion.STICK_SLIP).astype(float))
 
 
 def _percentiles(values: Numbers) -> list[float] | None:
-    values = values[~np.isnan(values)]
     return [float(number) for number in np.percentile(values, PERCENTS)] if len(values) else None
