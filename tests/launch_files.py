@@ -6,6 +6,7 @@ It knows what these files use and no more, with the rules of launch: a configura
 argument sets it otherwise, and what a file includes shares all of them.
 """
 
+import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
@@ -23,8 +24,17 @@ class Argument(NamedTuple):
     """A declared argument of a launch file."""
 
     name: str
-    default_value: str
-    description: str
+    default_value: str | None = None
+    description: str = ''
+    choices: list[str] | None = None
+
+    def declare(self, context: Context) -> None:
+        """Give it its value; raises RuntimeError where launch does."""
+        if self.name not in context and self.default_value is None:
+            raise RuntimeError(f'Required launch argument "{self.name}" was not provided.')
+        value = context.setdefault(self.name, self.default_value or '')
+        if self.choices and value not in self.choices:
+            raise RuntimeError(f'Argument "{self.name}" provided value "{value}" is not valid.')
 
 
 class Started(NamedTuple):
@@ -64,7 +74,7 @@ def _entities(file: Path) -> list[Any]:
 def _visit(entities: Iterable[Any], context: Context, result: Launched) -> None:
     for entity in entities:
         if isinstance(entity, Argument):
-            context.setdefault(entity.name, entity.default_value)
+            entity.declare(context)
             result.arguments.append(entity)
         else:
             entity(context, result)
@@ -89,7 +99,7 @@ class _PathJoin(NamedTuple):
     parts: list[Any]
 
     def perform(self, context: Context) -> str:
-        return '/'.join(_text(part, context) for part in self.parts)
+        return os.path.join(*(_text(part, context) for part in self.parts))
 
 
 class _Share(NamedTuple):

@@ -7,7 +7,6 @@ joint_state_topic_hardware_interface.cpp of ros-controls/topic_based_hardware_in
 """
 
 import math
-import re
 import threading
 import xml.etree.ElementTree as ET
 from collections.abc import Callable, Iterator
@@ -17,6 +16,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import rclpy
+import xacro
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
@@ -47,13 +47,11 @@ class Joint(NamedTuple):
 
 
 class Description:
-    """A robot description from a xacro file that has arguments, but no macros."""
+    """The robot description that xacro makes of the words of a command line."""
 
-    def __init__(self, file: Path = SHIPPED / 'feed_axis.ros2_control.xacro', **arguments: str) -> None:
-        text = file.read_text()
-        defaults = dict(re.findall(r'<xacro:arg name="(\w+)" default="([^"]*)"/>', text))
-        assert set(arguments) <= set(defaults)
-        self.robot = ET.fromstring(re.sub(r'\$\(arg (\w+)\)', lambda found: {**defaults, **arguments}[found[1]], text))
+    def __init__(self, *words: str) -> None:
+        options, file = xacro.process_args([str(SHIPPED / 'feed_axis.ros2_control.xacro'), *words])
+        self.robot = ET.fromstring(xacro.process_file(file, **vars(options)).toxml())
         (control,) = self.robot.findall('ros2_control')
         self.plugin = control.findtext('hardware/plugin', '')
         self.parameters = {str(tag.get('name')): str(tag.text) for tag in control.findall('hardware/param')}

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The launch files: what they declare, and what the nodes do that they would start."""
 
+import re
+import shlex
 from pathlib import Path
 
 import pytest
@@ -13,6 +15,7 @@ from tests.ros_nodes import client, executable, running
 
 from stickslip_sim.ros.controller_parameters import COMMON, COMPENSATION  # isort: skip  # after ros_nodes, which skips
 from stickslip_sim.ros.replay.settings import PARAMETERS  # isort: skip
+from tests.ros2_control_client import Description  # isort: skip
 
 pytestmark = pytest.mark.ros
 
@@ -124,8 +127,30 @@ class TestRos2Control:
         assert '-r __ns:=/mill' in words_of(axis)
         assert parameters_of(axis) == ['scene', 'joint_interface.enabled', 'seed']
         assert f'{LAUNCH.parent}/ros2_control/feed_axis.ros2_control.xacro' in words_of(publisher)
-        assert 'joint_states_topic:=/mill/joint_states' in words_of(publisher)
         shipped = f'{LAUNCH.parent}/ros2_control/controllers.yaml'
         assert all(shipped in process.words for process in (manager, broadcaster, spawner))
         assert [process.words[0] for process in (broadcaster, spawner)] == ['joint_state_broadcaster',
                                                                             'velocity_controller']
+
+    @pytest.mark.parametrize(('namespace', 'prefix'), [('mill', '/mill'), ('/mill/', '/mill'), ('', '')])
+    def test_xacro_gives_the_hardware_the_topics_of_the_axis(self, namespace: str, prefix: str) -> None:
+        publisher = launched('ros2_control', namespace=namespace).processes[1]
+        command = re.search(r'\$\((.*)\)', words_of(publisher))
+        assert command is not None
+        xacro, file, *arguments = shlex.split(command[1])
+        assert (xacro, file) == ('xacro', f'{LAUNCH.parent}/ros2_control/feed_axis.ros2_control.xacro')
+        parameters = Description(*arguments).parameters
+        for name in ('joint_states', 'joint_commands'):
+            assert parameters[f'{name}_topic'] == f'{prefix}/{name}'
+
+
+@pytest.mark.parametrize(('name', 'argument', 'value'), [
+    ('controlled', 'controller', 'cascade'), ('replay', 'mode', 'events'), ('ros2_control', 'controller', 'none')])
+def test_a_choice_that_is_none_is_refused(name: str, argument: str, value: str) -> None:
+    with pytest.raises(RuntimeError, match=f'Argument "{argument}" provided value "{value}" is not valid'):
+        launched(name, **{**NEEDED.get(name, {}), argument: value})
+
+
+def test_replay_needs_a_bag() -> None:
+    with pytest.raises(RuntimeError, match='"bag" was not provided'):
+        launched('replay')

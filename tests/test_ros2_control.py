@@ -40,7 +40,7 @@ def joint_states_of(axis: Client) -> list[JointState]:
 
 class TestShippedFiles:
     def test_description(self) -> None:
-        description = Description(joint_states_topic='/a', joint_commands_topic='/b')
+        description = Description('joint_states_topic:=/a', 'joint_commands_topic:=/b')
         assert description.plugin == 'joint_state_topic_hardware_interface/JointStateTopicSystem'
         assert description.parameters == {'joint_states_topic': '/a', 'joint_commands_topic': '/b', THRESHOLD: '-1'}
         assert [(joint.name, joint.commands) for joint in description.joints] == [

@@ -16,13 +16,14 @@ from launch_ros.substitutions import FindPackageShare
 
 ARGUMENTS = {
     'scene': ('positioning', 'shipped scene of the axis, or a parameter file'),
-    'controller': ('cascade_controller', 'cascade_controller or compensating_controller'),
+    'controller': ('cascade_controller', 'that moves the axis'),
     'namespace': ('', 'of both nodes and their topics'),
     'feed': ('0.0005', 'of the moves, m/s'),
     'travel': ('0.002', 'of a move, m'),
     'record': ('true', 'whether to record a bag from the start'),
     'parameters': ('', "further ones of the axis, like 'encoder.resolution:=1.0e-6 seed:=3'"),
 }
+CHOICES = {'controller': ['cascade_controller', 'compensating_controller']}
 # The axis stands until the controller moves it.
 OF_THE_AXIS = 'joint_interface.enabled:=true drive.course:=constant drive.velocity:=0.0 '
 
@@ -32,7 +33,7 @@ def generate_launch_description() -> LaunchDescription:
     given = {name: LaunchConfiguration(name) for name in ARGUMENTS}
     sim = PathJoinSubstitution([FindPackageShare('stickslip_sim'), 'launch', 'sim.launch.py'])
     return LaunchDescription([
-        *(DeclareLaunchArgument(name, default_value=value, description=text)
+        *(DeclareLaunchArgument(name, default_value=value, description=text, choices=CHOICES.get(name))
           for name, (value, text) in ARGUMENTS.items()),
         IncludeLaunchDescription(PythonLaunchDescriptionSource(sim), launch_arguments={
             'parameters': [OF_THE_AXIS, given['parameters']]}.items()),

@@ -21,12 +21,13 @@ ARGUMENTS = {
     'start_paused': ('false', 'whether to wait for ~/resume at the begin'),
     'clock': ('0.0', 'Hz: how often /clock is published; 0: not at all'),
 }
+CHOICES = {'mode': ['states', 'commands']}
 
 
 def generate_launch_description() -> LaunchDescription:
     """Return the node with its arguments."""
     return LaunchDescription([
-        *(DeclareLaunchArgument(name, default_value=value, description=text)
+        *(DeclareLaunchArgument(name, default_value=value, description=text, choices=CHOICES.get(name))
           for name, (value, text) in ARGUMENTS.items()),
         Node(
             package='stickslip_sim',

@@ -25,8 +25,8 @@ def generate_launch_description() -> LaunchDescription:
     return LaunchDescription([
         DeclareLaunchArgument('scene', default_value='positioning', description='shipped scene, or a parameter file'),
         DeclareLaunchArgument('namespace', default_value='machine', description='namespace of the axis and its topics'),
-        DeclareLaunchArgument('controller', default_value='velocity_controller',
-                              description='velocity_controller or position_controller'),
+        DeclareLaunchArgument('controller', default_value='velocity_controller', description='of the axis',
+                              choices=['velocity_controller', 'position_controller']),
         DeclareLaunchArgument('parameters', default_value='', description="further ones of the axis, like 'seed:=3'"),
         axis(),
         Node(package='robot_state_publisher', executable='robot_state_publisher', output='screen',
@@ -47,8 +47,8 @@ def axis() -> IncludeLaunchDescription:
 
 
 def description() -> Command:
-    """Return the robot description, on the topics of the axis."""
-    namespace = LaunchConfiguration('namespace')
-    return Command(['xacro ', PathJoinSubstitution([*FOLDER, 'feed_axis.ros2_control.xacro']),
-                    ' joint_states_topic:=/', namespace, '/joint_states',
-                    ' joint_commands_topic:=/', namespace, '/joint_commands'])
+    """Return the robot description, on the topics of the axis; its words are quoted, for a path may have blanks."""
+    file = PathJoinSubstitution([*FOLDER, 'feed_axis.ros2_control.xacro'])
+    topics = (word for name in ('joint_states', 'joint_commands')
+              for word in (f"' '{name}_topic:=", PathJoinSubstitution(['/', LaunchConfiguration('namespace'), name])))
+    return Command(["xacro '", file, *topics, "'"])
