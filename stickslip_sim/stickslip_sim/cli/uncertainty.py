@@ -85,7 +85,8 @@ def _percentiles(found: 'Uncertainty') -> list[str]:
     doubts = ((found.points - found.solved, 'unsolved'), (found.unsettled, 'had not settled'))
     doubt = ''.join(f', {count} {what}' for count, what in doubts if count)
     head = f'{"of those":22}' + ''.join(f'{f"{percent} %":>13}' for percent in PERCENTS)
-    return [f'stick-slip in {found.stick_slip:.2%} of {found.points} independent points{doubt}', head,
+    share = 'none' if found.stick_slip is None else f'{found.stick_slip:.2%}'
+    return [f'stick-slip in {share} of {found.points} independent points{doubt}', head,
             *(f'{name:22}' + ''.join(f'{quantity(value, SPREAD[name], 4):>13}' for value in values)
               if values else f'{name:22}{"none":>13}' for name, values in found.percentiles.items())]
 

@@ -2,11 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """A study as JSON values, and back: what stands beside its table."""
 
+import json
 from collections.abc import Mapping
-from dataclasses import asdict, fields
+from dataclasses import asdict
 from importlib import metadata
 from typing import Any
 
+from ..errors import InputError
 from ..receipt import versions
 from ..scene.load import scene_of_parameters
 from ..scene.ros_yaml import read_yaml
@@ -14,10 +16,10 @@ from ..scene.sections import parameters_of
 from .distribution import Distribution
 from .sample import Grid, Saltelli, Sample, Sobol
 from .study import Study
-from .variation import Variation
+from .variation import Variation, checked
 
 FORM = 'stickslip study 1'
-_VARIED = tuple(field.name for field in fields(Variation))
+_CHOSEN = ('points', 'duration', 'over', 'sobol', 'uncertain')
 
 
 def description(study: Study, command: str = '') -> dict[str, Any]:
@@ -39,9 +41,17 @@ def versions_of_a_study() -> dict[str, str]:
 
 
 def study_of(told: Mapping[str, Any]) -> Study:
-    """Return the study that a description is of; raises InputError and KeyError."""
-    scene = scene_of_parameters(parameters_of(read_yaml(told['scene_text'])), {})
-    return Study(scene.values, _sample_of(told), told['duration'])
+    """Return the study that a description is of; raises InputError unless that study is described just so."""
+    try:
+        scene = scene_of_parameters(parameters_of(read_yaml(told['scene_text'])), {})
+        study = Study(scene.values, _sample_of(told), told['duration'])
+        described = description(study)
+        changed = [name for name in _CHOSEN if json.dumps(told[name]) != json.dumps(described[name])]
+    except (AttributeError, KeyError, OverflowError, TypeError, ValueError) as error:
+        changed = [str(error)]
+    if changed:
+        raise InputError('description', changed[0], 'that of a study, as it was written', 'sweep into a new folder')
+    return study
 
 
 def _sample_of(told: Mapping[str, Any]) -> Sample:
@@ -50,5 +60,6 @@ def _sample_of(told: Mapping[str, Any]) -> Sample:
         laws = tuple(Distribution(one['name'], one['law'], tuple(one['numbers']), one['low'], one['high'])
                      for one in told['over'])
         return Saltelli(laws, uncertain['samples'], uncertain['seed'])
-    variations = tuple(Variation(**{name: one[name] for name in _VARIED}) for one in told['over'])
+    variations = tuple(checked(Variation(one['name'], float(one['low']), float(one['high']), int(one['count']),
+                                         bool(one['log']))) for one in told['over'])
     return Sobol(variations, drawn['points'], drawn['seed']) if drawn else Grid(variations)

@@ -58,7 +58,7 @@ class Folder:
             told = json.loads((self.path / SIDECAR).read_text(encoding='utf-8'))
             if told['form'] == FORM:
                 return dict(told)
-        except (OSError, ValueError, KeyError, TypeError):
+        except (OSError, ValueError, KeyError, TypeError, RecursionError):
             pass
         raise InputError('folder', str(self.path), f'that of a sweep, with {SIDECAR} in it', 'sweep into a new one')
 

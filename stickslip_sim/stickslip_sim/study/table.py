@@ -46,7 +46,10 @@ def read_columns(path: Path, study: Study) -> dict[str, Numbers]:
         with path.open(encoding='utf-8') as file:
             titles = file.readline()
             rows = np.array([[_number(cell) for cell in line.split(',')] for line in file])
-    except (OSError, ValueError):
+            motions = rows[:, len(study.names) + FIGURES.index('motion')]
+            if np.isinf(rows).any() or not np.isin(motions, [*_CODES.values()]).all():
+                raise ValueError('no study writes that')
+    except (IndexError, OSError, ValueError):
         titles, rows = '', np.array([])
     if titles.encode() != header(study) or rows.shape != (study.count, len(study.names) + len(FIGURES)):
         raise InputError('points', str(path), f'the table of its study, {study.count} whole lines',

@@ -44,7 +44,7 @@ class Uncertainty(NamedTuple):
     points: int
     solved: int
     unsettled: int
-    stick_slip: float
+    stick_slip: float | None   # None: no point was solved
     percentiles: Mapping[str, list[float] | None]
     indices: Mapping[str, Mapping[str, Index] | None]
 
@@ -60,7 +60,7 @@ def uncertainty_of(sample: Saltelli, columns: Mapping[str, Numbers]) -> Uncertai
     names = [one.name for one in sample.variations]
     indices = {name: sobol_indices(values) for name, values in {'stick_slip': slips, **known}.items()}
     return Uncertainty(
-        drawn.size, solved, int(unsettled.sum()), float(np.nansum(drawn)) / solved if solved else np.nan,
+        drawn.size, solved, int(unsettled.sum()), float(np.nansum(drawn)) / solved if solved else None,
         {name: _percentiles(values[:, :2][drawn == 1.0]) for name, values in known.items()},
         {name: dict(zip(names, found, strict=True)) if found else None for name, found in indices.items()})
 
