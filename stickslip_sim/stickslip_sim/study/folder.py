@@ -75,7 +75,7 @@ class Folder:
         path, titles = self.path / PARTIAL, header(study)
         with _refusing(path), path.open('r+b') as file:
             if file.readline() != titles:
-                raise InputError('points', str(path), 'the table of this study', 'it was changed; sweep into a new one')
+                raise _changed(path)
             chunks = rows = 0
             end = place = len(titles)
             for line in file:
@@ -101,15 +101,23 @@ class Folder:
 
     def finish(self) -> None:
         """Give the table its name; where pandas is installed, write it as Parquet too."""
+        partial = self.path / PARTIAL
         with _refusing(self.path):
-            write_parquet(self.path / PARTIAL, self.path / PARQUET)
-            (self.path / PARTIAL).replace(self.path / TABLE)
+            try:
+                write_parquet(partial, self.path / PARQUET)
+            except (TypeError, ValueError):   # the bases of what pandas and pyarrow raise
+                raise _changed(partial) from None
+            partial.replace(self.path / TABLE)
 
     def _check_room(self, study: Study) -> None:
         """Raise InputError when the table would not fit into memory or onto the disk."""
         memory = os.sysconf('SC_AVPHYS_PAGES') * os.sysconf('SC_PAGE_SIZE')
         _check_size(study, 'memory', size_in_memory(study), memory)
         _check_size(study, 'disk', size_on_disk(study), shutil.disk_usage(self.path).free)
+
+
+def _changed(table: Path) -> InputError:
+    return InputError('points', str(table), 'the table of this study', 'it was changed; sweep into a new one')
 
 
 def _check_size(study: Study, where: str, needed: int, free: int) -> None:

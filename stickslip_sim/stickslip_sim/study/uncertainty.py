@@ -66,7 +66,10 @@ def uncertainty_of(sample: Saltelli, columns: Mapping[str, Numbers]) -> Uncertai
 
 
 def sobol_indices(values: Numbers) -> list[Index] | None:
-    """Return the indices of each number, from rows f(A), f(B), f(A with one number of B); None without a variance."""
+    """Return the indices of each number, from rows f(A), f(B), f(A with one number of B).
+
+    None without a variance, or with one that leaves the range of numbers.
+    """
     from scipy import stats
 
     if np.isnan(values).any() or np.ptp(values[:, :2]) <= _SAME * np.abs(values[:, :2]).max():
@@ -77,6 +80,8 @@ def sobol_indices(values: Numbers) -> list[Index] | None:
     first, total = (np.reshape(order, (2, -1))[0].tolist() for order in (found.first_order, found.total_order))
     products = (b - values[:, :2].mean()) * (mixed - a) / values[:, :2].var()   # whose means are the first orders
     errors = (products.std(axis=1) / np.sqrt(len(values))).tolist()
+    if not np.isfinite([*first, *errors, *total]).all():
+        return None
     return [Index(*row) for row in zip(first, errors, total, strict=True)]
 
 
