@@ -49,7 +49,7 @@ hil: build  ## the node with a controller beside it: against a bare rclpy node, 
 soak: build  ## the node, recording, with a controller beside it for MINUTES=10; writes docs/, fails when a limit is missed
 	@$(HERE) --own-domain python3 -m benchmarks.soak --minutes $(MINUTES)
 
-fuzz: tools  ## made-up scenes, limits, overrides and bags for MINUTES=10; fails when one is not read or refused in one line
+fuzz: tools  ## made-up files and runs for MINUTES=10; fails when one is not read or refused in one line, or runs wrong
 	@$(HERE) python3 -m tests.fuzz --minutes $(MINUTES)
 
 docs: tools  ## the pages in docs/ as a site in runs/docs/

@@ -11,9 +11,10 @@ import pytest
 
 from stickslip_sim.axis import CompliantContact, InitialState
 from stickslip_sim.courses import Course, constant, steps
+from stickslip_sim.friction import StaticLaw, StaticLawKind
 from stickslip_sim.grazing import FREQUENCIES, PHASES, grazing_drive
 from stickslip_sim.reference import simulate
-from stickslip_sim.words import EventKind, Instant, Mode
+from stickslip_sim.words import Event, EventKind, Instant, Mode
 from tests.axes import COMPLIANT, RIGID, instant, make, paper_axis, random_axis, run
 from tests.conftest import Program
 from tests.forced_courses import random_courses, with_waves
@@ -124,9 +125,7 @@ def test_mirror_and_units_of_a_power_of_two_are_bit_identical(seed: int) -> None
     events = run(axis, drive, 2.0, force)
     mirrored = run(axis, _scaled(drive, -1.0), 2.0, _scaled(force, -1.0))
     for e, image in zip(events, mirrored, strict=True):
-        assert image == e._replace(direction=-e.direction, position=-e.position, velocity=-e.velocity,
-                                   drive_position=-e.drive_position, drive_force=-e.drive_force,
-                                   friction_force=-e.friction_force)
+        assert image == _mirrored(e)
     contact = axis.contact
     if isinstance(contact, CompliantContact):
         contact = CompliantContact(contact.stiffness * 0.5, contact.damping * 0.5)
@@ -134,6 +133,22 @@ def test_mirror_and_units_of_a_power_of_two_are_bit_identical(seed: int) -> None
                    drive_damping=axis.drive_damping * 0.5, normal_force=axis.normal_force * 0.5)
     for e, other in zip(events, run(half, drive, 2.0, _scaled(force, 0.5)), strict=True):
         assert other == e._replace(drive_force=0.5 * e.drive_force, friction_force=0.5 * e.friction_force)
+
+
+@pytest.mark.parametrize('speed', [0.0046, 0.00464, 0.00476, 0.00494, 0.0076])
+def test_a_leap_to_either_limit_is_as_long(speed: float) -> None:
+    """The room between envelope and limit, rounded alike on both sides, or the first root differs by an ULP."""
+    axis = paper_axis(RIGID)
+    axis = replace(axis, friction=replace(axis.friction, static=StaticLaw(StaticLawKind.CONSTANT, 0.24, 0.24)))
+    up, down = (run(axis, way * speed, 2.0, with_waves(constant(0.0), (-way * 100.0, 5.0, 1.0))) for way in (1.0, -1.0))
+    assert [_mirrored(event) for event in up] == down
+    assert len(up) > 10
+
+
+def _mirrored(event: Event) -> Event:
+    return event._replace(direction=-event.direction, position=-event.position, velocity=-event.velocity,
+                          drive_position=-event.drive_position, drive_force=-event.drive_force,
+                          friction_force=-event.friction_force)
 
 
 def _scaled(course: Course, factor: float) -> Course:

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Made-up scenes, limits, overrides and bags: read, or refused in one line.  `make fuzz` makes up more."""
+"""Made-up input: read, or refused in one line; and made-up runs of the engine.  `make fuzz` makes up more."""
 
 from collections.abc import Mapping
 
@@ -9,7 +9,8 @@ from hypothesis import HealthCheck, given, settings
 
 from tests.fuzz.targets import Target, targets
 
-EXAMPLES = {'scene': 300, 'limits': 300, 'override': 300, 'bag': 150}
+EXAMPLES = {'scene': 300, 'limits': 300, 'override': 300, 'bag': 150, 'distributions': 200, 'options': 200, 'study': 30,
+            'engine': 60, 'reference': 10}
 ALWAYS_THE_SAME = settings(derandomize=True, database=None, deadline=None, suppress_health_check=list(HealthCheck))
 
 

@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -362,3 +363,32 @@ def test_what_is_no_complete_sweep_of_one_or_two_parameters_is_refused(swept: Pa
     shutil.copytree(swept, tmp_path / 'cut')
     (tmp_path / 'cut' / TABLE).write_bytes((swept / TABLE).read_bytes()[:-300])
     assert 'points' in refused(capsys, 'map', tmp_path / 'cut', *picture)
+
+
+def test_a_partial_table_with_other_columns_is_run_again(tmp_path: Path) -> None:
+    out = tmp_path / 'out'
+    command = ['sweep', 'paper_fig7', '--over', 'drive.velocity=0.001:0.01:3', '--duration', '1', '--out', str(out)]
+    assert run(command) == 0
+    whole = (out / TABLE).read_text()
+    titles, first, second, third = whole.splitlines()
+    (out / TABLE).unlink()
+    (out / PARTIAL).write_text('\n'.join((titles, first, f'{second},1', third, '')))
+    assert run([*command, '--resume']) == 0
+    assert (out / TABLE).read_text() == whole
+
+
+@pytest.mark.parametrize(('place', 'value'), [
+    (('points',), 4), (('duration',), '1'), (('over', 0, 'count'), 3.0), (('over', 0, 'low'), 'x'),
+    (('over', 0, 'name'), None), (('over',), False), (('sobol',), []), (('scene_text',), 7)])
+def test_an_edited_description_is_refused(tmp_path: Path, capsys: Capture, place: tuple[Any, ...], value: Any) -> None:
+    out = tmp_path / 'out'
+    assert run(['sweep', 'paper_fig7', '--over', 'drive.velocity=0.001:0.01:3', '--duration', '1', '--out',
+                str(out)]) == 0
+    told = node = json.loads((out / SIDECAR).read_text())
+    for key in place[:-1]:
+        node = node[key]
+    node[place[-1]] = value
+    (out / SIDECAR).write_text(json.dumps(told))
+    capsys.readouterr()
+    refused(capsys, 'map', out, '--out', tmp_path / 'map.svg')
+    assert not (tmp_path / 'map.svg').exists()

@@ -100,3 +100,16 @@ def test_a_wrong_file_is_named(tmp_path: Path, capsys: Capture) -> None:
     error = capsys.readouterr().err
     assert 'friction.yaml: friction.static.limit.meen' in error
     assert 'did you mean mean?' in error
+
+
+def test_where_nothing_was_solved_that_is_what_it_tells(tmp_path: Path, file: str, capsys: Capture) -> None:
+    command = ['uncertainty', 'paper_fig7', '--with', file, '--samples', '16', '--duration', '2', '--out',
+               str(tmp_path / 'out')]
+    assert run(command) == 0
+    titles, *lines = (tmp_path / 'out' / TABLE).read_text().splitlines()
+    unsolved = [','.join([*line.split(',')[:2], 'unsolved', '0.0', *[''] * 9]) for line in lines]
+    (tmp_path / 'out' / TABLE).write_text('\n'.join((titles, *unsolved, '')))
+    capsys.readouterr()
+    assert run([*command, '--resume']) == 0
+    assert 'stick-slip in a share that is not known of 32 independent points, 32 unsolved' in capsys.readouterr().out
+    assert json.loads((tmp_path / 'out' / 'uncertainty.json').read_text())['stick_slip'] is None

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every reader of what comes from outside, called as the product calls it."""
 
+import shutil
 import warnings
 from collections.abc import Callable
 from pathlib import Path
@@ -13,10 +14,18 @@ from stickslip_sim.cli.export import csv_lines
 from stickslip_sim.errors import LINE_LIMIT, RecordingWarning, StickslipError
 from stickslip_sim.paper.recorded import history_of_run
 from stickslip_sim.recording import Run, read_run
+from stickslip_sim.recording.playback import Recording
 from stickslip_sim.rerun.recording import open_recording
 from stickslip_sim.rerun.verdict import verify
 from stickslip_sim.scene import load_scene, parse_override, parse_scene
 from stickslip_sim.scene.ros_yaml import read_yaml
+from stickslip_sim.study import Grid, Study, variation
+from stickslip_sim.study.pictures import check_drawable, point_of
+from stickslip_sim.study.uncertain_file import uncertain_of
+from stickslip_sim.study.variation import range_of
+
+from .studies import Edited
+from .tool import tool
 
 
 def accepts_or_refuses(read: Callable[..., object], *arguments: object) -> object:
@@ -47,6 +56,33 @@ def override(name: str, *changes: str) -> None:
     accepts_or_refuses(lambda: load_scene(name, dict(parse_override(change) for change in changes)))
 
 
+def distributions(text: str) -> None:
+    """Read a file of distributions."""
+    accepts_or_refuses(lambda: uncertain_of(read_yaml(text)))
+
+
+def options(over: str, between: str, pick: str, show: str) -> None:
+    """Read what describes a study on a command line."""
+    for drawn in (True, False):
+        accepts_or_refuses(variation, over, drawn)
+    accepts_or_refuses(range_of, '--between', over.partition('=')[0], between)
+    values = load_scene('paper_fig7').values
+    study: Any = accepts_or_refuses(lambda: Study(values, Grid((variation(over),)), 1.0))
+    if study is not None:
+        accepts_or_refuses(check_drawable, study, show)
+        accepts_or_refuses(point_of, study, pick)
+
+
+def study(edited: Edited, folder: Path) -> None:
+    """Draw what is in the folder of a study, and resume it."""
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir()
+    for name, text in edited.files.items():
+        (folder / name).write_text(text, encoding='utf-8', errors='surrogatepass', newline='')
+    tool('map', str(folder), '--out', str(folder / 'map.svg'))
+    tool(*edited.command, '--out', str(folder), '--resume')
+
+
 def bag(path: Path) -> None:
     """Read a bag in every way that there is."""
     with warnings.catch_warnings():
@@ -60,3 +96,11 @@ def bag(path: Path) -> None:
         for read in (recorded, history_of_run):
             accepts_or_refuses(read, str(path))
         accepts_or_refuses(lambda: verify(open_recording(path)))
+        accepts_or_refuses(_play, path)
+
+
+def _play(path: Path) -> None:
+    """Take all messages out of a bag, as replay_node does."""
+    recording = Recording(path)
+    for message in recording.messages(recording.topics, recording.begin, recording.end):
+        assert message.topic in recording.topics

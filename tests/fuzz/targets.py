@@ -11,7 +11,7 @@ from hypothesis.strategies import SearchStrategy
 
 from stickslip_sim.scene import scene_names
 
-from . import bags, readers, recordings, texts
+from . import axes, bags, engine, judge, readers, recordings, studies, texts
 from .bounds import within
 
 ROOT = Path(__file__).parents[2]
@@ -41,6 +41,11 @@ def targets(folder: Path) -> Mapping[str, Target]:
         'limits': (texts.changed(limits) | texts.ANYTHING, readers.limits),
         'override': (changes, lambda given: readers.override(*given)),
         'bag': (bags.changed(recordings.files(folder)), bag),
+        'distributions': (studies.DISTRIBUTIONS, readers.distributions),
+        'options': (studies.OPTIONS, lambda given: readers.options(*given)),
+        'study': (studies.folders(folder), lambda given: readers.study(given, folder / 'study')),
+        'engine': (axes.machines() | axes.shaken(), engine.holds),
+        'reference': (axes.machines() | axes.shaken(), judge.equals_the_reference),
     }
     return {name: Target(inputs, _bounded(read)) for name, (inputs, read) in found.items()}
 

@@ -21,7 +21,7 @@ _FORMATS = ('.json', '.md')
 @click.option('--quick', is_flag=True, help='In a reduced size, as the tests do.')
 @click.option('--out', metavar='FILE.json|FILE.md', help='Write the table to a file, too.')
 def extremes(only: str | None, quick: bool, out: str | None) -> None:
-    """Judge the engine by the twenty extremes; exit with 3 when a mark is missed."""
+    """Judge the engine by the extremes; exit with 3 when a mark is missed."""
     if out is not None:
         _check_out(out)
     _check_mpmath()

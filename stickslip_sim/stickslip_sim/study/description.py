@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """A study as JSON values, and back: what stands beside its table."""
 
+import json
 from collections.abc import Mapping
-from dataclasses import asdict, fields
+from dataclasses import asdict
 from importlib import metadata
 from typing import Any
 
@@ -15,10 +16,9 @@ from ..scene.sections import parameters_of
 from .distribution import Distribution
 from .sample import Grid, Saltelli, Sample, Sobol
 from .study import Study
-from .variation import Variation
+from .variation import Variation, checked
 
 FORM = 'stickslip study 1'
-_VARIED = tuple(field.name for field in fields(Variation))
 _OF_THE_SAMPLE = ('points', 'duration', 'over', 'sobol', 'uncertain')
 
 
@@ -45,7 +45,8 @@ def study_of(told: Mapping[str, Any]) -> Study:
     try:
         scene = scene_of_parameters(parameters_of(read_yaml(told['scene_text'])), {})
         study = Study(scene.values, _sample_of(told), told['duration'])
-        if all(told[name] == value for name, value in description(study).items() if name in _OF_THE_SAMPLE):
+        described = description(study)
+        if all(json.dumps(told[name]) == json.dumps(described[name]) for name in _OF_THE_SAMPLE):
             return study
     except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError):
         pass
@@ -62,5 +63,6 @@ def _sample_of(told: Mapping[str, Any]) -> Sample:
         laws = tuple(Distribution(one['name'], one['law'], tuple(one['numbers']), one['low'], one['high'])
                      for one in told['over'])
         return Saltelli(laws, uncertain['samples'], uncertain['seed'])
-    variations = tuple(Variation(**{name: one[name] for name in _VARIED}) for one in told['over'])
+    variations = tuple(checked(Variation(one['name'], float(one['low']), float(one['high']), int(one['count']),
+                                         bool(one['log']))) for one in told['over'])
     return Sobol(variations, drawn['points'], drawn['seed']) if drawn else Grid(variations)

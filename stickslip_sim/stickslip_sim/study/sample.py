@@ -22,6 +22,11 @@ class Grid:
 
     variations: tuple[Variation, ...]
 
+    def __post_init__(self) -> None:
+        for one in self.variations:
+            if one.count < 2:
+                raise InputError(one.name, one.count, 'a whole number N >= 2 of values', 'use --set for a single value')
+
     @property
     def count(self) -> int:
         """How many points there are."""

@@ -73,7 +73,10 @@ def spread_of(sample: Saltelli, columns: Mapping[str, Numbers]) -> dict[str, Num
 
 
 def sobol_indices(values: Numbers) -> list[Index] | None:
-    """Return the indices of each number, from rows f(A), f(B), f(A with one number of B); None without a variance."""
+    """Return the indices of each number, from rows f(A), f(B), f(A with one number of B).
+
+    None without a variance, or with one that leaves the range of numbers.
+    """
     from scipy import stats
 
     if np.isnan(values).any() or np.ptp(values[:, :2]) <= _SAME * np.abs(values[:, :2]).max():

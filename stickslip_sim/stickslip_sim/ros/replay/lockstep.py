@@ -11,16 +11,14 @@ from functools import partial
 
 from rcl_interfaces.msg import Parameter
 from rclpy.node import Node
-from rclpy.serialization import deserialize_message
 
 from ...errors import InputError, RecordingError
 from ...grid import Grid
 from ...recording import RecordedMessage, Topic
 from ...recording.playback import Recording
 from ...recording.topics import DRIVE_VELOCITY, EXTERNAL_FORCE
-from ..topics import message_type
 from .axis import Axis
-from .orders import COMMANDS, Request, is_timeout, refusal_in, request_of, state_topic
+from .orders import COMMANDS, Request, is_timeout, order_of, refusal_in, request_of, state_topic
 from .player import Act
 from .span import Span
 
@@ -88,7 +86,7 @@ class InLockStep:
     def _give(self, message: RecordedMessage) -> None:
         kind = self._orders[message.topic]
         if kind in COMMANDS:
-            command = deserialize_message(message.data, message_type(kind))
+            command = order_of(kind, message.data)
             self._commands[kind] = command.velocity if kind is DRIVE_VELOCITY else command.force
         elif request := request_of(kind, message.data):
             self._remember(request)

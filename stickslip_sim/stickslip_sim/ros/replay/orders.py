@@ -46,9 +46,18 @@ def state_topic(recording: Recording) -> str:
     return names[0]
 
 
+def order_of(kind: Topic, data: bytes) -> Any:
+    """Return the message that a recorded order is; raises RecordingError on bytes that are none."""
+    try:
+        return deserialize_message(data, message_type(kind))
+    except RuntimeError:    # the base of what the middleware raises
+        raise RecordingError(f'{kind.name}: {len(data)} recorded bytes are no {kind.type}; the recording is damaged: '
+                             'play what is before with playback_duration') from None
+
+
 def request_of(kind: Topic, data: bytes) -> Request | None:
     """Return how an order other than a command is given to an axis; None where it follows from the others."""
-    message = deserialize_message(data, message_type(kind))
+    message = order_of(kind, data)
     if kind is PARAMETER_EVENTS:
         changed = [parameter for parameter in message.changed_parameters if parameter.name in BY_NAME]
         return Request('set_parameters_atomically', {'parameters': changed}) if changed else None
@@ -64,7 +73,7 @@ def request_of(kind: Topic, data: bytes) -> Request | None:
 
 def is_timeout(kind: Topic, data: bytes) -> bool:
     """Return whether a recorded message tells of a command time-out."""
-    return kind is RIG_EVENT and deserialize_message(data, message_type(kind)).kind == NoteKind.COMMAND_TIMEOUT
+    return kind is RIG_EVENT and bool(order_of(kind, data).kind == NoteKind.COMMAND_TIMEOUT)
 
 
 def refusal_in(response: Any) -> str:

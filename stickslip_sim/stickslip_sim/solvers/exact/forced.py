@@ -163,7 +163,7 @@ def _leap(p, s, signal, t, top, floor, size, decay, noise, horizon):
         return 0.0
     rate += bend * t
     leap = min(_envelope_root(p, s, t, top - mean - swing, mean + swing, rate, bend, size, decay, horizon),
-               _envelope_root(p, s, t, mean - swing - floor, swing - mean, -rate, -bend, size, decay, horizon))
+               _envelope_root(p, s, t, mean - floor - swing, swing - mean, -rate, -bend, size, decay, horizon))
     if leap > horizon:
         s[SEARCHED] = t + horizon
         return math.inf
