@@ -5,10 +5,13 @@
 import json
 import os
 import signal
+import socketserver
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -143,15 +146,47 @@ def test_a_scheduler_without_workers_gets_one_line_and_no_folder(cluster: Cluste
     assert not out.exists()
 
 
-@pytest.mark.parametrize('address', [ABSENT, 'nowhere', 'carrier-pigeon://coop:1'])
+@pytest.mark.parametrize('address', [ABSENT, 'nowhere', 'carrier-pigeon://coop:1', 'tls://127.0.0.1:9'])
 def test_a_scheduler_that_is_not_there_gets_one_line_and_no_folder(address: str, tmp_path: Path,
-                                                                   capfd: 'pytest.CaptureFixture[str]') -> None:
+                                                                   capfd: Capture) -> None:
     out = tmp_path / 'out'
     assert run([*LONG, '--scheduler', address, '--out', str(out)]) == 2
     error = capfd.readouterr().err
     assert error.count('\n') == 1, error
     assert error.startswith(f"stickslip: --scheduler = '{address}' is refused")
     assert not out.exists()
+
+
+class Stranger(socketserver.BaseRequestHandler):
+    """Says one thing to whoever calls, and nothing more."""
+
+    answer = b''
+
+    def handle(self) -> None:
+        with suppress(OSError):
+            self.request.sendall(self.answer)
+            while self.request.recv(4096):
+                pass
+
+
+class Chatterer(Stranger):
+    answer = b'HTTP/1.0 400 Bad Request\r\n\r\n'
+
+
+@pytest.mark.parametrize('stranger', [Stranger, Chatterer])
+def test_what_is_no_scheduler_gets_one_line_and_no_folder(stranger: type[Stranger], tmp_path: Path,
+                                                          capfd: Capture) -> None:
+    with socketserver.ThreadingTCPServer(('127.0.0.1', 0), stranger) as server:
+        threading.Thread(target=server.serve_forever, kwargs={'poll_interval': 0.01}).start()
+        address = f'tcp://127.0.0.1:{server.server_address[1]}'
+        try:
+            assert run([*LONG, '--scheduler', address, '--out', str(tmp_path / 'out')]) == 2
+        finally:
+            server.shutdown()
+    error = capfd.readouterr().err
+    assert error.count('\n') == 1, error
+    assert error.startswith(f"stickslip: --scheduler = '{address}' is refused")
+    assert not (tmp_path / 'out').exists()
 
 
 def test_workers_and_a_scheduler_exclude_each_other(tmp_path: Path, capsys: Capture) -> None:

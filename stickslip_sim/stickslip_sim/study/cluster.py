@@ -5,6 +5,7 @@
 A worker that dies is the scheduler's to notice: it gives its chunks to another one.
 """
 
+import asyncio
 import logging
 from collections.abc import Iterator, Mapping
 from concurrent.futures import CancelledError
@@ -63,10 +64,19 @@ def _client(address: str) -> Any:
     from distributed import Client
 
     try:
+        asyncio.run(asyncio.wait_for(_greet(address), _PATIENCE))
         return Client(address, timeout=_PATIENCE, set_as_default=False)
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, TypeError, MemoryError) as error:   # the last from what speaks another language
         raise InputError('--scheduler', address, 'the address of a Dask scheduler that runs, as tcp://HOST:8786',
-                         f'{error}; start one: dask scheduler') from None
+                         f'{error or "there is no answer"}; start one: dask scheduler') from None
+
+
+async def _greet(address: str) -> None:
+    """Come back when a scheduler has answered: a client would wait for ever for what listens and says nothing."""
+    from distributed.comm import connect
+
+    comm = await connect(address, timeout=_PATIENCE)
+    await comm.close()
 
 
 def _check_workers(client: Any, address: str) -> None:
