@@ -66,6 +66,12 @@ class TestSim:
         axis, = launched('sim', parameters="seed:=3 friction.kinetic.velocities:='[0.0, 0.1]'").processes
         assert axis.words[3:7] == ['-p', 'seed:=3', '-p', 'friction.kinetic.velocities:=[0.0, 0.1]']
 
+    @pytest.mark.parametrize(('parameters', 'advice'), [
+        ('seed 3', 'NAME:=VALUE'), ('seed := 3', 'NAME:=VALUE'), ("seed:='3", 'close each quote')])
+    def test_parameters_that_are_none_are_refused(self, parameters: str, advice: str) -> None:
+        with pytest.raises(ValueError, match=f'^parameters: .*{advice}'):
+            launched('sim', parameters=parameters)
+
     def test_for_real(self, tmp_path: Path) -> None:
         folder = tmp_path / 'run'
         axis, = launched('sim', scene='cutting_force', namespace='press', mode='free_run', rate='500', record='true',
@@ -106,7 +112,7 @@ class TestControlled:
 
 
 class TestAxes:
-    @pytest.mark.parametrize('axes', ['x', ':positioning', 'x:', 'x:positioning x:paper_fig8'])
+    @pytest.mark.parametrize('axes', ['', 'x', ':positioning', 'x:', 'x:positioning /x:paper_fig8'])
     def test_what_is_no_axis_is_refused(self, axes: str) -> None:
         with pytest.raises(ValueError, match='NAMESPACE:SCENE'):
             launched('axes', axes=axes)
@@ -122,7 +128,7 @@ class TestAxes:
 
 class TestRos2Control:
     def test_shipped_files_and_topics_of_the_axis(self) -> None:
-        axis, publisher, manager, broadcaster, spawner = launched('ros2_control', namespace='mill',
+        publisher, manager, broadcaster, spawner, axis = launched('ros2_control', namespace='mill',
                                                                    parameters='seed:=3').processes
         assert '-r __ns:=/mill' in words_of(axis)
         assert parameters_of(axis) == ['scene', 'joint_interface.enabled', 'seed']
@@ -134,7 +140,7 @@ class TestRos2Control:
 
     @pytest.mark.parametrize(('namespace', 'prefix'), [('mill', '/mill'), ('/mill/', '/mill'), ('', '')])
     def test_xacro_gives_the_hardware_the_topics_of_the_axis(self, namespace: str, prefix: str) -> None:
-        publisher = launched('ros2_control', namespace=namespace).processes[1]
+        publisher = launched('ros2_control', namespace=namespace).processes[0]
         command = re.search(r'\$\((.*)\)', words_of(publisher))
         assert command is not None
         xacro, file, *arguments = shlex.split(command[1])

@@ -4,7 +4,7 @@
 
 ros2 launch stickslip_sim axes.launch.py axes:='x:positioning y:cutting_force' record:=true
 
-The arguments of sim.launch.py but scene, namespace, folder and clock are there too, and are for all of them.
+All but the first argument are for all of them.
 """
 
 from launch import LaunchContext, LaunchDescription
@@ -13,12 +13,21 @@ from launch.launch_description_sources import PythonLaunchDescriptionSource
 from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
 from launch_ros.substitutions import FindPackageShare
 
+# Those of sim.launch.py that are not of one axis alone: it declares them too, but --show-args cannot see that.
+ARGUMENTS = {
+    'axes': ('x:positioning y:positioning', 'NAMESPACE:SCENE of each, the scene shipped or a parameter file'),
+    'mode': ('', 'of their time: realtime, lockstep or free_run'),
+    'rate': ('', 'steps per second of simulation time'),
+    'record': ('', 'true: a bag of each from the start, below runs/; false: none'),
+    'parameters': ('', "further ones, like 'drive.velocity:=0.005 seed:=3'"),
+}
+
 
 def generate_launch_description() -> LaunchDescription:
     """Return the axes that are asked for."""
     return LaunchDescription([
-        DeclareLaunchArgument('axes', default_value='x:positioning y:positioning',
-                              description='NAMESPACE:SCENE of each, the scene shipped or a parameter file'),
+        *(DeclareLaunchArgument(name, default_value=value, description=text)
+          for name, (value, text) in ARGUMENTS.items()),
         OpaqueFunction(function=axes),
     ])
 
@@ -26,8 +35,8 @@ def generate_launch_description() -> LaunchDescription:
 def axes(context: LaunchContext) -> list[IncludeLaunchDescription]:
     """Return an axis for each word; raises ValueError for one that is no NAMESPACE:SCENE, and for a second one."""
     words = LaunchConfiguration('axes').perform(context).split()
-    scenes = {namespace: scene for namespace, _, scene in (word.partition(':') for word in words)}
-    if not all([*scenes, *scenes.values()]) or len(scenes) < len(words):
+    scenes = {namespace.strip('/'): scene for namespace, _, scene in (word.partition(':') for word in words)}
+    if not scenes or not all([*scenes, *scenes.values()]) or len(scenes) < len(words):
         raise ValueError(f'axes: {words}: give each as NAMESPACE:SCENE, like x:positioning, in a namespace of its own')
     sim = PathJoinSubstitution([FindPackageShare('stickslip_sim'), 'launch', 'sim.launch.py'])
     # Each has its own clock: two times on one /clock would be none.

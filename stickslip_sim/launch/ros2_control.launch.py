@@ -28,7 +28,6 @@ def generate_launch_description() -> LaunchDescription:
         DeclareLaunchArgument('controller', default_value='velocity_controller', description='of the axis',
                               choices=['velocity_controller', 'position_controller']),
         DeclareLaunchArgument('parameters', default_value='', description="further ones of the axis, like 'seed:=3'"),
-        axis(),
         Node(package='robot_state_publisher', executable='robot_state_publisher', output='screen',
              parameters=[{'robot_description': ParameterValue(description(), value_type=str)}]),
         Node(package='controller_manager', executable='ros2_control_node', output='screen', parameters=[controllers],
@@ -36,6 +35,7 @@ def generate_launch_description() -> LaunchDescription:
         *(Node(package='controller_manager', executable='spawner', output='screen',
                arguments=[name, '--param-file', controllers])
           for name in ('joint_state_broadcaster', LaunchConfiguration('controller'))),
+        axis(),   # last: where one of the packages is missing, nothing has been started
     ])
 
 

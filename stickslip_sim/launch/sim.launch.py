@@ -42,7 +42,7 @@ def axis(context: LaunchContext) -> list[Node]:
     """Return the node for the arguments that are given."""
     given = {name: LaunchConfiguration(name).perform(context) for name in ARGUMENTS}
     words = [f'{parameter}:={given[name]}' for name, parameter in PARAMETERS.items() if given[name]]
-    words += shlex.split(given['parameters'])
+    words += further(given['parameters'])
     return [Node(
         package='stickslip_sim',
         executable='sim_node',
@@ -53,3 +53,15 @@ def axis(context: LaunchContext) -> list[Node]:
         remappings=[('/clock', given['clock'])],
         output='screen',
     )]
+
+
+def further(text: str) -> list[str]:
+    """Return the words of `parameters`; raises ValueError for what is no list of NAME:=VALUE."""
+    try:
+        words = shlex.split(text)
+    except ValueError as error:
+        raise ValueError(f'parameters: {text}: {error}; close each quote') from error
+    for word in words:
+        if ':=' not in word:
+            raise ValueError(f'parameters: {word}: give each as NAME:=VALUE, like seed:=3, without blanks around :=')
+    return words
