@@ -10,6 +10,7 @@ import os
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -17,8 +18,9 @@ from ..errors import InputError
 from .description import FORM, description
 from .parquet import write_parquet
 from .study import Study
-from .table import header, size_in_memory, size_on_disk
+from .table import header, longest_line, may_be_table, size_in_memory, size_on_disk
 
+LONGEST = 1 << 24   # bytes of a description; nearly all of it is the scene
 SIDECAR, TABLE, PARTIAL, PARQUET = 'study.json', 'points.csv', 'points.partial.csv', 'points.parquet'
 
 
@@ -54,11 +56,13 @@ class Folder:
 
     def described(self) -> dict[str, Any]:
         """Return what the folder says it is; raises InputError when it is not of a sweep."""
+        path = self.path / SIDECAR
         try:
-            told = json.loads((self.path / SIDECAR).read_text(encoding='utf-8'))
-            if told['form'] == FORM:
-                return dict(told)
-        except (OSError, ValueError, KeyError, TypeError):
+            if path.is_file() and path.stat().st_size <= LONGEST:
+                told = json.loads(path.read_text(encoding='utf-8'))
+                if told['form'] == FORM:
+                    return dict(told)
+        except (OSError, ValueError, KeyError, TypeError, RecursionError):
             pass
         raise InputError('folder', str(self.path), f'that of a sweep, with {SIDECAR} in it', 'sweep into a new one')
 
@@ -74,11 +78,11 @@ class Folder:
         """Return how many chunks of points are there; what a crash left behind of another is taken away."""
         path, titles = self.path / PARTIAL, header(study)
         with _refusing(path), path.open('r+b') as file:
-            if file.readline() != titles:
+            if not may_be_table(path, study) or file.readline(len(titles)) != titles:
                 raise InputError('points', str(path), 'the table of this study', 'it was changed; sweep into a new one')
             chunks = rows = 0
             end = place = len(titles)
-            for line in file:
+            for line in iter(partial(file.readline, longest_line(study)), b''):
                 if not line.endswith(b'\n'):
                     break
                 place, rows = place + len(line), rows + 1

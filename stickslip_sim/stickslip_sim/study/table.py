@@ -4,6 +4,7 @@
 
 import math
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,7 @@ from .figures import FIGURES, MOTIONS, Figures, Motion
 from .study import Study
 from .variation import Numbers
 
-_BYTES_OF_A_NUMBER = 24   # 17 digits, sign, point, exponent, comma
+_BYTES_OF_A_NUMBER = 25   # 17 digits, sign, point, exponent of three digits with its sign, comma
 _CODES = {word: float(motion) for motion, word in MOTIONS.items()}
 
 
@@ -32,7 +33,17 @@ def lines(study: Study, first: int, last: int) -> bytes:
 
 def size_on_disk(study: Study) -> int:
     """Return how many bytes all lines take at most."""
-    return study.count * (len(study.names) + len(FIGURES)) * _BYTES_OF_A_NUMBER
+    return study.count * longest_line(study)
+
+
+def longest_line(study: Study) -> int:
+    """Return how many bytes a line takes at most."""
+    return (len(study.names) + len(FIGURES)) * _BYTES_OF_A_NUMBER
+
+
+def may_be_table(path: Path, study: Study) -> bool:
+    """Whether a file, whoever made it, is worth reading: an ordinary one, no longer than all lines; raises OSError."""
+    return path.is_file() and path.stat().st_size <= len(header(study)) + size_on_disk(study)
 
 
 def size_in_memory(study: Study) -> int:
@@ -42,13 +53,16 @@ def size_in_memory(study: Study) -> int:
 
 def read_columns(path: Path, study: Study) -> dict[str, Numbers]:
     """Return the columns of the table of a study by name; motions as numbers of `Motion`.  Raises InputError."""
+    titles, rows = b'', np.array([])
     try:
-        with path.open(encoding='utf-8') as file:
-            titles = file.readline()
-            rows = np.array([[_number(cell) for cell in line.split(',')] for line in file])
+        if may_be_table(path, study):
+            with path.open('rb') as file:
+                titles = file.readline(len(header(study)))
+                rows = np.array([[_number(cell) for cell in line.decode().split(',')]
+                                 for line in iter(partial(file.readline, longest_line(study)), b'')])
     except (OSError, ValueError):
-        titles, rows = '', np.array([])
-    if titles.encode() != header(study) or rows.shape != (study.count, len(study.names) + len(FIGURES)):
+        titles = b''
+    if titles != header(study) or rows.shape != (study.count, len(study.names) + len(FIGURES)):
         raise InputError('points', str(path), f'the table of its study, {study.count} whole lines',
                          'it was changed or cannot be read; sweep again')
     return dict(zip((*study.names, *FIGURES), rows.T.copy()))
