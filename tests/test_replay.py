@@ -15,7 +15,7 @@ from mcap.writer import Writer
 
 from stickslip_sim.errors import RecordingWarning
 from stickslip_sim.recording import open_run, read_run, schema, write_bag
-from stickslip_sim.recording.topics import PARAMETER_EVENTS, RECORDED, SLIDER_STATE, Topic
+from stickslip_sim.recording.topics import CLOCK, PARAMETER_EVENTS, RECORDED, SLIDER_STATE, Topic
 from tests.recorded_runs import FACTS, damage, events, samples
 from tests.ros_nodes import Client, assert_clean, client, executable, running
 from tests.waiting import wait_for
@@ -230,6 +230,7 @@ class TestLife:
         (['-p', 'bag:=BAG', '-p', 'reit:=2.0'], 'did you mean rate?'),
         (['-p', 'bag:=BAG', '-p', 'mode:=commands', '-p', 'clock:=40.0'], 'clock = 40.0 is refused'),
         (['-p', 'bag:=BAG', '-p', 'axis:=/feed_axis'], "axis = '/feed_axis' is refused: must be left out"),
+        (['-p', 'bag:=BAG', '-p', 'mode:=commands', '-p', 'axis:=/a//b'], "axis = '/a//b' is refused"),
         (['-p', 'bag:=OTHER'], 'use the version of then'),
         (['-p', 'bag:=UNKNOWN'], 'no definition of nobody_msgs/msg/Nothing'),
         (['-p', 'bag:=UNKNOWN', '-p', 'mode:=commands'], 'no drive velocities and no forces in it'),
@@ -243,6 +244,19 @@ class TestLife:
         assert (code, len(errors.splitlines())) == (2, 1), errors
         assert errors.startswith('replay_node: ')
         assert told in errors
+
+    @pytest.mark.parametrize('topic', ['', '/a b', '/../x', '/\x1b[31m', '/' + 'x' * 5000])
+    def test_a_topic_by_a_name_that_ros_refuses(self, tmp_path: Path, topic: str) -> None:
+        code, errors = run('-p', f'bag:={another(tmp_path / "odd.mcap", CLOCK.type, "", topic)}')
+        assert (code, len(errors.splitlines())) == (2, 1), errors
+        assert errors.startswith('replay_node: topic = ')
+        assert '\x1b' not in errors
+
+    def test_a_node_that_is_no_axis(self, bag: Path) -> None:
+        """The replay itself, which answers on the services for parameters as any node does."""
+        code, errors = run('-p', f'bag:={bag}', '-p', 'mode:=commands', '-p', 'axis:=replay')
+        assert (code, 'Traceback' in errors) == (2, False)
+        assert "replay_node: axis = 'replay' is refused: must be a sim_node; this node has no time.mode" in errors
 
     def test_parameters_are_described(self, bag: Path) -> None:
         with client() as viewer, replaying(bag, *PAUSED) as process:
@@ -261,13 +275,13 @@ def run(*arguments: str) -> tuple[int, str]:
     return done.returncode, done.stderr
 
 
-def another(path: Path, type_name: str, type_hash: str) -> Path:
-    """Write a bag of messages that this installation does not know."""
+def another(path: Path, type_name: str, type_hash: str, topic: str = '/slider_state') -> Path:
+    """Write a bag of a message of another type, under another name."""
     with path.open('wb') as stream:
         writer = Writer(stream)
         writer.start('ros2', 'another')
         schema_id = writer.register_schema(type_name, 'ros2msg', b'')
-        channel = writer.register_channel('/slider_state', 'cdr', schema_id, {'topic_type_hash': type_hash})
+        channel = writer.register_channel(topic, 'cdr', schema_id, {'topic_type_hash': type_hash})
         writer.add_message(channel, 0, b'\0\1\0\0\0', 0)
         writer.finish()  # type: ignore[no-untyped-call]
     return path

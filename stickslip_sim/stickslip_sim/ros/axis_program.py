@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The executable `sim_node` as a program: its arguments, and its node."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from .life import Program, spin
+from .params_files import params_files
 
 if TYPE_CHECKING:
     from .parameters import FileParameters
@@ -17,16 +18,6 @@ usage: sim_node [--help] [--ros-args [--params-file SCENE.yaml] [-p NAME:=VALUE]
 Simulates a feed axis with stick-slip friction in real time (node feed_axis).  Without a file it runs the scene
 paper_fig8; -p scene:=NAME takes another shipped one, -p record.enabled:=true records a bag from the start.
 """
-
-
-def params_files(args: Sequence[str]) -> Iterator[str]:
-    """Yield the parameter files among arguments, which stand between --ros-args and --."""
-    is_of_ros = False
-    for word, following in zip(args, [*args[1:], '']):
-        if word in ('--ros-args', '--'):
-            is_of_ros = word == '--ros-args'
-        elif is_of_ros and word == '--params-file' and following:
-            yield following
 
 
 def _read(args: Sequence[str]) -> 'FileParameters':

@@ -4,7 +4,8 @@
 
 from typing import TYPE_CHECKING
 
-from .life import Program, read_nothing, spin
+from .life import Program, spin
+from .params_files import check_params_files
 
 if TYPE_CHECKING:
     from .sim_node import Signals
@@ -30,4 +31,4 @@ def controller_program(name: str, compensates: bool) -> Program:
         spin(ControllerNode(name, compensates), signals)
         return ''
 
-    return Program(name, _USAGE.format(name, _WHAT[compensates]), read_nothing, run)
+    return Program(name, _USAGE.format(name, _WHAT[compensates]), check_params_files, run)

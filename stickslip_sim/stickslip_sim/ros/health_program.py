@@ -5,7 +5,8 @@
 import sys
 from typing import TYPE_CHECKING
 
-from .life import Program, read_nothing, spin
+from .life import Program, spin
+from .params_files import check_params_files
 
 if TYPE_CHECKING:
     from .sim_node import Signals
@@ -27,4 +28,4 @@ def _run(_: None, signals: 'Signals') -> str:
     return ''
 
 
-PROGRAM = Program('health', _USAGE, read_nothing, _run)
+PROGRAM = Program('health', _USAGE, check_params_files, _run)

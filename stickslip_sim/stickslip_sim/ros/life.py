@@ -22,10 +22,6 @@ class Program(NamedTuple):
     run: Callable[[Any, 'Signals'], str]    # returns why it crashed, or an empty text
 
 
-def read_nothing(_: Sequence[str]) -> None:
-    """Look at no arguments before ROS does."""
-
-
 def live(args: Sequence[str], signals: 'Signals', program: Program) -> int:
     """Bring a node up and down; return the exit code.  ROS and numba are imported in here, where errors are met."""
     from ..errors import StickslipError

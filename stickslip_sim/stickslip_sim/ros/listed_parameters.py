@@ -7,17 +7,17 @@ from collections.abc import Mapping, Sequence
 
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.exceptions import ParameterException
-from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from ..errors import InputError
 from ..scene.parameter import Parameter as Entry
 from ..scene.sections import without_those_of_ros
+from .bounded_node import BoundedNode
 from .environment import refusing, variables
 from .parameters import declare, promoted
 
 
-class ListedNode(Node):  # type: ignore[misc]
+class ListedNode(BoundedNode):
     """A node with the parameters of a list; `values` are those in force.
 
     Raises InputError when those given at the start are wrong.

@@ -18,6 +18,7 @@ from ..scene.model import Scene
 from ..scene.parameter import Parameter as Entry
 from ..scene.schema import BY_NAME, PARAMETERS
 from ..scene.sections import describes_an_axis, without_those_of_ros
+from .bounded_node import BoundedNode
 from .clock import check_sim_time
 from .environment import refusing, variables
 
@@ -44,7 +45,7 @@ class FileParameters(NamedTuple):
         return cls(' + '.join(paths), values)
 
 
-class SceneNode(Node):  # type: ignore[misc]
+class SceneNode(BoundedNode):
     """A node whose parameters are a scene; `scene` is the one in force.
 
     Raises InputError when the parameters given at the start are no scene.

@@ -11,7 +11,6 @@ import os
 import shutil
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
-from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -20,8 +19,9 @@ from .description import FORM, description
 from .parquet import write_parquet
 from .room import check_room
 from .study import Study
-from .table import header, numbers_of
+from .table import header, may_be_table, next_lines, numbers_of
 
+LONGEST = 1 << 24   # bytes of a description; nearly all of it is the scene
 SIDECAR, TABLE, PARTIAL, PARQUET = 'study.json', 'points.csv', 'points.partial.csv', 'points.parquet'
 _KEPT = 'what is done is kept, --resume goes on'
 
@@ -76,10 +76,12 @@ class Folder:
 
     def described(self) -> dict[str, Any]:
         """Return what the folder says it is; raises InputError when it is not of a sweep."""
+        path = self.path / SIDECAR
         try:
-            told = json.loads((self.path / SIDECAR).read_text(encoding='utf-8'))
-            if told['form'] == FORM:
-                return dict(told)
+            if path.is_file() and path.stat().st_size <= LONGEST:
+                told = json.loads(path.read_text(encoding='utf-8'))
+                if told['form'] == FORM:
+                    return dict(told)
         except (OSError, ValueError, KeyError, TypeError, RecursionError):
             pass
         raise InputError('folder', str(self.path), f'that of a sweep, with {SIDECAR} in it', 'sweep into a new one')
@@ -96,11 +98,11 @@ class Folder:
         """Return how many chunks of points are there; what a crash left behind them is taken away."""
         path, titles = self.path / PARTIAL, header(study)
         with _refusing(path), path.open('r+b') as file:
-            if file.readline() != titles:
+            if not may_be_table(path, study) or file.readline(len(titles)) != titles:
                 raise InputError('points', str(path), 'the table of this study', 'it was changed; sweep into a new one')
             chunks, end = 0, len(titles)
             for first, last in study.stretches():
-                rows = list(islice(file, last - first))
+                rows = next_lines(file, study, first, last)
                 try:
                     numbers_of(rows, study, first, last)
                 except ValueError:

@@ -8,9 +8,9 @@ from pathlib import Path
 
 from ..errors import InputError
 from .study import Study
-from .table import width
+from .table import longest_line, width
 
-_ON_DISK, _IN_MEMORY = 24, 40   # bytes of a number: 17 digits, sign, point, exponent, comma; what pandas takes for it
+_IN_MEMORY = 40   # bytes that pandas takes for a number
 _MEGA = 1e6
 _OF_A_WORKER = 50_000_000   # bytes: Python, numpy and the compiled engine, each process for itself
 
@@ -18,8 +18,8 @@ _OF_A_WORKER = 50_000_000   # bytes: Python, numpy and the compiled engine, each
 def check_room(study: Study, folder: Path) -> None:
     """Raise InputError when the table of a study would not fit into memory or onto the disk of a folder."""
     disk = shutil.disk_usage(folder).free
-    for where, size, free in (('memory', _IN_MEMORY, free_memory()), ('disk', _ON_DISK, disk)):
-        of_a_point = size * width(study)
+    for where, of_a_point, free in (('memory', _IN_MEMORY * width(study), free_memory()),
+                                    ('disk', longest_line(study), disk)):
         if study.count * of_a_point > free:
             raise InputError('points', study.count, f'at most {free // of_a_point}: their table would take '
                              f'{_mega(study.count * of_a_point)} of {where}, of which {_mega(free)} are free',

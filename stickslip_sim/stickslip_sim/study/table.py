@@ -15,6 +15,7 @@ from .figures import FIGURES, MOTIONS, Figures, Motion
 from .study import Study
 from .variation import Numbers
 
+_BYTES_OF_A_NUMBER = 25   # 17 digits, sign, point, exponent of three digits with its sign, comma
 _CODES = {word: float(motion) for motion, word in MOTIONS.items()}
 
 
@@ -41,17 +42,34 @@ def numbers_of(rows: Sequence[bytes], study: Study, first: int, last: int) -> Nu
     return numbers
 
 
+def next_lines(file: BinaryIO, study: Study, first: int, last: int) -> list[bytes]:
+    """Return the next lines of a file, of which nobody knows whether it has ends of lines."""
+    return list(islice(iter(lambda: file.readline(longest_line(study)), b''), last - first))
+
+
 def width(study: Study) -> int:
     """Return how many columns the table has."""
     return len(study.names) + len(FIGURES)
 
 
+def may_be_table(path: Path, study: Study) -> bool:
+    """Whether a file, whoever made it, is worth reading: an ordinary one, no longer than all lines; raises OSError."""
+    return path.is_file() and path.stat().st_size <= len(header(study)) + study.count * longest_line(study)
+
+
+def longest_line(study: Study) -> int:
+    """Return how many bytes a line takes at most."""
+    return width(study) * _BYTES_OF_A_NUMBER
+
+
 def read_columns(path: Path, study: Study) -> dict[str, Numbers]:
     """Return the columns of the table of a study by name; motions as numbers of `Motion`.  Raises InputError."""
     try:
+        if not may_be_table(path, study):
+            raise ValueError('this is no table of so few points')
         with path.open('rb') as file:
             columns = _columns_in(file, study)
-    except (OSError, ValueError):
+    except (MemoryError, OSError, ValueError):
         raise InputError('points', str(path), f'the table of its study, {study.count} whole lines',
                          'it was changed or cannot be read; sweep again') from None
     return dict(zip((*study.names, *FIGURES), columns))
@@ -76,7 +94,7 @@ def _columns_in(file: BinaryIO, study: Study) -> Numbers:
         raise ValueError('this is the table of another study')
     columns = np.empty((width(study), study.count))
     for first, last in study.stretches():
-        columns[:, first:last] = numbers_of(list(islice(file, last - first)), study, first, last).T
+        columns[:, first:last] = numbers_of(next_lines(file, study, first, last), study, first, last).T
     if file.readline():
         raise ValueError('there are more lines than points')
     return columns

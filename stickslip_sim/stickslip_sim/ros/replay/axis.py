@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from rcl_interfaces.srv import GetParameters, SetParametersAtomically
+from rclpy.exceptions import NameValidationException
 from rclpy.node import Node
 from std_srvs.srv import Trigger
 
@@ -15,6 +16,7 @@ from stickslip_msgs.srv import InjectFault, Step
 
 from ...errors import InputError
 from ...recording.topics import TIMING
+from ..environment import refusing
 from ..topics import subscription
 from .player import StoppedError, wait_until
 
@@ -36,9 +38,11 @@ class Axis:
         self.name = name
         self.namespace = name.rpartition('/')[0] or ('/' if name.startswith('/') else node.get_namespace())
         self._stop = stop
-        self._clients = {service: node.create_client(kind, f'{name}/{service}') for service, kind in _SERVICES.items()}
         self._timing: StepTiming | None = None    # the latest
-        subscription(node, TIMING.resolved(self.namespace), self._hear)
+        with refusing('axis', name, NameValidationException):
+            self._clients = {service: node.create_client(kind, f'{name}/{service}')
+                             for service, kind in _SERVICES.items()}
+            subscription(node, TIMING.resolved(self.namespace), self._hear)
 
     def ask(self, service: str, **request: Any) -> Any:
         """Call a service and wait for the answer."""
@@ -64,8 +68,10 @@ class Axis:
         future.add_done_callback(lambda done: take(done.result()))
 
     def parameters(self, *names: str) -> list[Any]:
-        """Return the values of parameters that are texts or numbers."""
+        """Return the values of parameters that are texts or numbers; raises InputError when the node lacks one."""
         values = self.ask('get_parameters', names=list(names)).values
+        if len(values) != len(names):
+            raise InputError('axis', self.name, f'a sim_node; this node has no {" or ".join(names)}', 'give its name')
         return [value.string_value or value.double_value for value in values]
 
     def rewind(self) -> None:

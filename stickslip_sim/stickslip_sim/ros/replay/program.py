@@ -4,7 +4,8 @@
 
 from typing import TYPE_CHECKING
 
-from ..life import Program, read_nothing, spin
+from ..life import Program, spin
+from ..params_files import check_params_files
 
 if TYPE_CHECKING:
     from ..sim_node import Signals
@@ -30,4 +31,4 @@ def _run(_: None, signals: 'Signals') -> str:
     return '' if crash is None else f'in the player: {crash!r}'
 
 
-PROGRAM = Program('replay_node', _USAGE, read_nothing, _run)
+PROGRAM = Program('replay_node', _USAGE, check_params_files, _run)

@@ -5,11 +5,13 @@
 from importlib import import_module
 from typing import Any
 
+from rclpy.exceptions import NameValidationException
 from rclpy.node import Node
 
 from ...errors import InputError
 from ...recording import QosProfile, schema
 from ...recording.playback import RecordedTopic
+from ..environment import refusing
 from ..topics import qos
 
 _DEPTH = 1000
@@ -24,7 +26,8 @@ def publisher_of(node: Node, topic: RecordedTopic) -> Any:
     if topic.type_hash not in ('', installed.hash):
         raise InputError(topic.name, topic.type_hash, f'{installed.hash}, the hash of {topic.type} here',
                          'it was recorded with another definition: use the version of then')
-    return node.create_publisher(message_class(topic.type), topic.name, qos(_offered(topic.qos)))
+    with refusing('topic', topic.name, NameValidationException):
+        return node.create_publisher(message_class(topic.type), topic.name, qos(_offered(topic.qos)))
 
 
 def _offered(recorded: QosProfile) -> QosProfile:

@@ -1,0 +1,125 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Folders of sweeps that someone else made: refused in one line, and not read to their end first."""
+
+import json
+import os
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from stickslip_sim.cli.main import run
+from stickslip_sim.study.folder import LONGEST, PARTIAL, SIDECAR, TABLE
+
+SWEEP = ['sweep', 'paper_fig8', '--over', 'drive.velocity=1e-3:0.02:3', '--over', 'axis.drive_stiffness=1e5:1e6:2']
+
+
+@pytest.fixture(scope='module')
+def swept(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp('swept') / 'out'
+    assert run([*SWEEP, '--out', str(folder)]) == 0
+    return folder
+
+
+@pytest.fixture
+def folder(swept: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Path:
+    capsys.readouterr()
+    return Path(shutil.copytree(swept, tmp_path / 'other'))
+
+
+def refusal(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
+    assert run(list(arguments)) == 2
+    out, errors = capsys.readouterr()
+    assert (out, errors.count('\n')) == ('', 1)
+    return errors
+
+
+def mapped(folder: Path) -> list[str]:
+    return ['map', str(folder), '--out', str(folder.parent / 'map.png')]
+
+
+def without(name: str) -> Callable[[Any], None]:
+    return lambda told: told.pop(name)
+
+
+def with_first(name: str, value: object) -> Callable[[Any], None]:
+    return lambda told: told['over'][0].update({name: value})
+
+
+@pytest.mark.parametrize('change', [
+    *map(without, ('duration', 'over', 'sobol', 'uncertain', 'scene_text')),
+    lambda told: told.update(scene_text=5), lambda told: told.update(duration='x'), lambda told: told.update(over=5),
+    lambda told: told.update(over=[{}]), lambda told: told.update(sobol=5), lambda told: told.update(uncertain=5),
+    lambda told: told.update(sobol={'points': 10**12, 'seed': 0}),
+    with_first('name', ['a']), with_first('low', 'x'), with_first('low', 10**400), with_first('count', 'x'),
+    with_first('count', -3), with_first('log', 5),
+])
+def test_a_description_that_is_none(change: Callable[[Any], None], folder: Path,
+                                    capsys: pytest.CaptureFixture[str]) -> None:
+    told = json.loads((folder / SIDECAR).read_text())
+    change(told)
+    (folder / SIDECAR).write_text(json.dumps(told))
+    refusal(capsys, *mapped(folder))
+
+
+def nested(path: Path) -> None:
+    path.write_text('[' * 100_000)
+
+
+def endless(path: Path) -> None:
+    path.unlink()
+    path.symlink_to('/dev/zero')
+
+
+def pipe(path: Path) -> None:
+    path.unlink()
+    os.mkfifo(path)
+
+
+def sparse(path: Path) -> None:
+    os.truncate(path, 1 << 40)
+
+
+@pytest.mark.parametrize('make', [nested, endless, pipe, sparse])
+@pytest.mark.parametrize('name', [SIDECAR, TABLE])
+def test_a_file_without_end(name: str, make: Callable[[Path], None], folder: Path,
+                            capsys: pytest.CaptureFixture[str]) -> None:
+    make(folder / name)
+    assert name in refusal(capsys, *mapped(folder))
+
+
+def test_a_line_without_end(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The description says that there are so many points that a file of any size may be their table."""
+    told = json.loads((folder / SIDECAR).read_text())
+    told['over'][0]['count'] *= 10**10
+    told['points'] *= 10**10
+    (folder / SIDECAR).write_text(json.dumps(told))
+    (folder / TABLE).write_bytes((folder / TABLE).read_bytes().splitlines(keepends=True)[0])
+    sparse(folder / TABLE)
+    assert TABLE in refusal(capsys, *mapped(folder))
+
+
+@pytest.mark.parametrize('make', [endless, sparse])
+def test_nobody_goes_on_with_what_has_no_end(make: Callable[[Path], None], folder: Path,
+                                             capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / TABLE).rename(folder / PARTIAL)
+    make(folder / PARTIAL)
+    assert 'it was changed' in refusal(capsys, *SWEEP, '--out', str(folder), '--resume')
+
+
+def test_nothing_that_a_link_leads_to_is_changed(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    diary = folder.parent / 'diary'
+    diary.write_text('dear diary\n')
+    (folder / TABLE).unlink()
+    (folder / PARTIAL).symlink_to(diary)
+    assert 'it was changed' in refusal(capsys, *SWEEP, '--out', str(folder), '--resume')
+    assert diary.read_text() == 'dear diary\n'
+
+
+def test_the_longest_scene_has_room_in_a_description(folder: Path) -> None:
+    from stickslip_sim.scene.ros_yaml import SIZE_LIMIT
+
+    assert LONGEST > 4 * SIZE_LIMIT > (folder / SIDECAR).stat().st_size
