@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.ros_nodes import DEADLINE, executable
+from tests.ros_nodes import executable
+from tests.waiting import DEADLINE
 
 pytestmark = pytest.mark.ros
 

@@ -68,7 +68,7 @@ def _client(address: str) -> Any:
         return Client(address, timeout=_PATIENCE, set_as_default=False)
     except (OSError, ValueError, TypeError, MemoryError) as error:   # the last from what speaks another language
         raise InputError('--scheduler', address, 'the address of a Dask scheduler that runs, as tcp://HOST:8786',
-                         f'{error or "there is no answer"}; start one: dask scheduler') from None
+                         f'{str(error) or "there is no answer"}; start one: dask scheduler') from None
 
 
 async def _greet(address: str) -> None:

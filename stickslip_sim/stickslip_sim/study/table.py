@@ -90,12 +90,12 @@ def _word(motion: float) -> str:
 
 def _columns_in(file: BinaryIO, study: Study) -> Numbers:
     """Return the columns of the table of a study, an array each; raises ValueError where it is another one."""
-    if file.readline() != header(study):
+    if file.readline(len(header(study))) != header(study):
         raise ValueError('this is the table of another study')
     columns = np.empty((width(study), study.count))
     for first, last in study.stretches():
         columns[:, first:last] = numbers_of(next_lines(file, study, first, last), study, first, last).T
-    if file.readline():
+    if file.read(1):
         raise ValueError('there are more lines than points')
     return columns
 
