@@ -10,6 +10,7 @@ from itertools import pairwise
 import pytest
 
 from stickslip_sim.axis import Axis, CompliantContact, Friction, InitialState
+from stickslip_sim.axis.layout import BOOKED
 from stickslip_sim.courses import Course, Wave, constant, ramp, steps
 from stickslip_sim.energy import EnergyBalance
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
@@ -249,3 +250,20 @@ def test_the_balance_closes_under_sines(contact: CompliantContact, base: float) 
     energy = energy_of(simulator)
     assert energy.throughput > 1e-3
     assert energy.relative_residual <= 1e-12
+
+
+@pytest.mark.parametrize('contact', [RIGID, COMPLIANT, UNDAMPED])
+def test_a_long_hold_under_a_vibration_is_added_up_as_it_lasts(contact: CompliantContact) -> None:
+    """What the next event has left to add up is less than a block; when it was asked for changes no bit."""
+    force = Course((0.0,), (0.0,), (0.0,), waves=(Wave(100.0, 50.0, 0.1),))
+    at_once, in_parts = (accounted(paper_axis(contact), constant(0.0), force) for _ in range(2))
+    for k in range(1, 2001):
+        in_parts.advance(Instant(*divmod(0.03 * k, 1.0)))
+    at_once.advance(in_parts.time)
+    assert in_parts.energy == at_once.energy
+    assert at_once.time.seconds - at_once.checkpoint()['state'][BOOKED] < 0.3
+    for simulator in (at_once, in_parts):
+        simulator.command_drive(0.01)
+        simulator.advance(Instant(61.0, 0.0))
+    assert in_parts.energy == at_once.energy
+    assert energy_of(at_once).relative_residual <= 1e-13

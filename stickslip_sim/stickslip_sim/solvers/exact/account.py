@@ -5,21 +5,36 @@
 Each sum carries what rounding has lost of it (Neumaier, ZAMM 54, 1974).
 """
 
-from ...axis.layout import CONTACT_EXCHANGE, PARAMETER_EXCHANGE, STORED_AT_START, SUMS, SUM_COUNT, THROUGHPUT
+from ...axis.layout import (
+    BOOKED, CONTACT_EXCHANGE, PARAMETER_EXCHANGE, PARTS, STORED_AT_START, SUMS, SUM_COUNT, THROUGHPUT, WORK_COUNT,
+)
 from ...compiled import compiled
-from .works import contact_energy, stored_energy, works
+from .works import block, contact_energy, stored_energy, works
+
+
+@compiled
+def book_blocks(p, s, t):
+    """Add up what lies behind t in whole blocks: where they end does not depend on how often this is asked for."""
+    length = block(p, s)
+    while s[BOOKED] + length <= t:
+        end = s[BOOKED] + length
+        for item, work in enumerate(works(p, s, end)):
+            _add(s, PARTS + item, work, WORK_COUNT)
+        s[BOOKED] = end
 
 
 @compiled
 def book_works(p, s, t):
     """Add the works from the anchor up to t, where the anchor is about to move."""
-    item = SUMS
+    book_blocks(p, s, t)
     throughput = 0.0
-    for work in works(p, s, t):
-        _add(s, item, work)
+    for item, rest in enumerate(works(p, s, t)):
+        work = rest + _part(s, item)
+        _add(s, SUMS + item, work, SUM_COUNT)
         throughput += abs(work)
-        item += 1
-    _add(s, SUMS + THROUGHPUT, throughput)
+    _add(s, SUMS + THROUGHPUT, throughput, SUM_COUNT)
+    for item in range(BOOKED, PARTS + 2 * WORK_COUNT):
+        s[item] = 0.0
 
 
 @compiled
@@ -37,10 +52,12 @@ def book_parameters(p, s, before):
 @compiled
 def read_account(p, s, t, out):
     """Fill a row of `energy.EnergyBalance`: the sums, and what came up to t after the anchor."""
+    book_blocks(p, s, t)
     for item in range(SUM_COUNT):
         out[item] = s[SUMS + item] + s[SUMS + SUM_COUNT + item]
     throughput = out[THROUGHPUT]
-    for item, work in enumerate(works(p, s, t)):
+    for item, rest in enumerate(works(p, s, t)):
+        work = rest + _part(s, item)
         out[item] += work
         throughput += abs(work)
     out[7] = stored_energy(p, s, t)
@@ -50,13 +67,18 @@ def read_account(p, s, t, out):
 
 @compiled
 def _book(s, item, amount):
-    _add(s, item, amount)
-    _add(s, SUMS + THROUGHPUT, abs(amount))
+    _add(s, item, amount, SUM_COUNT)
+    _add(s, SUMS + THROUGHPUT, abs(amount), SUM_COUNT)
 
 
 @compiled
-def _add(s, item, amount):
+def _part(s, item):
+    return s[PARTS + item] + s[PARTS + WORK_COUNT + item]
+
+
+@compiled
+def _add(s, item, amount, count):
     before = s[item]
     after = before + amount
     s[item] = after
-    s[item + SUM_COUNT] += (before - after) + amount if abs(before) >= abs(amount) else (amount - after) + before
+    s[item + count] += (before - after) + amount if abs(before) >= abs(amount) else (amount - after) + before

@@ -7,6 +7,7 @@ Two ways, both integrals of the motion and neither of them the balance itself:
 * Gauss-Legendre panels over the closed form of the motion.  A panel is no longer than a radian and a half of the
   fastest rate, where the rule is exact to rounding; behind a motion that has died out panels grow with the time.  A
   mode whose motion is a polynomial, of a degree that four nodes integrate exactly, takes one panel.
+  Under waves whole blocks of panels are summed as time goes on: an event would have to add up an hour of a hold.
 * A wave that rings for longer is split into its polynomial and its wave, whose products have closed integrals, so that
   an undamped contact that rings for a year costs what a slip costs.
 """
@@ -14,8 +15,8 @@ Two ways, both integrals of the motion and neither of them the balance itself:
 import math
 
 from ...axis.layout import (
-    ACCELERATION, COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, DEFLECTION, DIRECTION, EXCESS, F, FAST,
-    F_RATE, GAMMA, MASS, MODE, NORMAL, NU, OMEGA2, PIECE, SLOW, SNAP, SPRING, STIFFNESS, V, VELOCITY, V_RATE, WAVES,
+    ACCELERATION, BOOKED, COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, DEFLECTION, DIRECTION, EXCESS, F,
+    FAST, F_RATE, GAMMA, MASS, MODE, NORMAL, NU, OMEGA2, PIECE, SLOW, SNAP, SPRING, STIFFNESS, V, VELOCITY, V_RATE, WAVES,
     SECOND, FRACTION,
 )
 from ...axis.motion import (
@@ -36,12 +37,13 @@ _RADIANS = 1.5          # of a panel: the error for a product of two waves is th
 _FEW_RADIANS = 0.12     # and here with four
 _GROWTH = 0.4           # of a panel per time that has passed since a damped motion began: error below 1e-15
 _RINGING = 0.3          # ν/ω from which on a wave and its polynomial are far enough apart to be split
+_BLOCK = 64             # panels that are summed as soon as they lie behind: 20 microseconds
 _MOST_PANELS = 4096.0   # of equal length; they get longer beyond, but a growing motion ends long before
 
 
 @compiled
 def works(p, s, t):
-    """Return the work (J) of drive, external force, friction, drive damper and contact damper up to t.
+    """Return the work (J) of drive, external force, friction, drive damper and contact damper from BOOKED up to t.
 
     The first two are positive when they give energy to the axis, the others when they take it.
     """
@@ -53,18 +55,32 @@ def works(p, s, t):
         rate = max(abs(s[SLOW]), abs(s[FAST]), omega)
         growth = _GROWTH if s[GAMMA] > 0.0 else 0.0
     if s[WAVES] != 0.0:
-        rate, growth = max(rate, fastest_wave(s)), 0.0
-    return _panels(p, s, t, rate, growth)
+        return _panels(p, s, s[BOOKED], t, _rate_under_waves(p, s), 0.0)
+    return _panels(p, s, 0.0, t, rate, growth)
 
 
 @compiled
-def _panels(p, s, t, rate, growth):
+def block(p, s):
+    """Return how long a block of panels is, s; infinite without waves."""
+    rate = _rate_under_waves(p, s) if s[WAVES] != 0.0 else 0.0
+    return _BLOCK * _RADIANS / rate if rate > 0.0 else math.inf
+
+
+@compiled
+def _rate_under_waves(p, s):
+    rate = 0.0
+    if s[MODE] != COASTING and not is_rigid_stick(p, s):
+        rate = max(abs(s[SLOW]), abs(s[FAST]), math.sqrt(s[OMEGA2]))
+    return max(rate, fastest_wave(s))
+
+
+@compiled
+def _panels(p, s, begin, t, rate, growth):
     first, last = (0, 8) if rate * t > _FEW_RADIANS else (8, 12)
     length = _RADIANS / rate if rate * t > _RADIANS else t
     drive, external, friction, damper, contact = 0.0, 0.0, 0.0, 0.0, 0.0
     if growth == 0.0 and s[WAVES] == 0.0:
         length = max(length, t / _MOST_PANELS)
-    begin = 0.0
     while begin < t:
         end = begin + max(length, growth * begin)
         if end > t - 0.1 * length:
