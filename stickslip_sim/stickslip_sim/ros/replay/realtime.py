@@ -36,6 +36,7 @@ class InRealTime:
         for out in self._out.values():
             if not wait_until(out.get_subscription_count, self._stop, _PATIENCE):
                 raise InputError('axis', self._axis.name, f'one that hears {out.topic_name}', 'start it first')
+        self._axis.meet()
 
     def acts(self) -> Iterator[Act]:
         """Yield the orders, each at its log time."""
