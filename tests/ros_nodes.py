@@ -150,7 +150,6 @@ class Client:
     def close(self) -> None:
         self._is_closing.set()
         self._thread.join(DEADLINE)
-        self._context.try_shutdown()
         self._executor.shutdown()
         self.node.destroy_node()
         self._context.try_shutdown()
