@@ -20,10 +20,16 @@ pytestmark = pytest.mark.ros
 
 @pytest.fixture
 def node() -> Iterator[Any]:
+    """A node with an executor."""
     from rclpy.context import Context
+    from rclpy.executors import SingleThreadedExecutor
     context = Context()
     rclpy.init(context=context)
-    yield rclpy.create_node('commands_test', context=context)
+    executor, it = SingleThreadedExecutor(context=context), rclpy.create_node('commands_test', context=context)
+    executor.add_node(it)
+    yield it
+    executor.shutdown()
+    it.destroy_node()
     context.try_shutdown()
 
 
@@ -43,19 +49,15 @@ def test_other_bytes_have_no_numbers(data: bytes) -> None:
 
 @pytest.mark.parametrize(('topic', 'field'), [(topics.DRIVE_VELOCITY, 'velocity'), (topics.EXTERNAL_FORCE, 'force')])
 def test_heard_as_sent(node: Any, topic: topics.Topic, field: str) -> None:
-    from rclpy.executors import SingleThreadedExecutor
-
     from stickslip_sim.ros.topics import command_reader, publisher, raw_subscription
     heard: list[float] = []
     read = command_reader(topic)
     raw_subscription(node, topic, lambda data: heard.append(read(data)))
     out = publisher(node, topic)
-    executor = SingleThreadedExecutor(context=node.context)
-    executor.add_node(node)
     wait_for(out.get_subscription_count, 'the subscription')
     for frame_id, value in (('', 0.002), ('abc', -1e300), ('axis_drive', math.inf), ('', 5e-324)):
         out.publish(command(topic, field, frame_id, value))
-        wait_for(lambda: executor.spin_once(timeout_sec=0.01) or heard, 'the command')
+        wait_for(lambda: node.executor.spin_once(timeout_sec=0.01) or heard, 'the command')
         assert heard.pop() == value
 
 
