@@ -38,6 +38,7 @@ from stickslip_msgs.msg import (  # noqa: E402
     SliderState,
     StepTiming,
 )
+from tests.tool import restore_interrupt  # noqa: E402
 from tests.waiting import DEADLINE, wait_for  # noqa: E402
 
 # Without `make test` every session still keeps to itself.
@@ -107,11 +108,6 @@ def assert_clean(code: int, errors: str) -> None:
     assert code == 0, errors
     assert 'Traceback' not in errors
     assert 'Exception' not in errors
-
-
-def restore_interrupt() -> None:
-    """Undo what a shell does to background jobs."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 @contextmanager

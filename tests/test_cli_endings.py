@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from stickslip_sim.cli.main import run
-from tests.tool import Capture, refused
+from tests.tool import Capture, refused, restore_interrupt
 
 
 @pytest.mark.parametrize(('arguments', 'words'), [
@@ -138,11 +138,7 @@ def started(*arguments: str | Path) -> subprocess.Popen[str]:
     """Start a run of paper_fig8; return when the tool is about to parse its arguments."""
     program = 'from stickslip_sim.cli import main; print(flush=True); main()'
     process = subprocess.Popen([sys.executable, '-c', program, 'simulate', 'paper_fig8', *map(str, arguments)],
-                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=_default_interrupt)
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=restore_interrupt)
     assert process.stdout is not None
     process.stdout.readline()
     return process
-
-
-def _default_interrupt() -> None:
-    signal.signal(signal.SIGINT, signal.default_int_handler)

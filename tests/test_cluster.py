@@ -18,6 +18,7 @@ import pytest
 
 from stickslip_sim.cli.main import run
 from stickslip_sim.study.folder import PARTIAL, TABLE
+from tests.tool import restore_interrupt
 
 distributed = pytest.importorskip('distributed', reason='needs the extra cluster')
 Capture = pytest.CaptureFixture[str]
@@ -29,7 +30,8 @@ _PATIENCE = 30.0   # s
 
 def started(*arguments: str | Path, **environment: str) -> 'subprocess.Popen[str]':
     return subprocess.Popen([sys.executable, '-m', *map(str, arguments)], stdout=subprocess.PIPE, text=True,
-                            stderr=subprocess.PIPE, start_new_session=True, env={**os.environ, **environment})
+                            stderr=subprocess.PIPE, start_new_session=True, env={**os.environ, **environment},
+                            preexec_fn=restore_interrupt)
 
 
 def wait_until(holds: Callable[[], object], what: str) -> None:

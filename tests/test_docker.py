@@ -17,7 +17,8 @@ import yaml
 from stickslip_sim.scene import load_scene
 from stickslip_sim.scene.schema import BY_NAME
 from tests.dockerfiles import TOP, instructions, stages
-from tests.ros_nodes import client, executable, restore_interrupt
+from tests.ros_nodes import client, executable
+from tests.tool import restore_interrupt
 from tests.waiting import DEADLINE
 
 from stickslip_sim.ros.controller_parameters import COMMON, COMPENSATION  # isort: skip  # after ros_nodes, which skips

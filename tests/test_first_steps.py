@@ -11,7 +11,8 @@ from pathlib import Path
 import pytest
 
 from stickslip_sim.recording import read_run
-from tests.ros_nodes import Client, client, restore_interrupt, running
+from tests.ros_nodes import Client, client, running
+from tests.tool import restore_interrupt
 from tests.waiting import wait_for
 
 pytestmark = pytest.mark.ros

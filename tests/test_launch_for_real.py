@@ -14,7 +14,8 @@ import pytest
 
 from stickslip_sim.recording import read_run
 from tests.launch_files import FILES
-from tests.ros_nodes import client, restore_interrupt
+from tests.ros_nodes import client
+from tests.tool import restore_interrupt
 from tests.waiting import DEADLINE
 
 pytest.importorskip('launch_ros')

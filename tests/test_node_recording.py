@@ -10,7 +10,8 @@ import pytest
 
 from stickslip_sim.errors import RecordingWarning
 from stickslip_sim.recording import Run, read_run
-from tests.ros_nodes import assert_clean, client, recording_into, restore_interrupt, running
+from tests.ros_nodes import assert_clean, client, recording_into, running
+from tests.tool import restore_interrupt
 from tests.waiting import wait_for
 
 pytestmark = pytest.mark.ros

@@ -24,6 +24,7 @@ from stickslip_sim.study.description import study_of
 from stickslip_sim.study.figures import FIGURES
 from stickslip_sim.study.folder import PARQUET, PARTIAL, SIDECAR, TABLE, Folder
 from stickslip_sim.study.table import header, read_columns
+from tests.tool import restore_interrupt
 
 Capture = pytest.CaptureFixture[str]
 
@@ -34,7 +35,8 @@ FULL = 'import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (600_000, 600
 
 def started(*arguments: str | Path) -> 'subprocess.Popen[str]':
     return subprocess.Popen([sys.executable, '-m', 'stickslip_sim', 'sweep', *map(str, arguments)], text=True,
-                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True)
+                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True,
+                            preexec_fn=restore_interrupt)
 
 
 def refused(capsys: Capture, *arguments: str | Path) -> str:

@@ -3,6 +3,7 @@
 """The tool `stickslip`: in this process, and in one of its own."""
 
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -12,6 +13,11 @@ import pytest
 from stickslip_sim.cli.main import run
 
 Capture = pytest.CaptureFixture[str]
+
+
+def restore_interrupt() -> None:
+    """Undo, in a new process, what a shell does to background jobs: Ctrl-C is heard again."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 def answered(capsys: Capture, *arguments: str | Path) -> tuple[int, str, str]:

@@ -11,6 +11,12 @@ from .look import MILLI, Numbers
 _SHOWN = {'m': (MILLI, 'mm'), 'm/s': (MILLI, 'mm/s'), 'N/m': (1e-6, 'N/µm')}
 
 
+def in_words(name: str) -> str:
+    """Return the name of a parameter or a figure as it is written in a text."""
+    words = name.replace('.', ' ').replace('_', ' ')
+    return words.replace('break away', 'break-away').replace('stick slip', 'stick-slip')
+
+
 class Scale(NamedTuple):
     """A parameter or a figure: its name, its SI unit, whether its axis is logarithmic."""
 
@@ -35,7 +41,7 @@ class Scale(NamedTuple):
     def label(self) -> str:
         """What stands at the axis."""
         unit = _SHOWN.get(self.unit, (1.0, self.unit))[1]
-        words = self.name.removeprefix('axis.').replace('.', ' ').replace('_', ' ')
+        words = in_words(self.name.removeprefix('axis.'))
         return f'{words} / ({unit})' if '/' in unit or ' ' in unit else f'{words} / {unit}' if unit else words
 
     @property

@@ -16,7 +16,7 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import MaxNLocator
 
 from .look import BLACK, BLUE, DOUBLE_COLUMN, GREY, JOURNAL, SKY, Numbers, letter, save
-from .scale import Scale
+from .scale import Scale, in_words
 
 _MOST_BINS = 30   # a square root of the points, where that is less
 _NARROW = 1e-6   # of its size: a figure that spreads less is drawn as one value, in a range of 1 %
@@ -104,7 +104,7 @@ def _shares(part: SubFigure, parameters: Sequence[str], shares: Sequence[Shares]
                                                   (0.5, 'with its interactions', one.total, one.total_error, 'white')):
             panel.barh(places + side * _THICK, values, _THICK, xerr=errors, facecolor=face, edgecolor=BLUE,
                        linewidth=0.7, label=label, error_kw={'elinewidth': 0.8, 'capsize': 1.5, 'ecolor': BLACK})
-        panel.set_title(fill(one.figure.replace('_', ' '), _TITLE), loc='left', fontsize=7.5)
+        panel.set_title(fill(in_words(one.figure), _TITLE), loc='left', fontsize=7.5)
         panel.set(yticks=places, yticklabels=[Scale(name, '').label for name in parameters])
         panel.grid(visible=False, axis='y')
         panel.axvline(0.0, color=BLACK, linewidth=0.6)

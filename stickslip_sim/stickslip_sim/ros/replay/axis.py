@@ -6,7 +6,7 @@ import threading
 from collections.abc import Callable
 from typing import Any
 
-from rcl_interfaces.srv import GetParameters, GetParameterTypes, SetParametersAtomically
+from rcl_interfaces.srv import GetParameters, SetParametersAtomically
 from rclpy.exceptions import NameValidationException
 from rclpy.node import Node
 from std_srvs.srv import Trigger
@@ -26,7 +26,7 @@ _SERVICES = {
     'get_parameters': GetParameters, 'set_parameters_atomically': SetParametersAtomically, 'reset': Trigger,
     'clear_faults': Trigger, 'inject_fault': InjectFault, 'step': Step,
 }
-_GREETING = 'get_parameter_types'
+_GREETING = 'get_parameters'
 
 
 class Axis:
@@ -39,6 +39,7 @@ class Axis:
         self.name = name
         self.namespace = name.rpartition('/')[0] or ('/' if name.startswith('/') else node.get_namespace())
         self._node, self._stop = node, stop
+        self._has_met = False
         self._timing: StepTiming | None = None    # the latest
         with refusing('axis', name, NameValidationException):
             self._clients = {service: node.create_client(kind, f'{name}/{service}')
@@ -48,10 +49,11 @@ class Axis:
     def meet(self) -> None:
         """Wait until the axis knows every publisher that was made so far; it would miss what comes before.
 
-        It answers the client that is made here, and hears of the endpoints of a node in the order of their making.
+        It answers a client that is made after them, and hears of the endpoints of a node in the order of their making.
         """
-        if _GREETING not in self._clients:
-            self._clients[_GREETING] = self._node.create_client(GetParameterTypes, f'{self.name}/{_GREETING}')
+        if not self._has_met:
+            self._clients[_GREETING] = self._node.create_client(_SERVICES[_GREETING], f'{self.name}/{_GREETING}')
+            self._has_met = True
         self.ask(_GREETING)
 
     def ask(self, service: str, **request: Any) -> Any:
@@ -74,7 +76,7 @@ class Axis:
         client = self._clients[service]
         if not wait_until(client.service_is_ready, self._stop, _PATIENCE):
             raise InputError('axis', self.name, f'a sim_node that runs; none answers on ~/{service}', 'start it first')
-        future = client.call_async(client.srv_type.Request(**request))
+        future = client.call_async(_SERVICES[service].Request(**request))
         future.add_done_callback(lambda done: take(done.result()))
 
     def parameters(self, *names: str) -> list[Any]:
