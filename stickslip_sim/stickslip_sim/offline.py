@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from .analysis import Summary, summary
 from .errors import InputError
+from .grid import decimal
 from .receipt import CostMeter, receipt_of
 from .rig import Rig
 from .scene import Scene
@@ -129,8 +130,8 @@ def _sample_count(duration: float, sample_period: float | Fraction | None) -> in
 
 
 def _decimal(number: float | Fraction) -> Fraction:
-    """Return the decimal number that a float was written as, so that 10 s hold 10000 periods of 0.001 s exactly."""
-    return number if isinstance(number, Fraction) else Fraction(repr(float(number)))
+    """Return a time as it was written, so that 10 s hold 10000 periods of 0.001 s exactly."""
+    return number if isinstance(number, Fraction) else decimal(float(number))
 
 
 def _instant(time: Fraction) -> Instant:
