@@ -2,12 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """A controller for the axis, to be replaced by yours: makes for 10 mm, with 10 mm/s at most."""
 
-from contextlib import suppress
+from signal import SIGINT, SIGTERM, signal
+from threading import Event
 
 import rclpy
-from rclpy.executors import ExternalShutdownException
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.signals import SignalHandlerOptions
 
 from stickslip_msgs.msg import DriveVelocity, SliderState
 
@@ -26,6 +28,12 @@ class Controller(Node):
         self._out.publish(DriveVelocity(velocity=min(max(velocity, -0.010), 0.010)))
 
 
-rclpy.init()
-with suppress(KeyboardInterrupt, ExternalShutdownException):
-    rclpy.spin(Controller())
+# Ctrl-C only sets a flag: raised in the midst of a message it would come out of rclpy as another error.
+is_over = Event()
+for number in (SIGINT, SIGTERM):
+    signal(number, lambda *_: is_over.set())
+rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+executor = SingleThreadedExecutor()
+executor.add_node(Controller())
+while not is_over.is_set():
+    executor.spin_once(timeout_sec=0.1)

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 
-from tests.ros_nodes import Client, client, recording_into, running
+from tests.ros_nodes import Client, assert_clean, client, recording_into, running
 from tests.waiting import wait_for
 
 from stickslip_msgs.srv import InjectFault  # isort: skip
@@ -32,7 +32,7 @@ def eventful_run(folder: Path) -> Iterator[Client]:
         axis.send_force(0.0)
         axis.next('timing')
         yield axis
-        assert process.end()[0] == 0
+        assert_clean(*process.end())
 
 
 def _follows(axis: Client, velocity: float) -> bool:

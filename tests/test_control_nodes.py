@@ -18,7 +18,7 @@ from benchmarks.controllers import AXIS, controllers
 from stickslip_sim.control import Moves
 from stickslip_sim.errors import InputError
 from stickslip_sim.words import EventKind
-from tests.ros_nodes import Client, client, executable, running
+from tests.ros_nodes import Client, assert_clean, client, executable, running
 from tests.waiting import DEADLINE, wait_for
 
 from rcl_interfaces.msg import Log  # isort: skip  # after tests.ros_nodes, which skips without ROS
@@ -150,7 +150,7 @@ def driven(kind: str) -> Iterator[tuple[Client, Any]]:
         with running(program=NAMES[kind]) as controller:
             axis.next('slider_state', lambda state: state.drive_velocity != 0.0)
             yield axis, controller
-        assert bench.end()[0] == 0
+        assert_clean(*bench.end())
 
 
 def sticks_while_it_creeps(kind: str) -> int:

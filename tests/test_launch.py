@@ -11,7 +11,7 @@ import pytest
 from stickslip_sim.recording import read_run
 from stickslip_sim.scene.schema import BY_NAME
 from tests.launch_files import FILES, LAUNCH, Started, launched
-from tests.ros_nodes import client, executable, running
+from tests.ros_nodes import assert_clean, client, executable, running
 
 from stickslip_sim.ros.controller_parameters import COMMON, COMPENSATION  # isort: skip  # after ros_nodes, which skips
 from stickslip_sim.ros.replay.settings import PARAMETERS  # isort: skip
@@ -107,8 +107,8 @@ class TestControlled:
             mill.connect()
             with running(*controller.words, program=controller.executable) as following:
                 mill.next('slider_state', lambda state: state.position > 0.0005)
-                assert following.end()[0] == 0
-            assert bench.end()[0] == 0
+                assert_clean(*following.end())
+            assert_clean(*bench.end())
 
 
 class TestAxes:

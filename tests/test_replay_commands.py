@@ -14,7 +14,7 @@ from stickslip_sim.recording.messages import Packer
 from stickslip_sim.recording.topics import DRIVE_VELOCITY, RIG_EVENT, SLIDER_STATE, Topic
 from tests.eventful_runs import eventful_run
 from tests.recorded_runs import FACTS, samples
-from tests.ros_nodes import NodeProcess, client, recording_into, running
+from tests.ros_nodes import NodeProcess, assert_clean, client, recording_into, running
 from tests.waiting import wait_for
 
 from rclpy.serialization import serialize_message  # isort: skip
@@ -62,7 +62,7 @@ class TestLockStep:
         arguments = ['--params-file', str(scene), *LOCKSTEP, *recording_into(again)]
         with running(*arguments) as axis, replaying(recorded, '-p', 'rate:=50') as process:
             ended(process)
-            assert axis.end()[0] == 0
+            assert_clean(*axis.end())
         assert_same(read_run(recorded), read_run(again))
         for topic in ('/drive_velocity', '/external_force', '/parameter_events'):
             steps, again_at = ([message.sequence for message in read_run(folder).messages([topic])]
@@ -79,7 +79,7 @@ class TestLockStep:
             columns = read_run(recorded).columns('slider_state')
             for name in ('position', 'velocity', 'acceleration', 'drive_force'):
                 assert getattr(viewer.latest('slider_state'), name) == columns[name][500]
-            assert axis.end()[0] == 0
+            assert_clean(*axis.end())
 
     def test_again_and_again(self, recorded: Path) -> None:
         with running(*LOCKSTEP) as axis, client() as viewer:
@@ -89,7 +89,7 @@ class TestLockStep:
                 code, errors = process.end()
                 assert (code, 'Traceback' in errors) == (0, False), errors
             assert len({state.position for state in viewer.heard['slider_state'] if state.step == 200}) == 1
-            assert axis.end()[0] == 0
+            assert_clean(*axis.end())
 
     @pytest.mark.parametrize(('arguments', 'options', 'told'), [
         (['-p', 'time.rate:=500.0'], [], 'time.rate = 500.0 is refused: must be that of the recording, whose step 1'),
@@ -110,7 +110,7 @@ class TestLockStep:
         folder = commanded(tmp_path / 'silent', {20: (RIG_EVENT, serialize_message(timeout))})
         with running(*LOCKSTEP) as axis, replaying(folder) as process:
             code, errors = process.wait()
-            assert axis.end()[0] == 0
+            assert_clean(*axis.end())
         assert code == 0
         assert 'a command time-out at 0.019 s is left to the axis' in errors
 
@@ -123,7 +123,7 @@ class TestLockStep:
                 ended(process)
             states = viewer.heard['slider_state']
             wait_for(lambda: states and states[-1].step == 49, 'the last step')
-            assert axis.end()[0] == 0
+            assert_clean(*axis.end())
 
     def test_a_recording_axis_that_is_not_at_its_begin(self, recorded: Path, tmp_path: Path) -> None:
         with running(*LOCKSTEP, *recording_into(tmp_path / 'run')) as axis, client() as viewer:
@@ -133,14 +133,14 @@ class TestLockStep:
                 code, errors = process.wait()
             assert code == 2
             assert "axis = '/feed_axis' is refused: must be at step 0, but is at 5; ~/reset is refused" in errors
-            assert axis.end()[0] == 0
+            assert_clean(*axis.end())
 
 
 def refused(folder: Path, *options: str, axis: Sequence[str] = ()) -> str:
     """Return why a recording is not replayed into an axis in lock-step."""
     with running(*LOCKSTEP, *axis) as process, replaying(folder, '-p', 'rate:=50', *options) as replay:
         code, errors = replay.wait()
-        assert process.end()[0] == 0
+        assert_clean(*process.end())
     assert (code, 'Traceback' in errors) == (2, False), errors
     line, = (line for line in errors.splitlines() if line.startswith('replay_node: '))
     return line
@@ -166,7 +166,7 @@ class TestRealTime:
         again = tmp_path / 'again'
         with running(*recording_into(again)) as axis, replaying(recorded) as process:
             ended(process)
-            assert axis.end()[0] == 0
+            assert_clean(*axis.end())
         one, other = read_run(recorded), read_run(again)
         for topic in ('/drive_velocity', '/external_force'):
             field = 'velocity' if topic == '/drive_velocity' else 'force'
@@ -187,7 +187,7 @@ class TestRealTime:
             with replaying(recorded, *part) as process:
                 ended(process)
             viewer.next('slider_state', lambda state: state.drive_velocity == -0.003)
-            assert axis.end()[0] == 0
+            assert_clean(*axis.end())
 
     def test_nobody_there(self, recorded: Path) -> None:
         with replaying(recorded) as process:

@@ -20,7 +20,7 @@ from stickslip_sim.recording import Run, read_run
 from stickslip_sim.scene import Scene, load_scene
 from tests.replays import FIELDS, assert_same_states, made_again
 from tests.rigs import run
-from tests.ros_nodes import Client, NodeProcess, client, running
+from tests.ros_nodes import Client, NodeProcess, assert_clean, client, running
 from tests.waiting import wait_for
 
 rosgraph_msgs = pytest.importorskip('rosgraph_msgs.msg')
@@ -165,7 +165,7 @@ def node_with_a_clock() -> Iterator[Client]:
         axis.node.create_subscription(rosgraph_msgs.Clock, '/clock', tick, QoSProfile(depth=100))
         wait_for(lambda: axis.trigger('reset').success and heard, 'a tick')
         yield axis
-        assert process.end()[0] == 0
+        assert_clean(*process.end())
 
 
 @pytest.fixture
@@ -213,7 +213,7 @@ class TestFreeRun:
             _, values = axis.status('step loop')
             assert values['verdict'].startswith('not in real time (time.mode free_run)')
             assert axis.latest('slider_state').header.stamp.sec < 1000
-            assert process.end()[0] == 0
+            assert_clean(*process.end())
 
 
 @pytest.mark.parametrize(('given', 'told'), [
