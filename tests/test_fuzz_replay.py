@@ -43,7 +43,8 @@ def test_orders(orders: list[tuple[Topic, bytes]], place: int, cut: int, data: b
             accepts_or_refuses(is_timeout, kind, sent)
 
 
-def test_no_order_is_refused_with_what_to_do() -> None:
+@pytest.mark.parametrize('data', [b'', b'\x00\x01\x00\x01'])   # no header; padding where there is no content
+def test_no_order_is_refused_with_what_to_do(data: bytes) -> None:
     for kind in (RIG_EVENT, PARAMETER_EVENTS):
         with pytest.raises(RecordingError, match='is damaged: play what is before with playback_duration'):
-            request_of(kind, b'')
+            request_of(kind, data)

@@ -71,11 +71,19 @@ def message_of(topic: Topic, data: bytes) -> Any:
         raise InputError(topic.name, f'{len(data)} bytes', f'at most {COMMAND_SIZE} bytes',
                          'send commands of this axis')
     try:
-        if _holds_its_padding(data):
-            return deserialize_message(data, message_type(topic))
-    except RuntimeError:    # the base of what the middleware raises
-        pass
-    raise InputError(topic.name, f'{len(data)} bytes', f'a {topic.type}', 'its sender is broken')
+        return deserialized(topic, data)
+    except ValueError:
+        raise InputError(topic.name, f'{len(data)} bytes', f'a {topic.type}', 'its sender is broken') from None
+
+
+def deserialized(topic: Topic, data: bytes) -> Any:
+    """Return the message of a topic that bytes from anyone are; raises ValueError when they are none."""
+    if not _holds_its_padding(data):
+        raise ValueError('shorter than its header says')
+    try:
+        return deserialize_message(data, message_type(topic))
+    except RuntimeError as error:    # the base of what the middleware raises
+        raise ValueError(str(error)) from None
 
 
 def _holds_its_padding(data: bytes) -> bool:

@@ -17,11 +17,11 @@ from typing import Any
 from ..errors import InputError
 from .crew import Crew, WorkerError
 from .description import versions_of_a_study
+from .folder import KEPT
 from .study import Study
 from .table import lines
 
 _PATIENCE = 5.0   # s for the scheduler to answer
-_KEPT = 'what is done is kept, --resume goes on'
 
 
 @contextmanager
@@ -42,9 +42,9 @@ def _told(address: str) -> Iterator[None]:
     try:
         yield
     except KilledWorker:
-        raise WorkerError(f'one worker of {address} after the other died; {_KEPT}') from None
+        raise WorkerError(f'one worker of {address} after the other died; {KEPT}') from None
     except (CommClosedError, CancelledError):
-        raise WorkerError(f'the scheduler {address} is gone; {_KEPT}') from None
+        raise WorkerError(f'the scheduler {address} is gone; {KEPT}') from None
 
 
 @contextmanager
@@ -66,7 +66,8 @@ def _client(address: str) -> Any:
     try:
         asyncio.run(asyncio.wait_for(_greet(address), _PATIENCE))
         return Client(address, timeout=_PATIENCE, set_as_default=False)
-    except (OSError, ValueError, TypeError, MemoryError) as error:   # the last from what speaks another language
+    except (OSError, ValueError, TypeError, MemoryError, asyncio.TimeoutError) as error:
+        # MemoryError from what speaks another language; the time-out is an OSError from Python 3.11 on only
         raise InputError('--scheduler', address, 'the address of a Dask scheduler that runs, as tcp://HOST:8786',
                          f'{str(error) or "there is no answer"}; start one: dask scheduler') from None
 
@@ -101,5 +102,5 @@ def _checked_lines(versions: Mapping[str, str], study: Study, first: int, last: 
     """Return the lines of a stretch of points; raises WorkerError where a worker that came late has other versions."""
     other = _other(versions)
     if other:
-        raise WorkerError(f'a worker lacks the versions of this study, {other}: its last bits might differ; {_KEPT}')
+        raise WorkerError(f'a worker lacks the versions of this study, {other}: its last bits might differ; {KEPT}')
     return lines(study, first, last)

@@ -12,6 +12,7 @@ from multiprocessing import get_context, parent_process
 from typing import NamedTuple, NoReturn
 
 from ..errors import StickslipError
+from .folder import KEPT
 from .study import Study
 from .table import lines
 
@@ -35,7 +36,7 @@ def processes(count: int) -> Iterator[Crew]:
     try:
         yield Crew(pool, count)
     except BrokenProcessPool:
-        raise WorkerError('a worker process was killed; what is done is kept, --resume goes on') from None
+        raise WorkerError(f'a worker process was killed; {KEPT}') from None
     finally:
         pool.shutdown(cancel_futures=True)
 

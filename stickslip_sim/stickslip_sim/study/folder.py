@@ -23,7 +23,7 @@ from .table import header, may_be_table, next_lines, numbers_of
 
 LONGEST = 1 << 24   # bytes of a description; nearly all of it is the scene
 SIDECAR, TABLE, PARTIAL, PARQUET = 'study.json', 'points.csv', 'points.partial.csv', 'points.parquet'
-_KEPT = 'what is done is kept, --resume goes on'
+KEPT = 'what is done is kept, --resume goes on'
 
 
 class Folder:
@@ -131,7 +131,7 @@ class Folder:
 
 
 @contextmanager
-def _refusing(path: Path, comfort: str = _KEPT) -> Iterator[None]:
+def _refusing(path: Path, comfort: str = KEPT) -> Iterator[None]:
     """Turn what the disk says into an InputError."""
     try:
         yield
@@ -139,5 +139,5 @@ def _refusing(path: Path, comfort: str = _KEPT) -> Iterator[None]:
         raise _refusal(path, error, comfort) from None
 
 
-def _refusal(path: Path, error: OSError, comfort: str = _KEPT) -> InputError:
+def _refusal(path: Path, error: OSError, comfort: str = KEPT) -> InputError:
     return InputError('--out', str(path), 'a place that can be written', f'{error.strerror or error}; {comfort}')

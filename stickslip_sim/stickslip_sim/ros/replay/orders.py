@@ -5,15 +5,13 @@
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
-from rclpy.serialization import deserialize_message
-
 from ...errors import InputError, RecordingError
 from ...recording import Topic
 from ...recording.playback import Recording
 from ...recording.topics import DRIVE_VELOCITY, EXTERNAL_FORCE, PARAMETER_EVENTS, RIG_EVENT, SLIDER_STATE
 from ...rig import NoteKind
 from ...scene.schema import BY_NAME
-from ..topics import message_type
+from ..topics import deserialized
 
 COMMANDS = (DRIVE_VELOCITY, EXTERNAL_FORCE)
 _CLEAR = 'clear'    # what ~/inject_fault calls the end of a fault
@@ -49,8 +47,8 @@ def state_topic(recording: Recording) -> str:
 def order_of(kind: Topic, data: bytes) -> Any:
     """Return the message that a recorded order is; raises RecordingError on bytes that are none."""
     try:
-        return deserialize_message(data, message_type(kind))
-    except RuntimeError:    # the base of what the middleware raises
+        return deserialized(kind, data)
+    except ValueError:
         raise RecordingError(f'{kind.name}: {len(data)} recorded bytes are no {kind.type}; the recording is damaged: '
                              'play what is before with playback_duration') from None
 
