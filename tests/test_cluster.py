@@ -17,12 +17,11 @@ from pathlib import Path
 import pytest
 
 from stickslip_sim.cli.main import run
+from stickslip_sim.study.description import versions_of_a_study
 from stickslip_sim.study.folder import PARTIAL, TABLE
-from tests.tool import restore_interrupt
+from tests.tool import Capture, restore_interrupt
 
 distributed = pytest.importorskip('distributed', reason='needs the extra cluster')
-Capture = pytest.CaptureFixture[str]
-
 LONG = ['sweep', 'paper_fig7', '--over', 'drive.velocity=1e-3:0.03:16000:log', '--duration', '60']   # eight chunks
 ABSENT = 'tcp://127.0.0.1:9'
 _PATIENCE = 30.0   # s
@@ -134,7 +133,7 @@ def test_a_worker_without_this_package_is_told(cluster: Cluster, tmp_path: Path,
 def test_a_worker_with_other_versions_is_told(cluster: Cluster, tmp_path: Path, capsys: Capture) -> None:
     cluster.add_worker(STICKSLIP_COMPILED='0')
     assert run([*LONG, '--scheduler', cluster.address, '--out', str(tmp_path / 'out')]) == 2
-    assert 'hot_path plain python and not compiled ahead' in capsys.readouterr().err
+    assert f'hot_path plain python and not {versions_of_a_study()["hot_path"]}' in capsys.readouterr().err
     assert not (tmp_path / 'out').exists()
 
 

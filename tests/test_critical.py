@@ -18,6 +18,7 @@ from stickslip_sim.study.theory import critical_drop, critical_feed, feed_of_the
 from stickslip_sim.study.transitions import NO, OPEN, YES, Verdicts, course
 from stickslip_sim.study.variation import Numbers
 from tests.axes import instant
+from tests.tool import Capture
 
 CONSTANT = {'friction.static.law': 'constant', 'friction.static.initial': 0.24,
             'friction.kinetic.velocities': [0.0], 'friction.kinetic.coefficients': [0.12]}
@@ -113,9 +114,6 @@ def test_the_finest_accuracy_ends() -> None:
     assert one.resolved
     assert one.low <= math.pi < one.high
     assert one.high - one.low <= 2.0 * math.ulp(math.pi)
-
-
-Capture = pytest.CaptureFixture[str]
 
 
 def test_the_tool_tells_both_values(capsys: Capture) -> None:

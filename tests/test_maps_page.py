@@ -9,8 +9,7 @@ import pytest
 
 from benchmarks.maps import CRITICAL, PAGE, PICTURES, UNCERTAIN, _shown
 from stickslip_sim.cli.main import run
-
-Capture = pytest.CaptureFixture[str]
+from tests.tool import Capture
 
 
 @pytest.fixture(scope='module')

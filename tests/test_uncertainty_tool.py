@@ -10,8 +10,7 @@ import pytest
 from stickslip_sim.cli.main import run
 from stickslip_sim.study.description import study_of
 from stickslip_sim.study.folder import PARTIAL, TABLE, Folder
-
-Capture = pytest.CaptureFixture[str]
+from tests.tool import Capture
 
 KNOWN = """parameters:
   friction.static.limit: {distribution: normal, mean: 0.24, standard_deviation: 0.02, between: [0.18, 0.3]}
