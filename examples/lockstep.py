@@ -4,9 +4,12 @@
 
 import argparse
 import math
+from typing import Any
 
 import rclpy
+from rclpy.client import Client
 from rclpy.utilities import remove_ros_args
+from std_srvs.srv import Trigger
 
 from stickslip_msgs.srv import Step
 
@@ -18,16 +21,28 @@ duration = parser.parse_args(remove_ros_args()[1:]).duration
 
 rclpy.init()
 node = rclpy.create_node('controller')
-axis = node.create_client(Step, 'feed_axis/step')
-while not axis.wait_for_service(timeout_sec=5.0):
+step = node.create_client(Step, 'feed_axis/step')
+reset = node.create_client(Trigger, 'feed_axis/reset')
+
+
+def ask(client: Client, request: Any, timeout: float) -> Any:
+    """Return the answer, or None when none comes in time."""
+    answer = client.call_async(request)
+    rclpy.spin_until_future_complete(node, answer, timeout_sec=timeout)
+    return answer.result()
+
+
+# A server that does not know its client yet loses the answer.  A second reset does no harm, but a second step would.
+while not step.wait_for_service(timeout_sec=5.0) or not (begun := ask(reset, Trigger.Request(), timeout=1.0)):
     node.get_logger().info('waiting for an axis with time.mode lockstep')
+if not begun.success:
+    raise SystemExit(begun.message)
 time = position = 0.0
 while time < duration:
     velocity = min(max(20.0 * (0.010 - position), -0.010), 0.010)    # m/s
-    answer = axis.call_async(Step.Request(steps=_STEPS, velocity=velocity, force=math.nan))    # NaN: as it is
-    rclpy.spin_until_future_complete(node, answer, timeout_sec=10.0)
-    if not answer.done() or not answer.result().success:
-        raise SystemExit(answer.result().message if answer.done() else 'the axis does not answer any more')
-    time, position = answer.result().state.time, answer.result().state.position
+    made = ask(step, Step.Request(steps=_STEPS, velocity=velocity, force=math.nan), timeout=10.0)    # NaN: as it is
+    if not made or not made.success:
+        raise SystemExit(made.message if made else 'the axis does not answer any more')
+    time, position = made.state.time, made.state.position
 node.get_logger().info(f'{time:g} s: {position * 1e3:.6f} mm')
 rclpy.try_shutdown()

@@ -100,7 +100,7 @@ class NodeProcess:
     def kill(self) -> None:
         if self._process.poll() is None:
             self._process.kill()
-            self._process.communicate()
+            print(self._process.communicate()[1])    # what it had to say, for the report of a test that failed
 
 
 def assert_clean(code: int, errors: str) -> None:
@@ -182,11 +182,26 @@ class Client:
         full = f'{node}/{name}'
         if full not in self._services:
             self._services[full] = self.node.create_client(kind, full)
-        client = self._services[full]
-        assert client.wait_for_service(DEADLINE), full
-        future = client.call_async(kind.Request(**request))
+            assert self._services[full].wait_for_service(DEADLINE), full
+            self.greet(node)
+        future = self._services[full].call_async(kind.Request(**request))
         wait_for(future.done, f'the answer of {full}')
         return future.result()
+
+    def greet(self, node: str = 'feed_axis') -> None:
+        """Wait until a node knows every endpoint that was made here so far.
+
+        An answer to a client that a server does not know yet is lost (rmw_fastrtps waits 0.1 s for it).  So a question
+        is put until it is answered, by a client that was made after them all: endpoints are heard of in this order.
+        """
+        client = self.node.create_client(GetParameters, f'{node}/get_parameters')
+        assert client.wait_for_service(DEADLINE), node
+        answered = threading.Event()
+        for _ in range(round(DEADLINE)):
+            client.call_async(GetParameters.Request()).add_done_callback(lambda _: answered.set())
+            if answered.wait(1.0):
+                break
+        assert answered.is_set(), f'{node} does not answer'
 
     def trigger(self, name: str) -> Any:
         return self.call(Trigger, name)

@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import rclpy
+from rcl_interfaces.srv import GetParameters
 from rclpy.node import Node
 from simulation_interfaces import srv
 
@@ -29,11 +30,24 @@ def ask(node: Node, name: str, fields: str = '{}') -> Any:
     kind = getattr(srv, ''.join(part.title() for part in name.split('_')))
     client = node.create_client(kind, f'feed_axis/{name}')
     assert client.wait_for_service(20.0), name
+    greet(node)
     request = kind.Request()
     fill(request, json.loads(fields))
     future = client.call_async(request)
     rclpy.spin_until_future_complete(node, future, timeout_sec=20.0)
     return fields_of(future.result())
+
+
+def greet(node: Node) -> None:
+    """Wait until the simulator knows every client made so far, as the client in ros_nodes.py does."""
+    client = node.create_client(GetParameters, 'feed_axis/get_parameters')
+    assert client.wait_for_service(20.0)
+    for _ in range(20):
+        future = client.call_async(GetParameters.Request())
+        rclpy.spin_until_future_complete(node, future, timeout_sec=1.0)
+        if future.done():
+            return
+    raise AssertionError('the simulator does not answer')
 
 
 def fill(message: Any, fields: Mapping[str, Any]) -> None:

@@ -95,6 +95,7 @@ class LockStep:
         axis.node.create_subscription(JointState, 'answers', self._answers.put, BEST_EFFORT)
         self._step = axis.node.create_client(Step, 'feed_axis/step')
         assert self._step.wait_for_service(DEADLINE)
+        axis.greet()
         wait_for(lambda: axis.node.count_publishers('answers'), 'the controller')
 
     def begin(self) -> float:

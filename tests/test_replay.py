@@ -109,7 +109,8 @@ class TestStates:
             assert {name for name, _ in ears.heard} == {'/seen'}
 
     def test_again_and_again(self, bag: Path) -> None:
-        with client() as viewer, replaying(bag, '-p', 'loop:=true', '-p', 'rate:=3', *PAUSED) as process:
+        arguments = ('-p', 'loop:=true', '-p', 'topics:=[friction_force]')   # no more than a busy machine can hear
+        with client() as viewer, replaying(bag, *arguments, *PAUSED) as process:
             ears = Ears(viewer, *TOPICS)
             assert call(viewer, 'toggle_paused').message.startswith('running')
             once = len(recorded(bag, '/friction_force'))

@@ -4,6 +4,9 @@
 
 import threading
 from collections.abc import Callable
+from contextlib import suppress
+from itertools import count
+from queue import Empty, SimpleQueue
 from typing import Any
 
 from rcl_interfaces.srv import GetParameters, SetParametersAtomically
@@ -22,11 +25,12 @@ from .player import StoppedError, wait_until
 
 _PATIENCE = 10.0     # s for the axis to be there
 _LOOK = 0.05         # s between two looks at whether to stop
+_LOOKS = 20          # before a question is put again
 _SERVICES = {
     'get_parameters': GetParameters, 'set_parameters_atomically': SetParametersAtomically, 'reset': Trigger,
     'clear_faults': Trigger, 'inject_fault': InjectFault, 'step': Step,
 }
-_GREETING = 'get_parameters'
+_QUESTION = 'get_parameters'    # changes nothing, however often it is put
 
 
 class Axis:
@@ -47,29 +51,27 @@ class Axis:
             subscription(node, TIMING.resolved(self.namespace), self._hear)
 
     def meet(self) -> None:
-        """Wait until the axis knows every publisher that was made so far; it would miss what comes before.
+        """Wait until the axis knows every publisher and client that was made so far.
 
-        It answers a client that is made after them, and hears of the endpoints of a node in the order of their making.
+        Before that it misses what is published, and its answers are lost: rmw_fastrtps gives up after 0.1 s when it
+        does not know yet who asked.  So a question is put until it is answered, by a client that was made after them
+        all, because an axis hears of the endpoints of a node in the order of their making.
         """
         if not self._has_met:
-            self._clients[_GREETING] = self._node.create_client(_SERVICES[_GREETING], f'{self.name}/{_GREETING}')
+            self._clients[_QUESTION] = self._node.create_client(_SERVICES[_QUESTION], f'{self.name}/{_QUESTION}')
             self._has_met = True
-        self.ask(_GREETING)
+        self.ask(_QUESTION)
 
     def ask(self, service: str, **request: Any) -> Any:
-        """Call a service and wait for the answer."""
-        answers: list[Any] = []
-        answered = threading.Event()
-
-        def take(response: Any) -> None:
-            answers.append(response)
-            answered.set()
-
-        self.tell(service, take, **request)
-        while not answered.wait(_LOOK):
-            if self._stop.is_set():
-                raise StoppedError
-        return answers[0]
+        """Call a service and wait for the answer; a question that stays without one is put again."""
+        answers: SimpleQueue[Any] = SimpleQueue()
+        while True:
+            self.tell(service, answers.put, **request)
+            for _ in range(_LOOKS) if service == _QUESTION else count():
+                with suppress(Empty):
+                    return answers.get(timeout=_LOOK)
+                if self._stop.is_set():
+                    raise StoppedError
 
     def tell(self, service: str, take: Callable[[Any], None], **request: Any) -> None:
         """Call a service; `take` gets the answer later, in another thread."""

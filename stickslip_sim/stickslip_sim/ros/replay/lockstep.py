@@ -40,6 +40,7 @@ class InLockStep:
 
     def prepare(self) -> None:
         """Bring the axis to its step 0, with the parameters that it had before it was played into."""
+        self._axis.meet()
         if self._before:
             self._obey(Request('set_parameters_atomically', {'parameters': list(self._before.values())}))
         self._axis.rewind()
