@@ -1,12 +1,12 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a study takes of the memory and the disk of this machine: asked before it begins."""
+"""What a study takes of memory and disk: asked before it begins."""
 
-import os
 import shutil
 from pathlib import Path
 
 from ..errors import InputError
+from .memory import free_memory
 from .study import Study
 from .table import longest_line, width
 
@@ -33,14 +33,6 @@ def check_room_for_workers(count: int) -> None:
         raise InputError('--workers', count, f'at most {free // _OF_A_WORKER}: they would take '
                          f'{_mega(count * _OF_A_WORKER)} of memory, of which {_mega(free)} are free',
                          'use all for one on each core')
-
-
-def free_memory() -> int:
-    """Return how many bytes can be had, those among them that only hold copies of files."""
-    for line in Path('/proc/meminfo').read_text(encoding='ascii').splitlines():
-        if line.startswith('MemAvailable:'):
-            return int(line.split()[1]) * 1024
-    return os.sysconf('SC_AVPHYS_PAGES') * os.sysconf('SC_PAGE_SIZE')
 
 
 def _mega(size: int) -> str:

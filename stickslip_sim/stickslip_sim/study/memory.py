@@ -1,0 +1,62 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""How much memory can be had: of the machine, and of the container or control group that this process is in."""
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+
+class _Hierarchy(NamedTuple):
+    """Where a version of Linux' control groups keeps what one may take and takes."""
+
+    root: str
+    limit: str
+    usage: str
+    cached: str    # the entry of memory.stat that counts pages that only hold copies of files
+
+
+_V1 = _Hierarchy('sys/fs/cgroup/memory', 'memory.limit_in_bytes', 'memory.usage_in_bytes', 'total_inactive_file')
+_V2 = _Hierarchy('sys/fs/cgroup', 'memory.max', 'memory.current', 'inactive_file')
+
+
+def free_memory(machine: Path = Path('/')) -> int:
+    """Return how many bytes can be had, those among them that only hold copies of files.
+
+    `machine` is the root of the file system.  A limit that cannot be read is taken for none.
+    """
+    return min([_of_the_machine(machine), *_of_the_groups(machine)])
+
+
+def _of_the_machine(machine: Path) -> int:
+    for line in (machine / 'proc/meminfo').read_text(encoding='ascii').splitlines():
+        if line.startswith('MemAvailable:'):
+            return int(line.split()[1]) * 1024
+    return os.sysconf('SC_AVPHYS_PAGES') * os.sysconf('SC_PAGE_SIZE')
+
+
+def _of_the_groups(machine: Path) -> Iterator[int]:
+    """Yield what the groups of this process leave it, from its own up to the root, which is a container's own."""
+    try:
+        lines = (machine / 'proc/self/cgroup').read_text(encoding='utf-8').splitlines()
+    except OSError:
+        return
+    for line in lines:    # as 5:memory:/docker/4f1c, or 0::/user.slice
+        _, controllers, path = line.split(':', 2)
+        if not controllers or 'memory' in controllers.split(','):
+            kind = _V1 if controllers else _V2
+            group = machine / kind.root / path.strip('/')
+            for folder in (group, *group.parents):
+                yield from _left_in(folder, kind)
+                if folder == machine / kind.root:
+                    break
+
+
+def _left_in(folder: Path, kind: _Hierarchy) -> Iterator[int]:
+    try:
+        limit, usage = int((folder / kind.limit).read_text()), int((folder / kind.usage).read_text())
+        stat = dict(line.split() for line in (folder / 'memory.stat').read_text().splitlines())
+    except (OSError, ValueError):    # no such group within this container, or its limit is the word max
+        return
+    yield max(0, limit - usage + int(stat.get(kind.cached, 0)))
