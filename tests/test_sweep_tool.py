@@ -245,9 +245,11 @@ def test_two_processes_do_not_share_a_folder(tmp_path: Path, uninterrupted: byte
 def test_more_workers_than_memory_holds_are_refused(tmp_path: Path, capsys: Capture,
                                                     monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(room, 'free_memory', lambda: 200_000_000)
-    error = refused(capsys, 'sweep', *SMALL, '--workers', '5', '--out', tmp_path / 'out')
-    assert 'at most 4: they would take 250 MB of memory, of which 200 MB are free' in error
-    assert not (tmp_path / 'out').exists()
+    monkeypatch.setattr(os, 'sched_getaffinity', lambda _: range(5))
+    for workers in ('5', 'all'):
+        error = refused(capsys, 'sweep', *SMALL, '--workers', workers, '--out', tmp_path / 'out')
+        assert 'at most 4: they would take 250 MB of memory, of which 200 MB are free' in error
+        assert not (tmp_path / 'out').exists()
 
 
 def test_parquet_has_the_same_table(tmp_path: Path) -> None:
@@ -261,6 +263,17 @@ def test_parquet_has_the_same_table(tmp_path: Path) -> None:
     for name in (*study.names, *FIGURES[1:]):
         assert np.array_equal(table[name].to_numpy(), columns[name], equal_nan=True)
     assert set(table['motion']) == {'stick-slip', 'smooth sliding'}
+
+
+def test_a_broken_pandas_keeps_no_study_from_its_end(tmp_path: Path) -> None:
+    for name in ('pandas', 'fastparquet'):
+        (tmp_path / f'{name}.py').write_text('raise ImportError("built for another numpy")\n')
+    done = subprocess.run([sys.executable, '-m', 'stickslip_sim', 'sweep', *SMALL, '--out', str(tmp_path / 'out')],
+                          env={**os.environ, 'PYTHONPATH': os.pathsep.join([str(tmp_path), *filter(None, sys.path)])},
+                          capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / 'out' / TABLE).exists()
+    assert not (tmp_path / 'out' / PARQUET).exists()
 
 
 def test_a_partial_table_with_other_columns_is_run_again(tmp_path: Path) -> None:

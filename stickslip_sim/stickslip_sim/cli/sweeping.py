@@ -73,9 +73,11 @@ def _processes(workers: str) -> int:
     from ..study.room import check_room_for_workers
 
     if workers == 'all':
-        return len(os.sched_getaffinity(0))
-    if not workers.isascii() or not workers.isdigit() or not 1 <= int(workers[:5]) <= _MOST_WORKERS:
+        count = len(os.sched_getaffinity(0))
+    elif workers.isascii() and workers.isdigit() and 1 <= int(workers[:5]) <= _MOST_WORKERS:
+        count = int(workers)
+    else:
         raise InputError('--workers', workers, f'a whole number from 1 to {_MOST_WORKERS}, or all',
                          'leave it out for 1')
-    check_room_for_workers(int(workers))
-    return int(workers)
+    check_room_for_workers(count)
+    return count

@@ -7,14 +7,15 @@ from pathlib import Path
 
 
 def write_parquet(table: Path, path: Path) -> None:
-    """Write a table of CSV as Parquet, to the last bit; do nothing without pandas and fastparquet or pyarrow."""
+    """Write a table of CSV as Parquet, to the last bit; do nothing where pandas or its writer is missing or broken."""
     if not (find_spec('pandas') and (find_spec('fastparquet') or find_spec('pyarrow'))):
         return
-    import pandas
-
     temporary = path.with_name(f'.{path.name}')
     try:
+        import pandas
         pandas.read_csv(table, float_precision='round_trip').to_parquet(temporary, index=False)
         temporary.replace(path)
+    except ImportError:   # there, but not in working order: no reason to leave the table of a study unfinished
+        pass
     finally:
         temporary.unlink(missing_ok=True)

@@ -32,7 +32,7 @@ def check_room_for_workers(count: int) -> None:
     if count * _OF_A_WORKER > free:
         raise InputError('--workers', count, f'at most {free // _OF_A_WORKER}: they would take '
                          f'{_mega(count * _OF_A_WORKER)} of memory, of which {_mega(free)} are free',
-                         'use all for one on each core')
+                         'take fewer, or leave it out for 1')
 
 
 def _mega(size: int) -> str:
