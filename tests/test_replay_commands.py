@@ -27,6 +27,18 @@ pytestmark = pytest.mark.ros
 SAME = ('/slider_state', '/friction_force', '/mode_event')
 LOCKSTEP = ('-p', 'time.mode:=lockstep')
 
+# DDS misses who is silent for so long; 20 s by default
+SHORT_LEASE = '''
+<profiles xmlns="http://www.eprosima.com">
+  <participant profile_name="short" is_default_profile="true">
+    <rtps><builtin><discovery_config>
+      <leaseDuration><sec>2</sec></leaseDuration>
+      <leaseAnnouncement><nanosec>500000000</nanosec></leaseAnnouncement>
+    </discovery_config></builtin></rtps>
+  </participant>
+</profiles>
+'''
+
 
 @pytest.fixture(scope='module')
 def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
@@ -90,6 +102,18 @@ class TestLockStep:
                 assert (code, 'Traceback' in errors) == (0, False), errors
             assert len({state.position for state in viewer.heard['slider_state'] if state.step == 200}) == 1
             assert_clean(*axis.end())
+
+    def test_an_axis_that_is_killed_ends_it(self, recorded: Path, tmp_path: Path,
+                                            monkeypatch: pytest.MonkeyPatch) -> None:
+        short = tmp_path / 'short_lease.xml'
+        short.write_text(SHORT_LEASE)
+        monkeypatch.setenv('FASTRTPS_DEFAULT_PROFILES_FILE', str(short))
+        with running(*LOCKSTEP) as axis, client() as viewer, replaying(recorded, '-p', 'loop:=true') as process:
+            viewer.next('slider_state', lambda state: state.step > 20)
+            axis.kill()
+            code, errors = process.wait()
+        assert code == 2
+        assert "axis = '/feed_axis' is refused: must be a sim_node that runs; " in errors
 
     @pytest.mark.parametrize(('arguments', 'options', 'told'), [
         (['-p', 'time.rate:=500.0'], [], 'time.rate = 500.0 is refused: must be that of the recording, whose step 1'),

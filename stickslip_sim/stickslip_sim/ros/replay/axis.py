@@ -72,6 +72,8 @@ class Axis:
                     return answers.get(timeout=_LOOK)
                 if self._stop.is_set():
                     raise StoppedError
+                if not self._clients[service].service_is_ready():
+                    raise InputError('axis', self.name, 'a sim_node that runs; it has gone', 'start it, and this again')
 
     def tell(self, service: str, take: Callable[[Any], None], **request: Any) -> None:
         """Call a service; `take` gets the answer later, in another thread."""
