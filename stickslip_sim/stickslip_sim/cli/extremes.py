@@ -4,14 +4,10 @@
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
 from .files import check_file, write_text
-
-if TYPE_CHECKING:
-    pass
 
 _FORMATS = ('.json', '.md')
 
