@@ -29,7 +29,7 @@ class Offline(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Recording:
+class Original:
     """A run, its scene, and what it began from: a checkpoint, or the start (None); `offline` is None for a node's."""
 
     run: Run
@@ -39,8 +39,8 @@ class Recording:
     notes: tuple[str, ...]   # for people
 
 
-def open_recording(path: Path | str) -> Recording:
-    """Return the recording in a run folder or an MCAP file; raises RecordingError when it cannot be run again."""
+def open_original(path: Path | str) -> Original:
+    """Return the original in a run folder or an MCAP file; raises RecordingError when it cannot be run again."""
     with warnings.catch_warnings():
         warnings.simplefilter('ignore', RecordingWarning)   # told by the notes
         run = read_run(path)
@@ -53,12 +53,12 @@ def open_recording(path: Path | str) -> Recording:
     if facts is None:
         raise RecordingError(f'{run.path}: it does not say what it was simulated with; give a run that stickslip '
                              'recorded')
-    return Recording(run, run.scene, _checkpoint(run), _offline(run, facts), tuple(map(one_line, _notes(run, facts))))
+    return Original(run, run.scene, _checkpoint(run), _offline(run, facts), tuple(map(one_line, _notes(run, facts))))
 
 
-def made_with(recording: Recording) -> str:
+def made_with(original: Original) -> str:
     """Return what of the recording's versions and machine is not as here, and what is here instead; for people."""
-    recorded, here = recording.run.metadata[METADATA], RunFacts.of(recording.scene).as_metadata()
+    recorded, here = original.run.metadata[METADATA], RunFacts.of(original.scene).as_metadata()
     others = [f'{name} {recorded[name]} (here {here[name]})' for name in _MAKERS
               if recorded.get(name, here[name]) != here[name]]
     return one_line(', '.join(others)) or 'the same versions on the same kind of machine'
