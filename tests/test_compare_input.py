@@ -155,6 +155,14 @@ def test_options_for_scenes_alone(option: list[str], fig8_bag: Path, tmp_path: P
     assert 'is for scenes' in refused(capsys, tmp_path, fig8_bag, *option)
 
 
+def test_the_name_of_a_scene_is_the_scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capture) -> None:
+    """Also where a folder of that name is."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / 'paper_fig8').mkdir()
+    assert run(['compare', 'paper_fig8', '--duration', '1', '--out', 'out']) == 0
+    assert 'no recorded run there' in refused(capsys, tmp_path / 'paper_fig8', './paper_fig8')
+
+
 def test_a_failure_leaves_nothing(tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
     """Also half-way, when the pictures are drawn and the disk is full."""
     def full(*_: object) -> str:
