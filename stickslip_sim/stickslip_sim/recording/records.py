@@ -17,6 +17,7 @@ from mcap.reader import SeekingReader
 from mcap.records import Chunk, McapRecord
 from mcap.stream_reader import CRCValidationError, StreamReader, breakup_chunk
 from mcap.summary import Summary
+from mcap.writer import MCAP0_MAGIC
 
 from ..errors import RecordingError
 
@@ -31,7 +32,7 @@ CUT_OFF = (McapError, CRCValidationError, struct.error, zstandard.ZstdError, Run
 def records(path: Path) -> Iterator[McapRecord]:
     """Yield the records that are whole, also those in chunks; a file that is cut off just ends earlier.
 
-    Raises RecordingError when it is no MCAP file or cannot be read.
+    Raises RecordingError when it is no MCAP file, cannot be read, or was finished and is damaged.
     """
     try:
         with path.open('rb') as file:
@@ -44,6 +45,9 @@ def records(path: Path) -> Iterator[McapRecord]:
             except CUT_OFF as error:
                 if begin:
                     raise RecordingError(f'{path} is not an MCAP file: {error}') from None
+                if _is_finished(file):
+                    raise RecordingError(f'{path}: damaged: it was finished, but is no longer what was written; fetch '
+                                         'the file again') from None
     except OSError as error:
         raise RecordingError(f'{path}: {error.strerror}') from None
 
@@ -76,6 +80,12 @@ class _Careful:
 
     def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
         return self._file.seek(offset, whence)
+
+
+def _is_finished(file: BinaryIO) -> bool:
+    """Return whether a file has its last bytes, which are written when all others are."""
+    file.seek(-len(MCAP0_MAGIC), os.SEEK_END)
+    return file.read() == MCAP0_MAGIC
 
 
 def _unpacked(path: Path, record: McapRecord) -> Iterable[McapRecord]:

@@ -18,7 +18,6 @@ from ..recording.run import CHECKPOINT_FILE, SCENE_FILE, RunFacts
 from ..scene import Scene
 
 _MAKERS = 'version', 'python', 'platform', 'numpy', 'numba'
-_MAGIC = b'\x89MCAP0\r\n'   # with which a finished file ends
 
 
 class Offline(NamedTuple):
@@ -44,9 +43,6 @@ def open_original(path: Path | str) -> Original:
     with warnings.catch_warnings():
         warnings.simplefilter('ignore', RecordingWarning)   # told by the notes
         run = read_run(path)
-    if not run.is_complete and _is_finished(run.path):
-        raise RecordingError(f'{run.path}: damaged: it was finished, but only {sum(run.counts.values())} of its '
-                             'messages can be read and trusted; fetch the file again')
     if not run.is_complete and not run.topics:
         raise RecordingError(f'{run.path}: cut off before its first message was written')
     facts = run.metadata.get(METADATA)
@@ -62,12 +58,6 @@ def made_with(original: Original) -> str:
     others = [f'{name} {recorded[name]} (here {here[name]})' for name in _MAKERS
               if recorded.get(name, here[name]) != here[name]]
     return one_line(', '.join(others)) or 'the same versions on the same kind of machine'
-
-
-def _is_finished(path: Path) -> bool:
-    with path.open('rb') as file:
-        file.seek(max(0, path.stat().st_size - len(_MAGIC)))
-        return file.read() == _MAGIC
 
 
 def _checkpoint(run: Run) -> Mapping[str, Any] | None:
