@@ -2,13 +2,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """A bit turned in a bag that was finished: refused in one line by all that read it, whoever that is."""
 
+import struct
+import warnings
+from collections.abc import Callable
 from pathlib import Path
+from random import Random
 
 import pytest
 from mcap.writer import CompressionType
 
 from stickslip_sim.errors import RecordingError, RecordingWarning
-from stickslip_sim.recording import read_run
+from stickslip_sim.recording import RecordedMessage, read_run
+from stickslip_sim.recording.playback import Recording
 from tests.check_files import LIMITS, limits_file
 from tests.rewritten_bags import rewritten
 from tests.tool import Capture, refused
@@ -70,3 +75,46 @@ def test_a_damaged_file_without_an_end_is_read_up_to_the_damage(damaged: Path) -
     steps = run.columns('slider_state')['step'].tolist()
     assert steps == list(range(len(steps)))
     assert 0.2 * 3001 < len(steps) < 0.4 * 3001
+
+
+def read(path: Path) -> list[RecordedMessage]:
+    return sorted(read_run(path).messages())
+
+
+def played(path: Path) -> list[RecordedMessage]:
+    recording = Recording(path)
+    return sorted(recording.messages(recording.topics, recording.begin, recording.end))
+
+
+@pytest.mark.parametrize('how', [read, played])
+def test_no_bit_of_the_index_changes_what_is_read(how: Callable[[Path], list[RecordedMessage]], fig8_bag: Path,
+                                                  tmp_path: Path) -> None:
+    """It is refused, or the index is not used."""
+    data, path, luck = data_of(fig8_bag), tmp_path / 'run.mcap', Random(5)
+    path.write_bytes(data)
+    whole = how(path)
+    (begin,) = struct.unpack_from('<Q', data, len(data) - 28)    # the footer tells
+    outcomes = []
+    for _ in range(40):
+        path.write_bytes(flipped(data, luck.randrange(begin, len(data)), luck.randrange(8)))
+        outcomes.append(outcome(how, path))
+        assert outcomes[-1] in (whole, f'{path}: {TOLD}')
+    assert whole in outcomes
+
+
+@pytest.mark.parametrize('how', [read, played])
+def test_the_index_does_not_rename_a_topic(how: Callable[[Path], list[RecordedMessage]], fig8_bag: Path, tmp_path: Path
+                                           ) -> None:
+    data, path = data_of(fig8_bag), tmp_path / 'run.mcap'
+    path.write_bytes(flipped(data, data.rindex(b'/slider_state') + 1))
+    assert how(path) == how(fig8_bag)
+
+
+def outcome(how: Callable[[Path], list[RecordedMessage]], path: Path) -> list[RecordedMessage] | str:
+    """Return the messages, or why they are refused; anything else, a warning too, is an error."""
+    with warnings.catch_warnings():
+        warnings.simplefilter('error')
+        try:
+            return how(path)
+        except RecordingError as error:
+            return str(error)

@@ -9,6 +9,7 @@ from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
 from typing import BinaryIO
+from zlib import crc32
 
 import lz4.frame
 import zstandard
@@ -23,6 +24,9 @@ from ..errors import RecordingError
 
 SIZE_LIMIT = 32 << 20   # bytes of a record, and of what a chunk unpacks to; rosbag2 makes chunks of 1 to 4 MiB
 COMPRESSIONS = ('', 'zstd', 'lz4')
+_FOOTER = struct.Struct('<QQI')   # where the summary begins, and its part of offsets; checksum of all that but itself
+_CHECKSUM_SIZE = 4
+_BLOCK = 1 << 20
 
 # What a file that ends or is damaged anywhere makes the libraries stumble over (RuntimeError: lz4).
 CUT_OFF = (McapError, CRCValidationError, struct.error, zstandard.ZstdError, RuntimeError, UnicodeDecodeError,
@@ -53,9 +57,10 @@ def records(path: Path) -> Iterator[McapRecord]:
 
 
 def summary_of(file: BinaryIO) -> Summary | None:
-    """Return what stands at the end of a file; None when there is nothing, as in one that was cut off."""
+    """Return what stands at the end of a file; None when nothing to be trusted does, as in one that was cut off."""
     try:
-        return SeekingReader(_Careful(file)).get_summary()  # type: ignore[arg-type]
+        summary = SeekingReader(_Careful(file)).get_summary()  # type: ignore[arg-type]
+        return summary if summary and _matches_checksum(file) else None
     except (*CUT_OFF, OSError, StopIteration):    # OSError: the file is shorter than such an end
         return None
 
@@ -86,6 +91,17 @@ def _is_finished(file: BinaryIO) -> bool:
     """Return whether a file has its last bytes, which are written when all others are."""
     file.seek(-len(MCAP0_MAGIC), os.SEEK_END)
     return file.read() == MCAP0_MAGIC
+
+
+def _matches_checksum(file: BinaryIO) -> bool:
+    """Return whether the end of a file, from its summary on, is what was written; true without a checksum."""
+    file.seek(-len(MCAP0_MAGIC) - _FOOTER.size, os.SEEK_END)
+    begin, _, told = _FOOTER.unpack(file.read(_FOOTER.size))
+    end = file.tell() - _CHECKSUM_SIZE
+    checksum = 0
+    for at in range(file.seek(begin), end, _BLOCK):
+        checksum = crc32(file.read(min(_BLOCK, end - at)), checksum)
+    return told in (0, checksum)
 
 
 def _unpacked(path: Path, record: McapRecord) -> Iterable[McapRecord]:
