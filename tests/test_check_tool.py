@@ -15,7 +15,7 @@ from stickslip_sim.cli.main import run
 from stickslip_sim.offline import run_offline
 from stickslip_sim.recording import OfflineBag, RunFacts, read_run
 from stickslip_sim.scene import load_scene
-from tests.check_files import DURATION, LIMITS, checked, cut, limits_file, node_bag
+from tests.check_files import DURATION, LIMITS, checked, cut, limits_file, node_bag, refused
 from tests.tool import Capture
 
 ROOT = Path(__file__).parents[1]
@@ -56,6 +56,15 @@ class TestOutcome:
                                limits_file(tmp_path, LIMITS))
         assert (code, out.splitlines()[-1]) == (3, 'FAILED: 1 of 3: longest_stick')
         assert '0 transitions' in out
+
+    def test_the_name_of_a_scene_is_the_scene(self, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+                                              ) -> None:
+        """Also where a folder of that name is."""
+        monkeypatch.chdir(tmp_path)
+        (tmp_path / 'paper_fig7').mkdir()
+        limits = limits_file(tmp_path, LIMITS)
+        assert checked(capsys, 'paper_fig7', '--duration', DURATION, '--limits', limits)[0] == 0
+        assert 'no recorded run there' in refused(capsys, './paper_fig7', '--limits', limits)
 
     def test_junit(self, tmp_path: Path, capsys: Capture) -> None:
         path = tmp_path / 'c.xml'

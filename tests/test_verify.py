@@ -11,7 +11,7 @@ import pytest
 from stickslip_sim.cli.main import run
 from stickslip_sim.recording import flat_layout, read_run
 from stickslip_sim.recording.topics import FRICTION_FORCE, SLIDER_STATE, Topic
-from stickslip_sim.rerun.recording import open_recording
+from stickslip_sim.rerun.original import open_original
 from stickslip_sim.rerun.verdict import verify
 from tests.rewritten_bags import rewritten
 from tests.tool import Capture
@@ -44,7 +44,7 @@ class TestIdentical:
         ('paper_fig8', 1.00005, ['solver.name=adaptive', 'time.rate=100.0']),
     ])
     def test_whatever_moves_the_axis(self, scene: str, duration: float, changes: list[str], tmp_path: Path) -> None:
-        recording = open_recording(simulated(tmp_path / 'run', scene, duration, *changes))
+        recording = open_original(simulated(tmp_path / 'run', scene, duration, *changes))
         verdict = verify(recording)
         assert (verdict.difference, verdict.missing, recording.notes) == (None, 0, ())
         assert verdict.steps == recording.run.counts['/slider_state'] > 50
@@ -52,7 +52,7 @@ class TestIdentical:
 
     def test_an_mcap_file_in_another_namespace(self, bag: Path, tmp_path: Path) -> None:
         rewritten(bag, tmp_path / 'cell', lambda name: f'/cell{name}' if name != '/parameter_events' else name)
-        assert verify(open_recording(tmp_path / 'cell' / 'run_0.mcap')).steps == STEPS
+        assert verify(open_original(tmp_path / 'cell' / 'run_0.mcap')).steps == STEPS
 
 
 class TestDifferent:
@@ -68,7 +68,7 @@ class TestDifferent:
             changed[place] = nudged(numbers[place])
             data = original[:12] + layout.pack(0, *changed)[12:]
             folder = rewritten(bag, tmp_path / field, message=replacing(name, 1500, data))
-            difference = verify(open_recording(folder)).difference
+            difference = verify(open_original(folder)).difference
             assert difference is not None
             assert (difference.step, difference.topic, difference.field) == (1500, name, field)
             assert (difference.recorded, difference.made) == (changed[place], numbers[place])
@@ -84,7 +84,7 @@ class TestDifferent:
         later = original[:8] + struct.pack('<I', 1) + original[12:]
         for data, field in ((zero, 'position'), (later, 'header.stamp')):
             folder = rewritten(bag, tmp_path / field, message=replacing('/slider_state', 0, data))
-            difference = verify(open_recording(folder)).difference
+            difference = verify(open_original(folder)).difference
             assert difference is not None
             assert difference.field == field
 
@@ -93,7 +93,7 @@ class TestDifferent:
         step = list(times)[3]
         less = rewritten(bag, tmp_path / 'less', message=lambda topic, number, data: (
             None if (topic, number) == ('/mode_event', step) else data))
-        difference = verify(open_recording(less)).difference
+        difference = verify(open_original(less)).difference
         assert difference is not None
         assert (difference.step, difference.recorded) == (step, None)
         assert difference.time == difference.made == pytest.approx(times[step] * 1e-9, abs=1e-9)
@@ -101,7 +101,7 @@ class TestDifferent:
         other = simulated(tmp_path / 'other', 'paper_fig8', 3.0, 'axis.normal_force=3000.0')
         scene = (read_run(other).attachments['scene.yaml'])
         mixed = rewritten(more, tmp_path / 'mixed', contents=lambda name, data: scene if name == 'scene.yaml' else data)
-        assert verify(open_recording(mixed)).difference is not None
+        assert verify(open_original(mixed)).difference is not None
 
     def test_what_it_says(self, bag: Path, tmp_path: Path, capsys: Capture) -> None:
         layout = flat_layout(SLIDER_STATE.type)

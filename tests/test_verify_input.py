@@ -12,7 +12,7 @@ from stickslip_sim.cli.main import run
 from stickslip_sim.errors import StickslipError
 from stickslip_sim.offline import run_offline
 from stickslip_sim.receipt import plain
-from stickslip_sim.rerun.recording import open_recording
+from stickslip_sim.rerun.original import open_original
 from stickslip_sim.scene import load_scene
 from stickslip_sim.words import EventKind
 from tests.rewritten_bags import rewritten
@@ -65,7 +65,7 @@ class TestCutAndDamaged:
             damaged = bytearray(data)
             damaged[luck.randrange(8, int(0.9 * end))] ^= 1 << luck.randrange(8)
             with pytest.raises(StickslipError, match='damaged: it was finished'):
-                open_recording(written(tmp_path / str(trial), bytes(damaged)))
+                open_original(written(tmp_path / str(trial), bytes(damaged)))
 
     def test_lost_messages(self, bag: Path, tmp_path: Path, capsys: Capture) -> None:
         lost = {700, 701, 1500}

@@ -10,7 +10,7 @@ import pytest
 
 from stickslip_sim.cli.main import run as tool
 from stickslip_sim.recording import read_run
-from stickslip_sim.rerun.recording import open_recording
+from stickslip_sim.rerun.original import open_original
 from stickslip_sim.rerun.verdict import Verdict, verify
 from stickslip_sim.rig import NoteKind
 from tests.rewritten_bags import rewritten
@@ -82,14 +82,14 @@ def test_from_the_start_then_in_mid_run_then_killed(tmp_path: Path, capsys: pyte
         axis.next('slider_state', lambda state: state.step > written + 1500)
         process.send(signal.SIGKILL)
         process.wait()
-    first = verify(open_recording(whole))
+    first = verify(open_original(whole))
     assert is_identical(first), first
     assert {NoteKind.COMMAND_TIMEOUT, NoteKind.FAULT_CLEARED, NoteKind.COMMAND_LOST} <= kinds(whole)
-    recording = open_recording(middle)
+    recording = open_original(middle)
     assert recording.checkpoint is not None
     assert recording.checkpoint['step'] >= first.steps - 1
     assert is_identical(verify(recording)), verify(recording)
-    killed = open_recording(last)
+    killed = open_original(last)
     assert killed.notes == ('the recording has no end: cut off, or still being written',)
     assert is_identical(verify(killed)), verify(killed)
     every_order_counts(whole, tmp_path)
@@ -102,7 +102,7 @@ def every_order_counts(bag: Path, tmp_path: Path) -> None:
     for topic in ('/cell/drive_velocity', '/cell/external_force', '/cell/rig_event', '/parameter_events'):
         last = [message.sequence for message in run.messages([topic]) if '/rig_event' not in topic
                 or run.decode(message).kind == NoteKind.COMMAND_TIMEOUT][-1]
-        difference = verify(open_recording(without(bag, topic, last, tmp_path))).difference
+        difference = verify(open_original(without(bag, topic, last, tmp_path))).difference
         assert difference is not None, topic
         assert difference.step >= last
 
@@ -150,7 +150,7 @@ def test_in_lock_step_with_what_happened_in_the_same_gap(tmp_path: Path) -> None
         for k in range(40):
             assert axis.call(Step, 'step', steps=13, velocity=0.001 * k, force=7.0 * k).success
         assert axis.switch('record', False).success
-    assert is_identical(verify(open_recording(folder))), verify(open_recording(folder))
+    assert is_identical(verify(open_original(folder))), verify(open_original(folder))
 
 
 def test_a_new_run_with_other_parameters(tmp_path: Path) -> None:
@@ -166,7 +166,7 @@ def test_a_new_run_with_other_parameters(tmp_path: Path) -> None:
         assert axis.switch('set_paused', False).success
         axis.next('slider_state', lambda state: state.time > 3.0)
         assert axis.switch('record', False).success
-    recording = open_recording(folder)
+    recording = open_original(folder)
     assert recording.checkpoint is not None
     assert recording.checkpoint['step'] == 0
     assert is_identical(verify(recording)), verify(recording)

@@ -15,7 +15,7 @@ from stickslip_sim.errors import LINE_LIMIT, RecordingWarning, StickslipError
 from stickslip_sim.paper.recorded import history_of_run
 from stickslip_sim.recording import Run, read_run
 from stickslip_sim.recording.playback import Recording
-from stickslip_sim.rerun.recording import open_recording
+from stickslip_sim.rerun.original import open_original
 from stickslip_sim.rerun.verdict import verify
 from stickslip_sim.scene import load_scene, parse_override, parse_scene
 from stickslip_sim.scene.ros_yaml import read_yaml
@@ -95,7 +95,7 @@ def bag(path: Path) -> None:
                 accepts_or_refuses(lambda run, topic: list(csv_lines(run.columns(topic))), run, topic)
         for read in (recorded, history_of_run):
             accepts_or_refuses(read, str(path))
-        accepts_or_refuses(lambda: verify(open_recording(path)))
+        accepts_or_refuses(lambda: verify(open_original(path)))
         accepts_or_refuses(_play, path)
 
 

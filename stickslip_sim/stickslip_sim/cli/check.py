@@ -3,12 +3,12 @@
 """`stickslip check`: a recorded run or a fresh simulation against the limits in a file."""
 
 import json
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from .files import STDOUT, check_distinct, check_file, write_text
+from .sources import is_recorded
 
 if TYPE_CHECKING:
     from ..check.limits import Limits
@@ -57,10 +57,8 @@ def _check_outputs(junit: str | None, json_file: str | None) -> None:
 
 def _evidence(source: str, limits: 'Limits', duration: float | None, changes: tuple[str, ...]) -> 'Evidence':
     from ..check.sources import recorded
-    from ..scene import scene_names
 
-    path = Path(source)
-    if source not in scene_names() and (path.is_dir() or path.suffix == '.mcap'):
+    if is_recorded(source):
         if duration is not None or changes:
             raise click.UsageError('--duration and --set are for a scene; a run stays as it was recorded.')
         return recorded(source)

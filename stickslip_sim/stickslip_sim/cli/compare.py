@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from .files import check_new_folder, new_folder
+from .sources import is_recorded
 
 if TYPE_CHECKING:
     from ..paper.history import History
@@ -56,23 +57,19 @@ def _check(runs: tuple[str, ...], out: str, duration: float | None, changes: tup
     check_new_folder('--out', out)
     if len(runs) > _MOST:
         raise InputError('RUN_OR_SCENE', f'{len(runs)} runs', f'at most {_MOST} at once', 'compare fewer')
-    if all(map(_is_recorded, runs)):
+    if all(map(is_recorded, runs)):
         for option, given in (('--duration', duration), ('--set', changes or None)):
             if given is not None:
                 raise click.UsageError(f'{option} is for scenes, and all of these are recorded runs.')
-
-
-def _is_recorded(run: str) -> bool:
-    return Path(run).is_dir() or run.endswith('.mcap')
 
 
 def _history(run: str, duration: float | None, changes: tuple[str, ...]) -> 'History':
     from ..advise.duration import default_duration
     from ..paper.fresh import simulate
     from ..paper.recorded import history_of_run
-    from ..scene import load_scene, parse_override, scene_names
+    from ..scene import load_scene, parse_override
 
-    if _is_recorded(run) and run not in scene_names():
+    if is_recorded(run):
         return history_of_run(run)
     scene = load_scene(run, dict(parse_override(change) for change in changes))
     return simulate(scene, default_duration(scene) if duration is None else duration)

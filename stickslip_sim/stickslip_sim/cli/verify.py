@@ -11,7 +11,7 @@ import click
 from .files import check_new_folder, new_folder
 
 if TYPE_CHECKING:
-    from ..rerun.recording import Recording
+    from ..rerun.original import Original
     from ..rerun.verdict import Verdict
     from ..rerun.what_if import Side
     from ..scene import Scene
@@ -29,22 +29,22 @@ def verify(run: str, changes: tuple[str, ...], out: str | None) -> None:
     """
     _check(changes, out)
     from ..errors import VerdictError
-    from ..rerun.recording import open_recording
+    from ..rerun.original import open_original
     from ..rerun.verdict import verify as judge
     from ..rerun.what_if import other_scene
     from ..scene import parse_override
     from .progress import progress_bar
 
-    recording = open_recording(run)
+    original = open_original(run)
     given = dict(parse_override(change) for change in changes)
-    scene = other_scene(recording, given)
-    for note in recording.notes:
+    scene = other_scene(original, given)
+    for note in original.notes:
         print(f'note: {note}')
     with progress_bar('verifying') as progress:
-        verdict = judge(recording, progress)
-    _tell(recording, verdict)
+        verdict = judge(original, progress)
+    _tell(original, verdict)
     if given:
-        _what_if(recording, scene, given, out)
+        _what_if(original, scene, given, out)
     if verdict.difference:
         raise VerdictError(f'{run} differs from its re-simulation at {verdict.difference}')
 
@@ -58,16 +58,16 @@ def _check(changes: tuple[str, ...], out: str | None) -> None:
     check_new_folder('--out', out)
 
 
-def _tell(recording: 'Recording', verdict: 'Verdict') -> None:
-    from ..rerun.recording import made_with
+def _tell(original: 'Original', verdict: 'Verdict') -> None:
+    from ..rerun.original import made_with
 
     if verdict.missing:
         print(f'note: {verdict.missing} steps have no recorded state')
     if verdict.difference:
         print(f'differs after {_amount(verdict)} that are identical')
-        print(f'      recorded with {made_with(recording)}')
+        print(f'      recorded with {made_with(original)}')
         return
-    extent = 'identical' if recording.run.is_complete else 'identical as far as it goes'
+    extent = 'identical' if original.run.is_complete else 'identical as far as it goes'
     print(f'{extent}, {_amount(verdict)}, up to t = {verdict.end:.9g} s', flush=True)
 
 
@@ -75,14 +75,14 @@ def _amount(verdict: 'Verdict') -> str:
     return f'{verdict.steps} steps, {verdict.events} events'
 
 
-def _what_if(recording: 'Recording', scene: 'Scene', changes: dict[str, object], out: str | None) -> None:
+def _what_if(original: 'Original', scene: 'Scene', changes: dict[str, object], out: str | None) -> None:
     from ..rerun.what_if import other_side, recorded_side
     from .format import beside_lines
     from .progress import progress_bar
 
-    recorded = recorded_side(recording)
+    recorded = recorded_side(original)
     with progress_bar('what if') as progress:
-        other = other_side(recording, scene, changes, progress)
+        other = other_side(original, scene, changes, progress)
     print('\n'.join(beside_lines(recorded.figures, other.figures)), flush=True)
     if out is not None:
         with new_folder('--out', out) as folder:

@@ -15,7 +15,7 @@ MOST_TOLD = 64 << 20   # bytes of all that a file holds beside messages
 
 
 def read_run(path: Path | str) -> Run:
-    """Return the run in a folder, or in an MCAP file by itself; raises RecordingError when there is none.
+    """Return the run in a folder, or in an MCAP file by itself; raises RecordingError when there is none, or damaged.
 
     A run without an end (its process was killed, its disk was full, or it is still being written) is read as far as it
     goes, with a RecordingWarning.

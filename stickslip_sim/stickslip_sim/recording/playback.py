@@ -119,6 +119,8 @@ class Recording:
         return span
 
     def _add(self, channel: Channel, schema: Schema | None) -> None:
+        if channel.id in self._names:    # the index repeats them
+            return
         self._names[channel.id] = channel.topic
         if channel.topic not in self.topics:
             self.topics[channel.topic] = RecordedTopic(

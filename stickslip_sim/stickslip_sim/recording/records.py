@@ -9,6 +9,7 @@ from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
 from typing import BinaryIO
+from zlib import crc32
 
 import lz4.frame
 import zstandard
@@ -17,11 +18,15 @@ from mcap.reader import SeekingReader
 from mcap.records import Chunk, McapRecord
 from mcap.stream_reader import CRCValidationError, StreamReader, breakup_chunk
 from mcap.summary import Summary
+from mcap.writer import MCAP0_MAGIC
 
 from ..errors import RecordingError
 
 SIZE_LIMIT = 32 << 20   # bytes of a record, and of what a chunk unpacks to; rosbag2 makes chunks of 1 to 4 MiB
 COMPRESSIONS = ('', 'zstd', 'lz4')
+_FOOTER = struct.Struct('<QQI')   # where the summary begins, and its part of offsets; checksum of all that but itself
+_CHECKSUM_SIZE = 4
+_BLOCK = 1 << 20
 
 # What a file that ends or is damaged anywhere makes the libraries stumble over (RuntimeError: lz4).
 CUT_OFF = (McapError, CRCValidationError, struct.error, zstandard.ZstdError, RuntimeError, UnicodeDecodeError,
@@ -31,7 +36,7 @@ CUT_OFF = (McapError, CRCValidationError, struct.error, zstandard.ZstdError, Run
 def records(path: Path) -> Iterator[McapRecord]:
     """Yield the records that are whole, also those in chunks; a file that is cut off just ends earlier.
 
-    Raises RecordingError when it is no MCAP file or cannot be read.
+    Raises RecordingError when it is no MCAP file, cannot be read, or was finished and is damaged.
     """
     try:
         with path.open('rb') as file:
@@ -44,14 +49,18 @@ def records(path: Path) -> Iterator[McapRecord]:
             except CUT_OFF as error:
                 if begin:
                     raise RecordingError(f'{path} is not an MCAP file: {error}') from None
+                if _is_finished(file):
+                    raise RecordingError(f'{path}: damaged: it was finished, but is no longer what was written; fetch '
+                                         'the file again') from None
     except OSError as error:
         raise RecordingError(f'{path}: {error.strerror}') from None
 
 
 def summary_of(file: BinaryIO) -> Summary | None:
-    """Return what stands at the end of a file; None when there is nothing, as in one that was cut off."""
+    """Return what stands at the end of a file; None when nothing to be trusted does, as in one that was cut off."""
     try:
-        return SeekingReader(_Careful(file)).get_summary()  # type: ignore[arg-type]
+        summary = SeekingReader(_Careful(file)).get_summary()  # type: ignore[arg-type]
+        return summary if summary and _matches_checksum(file) else None
     except (*CUT_OFF, OSError, StopIteration):    # OSError: the file is shorter than such an end
         return None
 
@@ -76,6 +85,23 @@ class _Careful:
 
     def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
         return self._file.seek(offset, whence)
+
+
+def _is_finished(file: BinaryIO) -> bool:
+    """Return whether a file has its last bytes, which are written when all others are."""
+    file.seek(-len(MCAP0_MAGIC), os.SEEK_END)
+    return file.read() == MCAP0_MAGIC
+
+
+def _matches_checksum(file: BinaryIO) -> bool:
+    """Return whether the end of a file, from its summary on, is what was written; true without a checksum."""
+    file.seek(-len(MCAP0_MAGIC) - _FOOTER.size, os.SEEK_END)
+    begin, _, told = _FOOTER.unpack(file.read(_FOOTER.size))
+    end = file.tell() - _CHECKSUM_SIZE
+    checksum = 0
+    for at in range(file.seek(begin), end, _BLOCK):
+        checksum = crc32(file.read(min(_BLOCK, end - at)), checksum)
+    return told in (0, checksum)
 
 
 def _unpacked(path: Path, record: McapRecord) -> Iterable[McapRecord]:

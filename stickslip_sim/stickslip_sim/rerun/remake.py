@@ -14,7 +14,7 @@ from ..rig import Rig
 from ..scene import Scene
 from ..words import Event, EventKind, Sample
 from .orders import Orders
-from .recording import Offline, Recording
+from .original import Offline, Original
 from .steps import Step
 
 Progress = Callable[[float], None] | None
@@ -37,22 +37,22 @@ class Maker(Protocol):
         """Yield all steps up to a recorded one, which begins with what was ordered before it; raises SolverError."""
 
 
-def maker_of(recording: Recording, scene: Scene, fixed: Collection[str] = (), progress: Progress = None) -> Maker:
+def maker_of(original: Original, scene: Scene, fixed: Collection[str] = (), progress: Progress = None) -> Maker:
     """Return what makes a run again from its scene, or from another whose `fixed` parameters nothing changes.
 
     A run that begins with a checkpoint takes the axis of the scene alone.  Raises RecordingError and InputError.
     """
-    if recording.offline:
-        return _OfflineMaker(recording, scene, recording.offline, progress)
-    return _NodeMaker(recording, scene, fixed)
+    if original.offline:
+        return _OfflineMaker(original, scene, original.offline, progress)
+    return _NodeMaker(original, scene, fixed)
 
 
 class _NodeMaker:
     """Follows the orders of the recording."""
 
-    def __init__(self, recording: Recording, scene: Scene, fixed: Collection[str]) -> None:
-        self._rig, self._known = _rig(recording, scene)
-        self._orders = Orders(recording.run, scene, self._rig, fixed)
+    def __init__(self, original: Original, scene: Scene, fixed: Collection[str]) -> None:
+        self._rig, self._known = _rig(original, scene)
+        self._orders = Orders(original.run, scene, self._rig, fixed)
         self.start = self._rig.step
 
     def make(self, step: Step) -> Iterator[Made]:
@@ -70,16 +70,16 @@ class _NodeMaker:
         return Made(product.step, _without_knots(product.events), product.sample)
 
 
-def _rig(recording: Recording, scene: Scene) -> tuple[Rig, int]:
+def _rig(original: Original, scene: Scene) -> tuple[Rig, int]:
     """Return the rig as the recording began, and how many of the first events it has behind it."""
-    if recording.checkpoint is None:
+    if original.checkpoint is None:
         return scene.make_rig(), 0
-    rig = recording.scene.make_rig()
+    rig = original.scene.make_rig()
     try:
-        rig.restore(recording.checkpoint)
-        known = int(recording.checkpoint['notes'])
+        rig.restore(original.checkpoint)
+        known = int(original.checkpoint['notes'])
     except (InputError, LookupError, TypeError, ValueError, OverflowError) as error:
-        raise RecordingError(f'{recording.run.path}: its {CHECKPOINT_FILE} is damaged or of another version: {error}'
+        raise RecordingError(f'{original.run.path}: its {CHECKPOINT_FILE} is damaged or of another version: {error}'
                              ) from None
     rig.change_axis(scene.axis)
     return rig, known
@@ -90,8 +90,8 @@ class _OfflineMaker:
 
     start = -1
 
-    def __init__(self, recording: Recording, scene: Scene, offline: Offline, progress: Progress) -> None:
-        self._path = recording.run.path
+    def __init__(self, original: Original, scene: Scene, offline: Offline, progress: Progress) -> None:
+        self._path = original.run.path
         run = run_offline(scene, offline.duration, offline.sample_period, progress)
         self._samples = enumerate(run.sample_rows())
         self._events = deque(_without_knots(run.events))

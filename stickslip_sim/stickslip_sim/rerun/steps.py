@@ -19,7 +19,7 @@ from ..recording.topics import (
     Topic,
 )
 from .orders import is_order
-from .recording import Recording
+from .original import Original
 
 ORDERS = DRIVE_VELOCITY, EXTERNAL_FORCE, RIG_EVENT, PARAMETER_EVENTS
 WORDS = SLIDER_STATE, FRICTION_FORCE, MODE_EVENT
@@ -40,13 +40,13 @@ class Step(NamedTuple):
         return bool(self.words[SLIDER_STATE] and self.words[FRICTION_FORCE])
 
 
-def steps_of(recording: Recording, start: int) -> Iterator[Step]:
+def steps_of(original: Original, start: int) -> Iterator[Step]:
     """Yield the recorded steps after `start` (−1: all); raises RecordingError when they do not follow each other.
 
     An offline run has no orders: its commands only tell what its courses did.
     """
-    run = recording.run
-    ordered = () if recording.offline else [topic for topic in ORDERS if topic.type in run.topics.values()]
+    run = original.run
+    ordered = () if original.offline else [topic for topic in ORDERS if topic.type in run.topics.values()]
     kinds = {name_of(run, topic): topic for topic in (*ordered, *WORDS)}
     messages = (message for message in run.messages(kinds) if kinds[message.topic] != RIG_EVENT
                 or is_order(run, message))

@@ -15,7 +15,7 @@ from ..recording.topics import FRICTION_FORCE, SLIDER_STATE
 from ..scene import Scene, changed
 from ..scene.schema import BY_NAME
 from ..words import Event, Mode, Sample
-from .recording import Recording
+from .original import Original
 from .remake import Progress, maker_of
 from .steps import steps_of
 
@@ -30,21 +30,21 @@ class Side(NamedTuple):
     figures: Summary
 
 
-def other_scene(recording: Recording, changes: Mapping[str, object]) -> Scene:
+def other_scene(original: Original, changes: Mapping[str, object]) -> Scene:
     """Return the scene with changes; raises InputError on those that this recording leaves no room for."""
     for name, value in changes.items():
         entry = BY_NAME.get(name)
-        if recording.offline is None and name.startswith('time.'):
+        if original.offline is None and name.startswith('time.'):
             raise InputError(name, value, 'as in the recording', 'its orders are counted in steps')
-        if recording.checkpoint is not None and entry is not None and not entry.live:
+        if original.checkpoint is not None and entry is not None and not entry.live:
             raise InputError(name, value, 'a parameter that can change while the axis runs',
                              'this recording begins in mid-run; take one from the start')
-    return changed(recording.scene, changes)
+    return changed(original.scene, changes)
 
 
-def recorded_side(recording: Recording) -> Side:
+def recorded_side(original: Original) -> Side:
     """Return the run as it was recorded; raises RecordingError when there is too little of it."""
-    run = recording.run
+    run = original.run
     state = columns_of(run, SLIDER_STATE, _STATE)
     friction = columns_of(run, FRICTION_FORCE, ('step', 'force'))
     _, rows, others = np.intersect1d(state['step'], friction['step'], return_indices=True)
@@ -55,15 +55,15 @@ def recorded_side(recording: Recording) -> Side:
     return Side(columns, _figures(columns, run.events, Mode(int(state['mode'][rows[0]]))))
 
 
-def other_side(recording: Recording, scene: Scene, changes: Mapping[str, object], progress: Progress = None) -> Side:
+def other_side(original: Original, scene: Scene, changes: Mapping[str, object], progress: Progress = None) -> Side:
     """Return the same steps under the same orders with another scene, which `changes` made of that of the recording.
 
     Raises RecordingError when an order makes no sense any more, SolverError when the solver gives up.
     """
-    maker = maker_of(recording, scene, changes.keys(), progress)
+    maker = maker_of(original, scene, changes.keys(), progress)
     samples: list[Sample] = []
     events: list[Event] = []
-    for step in steps_of(recording, maker.start):
+    for step in steps_of(original, maker.start):
         for made in maker.make(step):
             samples.append(made.sample)
             events += made.events

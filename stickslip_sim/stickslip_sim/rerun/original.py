@@ -18,7 +18,6 @@ from ..recording.run import CHECKPOINT_FILE, SCENE_FILE, RunFacts
 from ..scene import Scene
 
 _MAKERS = 'version', 'python', 'platform', 'numpy', 'numba'
-_MAGIC = b'\x89MCAP0\r\n'   # with which a finished file ends
 
 
 class Offline(NamedTuple):
@@ -29,7 +28,7 @@ class Offline(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Recording:
+class Original:
     """A run, its scene, and what it began from: a checkpoint, or the start (None); `offline` is None for a node's."""
 
     run: Run
@@ -39,35 +38,26 @@ class Recording:
     notes: tuple[str, ...]   # for people
 
 
-def open_recording(path: Path | str) -> Recording:
-    """Return the recording in a run folder or an MCAP file; raises RecordingError when it cannot be run again."""
+def open_original(path: Path | str) -> Original:
+    """Return the original in a run folder or an MCAP file; raises RecordingError when it cannot be run again."""
     with warnings.catch_warnings():
         warnings.simplefilter('ignore', RecordingWarning)   # told by the notes
         run = read_run(path)
-    if not run.is_complete and _is_finished(run.path):
-        raise RecordingError(f'{run.path}: damaged: it was finished, but only {sum(run.counts.values())} of its '
-                             'messages can be read and trusted; fetch the file again')
     if not run.is_complete and not run.topics:
         raise RecordingError(f'{run.path}: cut off before its first message was written')
     facts = run.metadata.get(METADATA)
     if facts is None:
         raise RecordingError(f'{run.path}: it does not say what it was simulated with; give a run that stickslip '
                              'recorded')
-    return Recording(run, run.scene, _checkpoint(run), _offline(run, facts), tuple(map(one_line, _notes(run, facts))))
+    return Original(run, run.scene, _checkpoint(run), _offline(run, facts), tuple(map(one_line, _notes(run, facts))))
 
 
-def made_with(recording: Recording) -> str:
+def made_with(original: Original) -> str:
     """Return what of the recording's versions and machine is not as here, and what is here instead; for people."""
-    recorded, here = recording.run.metadata[METADATA], RunFacts.of(recording.scene).as_metadata()
+    recorded, here = original.run.metadata[METADATA], RunFacts.of(original.scene).as_metadata()
     others = [f'{name} {recorded[name]} (here {here[name]})' for name in _MAKERS
               if recorded.get(name, here[name]) != here[name]]
     return one_line(', '.join(others)) or 'the same versions on the same kind of machine'
-
-
-def _is_finished(path: Path) -> bool:
-    with path.open('rb') as file:
-        file.seek(max(0, path.stat().st_size - len(_MAGIC)))
-        return file.read() == _MAGIC
 
 
 def _checkpoint(run: Run) -> Mapping[str, Any] | None:
