@@ -10,7 +10,7 @@ from ..axis import Axis, InitialState
 from ..courses import Course
 from ..errors import InputError
 from ..grid import Grid
-from ..simulator import Simulator
+from ..simulator import Simulator, SolverOf
 from ..solvers import Solver
 from ..words import Event, Instant
 from .drive import Drive
@@ -28,8 +28,8 @@ class Rig:
     Drive velocities come through the wire and are followed by the drive within its limits; forces act at once.
     """
 
-    def __init__(self, axis: Axis, initial: InitialState, drive: Course, force: Course, solver: Solver, grid: Grid,
-                 settings: RigSettings) -> None:
+    def __init__(self, axis: Axis, initial: InitialState, drive: Course, force: Course, solver: Solver | SolverOf,
+                 grid: Grid, settings: RigSettings) -> None:
         self.simulator = Simulator(axis, initial, drive, force, solver, accounting=True)
         self._grid, self._settings = grid, settings
         self._courses = drive, force
