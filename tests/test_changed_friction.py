@@ -1,18 +1,19 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Friction that changes during a run: every solver follows it, its smooth law too."""
+"""Friction that changes during a run: every solver follows it, its smooth law too, or says why it cannot."""
 
 import json
 from typing import Any
 
 import pytest
 
+from stickslip_sim.errors import SolverError
 from stickslip_sim.recording import checkpoint_file
 from stickslip_sim.rig import Rig
 from stickslip_sim.scene import changed, load_scene
 from stickslip_sim.words import Event, EventKind
 from tests.axes import instant
-from tests.rigs import run
+from tests.rigs import inject, run
 
 LAWS = [('stribeck', 1e-6), ('exponential', 1e-6), ('hyperbolic', 1e-5)]
 _PER_ERROR = 20.0    # s that a slip may be early or late per error of a table: up to 9 were seen
@@ -89,3 +90,19 @@ def test_a_checkpoint_is_continued_with_the_law_of_its_time() -> None:
     expected = driven(rig, 150)
     assert len(slips(expected)) >= 2
     assert driven(again, 150) == expected
+
+
+def test_steps_too_long_for_the_scaled_friction_end_the_run() -> None:
+    """Where friction rises with the speed a scaled one damps harder, and fixed steps of 1 ms would diverge."""
+    rig = load_scene('paper_fig7', {'solver.name': 'fixed_step', 'solver.step': 1e-3, 'drive.velocity': 0.2,
+                                    'friction.kinetic.end_slope': 5.0, **scaled_from(0.5, 100.0)}).make_rig()
+    with pytest.raises(SolverError, match=r'faults in force scale friction by 100: solver\.step = 0\.001 is refused'):
+        rig.advance(instant(1.0))
+    rig.reset()
+    assert rig.advance(instant(0.4))
+
+
+def test_friction_beyond_all_numbers_ends_the_run() -> None:
+    rig = load_scene('stribeck').make_rig()
+    with pytest.raises(SolverError, match='faults in force scale friction by inf: friction'):
+        run(rig, 2, {1: [inject('friction_scale', value=100.0)] * 200})
