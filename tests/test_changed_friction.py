@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from stickslip_sim.errors import SolverError
+from stickslip_sim.errors import InputError, SolverError
 from stickslip_sim.recording import checkpoint_file
 from stickslip_sim.rig import Rig
 from stickslip_sim.scene import changed, load_scene
@@ -92,17 +92,29 @@ def test_a_checkpoint_is_continued_with_the_law_of_its_time() -> None:
     assert driven(again, 150) == expected
 
 
+STEEP = {'solver.name': 'fixed_step', 'solver.step': 1e-3, 'drive.velocity': 0.2, 'friction.kinetic.end_slope': 5.0}
+
+
 def test_steps_too_long_for_the_scaled_friction_end_the_run() -> None:
     """Where friction rises with the speed a scaled one damps harder, and fixed steps of 1 ms would diverge."""
-    rig = load_scene('paper_fig7', {'solver.name': 'fixed_step', 'solver.step': 1e-3, 'drive.velocity': 0.2,
-                                    'friction.kinetic.end_slope': 5.0, **scaled_from(0.5, 100.0)}).make_rig()
+    rig = load_scene('paper_fig7', STEEP).make_rig()
     with pytest.raises(SolverError, match=r'faults in force scale friction by 100: solver\.step = 0\.001 is refused'):
-        rig.advance(instant(1.0))
+        run(rig, 600, {500: [inject('friction_scale', value=100.0)]})
     rig.reset()
-    assert rig.advance(instant(0.4))
+    assert driven(rig, 800)
 
 
 def test_friction_beyond_all_numbers_ends_the_run() -> None:
     rig = load_scene('stribeck').make_rig()
     with pytest.raises(SolverError, match='faults in force scale friction by inf: friction'):
         run(rig, 2, {1: [inject('friction_scale', value=100.0)] * 200})
+
+
+def test_what_the_faults_of_a_scene_make_of_friction_is_checked_with_the_scene() -> None:
+    with pytest.raises(InputError, match=r'with friction times 100 by faults: solver\.step = 0\.001 is refused'):
+        load_scene('paper_fig7', {**STEEP, **scaled_from(0.5, 100.0)})
+    one_after_the_other = {'faults.ids': ['a', 'b'], 'faults.kinds': ['friction_scale'] * 2,
+                           'faults.starts': [0.5, 0.7], 'faults.values': [10.0, 10.0]}
+    load_scene('paper_fig7', {**STEEP, **one_after_the_other, 'faults.durations': [0.2, 0.2]})
+    with pytest.raises(InputError, match=r'with friction times 100 by faults: solver\.step'):
+        load_scene('paper_fig7', {**STEEP, **one_after_the_other, 'faults.durations': [0.3, 0.2]})
