@@ -39,8 +39,8 @@ class CommandSlot:
     def refuse(self, reason: str) -> str:
         """Count what arrived and is no command, for a reason; return what to tell.  The one before stays."""
         self.received += 1
-        self.refused += 1
         self.last_refusal = f'{reason}; the previous command stays'
+        self.refused += 1
         return self.last_refusal
 
     def refusal(self, value: float) -> str:
@@ -53,3 +53,4 @@ class CommandSlot:
         """Drop the command that waits or holds, and begin to count anew, as if none had come."""
         self.latest = None
         self.received = self.refused = 0
+        self.last_refusal = ''

@@ -3,7 +3,7 @@
 """One axis through time: advance, sample, command.  Deterministic; knows no clock, no file and no ROS."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from .axis import Axis, InitialState, check_start, pack
@@ -19,6 +19,8 @@ from .inputs import Inputs
 from .solvers import DONE, FULL, OUT_OF_RANGE, Solver, exact
 from .words import Event, EventKind, Instant, Mode, Sample
 
+SolverOf = Callable[[Axis], Solver]
+
 _KINDS, _MODES = tuple(EventKind), tuple(Mode)
 _ROWS = 64                       # of the event table; it is emptied as often as it fills
 MAX_EVENTS_PER_ADVANCE = 100_000
@@ -28,20 +30,20 @@ class Simulator:
     """The state of one axis, brought from time to time.
 
     `drive` (m/s) and `force` (N) are courses over simulation time; a command replaces a course by a constant from the
-    present time on.  Events come back from the call in which they fall, in the order of time.  With `accounting` the
-    solver keeps the account of energy, if it can; the motion is the same to the last bit.
+    present time on.  Events come back from the call in which they fall, in the order of time.  `solver` is one for any
+    axis, or makes the one for an axis, as those must that take its smooth law.  With `accounting` the solver keeps the
+    account of energy, if it can; the motion is the same to the last bit.
     """
 
     def __init__(self, axis: Axis, initial: InitialState, drive: Course, force: Course,
-                 solver: Solver = exact.SOLVER, accounting: bool = False) -> None:
+                 solver: Solver | SolverOf = exact.SOLVER, accounting: bool = False) -> None:
         check_start(axis, initial)
         self._inputs = Inputs(drive, force)
-        self._solver = solver
+        self._solver_of: SolverOf = (lambda _: solver) if isinstance(solver, Solver) else solver
         self._initial = initial
-        self._axis = axis
-        self._parameters = _numbers(pack(axis))
+        self._take_axis(axis)
         self._state = _numbers([0.0] * (STATE_SIZE + WAVE_SIZE * self._inputs.most_waves))
-        self._state[ACCOUNTING] = float(accounting and solver.energy is not None)
+        self._state[ACCOUNTING] = float(accounting and self._solver.energy is not None)
         self._row = _numbers([0.0] * SAMPLE_SIZE)
         self._energies = _numbers([0.0] * ENERGY_SIZE)
         self._table = _table(_ROWS, EVENT_SIZE)
@@ -122,9 +124,9 @@ class Simulator:
     def change_axis(self, axis: Axis) -> None:
         """Go on with other parameters from now on; position, velocity and the spring stay continuous."""
         self._obey()
-        new = _numbers(pack(axis))
-        rows = self._solver.set_parameters(self._parameters, new, self._state, *self._time, self._table, 0)
-        self._parameters, self._axis = new, axis
+        old = self._parameters
+        self._take_axis(axis)
+        rows = self._solver.set_parameters(old, self._parameters, self._state, *self._time, self._table, 0)
         self._waiting.extend(self._rows(rows))
 
     def sample(self) -> Sample:
@@ -152,14 +154,17 @@ class Simulator:
         """
         self._inputs.command_drive(drive)
         self._inputs.command_force(force)
-        parameters = _numbers(pack(axis))
-        state = state_of(saved['state'], len(self._state), parameters)
+        self._take_axis(axis)
+        state = state_of(saved['state'], len(self._state), self._parameters)
         second, fraction = map(float, saved['time'])
         until, self._waiting = float(saved['until']), [event_of(event) for event in saved['waiting']]
-        self._axis, self._parameters, self._state = axis, parameters, _numbers(state)
+        self._state = _numbers(state)
         self._inputs.go_on(until)
         self._waves = _numbers(self._inputs.waves())
         self._time = Instant(second, fraction)
+
+    def _take_axis(self, axis: Axis) -> None:
+        self._axis, self._parameters, self._solver = axis, _numbers(pack(axis)), self._solver_of(axis)
 
     def _obey(self) -> None:
         """Let the commands of this instant take effect, all at once: their order does not matter."""

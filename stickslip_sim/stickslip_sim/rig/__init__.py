@@ -9,6 +9,6 @@ before the same steps give the same numbers in real time, in lock-step, as fast 
 from .encoder import Measured
 from .faults import Fault
 from .product import Note, NoteKind, Product
-from .rig import SILENT_BRIDGE, Rig
+from .rig import FAILED, SILENT_BRIDGE, Rig
 
-__all__ = ['SILENT_BRIDGE', 'Fault', 'Measured', 'Note', 'NoteKind', 'Product', 'Rig']
+__all__ = ['FAILED', 'SILENT_BRIDGE', 'Fault', 'Measured', 'Note', 'NoteKind', 'Product', 'Rig']

@@ -8,6 +8,7 @@ from typing import Any
 
 from ..axis import Axis
 from ..courses import Course, constant, course_of, plain_of
+from ..errors import InputError, SolverError
 from ..simulator import Simulator
 from .drive import Drive
 from .faults import Faults
@@ -44,11 +45,10 @@ class Plant:
         self._is_changed = True
 
     def act(self) -> None:
-        """Let all that changed take effect at once."""
+        """Let all that changed take effect at once; raises SolverError when the faults leave no axis to go on with."""
         if not self._is_changed:
             self._command_drive()
             return
-        self._is_changed = False
         scale = math.prod(self._faults.values('friction_scale'))
         falls, self._friction_scale = scale < self._friction_scale, scale
         self.drive.freeze(bool(self._faults.values('drive_freeze')), self._simulator.time)
@@ -58,6 +58,7 @@ class Plant:
         self._command_drive()
         if falls:    # last: what held before and holds afterwards must not break away in between
             self._change_axis(scale)
+        self._is_changed = False
 
     def checkpoint(self) -> dict[str, Any]:
         """Return what was ordered, what acts and how the axis moves, as plain data."""
@@ -75,9 +76,12 @@ class Plant:
         self._simulator.restore(saved['simulator'], axis, self._acting_drive, self._acting_force)
 
     def _change_axis(self, friction_scale: float) -> None:
-        axis = with_friction_scaled(self._axis, friction_scale)
-        if axis != self._simulator.axis:
-            self._simulator.change_axis(axis)
+        try:
+            axis = with_friction_scaled(self._axis, friction_scale)
+            if axis != self._simulator.axis:
+                self._simulator.change_axis(axis)
+        except InputError as error:
+            raise SolverError(f'the faults in force scale friction by {friction_scale:g}: {error}') from None
 
     def _command_force(self) -> None:
         pulse = math.fsum(self._faults.values('force_pulse'))

@@ -10,7 +10,7 @@ from ..axis import Axis, InitialState
 from ..courses import Course
 from ..errors import InputError
 from ..grid import Grid
-from ..simulator import Simulator
+from ..simulator import Simulator, SolverOf
 from ..solvers import Solver
 from ..words import Event, Instant
 from .drive import Drive
@@ -28,8 +28,8 @@ class Rig:
     Drive velocities come through the wire and are followed by the drive within its limits; forces act at once.
     """
 
-    def __init__(self, axis: Axis, initial: InitialState, drive: Course, force: Course, solver: Solver, grid: Grid,
-                 settings: RigSettings) -> None:
+    def __init__(self, axis: Axis, initial: InitialState, drive: Course, force: Course, solver: Solver | SolverOf,
+                 grid: Grid, settings: RigSettings) -> None:
         self.simulator = Simulator(axis, initial, drive, force, solver, accounting=True)
         self._grid, self._settings = grid, settings
         self._courses = drive, force
@@ -207,6 +207,7 @@ class Rig:
 _NEVER = 2**62    # a step that no run reaches
 SILENT_BRIDGE = ('a bridge that sends only what differs from the state is silent while they are near (topic-based'
                  ' ros2_control: trigger_joint_command_threshold -1 sends always)')
+FAILED = 'fault after a time-out: the drive takes no command until ~/clear_faults or ~/reset'
 _TIMEOUT = f'no drive velocity for {{:.3g}} s: {{}}; {SILENT_BRIDGE}'
 _REACTIONS = {'hold': 'the latest is held', 'ramp_to_zero': 'the drive stops until the next',
               'fault': 'the drive stops and takes none until ~/clear_faults or ~/reset'}

@@ -10,11 +10,12 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
 from stickslip_msgs.msg import StepTiming
 
-from ..rig import SILENT_BRIDGE
+from ..rig import FAILED, SILENT_BRIDGE
 from .conversion import set_stamp
 from .ledger import LedgerWindow
 from .loop import StepLoop
 from .recordings import Recordings
+from .refusals import Refusal, Refusals
 from .verdict import Verdict
 
 OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
@@ -29,20 +30,21 @@ class Second(NamedTuple):
     overruns: int
     caught_up: int
     skipped: float          # s of wall time given up
-    refused: int            # commands
+    refusals: Sequence[Refusal]
 
 
 class Reporter:
     """Sums up window after window; remembers what it saw last."""
 
     def __init__(self, loop: StepLoop) -> None:
-        self._loop = loop
+        self._loop, self._refusals = loop, Refusals(loop)
         self._wall = self._time = 0
         self.forget_counts()
 
     def forget_counts(self) -> None:
         """Begin anew, as the counters do."""
-        self._before = (0, 0, 0, 0)
+        self._before = (0, 0, 0)
+        self._refusals.forget()
 
     def begin(self, now: int) -> None:
         """Let the first window begin; `now` is ns on the steady clock."""
@@ -55,10 +57,10 @@ class Reporter:
         passed = now - self._wall
         factor = (time - self._time) / passed if passed > 0 and time >= self._time else math.nan
         self._wall, self._time = now, time
-        counts = (account.overruns, account.caught_up, account.skipped, self._loop.command_totals.refused)
-        overruns, caught_up, skipped, refused = (new - old for new, old in zip(counts, self._before))
+        counts = (account.overruns, account.caught_up, account.skipped)
+        overruns, caught_up, skipped = (new - old for new, old in zip(counts, self._before))
         self._before = counts
-        return Second(window, factor, overruns, caught_up, skipped * 1e-9, refused)
+        return Second(window, factor, overruns, caught_up, skipped * 1e-9, self._refusals.look())
 
 
 def timing_message(second: Second, loop: StepLoop, period: float, valid: bool, stamp_ns: int) -> StepTiming:
@@ -125,13 +127,12 @@ def command_status(loop: StepLoop, second: Second) -> DiagnosticStatus:
     """Tell what came in, and what was refused since the report before."""
     slots, totals, rig = loop.slots, loop.command_totals, loop.rig
     level, text = OK, 'waiting for the first' if all(slot.latest is None for slot in slots) else 'in force'
-    if second.refused:
-        reasons = '; '.join(slot.last_refusal for slot in slots if slot.last_refusal)
-        level, text = WARN, f'{second.refused} refused; {reasons}'
+    if second.refusals:
+        level, text = WARN, '; '.join(f'{refusal.number} refused: {refusal.reason}' for refusal in second.refusals)
     if rig.is_silent:
         level, text = WARN, f'timed out: no drive velocity comes; {SILENT_BRIDGE}'
     if rig.has_failed:
-        level, text = ERROR, 'fault after a time-out: the drive takes no command until ~/clear_faults or ~/reset'
+        level, text = ERROR, FAILED
     values: dict[str, object] = {
         'age p99 / s': second.window.age.p99, 'latency p50 / s': second.window.latency.p50,
         'latency p99 / s': second.window.latency.p99, 'lost': totals.lost, 'limited': totals.limited,

@@ -66,9 +66,8 @@ class SecondReport:
             text = f'{second.skipped:.3f} s behind the clock were given up; simulation time lags by that much'
             log.warning(text)
             self._note(Note(NoteKind.TIME_LOST, '', text, second.skipped))
-        if second.refused:
-            reasons = [slot.last_refusal for slot in self._loop.slots if slot.last_refusal]
-            self._note(Note(NoteKind.COMMAND_REFUSED, '', '; '.join(reasons), number=second.refused))
+        for refusal in second.refusals:
+            self._note(Note(NoteKind.COMMAND_REFUSED, refusal.name, refusal.reason, number=refusal.number))
         if self._loop.failure and self._loop.failure != self._told:
             log.error(f'the axis stands still: {self._loop.failure}; ~/reset begins anew')
         self._told = self._loop.failure

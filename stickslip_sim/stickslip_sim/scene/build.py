@@ -25,6 +25,7 @@ from ..friction import (
 from ..friction.kinetic import default_excess
 from .model import CommandSettings, RecordSettings, Scene, TimingSettings
 from .rig import rig_settings, time_settings
+from .scaled_friction import check_scaled_friction
 from .solver import SolverSettings, method_of
 from .text import scene_text
 from .values import effective_values
@@ -46,6 +47,8 @@ def build_scene(given: Mapping[str, object], summary: str = '') -> Scene:
         values['solver.method'] = method
     solver = SolverSettings(**_section(values, 'solver'))
     solver.check(axis)
+    rig = rig_settings(values)
+    check_scaled_friction(axis, solver, rig, values['time.rate'])
     text = scene_text(values)
     return Scene(
         name=values['scene'],
@@ -58,7 +61,7 @@ def build_scene(given: Mapping[str, object], summary: str = '') -> Scene:
         time=time_settings(values),
         command=CommandSettings(*(values[f'command.{name}'] for name in ('max_velocity', 'max_force', 'timeout'))),
         timing=TimingSettings(**_section(values, 'timing')),
-        rig=rig_settings(values),
+        rig=rig,
         record=RecordSettings(**_section(values, 'record')),
         seed=values['seed'],
         values=values,

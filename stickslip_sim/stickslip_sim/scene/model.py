@@ -88,5 +88,4 @@ class Scene:
 
     def make_rig(self) -> Rig:
         """Return the axis and its rig at the start."""
-        return Rig(self.axis, self.initial, self.drive, self.force, self.solver.make(self.axis), Grid(self.time.rate),
-                   self.rig)
+        return Rig(self.axis, self.initial, self.drive, self.force, self.solver.make, Grid(self.time.rate), self.rig)

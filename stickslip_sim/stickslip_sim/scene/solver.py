@@ -44,7 +44,11 @@ class SolverSettings:
             fixed_step.check_step(axis, **self.settings)
 
     def make(self, axis: Axis) -> Solver:
-        """Return the solver, for the smooth law of an axis's kinetic friction if it can take one and there is one."""
+        """Return the solver, for the smooth law of an axis's kinetic friction if it can take one and there is one.
+
+        Raises InputError as `check` does.
+        """
+        self.check(axis)
         if self.name == 'fixed_step':
             return fixed_step.solver(**self.settings)
         if self.name == 'adaptive':
