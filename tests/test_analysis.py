@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import pytest
 
-from stickslip_sim.analysis import Cycle, Span, cycle_figures, mode_spans, summary
+from stickslip_sim.analysis import Cycle, EventTally, Span, cycle_figures, mode_spans, summary
 from stickslip_sim.axis import InitialState
 from stickslip_sim.courses import table
 from stickslip_sim.words import Event, EventKind, Mode
@@ -144,6 +144,24 @@ def test_spans_within_a_window() -> None:
     events = [_event(1.0, EventKind.BREAKAWAY, Mode.ACCELERATING, 1, 0.0, 0.0),
               _event(2.0, EventKind.STICK, Mode.STICK, 1, 0.5, 0.0)]
     assert mode_spans(events, 1.5, 3.0, Mode.STICK) == [Span(1.5, 2.0, Mode.ACCELERATING), Span(2.0, 3.0, Mode.STICK)]
+
+
+def test_only_time_within_the_window_counts() -> None:
+    events = [_event(1.0, EventKind.BREAKAWAY, Mode.ACCELERATING, 1, 0.0, 0.0),
+              _event(2.0, EventKind.STICK, Mode.STICK, 1, 0.5, 0.0),
+              _event(3.5, EventKind.BREAKAWAY, Mode.ACCELERATING, 1, 0.5, 0.0),
+              _event(3.75, EventKind.STICK, Mode.STICK, 1, 1.0, 0.0)]
+    assert summary(events, 1.5, Mode.STICK, begin=1.5).stick_share == 2 / 3
+    assert summary(events, 4.0).stick_share == (1.0 + 1.5 + 0.25) / 4.0
+
+
+def test_a_tally_knows_at_any_time_what_a_summary_says() -> None:
+    events = run(paper_axis(COMPLIANT), 0.002, 20.0)
+    tally = EventTally()
+    for count, event in enumerate(events, 1):
+        tally.add(event)
+        assert tally.latest_time == event.time
+        assert tally.summary(event.time + 0.01) == summary(events[:count], event.time + 0.01)
 
 
 def _event(time: float, kind: EventKind, mode: Mode, direction: int, position: float, velocity: float) -> Event:

@@ -15,6 +15,9 @@ from stickslip_sim.words import EventKind
 from tests.ros_nodes import assert_clean, client, recording_into, running
 from tests.waiting import wait_for
 
+from rcl_interfaces.srv import SetParameters, SetParametersAtomically  # isort: skip  # after ros_nodes, which skips
+from rclpy.parameter import Parameter  # isort: skip
+
 pytestmark = pytest.mark.ros
 
 
@@ -40,6 +43,21 @@ def test_a_smooth_law_changes_while_the_axis_moves() -> None:
         assert axis.set_parameters(friction__kinetic__initial=0.1, friction__kinetic__viscous=0.2).successful
         stop = axis.next('mode_event', lambda event: event.kind == EventKind.STICK)
         assert stop.friction_force == pytest.approx(0.1 * 3432.3275, rel=1e-12)
+        assert_clean(*process.end())
+
+
+def test_only_an_atomic_request_changes_parameters_together() -> None:
+    """As ROS defines its services, and as docs/scene.md says."""
+    table = {'friction.kinetic.velocities': [0.0, 0.01, 0.03], 'friction.kinetic.coefficients': [0.12, 0.1, 0.05]}
+    parameters = [Parameter(name, value=value).to_parameter_msg() for name, value in table.items()]
+    with running() as process, client() as axis:
+        axis.connect()
+        results = axis.call(SetParameters, 'set_parameters', parameters=parameters).results
+        assert [result.successful for result in results] == [False, False]
+        assert all('friction.kinetic.coefficients' in result.reason for result in results), results
+        answer = axis.call(SetParametersAtomically, 'set_parameters_atomically', parameters=parameters).result
+        assert answer.successful, answer.reason
+        assert [list(value.double_array_value) for value in axis.values(*table)] == [*table.values()]
         assert_clean(*process.end())
 
 

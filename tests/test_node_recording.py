@@ -10,9 +10,12 @@ import pytest
 
 from stickslip_sim.errors import RecordingWarning
 from stickslip_sim.recording import Run, read_run
+from stickslip_sim.scene import load_scene
 from tests.ros_nodes import assert_clean, client, recording_into, running
 from tests.tool import restore_interrupt
 from tests.waiting import wait_for
+
+from stickslip_sim.ros.recordings import Recordings  # isort: skip  # after tests.ros_nodes, which skips without ROS
 
 pytestmark = pytest.mark.ros
 
@@ -83,6 +86,14 @@ class TestRecording:
             process.end()
         assert {path.name for path in tmp_path.iterdir()} == {'runs'}
         assert len(list((tmp_path / 'runs').iterdir())) == 3
+
+    @pytest.mark.parametrize('ending', ['/', '//', '/.'])
+    def test_a_folder_as_a_shell_completes_it(self, tmp_path: Path, ending: str) -> None:
+        scene = load_scene('paper_fig8', {'record.folder': f'{tmp_path}/runs/first{ending}'})
+        recordings = Recordings('/', scene)
+        recordings.begin(scene)
+        recordings.end({})
+        assert read_run(tmp_path / 'runs' / 'first').is_complete
 
     def test_a_scene_whose_name_is_a_path(self, tmp_path: Path) -> None:
         scene = tmp_path / 'scene.yaml'

@@ -104,7 +104,8 @@ class Storm:
 
     def clear(self) -> None:
         answer = self.axis.trigger('clear_faults')
-        self.expect(answer, True, ', '.join(self.rig.clear_faults()) or 'there were none')
+        self.expect(answer, True)
+        assert answer.message == 'cleared: ' + (', '.join(self.rig.clear_faults()) or 'there were none')
 
     def reset(self) -> None:
         answer = self.axis.trigger('reset')
@@ -186,3 +187,25 @@ class TestStorm:
         assert recorded.counts['/rig_event'] > 10
         assert recorded.counts['/slider_state'] > 300
         assert_same_states(recorded, made_again(recorded, load_scene('paper_fig8')))
+
+
+def test_what_was_cleared_is_told(tmp_path: Path) -> None:
+    with node_and_client(tmp_path, 'lockstep', '-p', 'command.timeout:=0.05', '-p', 'command.on_timeout:=fault'
+                         ) as (_, axis):
+        def step(count: int, velocity: float = math.nan) -> Any:
+            return axis.call(Step, 'step', steps=count, velocity=velocity, force=math.nan).state
+
+        def clear() -> str:
+            message: str = axis.trigger('clear_faults').message
+            return message
+
+        assert clear() == 'cleared: there were none'
+        for fault in ('a', 'b'):
+            assert axis.call(InjectFault, 'inject_fault', id=fault, kind='drive_freeze', duration=1.0).success
+        assert clear() == 'cleared: a, b'
+        step(1, 0.01)
+        assert step(100).drive_velocity == step(1, 0.01).drive_velocity == 0.0     # it takes none any more
+        assert axis.call(InjectFault, 'inject_fault', id='c', kind='friction_scale', duration=1.0, value=1.5).success
+        assert clear() == 'cleared: c, the command time-out (the drive takes commands again)'
+        assert step(1, 0.01).drive_velocity == 0.01
+        assert clear() == 'cleared: there were none'

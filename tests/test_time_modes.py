@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 
 from stickslip_sim.errors import InputError
+from stickslip_sim.offline import run_offline
 from stickslip_sim.recording import Run, read_run
 from stickslip_sim.scene import Scene, load_scene
 from tests.replays import FIELDS, assert_same_states, made_again
@@ -120,6 +121,24 @@ class TestTheSameCourse:
         assert_same_columns(live, stepped)
         assert_same_states(live, made_again(live, scene))
         assert stepped.receipt['commands']['lost'] == live.receipt['commands']['lost']
+
+    def test_the_receipt_is_that_of_the_offline_run_however_long(self, tmp_path: Path) -> None:
+        """A second time, after a reset, for an hour and 20 000 events; the events of the first do not count."""
+        scene = load_scene('paper_fig8', {'time.rate': 1.0})
+        with node_of(scene, tmp_path, 'long', 'lockstep') as (_, axis):
+            steps(axis, 50)
+            assert axis.switch('record', False).success
+            assert axis.trigger('reset').success
+            assert axis.set_parameters(record__folder=str(tmp_path / 'again')).successful
+            assert axis.switch('record', True).success
+            for _ in range(5):
+                steps(axis, 800)
+        results, offline = (receipt['results'] for receipt in (
+            read_run(tmp_path / 'again').receipt, run_offline(scene, 4000.0).receipt))
+        for each in (results, offline):
+            del each['root_iterations']    # they depend on where the steps end
+        assert sum(results['events'].values()) > 20_000
+        assert results == offline
 
     def test_free_by_the_course_of_the_scene(self, tmp_path: Path) -> None:
         scene = load_scene('positioning', {'faults.ids': ['dry'], 'faults.kinds': ['friction_scale'],

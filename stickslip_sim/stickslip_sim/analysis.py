@@ -7,9 +7,8 @@ figures are as exact as the events.
 """
 
 import math
-from collections import Counter
-from collections.abc import Iterator, Sequence
-from itertools import pairwise
+from collections import deque
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from .solvers.exact.cycles import SETTLED
@@ -62,7 +61,8 @@ class Summary(NamedTuple):
 
 def cycle_figures(events: Sequence[Event]) -> list[Cycle]:
     """Return the complete cycles of a run, in the order of time; smooth sliding has none."""
-    return [_cycle(slip, following[0]) for slip, following in pairwise(_slips(events)) if _is_over(slip)]
+    finder = _CycleFinder()
+    return [cycle for event in events if (cycle := finder.take(event)) is not None]
 
 
 def mode_spans(events: Sequence[Event], begin: float, end: float, mode: Mode) -> list[Span]:
@@ -79,43 +79,110 @@ def mode_spans(events: Sequence[Event], begin: float, end: float, mode: Mode) ->
 
 def summary(events: Sequence[Event], duration: float, start: Mode = Mode.STICK, begin: float = 0.0) -> Summary:
     """Sum up a run of `duration` seconds that began in the mode `start` at the time `begin` (s)."""
-    cycles = cycle_figures(events)
-    spans = mode_spans(events, begin, begin + duration, start)
-    latest = cycles[-AVERAGED:]
-    counts = Counter(event.kind for event in events)
-    return Summary(
-        motion=_motion(events, cycles, start),
-        events={kind: counts[kind] for kind in EventKind},
-        cycles=len(cycles),
-        settled=_is_settled(cycles),
-        stick_share=math.fsum(span.end - span.begin for span in spans if span.mode == Mode.STICK) / duration,
-        last=cycles[-1] if cycles else None,
-        mean=_mean(latest) if latest else None,
-        averaged=len(latest))
-
-
-def _slips(events: Sequence[Event]) -> Iterator[list[Event]]:
-    """Yield the events of each slip, from the break-away to the event that ends it or to the last one known."""
-    slip: list[Event] = []
+    tally = EventTally(start, begin, begin + duration)
     for event in events:
-        begins = event.kind == EventKind.REVERSE or (event.kind == EventKind.BREAKAWAY and event.mode != Mode.STICK)
-        if slip:
-            slip.append(event)
-        if slip and (begins or event.mode == Mode.STICK):
-            yield slip
-            slip = []
-        if begins:
-            slip = [event]
-    if slip:
-        yield slip
+        tally.add(event)
+    return tally.summary(duration)
 
 
-def _is_over(slip: Sequence[Event]) -> bool:
-    return len(slip) > 1 and slip[-1].kind in (EventKind.STICK, EventKind.REVERSE)
+class EventTally:
+    """Sums up a run event by event, in memory that does not grow.
+
+    It began in the mode `start` at the time `begin` (s); time after `end` (s) does not count.
+    """
+
+    def __init__(self, start: Mode = Mode.STICK, begin: float = 0.0, end: float = math.inf) -> None:
+        self.latest_time: float | None = None    # s, of the latest event
+        self._has_moved = start != Mode.STICK
+        self._begin, self._end = begin, end
+        self._mode, self._since = start, begin   # of the stretch of time at hand
+        self._stick = 0.0, 0.0                   # s: the time in stick before it, and what that number cannot hold
+        self._counts = [0] * len(EventKind)
+        self._finder = _CycleFinder()
+        self._cycle_count = 0
+        self._latest_cycles: deque[Cycle] = deque(maxlen=AVERAGED)
+
+    def add(self, event: Event) -> None:
+        """Take the next event."""
+        self.latest_time = event.time
+        self._has_moved = True
+        self._counts[event.kind] += 1
+        if event.mode != self._mode:
+            self._enter(event.mode, min(max(self.latest_time, self._since), self._end))
+        cycle = self._finder.take(event)
+        if cycle is not None:
+            self._cycle_count += 1
+            self._latest_cycles.append(cycle)
+
+    def summary(self, duration: float) -> Summary:
+        """Return what it all amounts to, `duration` seconds after the begin."""
+        cycles = list(self._latest_cycles)
+        under_way = self._begin + duration - self._since if self._mode == Mode.STICK else 0.0
+        return Summary(
+            motion=self._motion,
+            events={kind: self._counts[kind] for kind in EventKind},
+            cycles=self._cycle_count,
+            settled=_is_settled(cycles),
+            stick_share=math.fsum((*self._stick, under_way)) / duration,
+            last=cycles[-1] if cycles else None,
+            mean=_mean(cycles) if cycles else None,
+            averaged=len(cycles))
+
+    def _enter(self, mode: Mode, time: float) -> None:
+        if self._mode == Mode.STICK:
+            terms = (*self._stick, time - self._since)
+            total = math.fsum(terms)
+            self._stick = total, math.fsum((*terms, -total))
+        self._mode, self._since = mode, time
+
+    @property
+    def _motion(self) -> str:
+        if self._cycle_count:
+            return 'stick-slip'
+        if self._mode != Mode.STICK:
+            return 'smooth sliding'
+        return 'single slip' if self._has_moved else 'at rest'
 
 
-def _cycle(slip: Sequence[Event], following: Event) -> Cycle:
-    first, last = slip[0], slip[-1]
+class _Slip:
+    """A slip, from the event that begins it to the one that ends it, or to the latest one."""
+
+    def __init__(self, first: Event) -> None:
+        self.first = self.last = first
+        self.peak_speed = abs(first.velocity)
+
+    @property
+    def is_over(self) -> bool:
+        """Whether the slider came to a stop."""
+        return self.last is not self.first and self.last.kind in (EventKind.STICK, EventKind.REVERSE)
+
+    def go_on(self, event: Event) -> None:
+        """Take the next event of it."""
+        self.last = event
+        self.peak_speed = max(self.peak_speed, abs(event.velocity))
+
+
+class _CycleFinder:
+    """Makes a cycle of a slip that is over when the next one begins."""
+
+    def __init__(self) -> None:
+        self._slip: _Slip | None = None    # the latest one
+        self._is_open = False
+
+    def take(self, event: Event) -> Cycle | None:
+        """Take the next event of a run; return the cycle that it completes."""
+        slip = self._slip
+        if slip is not None and self._is_open:
+            slip.go_on(event)
+            self._is_open = event.mode != Mode.STICK
+        if event.kind != EventKind.REVERSE and (event.kind != EventKind.BREAKAWAY or event.mode == Mode.STICK):
+            return None
+        self._slip, self._is_open = _Slip(event), True
+        return _cycle(slip, event) if slip is not None and slip.is_over else None
+
+
+def _cycle(slip: _Slip, following: Event) -> Cycle:
+    first, last = slip.first, slip.last
     return Cycle(
         begin=first.time,
         direction=first.direction,
@@ -125,7 +192,7 @@ def _cycle(slip: Sequence[Event], following: Event) -> Cycle:
         period=_elapsed(first, following),
         slip_travel=first.direction * (last.position - first.position),
         jump=first.direction * (following.position - first.position),
-        peak_speed=max(abs(event.velocity) for event in slip),
+        peak_speed=slip.peak_speed,
         break_away_force=abs(first.friction_force),
         break_away_drive_force=first.drive_force,
         arrest_drive_force=last.drive_force,
@@ -148,12 +215,3 @@ def _is_settled(cycles: Sequence[Cycle]) -> bool:
         return False
     before, last = cycles[-2:]
     return before.direction == last.direction and abs(last.period - before.period) < SETTLED * last.period
-
-
-def _motion(events: Sequence[Event], cycles: Sequence[Cycle], start: Mode) -> str:
-    if cycles:
-        return 'stick-slip'
-    mode = events[-1].mode if events else start
-    if mode != Mode.STICK:
-        return 'smooth sliding'
-    return 'single slip' if events or start != Mode.STICK else 'at rest'

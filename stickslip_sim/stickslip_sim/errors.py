@@ -11,6 +11,8 @@
 Each carries one line of text for people and the exit code of the tool.
 """
 
+import os
+
 LINE_LIMIT = 2000   # characters
 
 
@@ -63,6 +65,14 @@ def one_line(text: str, limit: int = LINE_LIMIT) -> str:
     """Return text from outside as one line that any terminal and any file can hold."""
     printable = ''.join(letter if letter.isprintable() else '?' for letter in ' '.join(text[:4 * limit].split()))
     return printable if len(printable) <= limit else printable[:limit] + '…'
+
+
+def internal_error(error: Exception) -> str:
+    """Return one line about an error that nobody expected; under STICKSLIP_DEBUG=1 raise it, which shows where."""
+    if os.environ.get('STICKSLIP_DEBUG') == '1':
+        raise error
+    first, *_ = str(error).splitlines() or ['']
+    return f'internal error: {type(error).__name__}: {first} (STICKSLIP_DEBUG=1 shows where)'
 
 
 def _short(value: object, limit: int = 80) -> str:

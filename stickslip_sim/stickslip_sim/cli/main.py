@@ -18,7 +18,7 @@ from typing import NoReturn
 import click
 
 from .. import __version__
-from ..errors import StickslipError
+from ..errors import StickslipError, internal_error
 from .advise import advise
 from .bench import bench
 from .check import check
@@ -90,10 +90,7 @@ def _invoked(arguments: Sequence[str]) -> int:
     except Exception as error:
         if _is_of_output(error):
             raise
-        if os.environ.get('STICKSLIP_DEBUG') == '1':
-            raise
-        first, *_ = str(error).splitlines() or ['']
-        return _refuse(f'internal error: {type(error).__name__}: {first} (STICKSLIP_DEBUG=1 shows where)', 1)
+        return _refuse(internal_error(error), 1)
 
 
 def _refuse(text: str, code: int) -> int:

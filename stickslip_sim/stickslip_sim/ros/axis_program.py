@@ -26,12 +26,13 @@ def _read(args: Sequence[str]) -> 'FileParameters':
     return FileParameters.read(list(params_files(args)))
 
 
-def _run(files: 'FileParameters', signals: 'Signals') -> str:
+def _run(files: 'FileParameters', signals: 'Signals') -> None:
     from .node import FeedAxis
 
     node = FeedAxis(files, lambda: signals.stop)
     spin(node, signals, lambda: node.loop.crash is not None)
-    return '' if node.loop.crash is None else f'in the step loop: {node.loop.crash!r}'
+    if node.loop.crash is not None:
+        raise node.loop.crash
 
 
 PROGRAM = Program('sim_node', _USAGE, _read, _run)

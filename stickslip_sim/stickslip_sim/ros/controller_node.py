@@ -20,7 +20,7 @@ from ..errors import InputError
 from ..recording.topics import JOINT_COMMANDS, JOINT_STATES
 from ..rig import Measured
 from .answers import answer
-from .controller_parameters import COMMON, COMPENSATION, following
+from .controller_parameters import COMMON, COMPENSATION, following, model_of
 from .joints import DRIVE, SLIDER
 from .listed_parameters import ListedNode
 from .topics import publisher, subscription
@@ -35,7 +35,8 @@ class ControllerNode(ListedNode):
 
     def __init__(self, name: str, compensates: bool) -> None:
         super().__init__(name, (*COMMON, *(COMPENSATION if compensates else ())))
-        self._following = following(self.values)
+        self._model = model_of(self.values)     # once: what its file says later is for the next start
+        self._following = following(self.values, self._model)
         self._progress: Progress | None = None
         self._heard = self._refused = self._limited = 0    # measurements and commands since the last report
         self._refusal = ''
@@ -60,7 +61,7 @@ class ControllerNode(ListedNode):
 
     def values_changed(self) -> None:
         """Go on with other gains."""
-        self._following = following(self.values)
+        self._following = following(self.values, self._model)
 
     def _hear(self, message: JointState) -> None:
         self._heard += 1

@@ -4,6 +4,7 @@
 
 from collections.abc import Mapping
 
+from ..axis import Axis
 from ..control import BranchCompensation, Cascade, Controller, Following, Moves
 from ..scene import load_scene
 from ..scene.load import named
@@ -39,19 +40,20 @@ COMPENSATION = (
 )
 
 
-def following(values: Mapping[str, object]) -> Following:
-    """Return the controller and its moves; raises InputError when the model is no scene."""
-    of = {name: value for name, value in values.items() if isinstance(value, float)}
-    moves = Moves(of['moves.travel'], of['moves.feed'], of['moves.acceleration'], of['moves.dwell'])
-    cascade = Cascade(of['position_gain'], of['velocity_gain'], of['integral_time'])
-    controller = Controller(cascade, _compensation(values, of), of['max_velocity'])
-    return Following(controller, moves, of['max_gap'])
-
-
-def _compensation(values: Mapping[str, object], of: Mapping[str, float]) -> BranchCompensation | None:
+def model_of(values: Mapping[str, object]) -> Axis | None:
+    """Return the axis that the compensation takes for its model; raises InputError when it is no scene."""
     model = values.get('compensation.model')
     if model is None:
         return None
     with named('compensation.model'):
-        axis = load_scene(str(model)).axis
-    return BranchCompensation(axis, of['compensation.share'], of['compensation.rate'], of['compensation.threshold'])
+        return load_scene(str(model)).axis
+
+
+def following(values: Mapping[str, object], model: Axis | None) -> Following:
+    """Return the controller, which compensates friction if it has a model, and its moves."""
+    of = {name: value for name, value in values.items() if isinstance(value, float)}
+    moves = Moves(of['moves.travel'], of['moves.feed'], of['moves.acceleration'], of['moves.dwell'])
+    cascade = Cascade(of['position_gain'], of['velocity_gain'], of['integral_time'])
+    compensation = BranchCompensation(model, of['compensation.share'], of['compensation.rate'],
+                                      of['compensation.threshold']) if model else None
+    return Following(Controller(cascade, compensation, of['max_velocity']), moves, of['max_gap'])

@@ -25,10 +25,9 @@ _WHAT = {
 def controller_program(name: str, compensates: bool) -> Program:
     """Return the program of that name."""
 
-    def run(_: None, signals: 'Signals') -> str:
+    def run(_: None, signals: 'Signals') -> None:
         from .controller_node import ControllerNode
 
         spin(ControllerNode(name, compensates), signals)
-        return ''
 
     return Program(name, _USAGE.format(name, _WHAT[compensates]), check_params_files, run)

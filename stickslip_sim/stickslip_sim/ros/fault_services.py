@@ -16,6 +16,7 @@ from .loop import StepLoop
 from .parameters import SceneNode
 
 _CLEAR = 'clear'
+_TIMEOUT = 'the command time-out (the drive takes commands again)'
 
 
 class FaultServices:
@@ -40,8 +41,13 @@ class FaultServices:
 
     def _clear_all(self, _: Any, response: Any) -> Any:
         cleared: list[str] = []
-        return self._at_boundary(response, lambda: cleared.extend(self._loop.rig.clear_faults()),
-                                 lambda: f'cleared: {", ".join(cleared) or "there were none"}')
+
+        def clear() -> None:
+            rig = self._loop.rig
+            of_timeout = [_TIMEOUT] if rig.has_failed else []
+            cleared.extend(rig.clear_faults() + of_timeout)
+
+        return self._at_boundary(response, clear, lambda: f'cleared: {", ".join(cleared) or "there were none"}')
 
     def _at_boundary(self, response: Any, action: Callable[[], object], told: Callable[[], str]) -> Any:
         refusals: list[InputError] = []

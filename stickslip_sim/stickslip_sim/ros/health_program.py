@@ -19,13 +19,12 @@ there are warnings; 1: there is an error, or it says nothing.
 """
 
 
-def _run(_: None, signals: 'Signals') -> str:
+def _run(_: None, signals: 'Signals') -> None:
     from .health_node import Listener
 
     listener = Listener()
     spin(listener, signals, lambda: listener.is_over)
     sys.stdout.write(listener.verdict() + '\n')
-    return ''
 
 
 PROGRAM = Program('health', _USAGE, check_params_files, _run)

@@ -19,21 +19,23 @@ class Program(NamedTuple):
     name: str
     usage: str
     read: Callable[[Sequence[str]], Any]
-    run: Callable[[Any, 'Signals'], str]    # returns why it crashed, or an empty text
+    run: Callable[[Any, 'Signals'], None]
 
 
 def live(args: Sequence[str], signals: 'Signals', program: Program) -> int:
     """Bring a node up and down; return the exit code.  ROS and numba are imported in here, where errors are met."""
-    from ..errors import StickslipError
+    from ..errors import StickslipError, internal_error
     from .environment import check_environment
 
     sys.setswitchinterval(_SWITCH_INTERVAL)
     try:
         check_environment()
-        crash = _with_ros(args, signals, program)
-        return _refuse(program, f'internal error {crash}', 1) if crash else 0
+        _with_ros(args, signals, program)
+        return 0
     except StickslipError as error:
         return _refuse(program, str(error), error.exit_code)
+    except Exception as error:
+        return _refuse(program, internal_error(error), 1)
 
 
 def spin(node: Any, signals: 'Signals', is_over: Callable[[], bool] = lambda: False) -> None:
@@ -62,7 +64,7 @@ def make_executor() -> Any:
     return EventsExecutor()
 
 
-def _with_ros(args: Sequence[str], signals: 'Signals', program: Program) -> str:
+def _with_ros(args: Sequence[str], signals: 'Signals', program: Program) -> None:
     import rclpy
     from rclpy.executors import ExternalShutdownException
 
@@ -71,10 +73,10 @@ def _with_ros(args: Sequence[str], signals: 'Signals', program: Program) -> str:
         _init_ros(args)
         if _wants_help(args, program):
             sys.stdout.write(program.usage)
-            return ''
-        return program.run(given, signals)
+        else:
+            program.run(given, signals)
     except ExternalShutdownException:
-        return ''
+        pass
     finally:
         rclpy.try_shutdown()
 

@@ -68,7 +68,7 @@ class FeedAxis(SceneNode):
         self._record_service.recordings.prepare()
         gc.collect()
         gc.freeze()      # a full collection would take tens of ms out of the loop
-        self._outlet.begin_run(self._start_ns())
+        self._begin_run()
         if self.scene.record.enabled:
             self._record_service.begin(lambda attach: attach())
         else:
@@ -125,7 +125,7 @@ class FeedAxis(SceneNode):
     def _restart(self) -> bool:
         def restart() -> None:
             self.loop.restart()
-            self._outlet.begin_run(self._start_ns())
+            self._begin_run()
 
         done = self.loop.at_boundary(restart)
         if done:
@@ -133,6 +133,10 @@ class FeedAxis(SceneNode):
             self._cost.begin()
         self._publish_run_info()
         return done
+
+    def _begin_run(self) -> None:
+        """Let the outlet begin where the rig is before its first step."""
+        self._outlet.begin_run(self._start_ns(), self.loop.rig.simulator.sample().mode)
 
     def _receipt(self) -> dict[str, Any]:
         try:

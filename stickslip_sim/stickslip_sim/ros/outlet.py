@@ -9,13 +9,13 @@ from rclpy.serialization import deserialize_message, serialize_message
 
 from stickslip_msgs.msg import FrictionForce, ModeEvent, SliderState
 
+from ..analysis import EventTally
 from ..recording import flat_layout
 from ..recording import topics as names
 from ..recording.messages import Packer
 from ..recording.topics import RECORDED, Topic
 from ..rig import Product
 from ..words import Event, EventKind, Mode, Sample
-from .kept_events import KeptEvents
 from .topics import publisher
 
 
@@ -35,8 +35,7 @@ class Outlet:
     def __init__(self, node: Node) -> None:
         self.start_ns = 0
         self.recorder: Recorder | None = None
-        self.events = KeptEvents()
-        self.first_mode = Mode.STICK
+        self.events = EventTally()    # of the run so far
         self._state = _Port(node, names.SLIDER_STATE)
         self._friction = _Port(node, names.FRICTION_FORCE)
         self._event = _Port(node, names.MODE_EVENT)
@@ -44,11 +43,11 @@ class Outlet:
         self._commands = [(RECORDED.index(topic), flat_layout(topic.type))
                           for topic in (names.DRIVE_VELOCITY, names.EXTERNAL_FORCE)]
 
-    def begin_run(self, start_ns: int) -> None:
-        """Let simulation time 0 be a ROS time, ns, and forget the events."""
+    def begin_run(self, start_ns: int, mode: Mode) -> None:
+        """Let simulation time 0 be a ROS time, ns, at which the slider is in a mode; forget the events."""
         self.start_ns = start_ns
         self._time_ns = 0
-        self.events.clear()
+        self.events = EventTally(mode)
 
     def take(self, product: Product) -> None:
         """Record the commands of a step; publish and record its events, and the state at its end."""
@@ -66,15 +65,13 @@ class Outlet:
 
     def event(self, step: int, event: Event) -> None:
         """Publish an event that fell into a step; knots of the friction table are nobody's business."""
+        self.events.add(event)
         if event.kind == EventKind.KNOT:
             return
-        self.events.append(event)
         self._send(self._event, event.instant.nanoseconds, step, event)
 
     def sample(self, step: int, sample: Sample) -> None:
         """Publish the state at the end of a step."""
-        if step == 0:
-            self.first_mode = sample.mode
         time_ns = self._time_ns = sample.instant.nanoseconds
         self._send(self._state, time_ns, step, sample)
         self._send(self._friction, time_ns, step, sample)

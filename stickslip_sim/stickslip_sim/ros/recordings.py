@@ -40,7 +40,7 @@ class Recordings:
         self.dropped = 0             # messages of earlier recordings
         self._namespace = namespace
         given = os.path.expanduser(scene.record.folder)
-        self._root = Path(os.path.realpath(os.path.dirname(given) if given else _RUNS))
+        self._root = Path(os.path.realpath(Path(given).parent if given else _RUNS))
         self._codec = MessageCodec([PARAMETER_EVENTS.type])
 
     @property

@@ -5,7 +5,6 @@
 from dataclasses import asdict
 from typing import Any
 
-from ..analysis import summary
 from ..receipt import receipt_of
 from ..scene.model import Scene
 from .ledger import Worst
@@ -20,7 +19,7 @@ def run_receipt(scene: Scene, loop: StepLoop, outlet: Outlet, dropped: int, cost
     simulator = loop.rig.simulator
     period = 1.0 / scene.time.rate
     duration = max(simulator.time.seconds, period)
-    figures = summary(outlet.events.all(), duration, outlet.first_mode)
+    figures = outlet.events.summary(duration)
     receipt = receipt_of(scene, duration, period, figures, simulator.root_iterations, simulator.sample(),
                          simulator.energy, *cost)
     slots = {slot.name: {'received': slot.received, 'refused': slot.refused} for slot in loop.slots}

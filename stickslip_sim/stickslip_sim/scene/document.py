@@ -27,7 +27,10 @@ contradict a choice, with one line.  The shipped files in `stickslip_sim/sticksl
   (*needed*) it must be given.
 * Write numbers with a dot, `350.0` or `6.0e5`.  A whole number is taken for a double, but inside a list ROS wants all
   alike: `[0.0, 0.035]`.  Infinity is `.inf`.  Anchors, aliases, tags and a name given twice are refused.
-* "live" parameters may change while the node runs (`ros2 param set`); all changes of one request are checked together.
+* "live" parameters may change while the node runs.  `ros2 param set`, `ros2 param load` and the service
+  `set_parameters` change one after the other, each checked with those in force, as ROS defines it.  What must change
+  together, as both lists of a friction table to another length, goes by the service `set_parameters_atomically` (in
+  newer ROS `ros2 param load --atomic`): all or none, between the same two steps.
 * `--set a.b=value` of the tool changes one value of the file.  If it changes a choice, what the file gives for the old
   choice goes with it: `--set contact.model=rigid` needs no more.
 """

@@ -19,16 +19,13 @@ playback_duration, clock, delay, start_paused, topics.
 """
 
 
-def _run(_: None, signals: 'Signals') -> str:
-    from ...errors import StickslipError
+def _run(_: None, signals: 'Signals') -> None:
     from .node import Replay
 
     node = Replay()
     spin(node, signals, lambda: node.player.is_over)
-    crash = node.player.crash
-    if isinstance(crash, StickslipError):
-        raise crash
-    return '' if crash is None else f'in the player: {crash!r}'
+    if node.player.crash is not None:
+        raise node.player.crash
 
 
 PROGRAM = Program('replay_node', _USAGE, check_params_files, _run)
