@@ -214,13 +214,16 @@ def test_a_table_of_something_else_is_not_gone_on_with(tmp_path: Path, capsys: C
     assert (out / PARTIAL).read_text() == 'a,b\n1,2\n'
 
 
-@pytest.mark.parametrize('flaw', ['a line is gone', 'no motion', 'zeros', 'no text', 'a number of another point'])
+@pytest.mark.parametrize('flaw', ['a line is gone', 'no motion', 'zeros', 'no text', 'a number of another point',
+                                  'no number'])
 def test_a_chunk_that_is_not_whole_is_run_again(flaw: str, tmp_path: Path, uninterrupted: bytes) -> None:
     out = tmp_path / 'out'
     assert run(['sweep', *LONG, '--out', str(out)]) == 0
     rows = uninterrupted.splitlines(keepends=True)
     bad = {'a line is gone': b'', 'no motion': rows[3000].replace(b'stick-slip', b'slick-stip'), 'no text': b'\xff\n',
-           'zeros': b'\0' * 100 + b'\n', 'a number of another point': b'1' + rows[3000]}
+           'zeros': b'\0' * 100 + b'\n', 'a number of another point': b'1' + rows[3000],
+           'no number': rows[3000].replace(b'slip,1.0,', b'slip,inf,')}
+    assert bad[flaw] != rows[3000]
     (out / TABLE).unlink()
     (out / PARTIAL).write_bytes(b''.join([*rows[:3000], bad[flaw], *rows[3001:]]))
     assert Folder(out).whole_chunks(study_of(Folder(out).described())) == 1

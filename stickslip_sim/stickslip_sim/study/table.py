@@ -16,6 +16,7 @@ from .study import Study
 from .variation import Numbers
 
 _BYTES_OF_A_NUMBER = 25   # 17 digits, sign, point, exponent of three digits with its sign, comma
+_LARGEST = 1e150          # of a cell, by far; its square, for variances, is still a number
 _CODES = {word: float(motion) for motion, word in MOTIONS.items()}
 
 
@@ -39,6 +40,8 @@ def numbers_of(rows: Sequence[bytes], study: Study, first: int, last: int) -> Nu
     if numbers.shape != (last - first, width(study)) or not np.array_equal(numbers[:, :place],
                                                                            study.points(first, last)):
         raise ValueError('these are the lines of other points')
+    if (np.abs(numbers) > _LARGEST).any():
+        raise ValueError('these are no figures of an axis')
     return numbers
 
 
