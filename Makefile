@@ -31,7 +31,7 @@ check: tools  ## style, types, architecture
 	@$(TOOLS)/mypy
 	@PYTHONPATH=stickslip_sim $(TOOLS)/lint-imports
 
-extremes: build  ## what breaks other simulators, measured beside its mark (minutes); fails when one is missed
+extremes: tools  ## what breaks other simulators, measured beside its mark (minutes); fails when one is missed
 	@$(HERE) python3 -m stickslip_sim extremes
 
 bench: build  ## measure every solver beside its peers, and the loop of the node; writes docs/ (25 minutes)

@@ -9,8 +9,13 @@ from pathlib import Path
 from typing import Protocol
 
 import pytest
+from hypothesis import settings
 
 from stickslip_sim.cli.main import run
+
+# The same examples each time, however slow a busy machine is; `make fuzz` looks for new ones.
+settings.register_profile('always the same', derandomize=True, database=None, deadline=None)
+settings.load_profile('always the same')
 
 
 class Program(Protocol):

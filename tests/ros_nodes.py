@@ -54,6 +54,11 @@ _HEARD = {
 }
 
 
+def nanoseconds(time: Any) -> int:
+    """Return a time of ROS as a number."""
+    return int(time.sec) * 1_000_000_000 + int(time.nanosec)
+
+
 def executable(name: str) -> str:
     """Return an installed program, as `ros2 run` finds it."""
     for prefix in os.environ['AMENT_PREFIX_PATH'].split(os.pathsep):
@@ -167,9 +172,10 @@ class Client:
     def latest(self, topic: str) -> Any:
         return self.heard[topic][-1]
 
-    def next(self, topic: str, is_it: Callable[[Any], bool] = lambda _: True, deadline: float = DEADLINE) -> Any:
-        """Return the next message of a topic that fulfils a condition."""
-        begin = len(self.heard[topic])
+    def next(self, topic: str, is_it: Callable[[Any], bool] = lambda _: True, deadline: float = DEADLINE,
+             begin: int | None = None) -> Any:
+        """Return the next message of a topic that fulfils a condition, from now or from the message `begin` on."""
+        begin = len(self.heard[topic]) if begin is None else begin
         return wait_for(lambda: next(filter(is_it, self.heard[topic][begin:]), None), f'a message on {topic}', deadline)
 
     def send_velocity(self, velocity: float) -> None:
@@ -205,6 +211,15 @@ class Client:
 
     def trigger(self, name: str) -> Any:
         return self.call(Trigger, name)
+
+    def reset(self) -> Any:
+        """Let a new run begin; return its first state that is heard, which the old run's come before."""
+        infos, states = len(self.heard['run_info']), len(self.heard['slider_state'])
+        before = nanoseconds(self.latest('run_info').start_time)
+        assert self.trigger('reset').success
+        info = self.next('run_info', lambda info: nanoseconds(info.start_time) > before, begin=infos)
+        start = nanoseconds(info.start_time)
+        return self.next('slider_state', lambda state: nanoseconds(state.header.stamp) >= start, begin=states)
 
     def switch(self, name: str, on: bool) -> Any:
         return self.call(SetBool, name, data=on)

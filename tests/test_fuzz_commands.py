@@ -30,7 +30,7 @@ FRAMES = st.text(st.characters(exclude_categories=['Cs'], exclude_characters='\0
 NUMBERS = st.floats() | st.sampled_from((LIMIT, -LIMIT, math.nextafter(LIMIT, 2.0), 5e-324))
 
 
-@settings(derandomize=True, database=None, deadline=None, max_examples=300)
+@settings(max_examples=300)
 @given(stamp=STAMPS, frame=FRAMES, number=NUMBERS, data=st.binary(max_size=60))
 def test_commands(stamp: Time, frame: str, number: float, data: bytes) -> None:
     header = Header(stamp=stamp, frame_id=frame)

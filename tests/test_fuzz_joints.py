@@ -23,7 +23,7 @@ WORDS = st.sampled_from(['axis_drive', 'axis_slider', '', 'axis_drive\n', '\x1b[
 NUMBERS = st.lists(st.floats(), max_size=4)
 
 
-@settings(derandomize=True, database=None, deadline=None, max_examples=300)
+@settings(max_examples=300)
 @given(names=st.lists(WORDS, max_size=4), position=NUMBERS, velocity=NUMBERS, effort=NUMBERS,
        data=st.binary(max_size=80))
 def test_joint_commands(names: list[str], position: list[float], velocity: list[float], effort: list[float],

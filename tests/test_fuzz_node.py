@@ -17,7 +17,7 @@ from stickslip_msgs.srv import InjectFault, Step  # isort: skip
 
 pytestmark = pytest.mark.ros
 
-FEW = settings(derandomize=True, database=None, deadline=None, max_examples=60,
+FEW = settings(max_examples=60,
                suppress_health_check=list(HealthCheck))
 NUMBERS = st.floats() | st.sampled_from((0.0, -0.0, 1e-320, 1e308, math.inf, -math.inf, math.nan))
 WORDS = st.sampled_from(('', 'clear', 'dry', '\x1b[2J', 'a\nb', 'x' * 10_000)) | st.text(

@@ -33,7 +33,7 @@ def orders() -> list[tuple[Topic, bytes]]:
     return [(RIG_EVENT, serialize_message(fault)), (PARAMETER_EVENTS, serialize_message(change))]
 
 
-@settings(derandomize=True, database=None, deadline=None, max_examples=300)
+@settings(max_examples=300)
 @given(place=st.integers(0, 200), cut=st.integers(0, 9), data=st.binary(max_size=9))
 def test_orders(orders: list[tuple[Topic, bytes]], place: int, cut: int, data: bytes) -> None:
     for kind, whole in orders:

@@ -15,7 +15,7 @@ from stickslip_sim.scene import load_scene
 from stickslip_sim.scene.schema import PARAMETERS
 from stickslip_sim.simulator import Simulator
 from stickslip_sim.words import EventKind, Instant
-from tests.ros_nodes import Client, NodeProcess, client, running
+from tests.ros_nodes import Client, NodeProcess, client, nanoseconds, running
 from tests.waiting import wait_for
 
 pytestmark = pytest.mark.ros
@@ -42,8 +42,7 @@ def connected(process: NodeProcess) -> Iterator[Client]:
 @pytest.fixture
 def axis(connected: Client) -> Client:
     """The client of an axis that begins anew."""
-    assert connected.trigger('reset').success
-    connected.next('slider_state', lambda state: state.step < 1000)
+    connected.reset()
     return connected
 
 
@@ -236,12 +235,10 @@ class TestServices:
     def test_reset_is_a_new_run(self, axis: Client) -> None:
         axis.send_velocity(0.005)
         axis.next('slider_state', lambda state: state.drive_velocity == 0.005 and state.step > 200)
-        before = axis.latest('run_info').start_time
-        assert axis.trigger('reset').success
-        state = axis.next('slider_state', lambda state: state.step < 200)
-        assert state.drive_velocity == 0.002
-        info = axis.latest('run_info').start_time
-        assert (info.sec, info.nanosec) > (before.sec, before.nanosec)
+        before = nanoseconds(axis.latest('run_info').start_time)
+        state = axis.reset()
+        assert (state.step, state.drive_velocity) == (0, 0.002)
+        assert nanoseconds(axis.latest('run_info').start_time) > before
 
     def test_record(self, axis: Client, process: NodeProcess) -> None:
         answer = axis.switch('record', True)

@@ -107,7 +107,8 @@ class TestLockStep:
                                             monkeypatch: pytest.MonkeyPatch) -> None:
         short = tmp_path / 'short_lease.xml'
         short.write_text(SHORT_LEASE)
-        monkeypatch.setenv('FASTRTPS_DEFAULT_PROFILES_FILE', str(short))
+        for name in ('FASTRTPS', 'FASTDDS'):    # on Jazzy, and from Kilted on
+            monkeypatch.setenv(f'{name}_DEFAULT_PROFILES_FILE', str(short))
         with running(*LOCKSTEP) as axis, client() as viewer, replaying(recorded, '-p', 'loop:=true') as process:
             viewer.next('slider_state', lambda state: state.step > 20)
             axis.kill()

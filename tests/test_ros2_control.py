@@ -172,7 +172,7 @@ class TestSilence:
         assert all(THRESHOLD in text for text in (status.message, note.text, errors))
 
     def test_sent_always_with_what_is_shipped(self) -> None:
-        with running(*ON, '-p', 'command.timeout:=0.3') as process, client() as axis:
+        with running(*ON, '-p', 'command.timeout:=2.0') as process, client() as axis:
             axis.connect()
             with hardware_interface(always(0.003)):
                 axis.next('slider_state', lambda state: state.drive_velocity == 0.003)

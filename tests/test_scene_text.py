@@ -39,7 +39,7 @@ def overrides(draw: st.DrawFn) -> dict[str, object]:
     }
 
 
-@settings(max_examples=30, deadline=None, derandomize=True)
+@settings(max_examples=30)
 @given(overrides(), st.sampled_from(['paper_fig7', 'paper_fig8', 'cutting_force']))
 def test_the_text_of_a_scene_loads_as_the_same_scene(changes: dict[str, object], name: str) -> None:
     scene = load_scene(name, changes)

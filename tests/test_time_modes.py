@@ -21,7 +21,7 @@ from stickslip_sim.recording import Run, read_run
 from stickslip_sim.scene import Scene, load_scene
 from tests.replays import FIELDS, assert_same_states, made_again
 from tests.rigs import run
-from tests.ros_nodes import Client, NodeProcess, assert_clean, client, running
+from tests.ros_nodes import Client, NodeProcess, assert_clean, client, nanoseconds, running
 from tests.waiting import wait_for
 
 rosgraph_msgs = pytest.importorskip('rosgraph_msgs.msg')
@@ -196,10 +196,6 @@ def clocked(node_with_a_clock: Client) -> Client:
     wait_for(lambda: heard and heard[-1][0] == 0, 'the start')
     del heard[:-1]    # ticks of the run before that were still on their way
     return node_with_a_clock
-
-
-def nanoseconds(stamp: Any) -> int:
-    return int(stamp.sec) * 1_000_000_000 + int(stamp.nanosec)
 
 
 class TestClock:
