@@ -18,6 +18,7 @@ from ..recording import RECORDED, RunFacts, messages
 from ..recording import topics as names
 from ..rig.watchdog import Watchdog
 from ..scene.model import Scene
+from ..scene.sections import NODE
 from . import conversion
 from .clock import ClockOut
 from .fault_services import FaultServices
@@ -35,8 +36,6 @@ from .time_services import TimeServices
 from .topics import publisher
 from .verdict import verdict
 
-NAME = 'feed_axis'
-
 
 class FeedAxis(SceneNode):
     """Publishes the motion of one axis; callbacks run in an executor, the steps in the loop's thread.
@@ -46,7 +45,7 @@ class FeedAxis(SceneNode):
     """
 
     def __init__(self, files: FileParameters, is_stopping: Callable[[], bool]) -> None:
-        super().__init__(NAME, files)
+        super().__init__(NODE, files)
         scene = self.scene
         if scene.solver.name == 'adaptive':
             raise InputError('solver.name', 'adaptive', 'exact or fixed_step in the node',

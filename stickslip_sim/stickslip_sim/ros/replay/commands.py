@@ -9,6 +9,7 @@ from rclpy.node import Node
 
 from ...errors import InputError
 from ...recording.playback import Recording
+from ...scene.sections import NODE
 from .axis import Axis
 from .lockstep import InLockStep
 from .orders import COMMANDS, order_topics
@@ -17,7 +18,6 @@ from .realtime import InRealTime
 from .settings import Settings
 from .span import Span, chosen_topics
 
-_AXIS = 'feed_axis'
 _STRIDE = 0.02    # s of the steady clock that pass with one call of ~/step
 
 
@@ -54,4 +54,4 @@ class Commands:
 
     def _recorded_axis(self) -> str:
         command = next(name for name, kind in self._orders.items() if kind in COMMANDS)
-        return f'{command.rpartition("/")[0]}/{_AXIS}'
+        return f'{command.rpartition("/")[0]}/{NODE}'
