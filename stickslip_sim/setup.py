@@ -53,7 +53,7 @@ setup(
     python_requires='>=3.10',
     install_requires=[
         'setuptools', 'numpy', 'scipy', 'numba', 'PyYAML', 'mcap', 'zstandard', 'lz4', 'rosbags',
-        'matplotlib', 'click',
+        'matplotlib>=3.6', 'click',
     ],
     extras_require={
         'bench': ['mpmath'], 'cluster': ['distributed'], 'tables': ['pandas', 'fastparquet'], 'test': ['pytest'],

@@ -8,10 +8,11 @@ import sys
 import time
 from pathlib import Path
 
+import click
 import pytest
 
 from stickslip_sim.cli.main import run
-from tests.tool import Capture, refused, restore_interrupt
+from tests.tool import Capture, answered, refused, restore_interrupt
 
 
 @pytest.mark.parametrize(('arguments', 'words'), [
@@ -40,6 +41,19 @@ def test_wrong_use(arguments: list[str], words: list[str], capsys: Capture) -> N
     line = refused(capsys, *arguments)
     for word in words:
         assert word in line
+
+
+def test_wrong_use_where_click_is_older(monkeypatch: pytest.MonkeyPatch, capsys: Capture) -> None:
+    """Ubuntu 24.04 has click 8.1."""
+    monkeypatch.delattr(click.exceptions, 'NoArgsIsHelpError', raising=False)
+    assert 'sing' in refused(capsys, 'sing')
+
+
+def test_without_a_verb_the_help_is_the_answer(capsys: Capture) -> None:
+    code, out, err = answered(capsys)
+    assert (code, out) == (2, '')
+    assert err.startswith('Usage: stickslip [OPTIONS] COMMAND [ARGS]...')
+    assert 'simulate' in err
 
 
 def test_an_existing_bag_folder_is_refused_before_the_work(tmp_path: Path, capsys: Capture) -> None:

@@ -4,15 +4,18 @@
 
 import subprocess
 import sys
+from io import BytesIO
 from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from stickslip_sim.offline import Columns, run_offline
 from stickslip_sim.plots import plot_run
-from stickslip_sim.plots.look import Numbers, thinned
+from stickslip_sim.plots.look import Numbers, legend_outside, thinned
 from stickslip_sim.scene import load_scene
 
 PNG = b'\x89PNG\r\n\x1a\n'
@@ -62,6 +65,22 @@ def test_thinning_keeps_the_peaks() -> None:
     assert (thin.max(), thin.min()) == (9.0, -9.0)
     assert (thin_time[0], thin_time[-1]) == (0.0, 1.0)
     assert np.all(np.diff(thin_time) > 0.0)
+
+
+@pytest.mark.parametrize('place', ['upper left', 'upper right', 'lower center'])
+def test_panels_make_room_for_a_legend_outside(place: str) -> None:
+    figure = Figure(layout=ConstrainedLayoutEngine())
+    for part in figure.subfigures(2, 1):
+        panel = part.subplots()
+        legend_outside(part, place, panel.plot([0, 1, 0]) * 6, 'abcdef', ncols=2)
+        panel.set(xlabel='x', title='a panel')
+    figure.savefig(BytesIO())
+    for part in figure.subfigs:
+        legend = part.legends[0].get_window_extent()
+        panels = part.axes[0].get_tightbbox()
+        assert panels is not None
+        assert not legend.overlaps(panels)
+        assert part.bbox.ymin <= legend.ymin < legend.ymax <= part.bbox.ymax
 
 
 def test_no_global_state_of_matplotlib() -> None:

@@ -39,10 +39,15 @@ _TERMINATED = 143
 
 
 @click.group(context_settings={'help_option_names': ['-h', '--help'], 'max_content_width': 100},
-             epilog='For a start: stickslip simulate paper_fig8 --duration 10 --plot run.png')
+             epilog='For a start: stickslip simulate paper_fig8 --duration 10 --plot run.png',
+             invoke_without_command=True, subcommand_metavar='COMMAND [ARGS]...')
 @click.version_option(__version__, message='stickslip %(version)s')
-def stickslip() -> None:
+@click.pass_context
+def stickslip(context: click.Context) -> None:
     """Stick-slip motion of a feed axis, simulated exactly."""
+    if context.invoked_subcommand is None:   # what click does by itself depends on its version
+        click.echo(context.get_help(), err=True)
+        context.exit(2)
 
 
 for verb in (advise, bench, check, compare, critical, export, extremes, map_, scenes, simulate, sweep, uncertainty,
@@ -78,9 +83,6 @@ def _invoked(arguments: Sequence[str]) -> int:
         return 0
     except click.exceptions.Exit as end:
         return end.exit_code
-    except click.exceptions.NoArgsIsHelpError as error:
-        error.show()
-        return error.exit_code
     except click.ClickException as error:
         return _refuse(_usage(error), error.exit_code)
     except StickslipError as error:

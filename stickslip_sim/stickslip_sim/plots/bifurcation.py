@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from .look import BLACK, BLUE, DOUBLE_COLUMN, GREEN, JOURNAL, MILLI, ORANGE, Numbers, letter, save
+from .look import BLACK, BLUE, DOUBLE_COLUMN, GREEN, JOURNAL, MILLI, ORANGE, Numbers, legend_outside, letter, save
 from .scale import Scale
 
 _DOT: dict[str, Any] = {'linestyle': '', 'marker': 'o', 'markersize': 1.6, 'markeredgewidth': 0.0}
@@ -32,7 +32,7 @@ def plot_bifurcation(over: Scale, cycles: Numbers, sliding: Numbers, path: Path 
             panel.set(xlabel=over.label, xscale=over.kind)
             panel.set_ylim(bottom=min(0.0, panel.get_ylim()[0]))
             letter(panel, name)
-        figure.legend(*force.get_legend_handles_labels(), loc='outside upper left', ncols=4, markerscale=2.5)
+        legend_outside(figure, 'upper left', *force.get_legend_handles_labels(), ncols=4, markerscale=2.5)
         save(figure, path)
 
 

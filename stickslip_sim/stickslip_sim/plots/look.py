@@ -2,13 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """How all pictures look: colours, lines, files.  Without matplotlib's global state, so that no display is needed."""
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from matplotlib import rc_context
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, SubFigure
 from numpy.typing import NDArray
 
 from ..words import Mode
@@ -21,6 +23,7 @@ BLUE, RED, PURPLE = '#0072B2', '#D55E00', '#CC79A7'
 GREY = '#666666'
 MODE_COLOURS = {Mode.STICK: SKY, Mode.ACCELERATING: ORANGE, Mode.COASTING: GREEN, Mode.DECELERATING: PURPLE}
 MILLI = 1e3          # m to mm
+_POINTS_PER_INCH = 72.0
 _POINTS = 8000       # per line: more than a picture can show
 JOURNAL: dict[str, Any] = {   # for pictures that are printed at the width of one or two columns
     'font.size': 8.0, 'axes.labelsize': 8.0, 'legend.fontsize': 7.0, 'xtick.labelsize': 7.0, 'ytick.labelsize': 7.0,
@@ -50,6 +53,19 @@ def thinned(time: Numbers, values: Numbers) -> tuple[Numbers, Numbers]:
     keep = np.concatenate([[0], first + bundles.argmin(axis=1), first + bundles.argmax(axis=1), [len(values) - 1]])
     keep = np.unique(keep)
     return time[keep], values[keep]
+
+
+def legend_outside(figure: Figure | SubFigure, place: str, handles: Iterable[Artist], labels: Iterable[str],
+                   **look: Any) -> None:
+    """Explain lines beside all panels, at a `place` as `upper left`, where the figure has no other title.
+
+    A blank title of the legend's height keeps room for it: `loc='outside ...'` came with matplotlib 3.7, and Ubuntu
+    24.04 has 3.6.
+    """
+    legend = figure.legend(list(handles), list(labels), loc=place, **look)
+    height = legend.get_window_extent().height / figure.dpi * _POINTS_PER_INCH
+    keep = figure.suptitle if place.startswith('upper') else figure.supxlabel
+    keep(' ', fontsize=height)
 
 
 def letter(panel: Axes, text: str) -> None:

@@ -14,7 +14,21 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from ..words import Mode
-from .look import BLACK, BLUE, DOUBLE_COLUMN, JOURNAL, MILLI, MODE_COLOURS, ORANGE, RED, Numbers, letter, save, thinned
+from .look import (
+    BLACK,
+    BLUE,
+    DOUBLE_COLUMN,
+    JOURNAL,
+    MILLI,
+    MODE_COLOURS,
+    ORANGE,
+    RED,
+    Numbers,
+    legend_outside,
+    letter,
+    save,
+    thinned,
+)
 
 KILO = 1e-3   # N to kN
 _EARLIER = '#b0b0b0'
@@ -64,8 +78,8 @@ def legend_below(figure: Figure, *panels: Axes) -> None:
     """Explain the lines of panels below the whole picture, those of one name once."""
     lines = {label: handle for panel in panels for handle, label in zip(*panel.get_legend_handles_labels())}
     labels = sorted(lines, key=lambda label: _MODE_NAMES.index(label) if label in _MODE_NAMES else -1)
-    figure.legend([lines[label] for label in labels], labels, loc='outside lower center', ncols=min(len(labels), 5),
-                  handlelength=3.6)
+    legend_outside(figure, 'lower center', [lines[label] for label in labels], labels, ncols=min(len(labels), 5),
+                   handlelength=3.6)
 
 
 def part(columns: Mapping[str, Numbers], begin: float, end: float) -> dict[str, Numbers]:

@@ -20,7 +20,7 @@ from matplotlib.patheffects import Normal, Stroke
 from matplotlib.ticker import LogLocator
 from numpy.typing import NDArray
 
-from .look import BLACK, DOUBLE_COLUMN, GREY, JOURNAL, RED, SINGLE_COLUMN, Numbers, save
+from .look import BLACK, DOUBLE_COLUMN, GREY, JOURNAL, RED, SINGLE_COLUMN, Numbers, legend_outside, save
 from .motion import Motion, phase_plane
 from .scale import Scale
 
@@ -98,7 +98,7 @@ def _map(panel: Axes, scales: tuple[Scale, Scale, Scale], field: Field, lines: L
         handles += _theory(panel, x, y, lines)
     for pick, letter in zip(picks, ascii_uppercase):
         _mark(panel, x.shown(pick.x), y.shown(pick.y), letter)
-    panel.figure.legend(handles=handles, loc='outside upper left', ncols=2)
+    legend_outside(panel.figure, 'upper left', handles, [str(handle.get_label()) for handle in handles], ncols=2)
 
 
 def _norm(values: Numbers, scale: Scale) -> Normalize:
@@ -137,4 +137,4 @@ def _portraits(panels: list[Axes], picks: Sequence[Pick]) -> None:
     for panel in panels[len(picks):]:
         panel.set_visible(False)
     labels = {label: line for panel in panels for line, label in zip(*panel.get_legend_handles_labels())}
-    panels[0].figure.legend(labels.values(), labels.keys(), loc='outside upper left', ncols=3)
+    legend_outside(panels[0].figure, 'upper left', labels.values(), labels.keys(), ncols=3)

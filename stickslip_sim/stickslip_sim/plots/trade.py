@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.lines import Line2D
 
-from .look import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, save
+from .look import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, legend_outside, save
 
 
 class Line(NamedTuple):
@@ -43,8 +43,8 @@ def plot_trade(panels: Mapping[str, Sequence[Line]], title: str, path: Path | st
     for panel in grid.flat[max(len(panels) - columns, 0):len(panels)]:
         panel.set_xlabel(f'worst error of an event time / s (below {LEAST_ERROR:.0e}: drawn there)')
         panel.xaxis.set_tick_params(labelbottom=True)
-    handles = [Line2D([], [], label=label, **looks[label]) for label in labels]
-    figure.legend(handles=handles, loc='outside lower center', ncols=3, frameon=False, fontsize=9, handlelength=3.5)
+    handles = [Line2D([], [], **looks[label]) for label in labels]
+    legend_outside(figure, 'lower center', handles, labels, ncols=3, frameon=False, fontsize=9, handlelength=3.5)
     figure.suptitle(title, x=0.01, ha='left', fontsize=12)
     save(figure, path)
 

@@ -15,7 +15,7 @@ from matplotlib.figure import Figure, SubFigure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import MaxNLocator
 
-from .look import BLACK, BLUE, DOUBLE_COLUMN, GREY, JOURNAL, SKY, Numbers, letter, save
+from .look import BLACK, BLUE, DOUBLE_COLUMN, GREY, JOURNAL, SKY, Numbers, legend_outside, letter, save
 from .scale import Scale, in_words
 
 _MOST_BINS = 30   # a square root of the points, where that is less
@@ -69,7 +69,7 @@ def _spreads(part: SubFigure, spreads: Sequence[Spread], heading: str) -> None:
     letter(panels[0, 0], 'a')
     panels[0, 0].set_title(heading, loc='left', fontsize=8.0)
     labels = {label: line for panel in panels.flat for line, label in zip(*panel.get_legend_handles_labels())}
-    part.legend(labels.values(), labels.keys(), loc='outside upper right', ncols=3)
+    legend_outside(part, 'upper right', labels.values(), labels.keys(), ncols=3)
 
 
 def _histogram(panel: Axes, spread: Spread) -> None:
@@ -111,4 +111,4 @@ def _shares(part: SubFigure, parameters: Sequence[str], shares: Sequence[Shares]
         panel.set(xticks=[0.0, 0.5, 1.0], ylim=(len(parameters) - 0.45, -0.55))
     letter(panels[0], 'b')
     part.supxlabel('share of the variance that the parameter explains, ± standard error', fontsize=8.0)
-    part.legend(*panels[0].get_legend_handles_labels(), loc='outside upper right', ncols=2)
+    legend_outside(part, 'upper right', *panels[0].get_legend_handles_labels(), ncols=2)
