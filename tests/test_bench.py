@@ -13,6 +13,7 @@ from stickslip_sim.axis import InitialState
 from stickslip_sim.bench.cases import case_names, make_case
 from stickslip_sim.bench.contestants import PEERS
 from stickslip_sim.bench.errors import Truth, errors_of, pair
+from stickslip_sim.bench.outside import FIRST_SLIP
 from stickslip_sim.bench.own import exact_solver
 from stickslip_sim.bench.peers import dop853, euler, scipy_ivp
 from stickslip_sim.bench.peers.peer import EXACT, Peer, Setting
@@ -141,6 +142,11 @@ print(*sorted(peer.missing for peer in PEERS if peer.missing), sep='|')
 '''
     missing = in_a_process(program, compiled=True).strip().split('|')
     assert missing == ['pip install mujoco', *['pip install scikit-sundae'] * 2, *['pip install scipy'] * 4]
+
+
+def test_a_start_is_timed_until_the_axis_slips(in_a_process: Program) -> None:
+    told = in_a_process(FIRST_SLIP + 'print(sample.mode.name)', compiled=False)
+    assert told.strip() == 'ACCELERATING'
 
 
 def test_the_tool_runs_quickly_and_writes_everything(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -37,4 +37,4 @@ def refused(capsys: Capture, *arguments: str | Path, code: int = 2) -> str:
 def tool(*arguments: str | Path, **environment: str) -> subprocess.CompletedProcess[str]:
     """Run the tool in a process of its own."""
     return subprocess.run([sys.executable, '-m', 'stickslip_sim', *map(str, arguments)], capture_output=True, text=True,
-                          timeout=60, check=False, env={**os.environ, **environment})
+                          timeout=180, check=False, env={**os.environ, **environment})
