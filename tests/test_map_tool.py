@@ -3,6 +3,7 @@
 """`stickslip map` as a user meets it: pictures of sweeps, and folders that are none."""
 
 import json
+import math
 import shutil
 from pathlib import Path
 from typing import Any
@@ -40,6 +41,16 @@ def test_a_map_with_picks(swept: Path, tmp_path: Path) -> None:
     assert run(['map', str(swept), '--out', str(tmp_path / 'again.svg'), '--pick', '0.002,6e5', '--pick', '0.05,3e5',
                 '--show', 'period']) == 0
     assert (tmp_path / 'again.svg').read_text() == text
+
+
+def test_a_sweep_whose_steps_numpy_rounded_otherwise_is_drawn(swept: Path, tmp_path: Path) -> None:
+    there = tmp_path / 'there'
+    shutil.copytree(swept, there)
+    titles, *rows = (there / TABLE).read_text().splitlines()
+    moved = [f'{math.nextafter(float(feed), 1.0)!r},{rest}' for feed, rest in (row.split(',', 1) for row in rows)]
+    (there / TABLE).write_text('\n'.join((titles, *moved, '')))
+    assert (there / TABLE).read_text() != (swept / TABLE).read_text()
+    assert run(['map', str(there), '--out', str(tmp_path / 'map.svg')]) == 0
 
 
 def test_the_feed_lies_along_x_and_the_critical_feed_is_drawn(tmp_path: Path) -> None:

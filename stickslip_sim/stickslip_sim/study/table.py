@@ -16,6 +16,7 @@ from .study import Study
 from .variation import Numbers
 
 _BYTES_OF_A_NUMBER = 25   # 17 digits, sign, point, exponent of three digits with its sign, comma
+_ROUNDING = 1e-13         # of a value: another version of numpy rounds steps of one ratio otherwise
 _LARGEST = 1e150          # of a cell, by far; its square, for variances, is still a number
 _CODES = {word: float(motion) for motion, word in MOTIONS.items()}
 
@@ -37,8 +38,8 @@ def numbers_of(rows: Sequence[bytes], study: Study, first: int, last: int) -> Nu
     """Return the numbers in the lines of the points from `first` on, up to `last`; raises ValueError for any other."""
     place = len(study.names)
     numbers = np.array([_numbers(row, place) for row in rows])
-    if numbers.shape != (last - first, width(study)) or not np.array_equal(numbers[:, :place],
-                                                                           study.points(first, last)):
+    if numbers.shape != (last - first, width(study)) or not np.allclose(
+            numbers[:, :place], study.points(first, last), rtol=_ROUNDING, atol=0.0):
         raise ValueError('these are the lines of other points')
     if (np.abs(numbers) > _LARGEST).any():
         raise ValueError('these are no figures of an axis')
