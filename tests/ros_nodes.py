@@ -224,11 +224,11 @@ class Client:
     def switch(self, name: str, on: bool) -> Any:
         return self.call(SetBool, name, data=on)
 
-    def set_parameters(self, **values: object) -> Any:
-        """Set parameters together; `__` in a name stands for a dot."""
+    def set_parameters(self, node: str = 'feed_axis', /, **values: object) -> Any:
+        """Set parameters of a node together; `__` in a name stands for a dot."""
         parameters = [Parameter(name.replace('__', '.'), value=value).to_parameter_msg()
                       for name, value in values.items()]
-        return self.call(SetParametersAtomically, 'set_parameters_atomically', parameters=parameters).result
+        return self.call(SetParametersAtomically, 'set_parameters_atomically', node, parameters=parameters).result
 
     def parameter_names(self) -> list[str]:
         names: list[str] = self.call(ListParameters, 'list_parameters').result.names

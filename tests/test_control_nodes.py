@@ -22,8 +22,6 @@ from tests.ros_nodes import Client, assert_clean, client, executable, running
 from tests.waiting import DEADLINE, wait_for
 
 from rcl_interfaces.msg import Log  # isort: skip  # after tests.ros_nodes, which skips without ROS
-from rcl_interfaces.srv import SetParametersAtomically  # isort: skip
-from rclpy.parameter import Parameter  # isort: skip
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy  # isort: skip
 from sensor_msgs.msg import JointState  # isort: skip
 from std_srvs.srv import Trigger  # isort: skip
@@ -174,16 +172,12 @@ def test_over_dds_the_compensated_one_sticks_less() -> None:
 
 def test_parameters_and_restart_while_it_runs() -> None:
     with driven('compensated') as (axis, controller):
-        def set_one(name: str, value: float) -> Any:
-            parameters = [Parameter(name, value=value).to_parameter_msg()]
-            return axis.call(SetParametersAtomically, 'set_parameters_atomically', NAMES['compensated'],
-                             parameters=parameters).result
-
-        assert set_one('velocity_gain', 6.0).successful
-        assert set_one('integral_time', math.inf).successful
-        assert 'compensation.share = 1.5' in set_one('compensation.share', 1.5).reason
-        assert 'cannot change while the node runs' in set_one('moves.feed', 0.01).reason
-        assert axis.call(Trigger, 'restart', NAMES['compensated']).success
+        name = NAMES['compensated']
+        assert axis.set_parameters(name, velocity_gain=6.0).successful
+        assert axis.set_parameters(name, integral_time=math.inf).successful
+        assert 'compensation.share = 1.5' in axis.set_parameters(name, compensation__share=1.5).reason
+        assert 'cannot change while the node runs' in axis.set_parameters(name, moves__feed=0.01).reason
+        assert axis.call(Trigger, 'restart', name).success
         code, errors = controller.end()
     assert code == 0, errors
     assert errors.count('the moves begin') >= 2

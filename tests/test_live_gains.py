@@ -11,9 +11,7 @@ from stickslip_sim.scene.text import scene_text
 from tests.ros_nodes import Client, assert_clean, client, running
 from tests.waiting import wait_for
 
-from rcl_interfaces.srv import SetParametersAtomically  # isort: skip  # after tests.ros_nodes, which skips without ROS
-from rclpy.parameter import Parameter  # isort: skip
-from rclpy.qos import QoSProfile, ReliabilityPolicy  # isort: skip
+from rclpy.qos import QoSProfile, ReliabilityPolicy  # isort: skip  # after tests.ros_nodes, which skips without ROS
 from sensor_msgs.msg import JointState  # isort: skip
 
 pytestmark = pytest.mark.ros
@@ -54,14 +52,6 @@ class Measurements:
         self._heard[message.header.stamp.nanosec] = message.velocity[0]
 
 
-def set_share(asker: Client, share: float) -> bool:
-    """Return whether it was taken."""
-    parameters = [Parameter('compensation.share', value=share).to_parameter_msg()]
-    successful: bool = asker.call(SetParametersAtomically, 'set_parameters_atomically', NAME,
-                                  parameters=parameters).result.successful
-    return successful
-
-
 @pytest.mark.parametrize('text', [None, 'no scene', STIFFER])
 def test_whatever_becomes_of_the_file_of_its_model(tmp_path: Path, text: str | None) -> None:
     file = tmp_path / 'model.yaml'
@@ -71,7 +61,7 @@ def test_whatever_becomes_of_the_file_of_its_model(tmp_path: Path, text: str | N
         answers = [measurements.answer()]
         file.unlink() if text is None else file.write_text(text)
         for share in (0.5, 0.9):
-            assert set_share(asker, share)
+            assert asker.set_parameters(NAME, compensation__share=share).successful
             answers.append(measurements.answer())
         assert_clean(*controller.end())
     first, other, same = answers

@@ -20,8 +20,7 @@ from tests.recorded_runs import FACTS, damage, events, samples
 from tests.ros_nodes import Client, assert_clean, client, executable, running
 from tests.waiting import wait_for
 
-from rcl_interfaces.srv import DescribeParameters, SetParametersAtomically  # isort: skip
-from rclpy.parameter import Parameter  # isort: skip
+from rcl_interfaces.srv import DescribeParameters  # isort: skip
 from rosgraph_msgs.msg import Clock  # isort: skip
 from std_srvs.srv import SetBool, Trigger  # isort: skip
 
@@ -170,7 +169,7 @@ class TestTime:
             assert call(viewer, 'pause').message.startswith('paused at 0.')
             assert call(viewer, 'is_paused').success
             count = len(ears.of('/slider_state'))
-            assert viewer_sets(viewer, rate=1.0).successful
+            assert viewer.set_parameters('replay', rate=1.0).successful
             assert call(viewer, 'toggle_paused').success
             ears.wait_for('/slider_state', wanted)
             assert 3 <= count < len(wanted)
@@ -178,18 +177,13 @@ class TestTime:
 
     def test_rate_is_a_parameter(self, bag: Path) -> None:
         with client() as viewer, replaying(bag, '-p', 'rate:=0.001') as process:
-            refused = viewer_sets(viewer, rate=0.0)
+            refused = viewer.set_parameters('replay', rate=0.0)
             assert not refused.successful
             assert 'rate = 0.0 is refused: must be a number, > 0' in refused.reason
-            assert 'cannot change' in viewer_sets(viewer, loop=True).reason
+            assert 'cannot change' in viewer.set_parameters('replay', loop=True).reason
             assert not call(viewer, 'play_next').success
-            assert viewer_sets(viewer, rate=1).successful
+            assert viewer.set_parameters('replay', rate=1).successful
             assert_clean(*process.wait())
-
-
-def viewer_sets(viewer: Client, **values: object) -> Any:
-    parameters = [Parameter(name, value=value).to_parameter_msg() for name, value in values.items()]
-    return viewer.call(SetParametersAtomically, 'set_parameters_atomically', 'replay', parameters=parameters).result
 
 
 class TestLife:
