@@ -114,11 +114,13 @@ def _direct_root(osc, rate, jerk, gap, half, t):
             break
         g, slope, first, second = short_integrals(osc, t)
         speed = rate * slope + jerk * g
+        if not speed > 0.0:
+            break
         value = rate * g + jerk * first - gap
         change = jerk * slope - rate * (2.0 * osc[0] * slope + osc[1] * g)
-        step = _householder(osc, value, speed, change, 0.0)
+        step = householder(value, speed, change, -2.0 * osc[0] * change - osc[1] * speed)
         size = abs(step)
-        if not (speed > 0.0 and size < t):
+        if not size < t:
             break
         sharpness = size * (abs(change) / speed + frequency)
         if sharpness < 0.3 and size * sharpness * sharpness * sharpness <= 0.1 * _EPSILON * t:
@@ -128,15 +130,18 @@ def _direct_root(osc, rate, jerk, gap, half, t):
 
 
 @inlined
-def _householder(osc, value, slope, change, snap):
-    """Return Householder's third-order step towards the root, from r − gap, r′ and r″; infinite where it has none.
+def householder(value, slope, change, third):
+    """Return Householder's third-order step to the zero of f from f, f′ > 0, f″ and f‴; infinite where there is none.
 
-    Its error is about size (size (r″/r′ + frequency))³.
+    Its error is about size (size (f″/f′ + frequency))³.  The form is one of ratios: products of three derivatives leave
+    the range of numbers long before the derivatives do, and a step of 0 that came of that would pass for the zero.
     """
-    third = snap - 2.0 * osc[0] * change - osc[1] * slope
-    square = slope * slope
-    curve = 6.0 * slope * (square - value * change) + value * value * third
-    return value * (6.0 * square - 3.0 * value * change) / curve if curve > 0.0 else math.inf
+    inverse = 1.0 / slope
+    newton = value * inverse
+    bend = newton * (change * inverse)
+    curve = 6.0 * (1.0 - bend) + newton * newton * (third * inverse)
+    step = newton * (6.0 - 3.0 * bend) / curve if curve > 0.0 else math.inf
+    return step if step != 0.0 or value == 0.0 else math.inf
 
 
 @compiled
@@ -158,12 +163,13 @@ def _bracket(osc, rate, jerk, snap, gap, turn):
     """Return an end of the rise of r at which it has reached the gap, and r there."""
     if turn < math.inf:
         return turn, _passage(osc, rate, jerk, snap, turn)[0]
-    end = 1.0 / (abs(osc[0]) + math.sqrt(osc[1])) if osc[0] != 0.0 or osc[1] > 0.0 else 1.0
+    last = finite_horizon(osc, math.inf)
+    end = min(1.0 / (abs(osc[0]) + math.sqrt(osc[1])) if osc[0] != 0.0 or osc[1] > 0.0 else 1.0, last)
     while True:
         reached = _passage(osc, rate, jerk, snap, end)[0]
-        if reached >= gap:
+        if reached >= gap or end == last:
             return end, reached
-        end *= 2.0
+        end = min(2.0 * end, last)
 
 
 @inlined
@@ -198,9 +204,11 @@ def _monotone_root(osc, rate, jerk, snap, gap, end, reached):
             high = t
         if abs(value) <= 2.0 * _EPSILON * t * slope:
             return min(max(t - value / slope, low), high) if slope > 0.0 else t
-        guess = t - _householder(osc, value, slope, change, snap)
+        guess = math.inf
+        if slope > 0.0:
+            guess = t - householder(value, slope, change, snap - 2.0 * osc[0] * change - osc[1] * slope)
         size = abs(guess - t)
-        if low <= guess <= high and size <= 0.5 * before and slope > 0.0:
+        if low <= guess <= high and size <= 0.5 * before:
             sharpness = size * (abs(change) / slope + frequency)
             if sharpness < 0.3 and size * sharpness * sharpness * sharpness <= 0.1 * _EPSILON * t:
                 return guess

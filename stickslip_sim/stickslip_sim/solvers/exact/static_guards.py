@@ -15,7 +15,7 @@ from ...axis.motion import static_limit
 from ...axis.transitions import applied_force, force_rate
 from ...compiled import compiled, inlined
 from ...friction.static import CONSTANT, EXPONENTIAL, KATO, LOGARITHMIC, static_growth
-from ...linear.roots import first_crossing, safe_step
+from ...linear.roots import first_crossing, householder, safe_step
 
 _EPSILON = 2.220446049250313e-16
 STEPS = 100_000
@@ -82,12 +82,9 @@ def _exponential_root(p, s, force, rate, horizon):
         fall = b - wane
         if fall <= 0.0:
             break
-        value = gap - d * fading - b * z
-        square = fall * fall
-        step = value * (6.0 * square + 3.0 * value * wane) / (
-            6.0 * fall * (square + value * wane) - value * value * wane)
+        step = householder(d * fading + b * z - gap, fall, wane, -wane)
         sharpness = abs(step) * (1.0 + wane / fall)
-        z += step
+        z -= step
         if z <= 0.0 or not sharpness < 0.5:
             break
         if abs(step) * sharpness * sharpness * sharpness <= 0.1 * _EPSILON * z:
