@@ -19,8 +19,9 @@ F_c = P(t) + H(t): P is linear (quadratic under a ramp of the drive), H a decayi
 import math
 
 from ...axis.layout import (
-    ACCELERATION, AT, AT_FIRST, AT_G, AT_RATE, AT_SECOND, CONTACT_DAMPING, CONTACT_STIFFNESS, DEFLECTION, ITERATIONS,
-    JERK, LAST, NORMAL, REST, SNAP, STATIC_INITIAL, STATIC_LIMIT, STATIC_TAU, VELOCITY,
+    ACCELERATION, AT, AT_FIRST, AT_G, AT_RATE, AT_SECOND, CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, DEFLECTION,
+    F_RATE, ITERATIONS, JERK, LAST, NORMAL, REST, SEARCHED, SNAP, STATIC_INITIAL, STATIC_LIMIT, STATIC_TAU, STIFFNESS,
+    V, VELOCITY, V_RATE,
 )
 from ...axis.motion import TICK, oscillator_of, static_limit, travel, travel_at
 from ...axis.transitions import force_rounding
@@ -45,6 +46,9 @@ def compliant_stick(p, s, horizon):
         return 0.0 if _moves(s) else math.inf
     motion = _contact_motion(p, s, osc)
     rounding = 0.5 * force_rounding(p, s, static_limit(p, s[REST]))
+    if motion[3] == 0.0 and motion[4] == 0.0 and _rings_within(p, s, osc, motion, rounding):
+        s[SEARCHED] = math.inf
+        return math.inf
     may_leap = leaps_far = motion[4] == 0.0 and is_concave(p)
     pace = math.sqrt(osc[1])
     t = 0.0
@@ -93,6 +97,17 @@ def _keeps_off(p, s, osc, t):
 
 
 @compiled
+def _rings_within(p, s, osc, motion, rounding):
+    """Whether a contact that the drive does not load any further stays within the limit of now, which never falls.
+
+    Without a damper it may come back to the limit in every period, and touch it: no break-away, whatever rounding says.
+    """
+    _, _, free, free_rate, _, _ = _contact_at(p, osc, motion, 0.0)
+    size, _ = amplitude(osc, free, free_rate)
+    return abs(motion[2]) + size <= p[NORMAL] * static_limit(p, s[REST]) + 2.0 * rounding
+
+
+@compiled
 def _moves(s):
     """Whether a contact that holds nothing gives way: it does with the first derivative of its force that is not 0."""
     return not (s[DEFLECTION] == 0.0 and s[VELOCITY] == 0.0 and s[ACCELERATION] == 0.0 and s[JERK] == 0.0
@@ -109,7 +124,9 @@ def _contact_motion(p, s, osc):
     gamma, omega2 = osc[0], osc[1]
     u = s[VELOCITY]
     y2 = s[SNAP] / omega2
-    y1 = u + (s[JERK] - 2.0 * gamma * y2) / omega2
+    # u + JERK/ω² without the difference: 0 to the last bit while the drive rests
+    pull = p[STIFFNESS] * s[V] + p[DAMPING] * s[V_RATE] + s[F_RATE]
+    y1 = pull / (p[STIFFNESS] + stiffness) - 2.0 * gamma * y2 / omega2
     y0 = (s[ACCELERATION] + 2.0 * gamma * (u - y1) - y2) / omega2
     return (y0, u - y1, stiffness * (s[DEFLECTION] + y0) + damping * y1, stiffness * y1 + damping * y2,
             stiffness * y2)
