@@ -122,7 +122,7 @@ def band_of(p, s):
 
 @inlined
 def break_away(p, s, direction, limit, margin):
-    """Begin a slip at the friction coefficient `limit`; `margin` is how far the force is beyond it, N.
+    """Begin a slip at the friction coefficient `limit`; `margin` is how far the force is beyond it along the slip, N.
 
     The excess E of this slip makes friction continuous; without acceleration dependence, or at a speed where psi has
     ended, friction drops to mu_k at once.
@@ -187,9 +187,11 @@ def release(p, s, events, row):
     margin = abs(force) - p[NORMAL] * limit
     if margin <= force_rounding(p, s, limit):
         margin = 0.0
-    if s[VELOCITY] * direction < 0.0:
+    friction = direction * p[NORMAL] * limit
+    if s[VELOCITY] * direction < 0.0:   # friction turns round: it opposes the motion from now on
         direction = -direction
-    write_event(p, s, events, row, BREAKAWAY, direction, direction * p[NORMAL] * limit, limit)
+        margin = -(margin + 2.0 * p[NORMAL] * limit)
+    write_event(p, s, events, row, BREAKAWAY, direction, friction, limit)
     break_away(p, s, direction, limit, margin)
     events[row][EVENT_MODE] = s[MODE]
 
