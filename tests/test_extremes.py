@@ -31,7 +31,7 @@ def test_a_solver_that_steps_misses_the_mark(number: str) -> None:
 
 
 def test_the_extremes_are_in_their_order() -> None:
-    assert [extreme.number for extreme in EXTREMES] == [f'X{k}' for k in range(1, 22)]
+    assert [extreme.number for extreme in EXTREMES] == [f'X{k}' for k in (*range(1, 24), 27)]
 
 
 def test_a_tally_calls_wrong_what_is_wrong() -> None:

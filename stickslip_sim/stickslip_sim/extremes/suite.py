@@ -12,6 +12,7 @@ from .break_aways import at_the_limit, blows
 from .commands import bad_commands
 from .convergence import orders
 from .energy import energy_balance
+from .false_roots import near_critical, steep_pieces, touched_limits
 from .grazing_peaks import grazing
 from .modes import edges_of_the_modes, unstable_slip
 from .outcome import Extreme, Outcome, Setup
@@ -72,6 +73,15 @@ EXTREMES = (
             'rate of the force alone says that it slips',
             'this engine doubled break-aways while it took the rate of the event before: 66 of 102 wrong',
             'the events of the reference, <= 1e-12', shaken),
+    Extreme('X22', 'kinetic friction that falls within 0.05 to 50 mm/s: slips grow by a factor of up to e⁶⁰⁰',
+            'stickslip 0.1.0: a product of three derivatives overflowed, and a step of 0 passed for the root; 8 of 400 '
+            'axes left for 1e95 km/s', 'the events of the reference, <= 1e-11', steep_pieces),
+    Extreme('X23', 'slips critically damped to 1e-5 to 1e-13, from both sides',
+            'stickslip 0.1.0: the same product underflowed, and 1 axis of 1000 missed its events',
+            'the events of the reference, <= 1e-12', near_critical),
+    Extreme('X27', 'an undamped contact with mu_s = mu_k at rest comes back to its limit in every period',
+            'stickslip 0.1.0: 14 % of such axes broke away for 1e-10 s at a touch', 'none invented, none missed',
+            touched_limits),
 )
 
 
