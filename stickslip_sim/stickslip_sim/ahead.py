@@ -32,7 +32,7 @@ _BATCH = {'run_axes': f'void({_TABLE}, {_TABLE}, {_TABLE}, f8, i8, i8, {_ARRAY},
 def compile_ahead(folder: str) -> None:
     """Write the extension modules for the sources in use into a package folder; old ones are removed."""
     from .compiled import ahead_name
-    from .solvers.exact import cycles, engine
+    from .solvers.exact import cycles, engine, judge
     from .solvers.fixed_step import loop
 
     for old in Path(folder).glob('_ahead_*'):
@@ -40,6 +40,7 @@ def compile_ahead(folder: str) -> None:
     steps = _module(ahead_name('steps'), folder)
     for name, signature in _EXACT.items():
         steps.export(f'exact_{name}', signature)(getattr(engine, name).py_func)
+    steps.export('exact_is_sound', f'b1({_AT})')(judge.is_sound.py_func)
     for name, signature in _FIXED.items():
         steps.export(f'fixed_step_{name}', signature)(getattr(loop, name).py_func)
     steps.compile()

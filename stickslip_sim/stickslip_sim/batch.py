@@ -20,8 +20,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from .axis import Axis, InitialState, check_start, pack
 from .axis.layout import (
-    COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, EVENT_SIZE, MASS, NORMAL, STATE_SIZE, STATIC_EXPONENT,
-    STATIC_INITIAL, STATIC_LIMIT, STATIC_TAU, STIFFNESS, TABLE,
+    ACCOUNTING, COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, EVENT_SIZE, MASS, NORMAL, STATE_SIZE,
+    STATIC_EXPONENT, STATIC_INITIAL, STATIC_LIMIT, STATIC_TAU, STIFFNESS, TABLE,
 )
 from .errors import InputError
 from .solvers import exact
@@ -72,7 +72,7 @@ class BatchFigures:
 
     events: Numbers
     cycles: Numbers              # complete ones
-    complete: NDArray[np.bool_]  # False: the solver gave up before the end
+    complete: NDArray[np.bool_]  # False: the solver gave up, or the run contradicts itself: no figures
     final_mode: Numbers          # `words.Mode`
     first_break_away: Numbers    # s
     stick_share: Numbers
@@ -123,8 +123,10 @@ def _run(parameters: Numbers, inputs: Numbers, starts: Numbers, duration: float,
     out = np.empty((count, cycles.ROW_SIZE))
 
     def work(first: int) -> None:
-        exact.run_axes(parameters, inputs, starts, duration, first, min(first + _AT_A_TIME, count),
-                       np.zeros(STATE_SIZE), np.empty((_ROWS, EVENT_SIZE)), np.empty(0), out)
+        state = np.zeros(STATE_SIZE)
+        state[ACCOUNTING] = 1.0
+        exact.run_axes(parameters, inputs, starts, duration, first, min(first + _AT_A_TIME, count), state,
+                       np.empty((_ROWS, EVENT_SIZE)), np.empty(0), out)
 
     with ThreadPoolExecutor(threads) as pool:
         list(pool.map(work, range(0, count, _AT_A_TIME)))

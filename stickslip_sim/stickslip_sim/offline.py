@@ -61,6 +61,7 @@ def run_offline(scene: Scene, duration: float, sample_period: float | Fraction |
     cost = CostMeter()
     events, rows = _run(rig, duration, sample_period, _part_count(scene, duration), progress)
     spent = cost.so_far()
+    simulator.judge()
     figures = summary(events, duration, start)
     receipt = receipt_of(scene, duration, float(sample_period) if sample_period else None, figures,
                          simulator.root_iterations, simulator.sample(), simulator.energy, *spent)

@@ -8,7 +8,7 @@ from typing import Any
 
 from .axis import Axis, InitialState, check_start, pack
 from .axis.layout import (
-    ACCOUNTING, ENERGY_SIZE, EVENT_SIZE, FRACTION, ITERATIONS, SAMPLE_SIZE, SECOND, STATE_SIZE, WAVE_SIZE,
+    ACCOUNTING, ENERGY_SIZE, EVENT_SIZE, FRACTION, ITERATIONS, MODE, SAMPLE_SIZE, SECOND, STATE_SIZE, WAVE_SIZE,
 )
 from .checkpoints import event_of, state_of
 from .compiled import IS_COMPILED
@@ -16,7 +16,7 @@ from .courses import Course
 from .energy import EnergyBalance
 from .errors import InputError, SolverError
 from .inputs import Inputs
-from .solvers import DONE, FULL, OUT_OF_RANGE, Solver, exact
+from .solvers import DONE, FULL, OUT_OF_RANGE, UNSOUND, Solver, exact
 from .words import Event, EventKind, Instant, Mode, Sample
 
 SolverOf = Callable[[Axis], Solver]
@@ -89,6 +89,21 @@ class Simulator:
             return None
         self._solver.energy(self._parameters, self._state, *self._time, self._energies)
         return EnergyBalance(*map(float, self._energies))
+
+    def judge(self) -> None:
+        """Raise SolverError when the state contradicts its own mode or balance of energy; needs an account.
+
+        Each event is judged as the run goes on; this is for its end, or any time that its figures are looked at.
+        """
+        if self._solver.is_sound is not None and self._state[ACCOUNTING] and not self._solver.is_sound(
+                self._parameters, self._state, *self._time):
+            raise self._unsound()
+
+    def _unsound(self) -> SolverError:
+        mode = _MODES[int(self._state[MODE])].name
+        return SolverError(f'the run contradicts its own motion or balance of energy at t = {self._time.seconds!r} s, '
+                           f'in mode {mode}: none of its figures can be trusted; the solver is at fault, not the '
+                           'scene: please report both')
 
     def advance(self, to: Instant) -> list[Event]:
         """Bring the state to a time that is not before the present one; return the events up to then.
@@ -185,6 +200,8 @@ class Simulator:
             if end == OUT_OF_RANGE:
                 raise SolverError(f'the state leaves the range of numbers after t = {self._time.seconds!r} s; '
                                   f'{self._solver.advice}')
+            if end == UNSOUND:
+                raise self._unsound()
             if end != FULL or taken > MAX_EVENTS_PER_ADVANCE:
                 raise SolverError(f'{taken} events up to t = {self._time.seconds!r} s and time hardly goes on; '
                                   'friction or inputs are too extreme for this axis: check the scene')

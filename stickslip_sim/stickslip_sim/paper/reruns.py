@@ -19,9 +19,10 @@ COMPARED = ('period', 'jump', 'peak_speed', 'break_away_force')       # of a cyc
 
 def last_cycles(axis: Axis, initial: InitialState, inputs: Inputs, period: float) -> list[Cycle]:
     """Return the last few of about CYCLES cycles of `period` s; none when stick-slip does not last."""
-    simulator = Simulator(axis, initial, constant(inputs.velocity), constant(inputs.force))
+    simulator = Simulator(axis, initial, constant(inputs.velocity), constant(inputs.force), accounting=True)
     end = Instant(float(int(CYCLES * period) + 1), 0.0)
     cycles = cycle_figures(simulator.advance(end))
+    simulator.judge()
     return cycles[-_IN_TURN:] if lasts(cycles, end.seconds) else []
 
 

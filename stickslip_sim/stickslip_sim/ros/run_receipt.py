@@ -15,8 +15,9 @@ from .verdict import verdict
 
 def run_receipt(scene: Scene, loop: StepLoop, outlet: Outlet, dropped: int, cost: tuple[float, float]
                 ) -> dict[str, Any]:
-    """Return the receipt of the run up to now; `cost` is CPU and wall time, s."""
+    """Return the receipt of the run up to now; `cost` is CPU and wall time, s.  Raises SolverError, see `judge`."""
     simulator = loop.rig.simulator
+    simulator.judge()
     period = 1.0 / scene.time.rate
     duration = max(simulator.time.seconds, period)
     figures = outlet.events.summary(duration)

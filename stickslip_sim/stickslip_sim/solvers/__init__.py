@@ -5,8 +5,9 @@
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-# how `advance` ended: at its time, with a full event table, stuck, or before a state beyond the range of numbers
-DONE, FULL, NO_PROGRESS, OUT_OF_RANGE = 0, 1, 2, 3
+# how `advance` ended: at its time, with a full event table, stuck, before a state beyond the range of numbers, or at an
+# event that contradicts the motion or its energy
+DONE, FULL, NO_PROGRESS, OUT_OF_RANGE, UNSOUND = 0, 1, 2, 3, 4
 
 
 class Solver(NamedTuple):
@@ -24,8 +25,10 @@ class Solver(NamedTuple):
     | set_parameters | p, new p, s, second, fraction, events, row                                             |
     | sample         | p, s, second, fraction, out                                                            |
     | energy         | p, s, second, fraction, out; a row of `energy.EnergyBalance`                           |
+    | is_sound       | p, s, second, fraction; whether the state contradicts neither its mode nor its energy  |
 
-    A solver with `energy` keeps the account while s[ACCOUNTING], which `start` leaves as it is, is not 0.
+    A solver with `energy` and `is_sound` keeps the account, and judges its run by it, while s[ACCOUNTING], which
+    `start` leaves as it is, is not 0.
     """
 
     name: str
@@ -35,4 +38,5 @@ class Solver(NamedTuple):
     set_parameters: Callable[..., Any]
     sample: Callable[..., Any]
     energy: Callable[..., Any] | None = None
+    is_sound: Callable[..., Any] | None = None
     advice: str = 'a parameter or an input is too extreme for this axis: check the scene'

@@ -4,13 +4,13 @@
 
 from ...compiled import entry
 from .. import Solver
-from . import cycles, engine
+from . import cycles, engine, judge
 
-start, advance, set_inputs, set_parameters, sample, energy = (
+start, advance, set_inputs, set_parameters, sample, energy, is_sound = (
     entry('exact', function) for function in (engine.start, engine.advance, engine.set_inputs, engine.set_parameters,
-                                              engine.sample, engine.energy))
+                                              engine.sample, engine.energy, judge.is_sound))
 run_axes = entry('exact', cycles.run_axes)
 
-SOLVER = Solver('exact', start, advance, set_inputs, set_parameters, sample, energy)
+SOLVER = Solver('exact', start, advance, set_inputs, set_parameters, sample, energy, is_sound)
 
-__all__ = ['SOLVER', 'advance', 'energy', 'sample', 'set_inputs', 'set_parameters', 'start']
+__all__ = ['SOLVER', 'advance', 'energy', 'is_sound', 'sample', 'set_inputs', 'set_parameters', 'start']

@@ -8,7 +8,7 @@ Each sum carries what rounding has lost of it (Neumaier, ZAMM 54, 1974).
 from ...axis.layout import (
     BOOKED, CONTACT_EXCHANGE, PARAMETER_EXCHANGE, PARTS, STORED_AT_START, SUMS, SUM_COUNT, THROUGHPUT, WORK_COUNT,
 )
-from ...compiled import compiled
+from ...compiled import compiled, inlined
 from .works import block, contact_energy, stored_energy, works
 
 
@@ -63,6 +63,27 @@ def read_account(p, s, t, out):
     out[7] = stored_energy(p, s, t)
     out[8] = s[STORED_AT_START]
     out[9] = throughput
+
+
+@compiled
+def open_share(p, s, t):
+    """Return what the balance leaves open at t after the anchor, as a share of what went through or is stored."""
+    given = _sum(s, 0) + _sum(s, 1) + _sum(s, CONTACT_EXCHANGE) + _sum(s, PARAMETER_EXCHANGE)
+    taken = _sum(s, 2) + _sum(s, 3) + _sum(s, 4)
+    scale = _sum(s, THROUGHPUT)
+    if t != 0.0:
+        drive, external, friction, damper, contact = works(p, s, t)
+        given += drive + external
+        taken += friction + damper + contact
+        scale += abs(drive) + abs(external) + abs(friction) + abs(damper) + abs(contact)
+    stored = stored_energy(p, s, t)
+    scale = max(scale, max(stored, s[STORED_AT_START]))
+    return abs((given - taken) - (stored - s[STORED_AT_START])) / scale if scale > 0.0 else 0.0
+
+
+@inlined
+def _sum(s, item):
+    return s[SUMS + item] + s[SUMS + SUM_COUNT + item]
 
 
 @compiled

@@ -16,6 +16,7 @@ from ...axis.transitions import ARREST, BREAKAWAY, REVERSE
 from ...compiled import compiled, compiled_without_lock
 from .. import DONE, FULL
 from .engine import advance, start
+from .judge import is_sound
 
 SETTLED = 1e-6   # relative change of the period from one cycle to the next
 
@@ -35,7 +36,7 @@ ROW_SIZE = 34
 def run_axes(p, inputs, starts, duration, first, last, s, events, waves, out):
     """Run the axes `first` to `last` of the rows of `p` (parameters), `inputs` (v, F_e), `starts` (x, ẋ, rest time).
 
-    Rows of `out` get the figures; NaN where there is none.
+    Rows of `out` get the figures; NaN where there is none.  `s` is a state that keeps the account of energy.
     """
     second = math.floor(duration)
     fraction = duration - second
@@ -54,7 +55,7 @@ def run_axes(p, inputs, starts, duration, first, last, s, events, waves, out):
         if row[FINAL_MODE] == STICK:
             row[STICK_SHARE] += (second - row[SINCE_SECOND]) + (fraction - row[SINCE_FRACTION])
         row[STICK_SHARE] /= duration
-        row[COMPLETE] = 1.0 if ended == DONE else 0.0
+        row[COMPLETE] = 1.0 if ended == DONE and is_sound(p[i], s, second, fraction) else 0.0
 
 
 @compiled

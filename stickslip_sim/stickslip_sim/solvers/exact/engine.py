@@ -26,9 +26,10 @@ from ...axis.transitions import (
 )
 from ...axis.waves import inputs_at, load_waves, same_waves
 from ...compiled import compiled, inlined
-from .. import DONE, FULL, NO_PROGRESS
+from .. import DONE, FULL, NO_PROGRESS, UNSOUND
 from ..sampling import write_sample
 from .account import book_blocks, book_contact, book_parameters, book_works, read_account
+from .judge import event_is_sound
 from .search import find_event
 from .works import contact_energy, stored_energy
 
@@ -88,7 +89,8 @@ def advance(p, s, second, fraction, events, row):
         same_instant = same_instant + 1 if due == 0.0 else 0
         if same_instant > _SAME_INSTANT:
             return row, NO_PROGRESS
-        _pass_event(p, s, due, s[SECOND] + whole, later - whole, events, row)
+        if not _pass_event(p, s, due, s[SECOND] + whole, later - whole, events, row):
+            return row, UNSOUND
         row += 1
         _begin(p, s)
 
@@ -102,16 +104,20 @@ def _keep_up(p, s, t):
 
 @inlined
 def _pass_event(p, s, due, second, fraction, events, row):
-    mode = int(s[MODE])
+    """Go through the event that is due; return False, and stay before it, when the run is no longer sound."""
+    mode, begin = int(s[MODE]), s[VELOCITY]
     accounting = s[ACCOUNTING] != 0.0
     if accounting:
         book_works(p, s, due)
     move_anchor(p, s, second, fraction, due)
+    if accounting and not event_is_sound(p, s, begin):
+        return False
     s[LAST + mode] = due if s[NEXT_KIND] != COAST else 0.0
     contact = contact_energy(p, s, 0.0) if accounting else 0.0
     _transition(p, s, events, row)
     if accounting:
         book_contact(p, s, contact)
+    return True
 
 
 @compiled
