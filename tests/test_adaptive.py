@@ -14,6 +14,7 @@ from stickslip_sim.courses import Course, Wave, steps, table
 from stickslip_sim.errors import InputError, SolverError
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
 from stickslip_sim.friction.kinetic import default_excess
+from stickslip_sim.offline import run_offline
 from stickslip_sim.scene import load_scene
 from stickslip_sim.solvers import adaptive
 from stickslip_sim.words import Event, EventKind, Mode
@@ -190,6 +191,12 @@ class TestItEnds:
             events, final = simulate(adaptive.solver(), paper_axis(RIGID, branches=branches), 0.08, 10.0)
             assert final.velocity == pytest.approx(0.08, rel=1e-6)
             assert len(events) < 500
+
+    def test_guards_that_fire_for_ever_end_the_run_soon(self) -> None:
+        """Smooth sliding decays to the speed of the drive, where guards are zero to within the tolerance."""
+        scene = load_scene('fast_feed', {'solver.name': 'adaptive'})
+        with pytest.raises(SolverError, match=r'^\d\d events up to .* time hardly goes on'):
+            run_offline(scene, 10.0)
 
     def test_numbers_that_end_are_a_solver_error(self) -> None:
         simulator = make(adaptive.solver(), paper_axis(RIGID), 0.0, 0.0, InitialState(velocity=1e305))

@@ -67,7 +67,7 @@ class Engine:
                 _move(s, motion, second, fraction, due, (y, u))
                 return row, DONE
             same_instant = same_instant + 1 if due == 0.0 else 0
-            if same_instant > _SAME_INSTANT:
+            if same_instant >= _SAME_INSTANT:   # no more: the table is full with 64, and the next call counts anew
                 return row, NO_PROGRESS
             later = s[FRACTION] + due
             whole = math.floor(later)
