@@ -8,12 +8,14 @@ import json
 import shutil
 import subprocess
 import sys
+from fractions import Fraction
 from pathlib import Path
 
 import pytest
 
 from stickslip_sim import __version__
 from stickslip_sim.cli.main import run
+from stickslip_sim.estimate import error_estimate
 from stickslip_sim.offline import run_offline
 from stickslip_sim.scene import load_scene, scene_names
 from stickslip_sim.words import EventKind, Mode
@@ -174,6 +176,19 @@ def test_bag(tmp_path: Path) -> None:
     assert recorded.receipt['energy']['drive_work'] > 0.0
     assert recorded.receipt['error_estimate']['until_s'] == 2.0
     assert 'paper_fig8' in recorded.attachments['scene.yaml'].decode()
+
+
+@pytest.mark.ros
+def test_the_estimate_in_a_bag_is_of_the_run_in_the_bag(tmp_path: Path) -> None:
+    """A run of adaptive steps depends on its samples, which are others in the bag than those asked for."""
+    from stickslip_sim.recording import read_run
+
+    adaptive = {'solver.name': 'adaptive', 'solver.rtol': 1e-4, 'time.rate': 300.0}
+    changes = [word for name, value in adaptive.items() for word in ('--set', f'{name}={value}')]
+    assert run(['simulate', 'paper_fig7', '--duration', '1', *changes, '--bag', str(tmp_path / 'bag'), '--samples',
+                str(tmp_path / 's.csv'), '--sample-period', '0.5']) == 0
+    in_bag = run_offline(load_scene('paper_fig7', adaptive), 1.0, Fraction(1, 300))
+    assert read_run(tmp_path / 'bag').receipt['error_estimate'] == error_estimate(in_bag)._asdict()
 
 
 def test_no_ros_and_no_plots_unless_asked_for() -> None:

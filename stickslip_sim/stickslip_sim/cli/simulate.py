@@ -119,7 +119,9 @@ def _write_bag(folder: str, run: 'Trajectory') -> None:
     from ..recording.offline import write_bag
     from ..recording.run import RunFacts
 
-    run = _sampled(run, run.scene.time.step)
+    sampled = _sampled(run, run.scene.time.step)
+    if sampled is not run:   # a run of adaptive steps depends on its samples, and so does its error
+        run = _with_estimate(sampled)
     facts = RunFacts.of(run.scene, run.duration, run.sample_period)
     check_new_folder('--bag', folder)
     try:
