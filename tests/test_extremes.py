@@ -31,7 +31,9 @@ def test_a_solver_that_steps_misses_the_mark(number: str) -> None:
 
 
 def test_the_extremes_are_in_their_order() -> None:
-    assert [extreme.number for extreme in EXTREMES] == [f'X{k}' for k in (*range(1, 24), 27)]
+    numbers = [int(extreme.number.removeprefix('X')) for extreme in EXTREMES]
+    assert numbers == sorted(set(numbers))
+    assert numbers == list(range(1, len(numbers) + 1))
 
 
 def test_a_tally_calls_wrong_what_is_wrong() -> None:
@@ -71,7 +73,7 @@ def test_a_missed_mark_is_exit_code_3(monkeypatch: pytest.MonkeyPatch, capsys: p
     assert 'missed: X2' in capsys.readouterr().err
 
 
-@pytest.mark.parametrize('arguments', [['--only', 'X22'], ['--only', ''], ['--out', 'table.txt']])
+@pytest.mark.parametrize('arguments', [['--only', 'X99'], ['--only', ''], ['--out', 'table.txt']])
 def test_wrong_use_is_refused_by_name(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert run(['extremes', '--quick', *arguments]) == 2
     assert arguments[0] in capsys.readouterr().err

@@ -12,6 +12,7 @@ from .break_aways import at_the_limit, blows
 from .commands import bad_commands
 from .convergence import orders
 from .energy import energy_balance
+from .estimates import estimates
 from .false_roots import near_critical, steep_pieces, touched_limits
 from .grazing_peaks import grazing
 from .modes import edges_of_the_modes, unstable_slip
@@ -79,6 +80,9 @@ EXTREMES = (
     Extreme('X23', 'slips critically damped to 1e-5 to 1e-13, from both sides',
             'stickslip 0.1.0: the same product underflowed, and 1 axis of 1000 missed its events',
             'the events of the reference, <= 1e-12', near_critical),
+    Extreme('X26', 'honest error estimates of all solvers, for steps of 10 µs to 10 ms and tolerances of 1e-3 to 1e-12',
+            'a repeat with half the step or a tenth of the tolerance told a millionth of the error, 5e-9 s',
+            'true error within the estimate, events those of the reference as far as it says', estimates),
     Extreme('X27', 'an undamped contact with mu_s = mu_k at rest comes back to its limit in every period',
             'stickslip 0.1.0: 14 % of such axes broke away for 1e-10 s at a touch', 'none invented, none missed',
             touched_limits),

@@ -1,0 +1,134 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""X26: what a run says about its own error, for every solver, against the true error.
+
+The truth is that of the reference.  Judged are the events up to the time `until_s` that the estimate speaks of: they
+must be those of the reference, and no further off than it says.  An `until_s` before the end must have its reason.
+"""
+
+import random
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from statistics import median
+from typing import NamedTuple
+
+from ..errors import InputError, SolverError
+from ..estimate import ErrorEstimate, error_estimate
+from ..offline import Trajectory, run_offline
+from ..reference import simulate
+from ..scene import Scene, SolverSettings, load_scene, scene_names
+from ..words import Event, EventKind
+from .against import DIGITS
+from .outcome import Finding, Setup, Tally, check
+from .runs import random_axis, random_courses
+
+_DURATION = 2.0   # s
+_TOLERANCES = (1e-3, 1e-6, 1e-9, 1e-12)
+_STEPS = (1e-2, 1e-3, 1e-4, 1e-5)   # s
+_PER_RTOL = 1e-2   # atol, m and m/s
+_MOMENT = 1e-6   # s
+_TIGHT, _TOLD = 0.9, 0.5   # no estimate is to be honest by telling too much, or nothing
+_FEW = ('paper_fig7', 'paper_fig8')
+
+
+class _Judged(NamedTuple):
+    """What an estimate told of steps was worth: the error over it, and how many of the events it spoke of."""
+
+    ratio: float
+    told: int
+    events: int
+
+
+def estimates(setup: Setup) -> Finding:
+    """X26: shipped and random scenes with every solver and setting; the true error over the estimate."""
+    tally = Tally(1.0, 'of the estimate')
+    judged: list[_Judged] = []
+    for scene in _scenes(setup):
+        wanted = simulate(scene.axis, scene.initial, scene.drive, scene.force, _DURATION, DIGITS).events
+        if not wanted:
+            continue
+        for solver in _settings(setup):
+            run = _run(replace(scene, solver=solver))
+            if run:
+                tally.judge(_ratio, f'{scene.name} with {solver.name} {solver.settings}', run, wanted, judged)
+    half = median(case.ratio for case in judged if case.told)
+    share = sum(case.told for case in judged) / sum(case.events for case in judged)
+    return tally.finding('with an error beyond the estimate', f'of steps half are at least {half:.3g} of it, for '
+                         f'{share:.0%} of the events', kept=half >= _TIGHT and share >= _TOLD)
+
+
+def _scenes(setup: Setup) -> Iterator[Scene]:
+    for name in setup.choose(tuple(scene_names()), _FEW):
+        yield _with_table(load_scene(name))
+    for seed in range(setup.count(40, 2)):
+        rng = random.Random(seed)
+        axis = random_axis(rng)
+        drive, force = random_courses(rng)
+        yield replace(load_scene(_FEW[0]), name=f'random {seed}', axis=axis, drive=drive, force=force)
+
+
+def _with_table(scene: Scene) -> Scene:
+    """Return the scene with the table for all solvers, which is what the reference knows, also where it has a law."""
+    friction = scene.axis.friction
+    return replace(scene, axis=replace(scene.axis, friction=replace(friction, kinetic=replace(friction.kinetic,
+                                                                                              law=None))))
+
+
+def _settings(setup: Setup) -> Iterator[SolverSettings]:
+    yield SolverSettings('exact')
+    for method in ('DOP853', 'RK45'):
+        for rtol in setup.choose(_TOLERANCES, _TOLERANCES[1:3]):
+            yield SolverSettings('adaptive', method, rtol=rtol, atol=rtol * _PER_RTOL)
+    for method in ('euler', 'rk4'):
+        for step in setup.choose(_STEPS, _STEPS[1:3]):
+            yield SolverSettings('fixed_step', method, step)
+
+
+def _run(scene: Scene) -> Trajectory | None:
+    """Return the run; None where a step is too long for the axis, or a guard of the adaptive solver fires for ever."""
+    try:
+        return run_offline(scene, _DURATION)
+    except (InputError, SolverError):
+        return None
+
+
+def _ratio(_: str, run: Trajectory, wanted: Sequence[Event], judged: list[_Judged]) -> float:
+    """Return the largest error of an event over its estimate."""
+    solver = run.scene.solver.name
+    knots = solver != 'fixed_step'   # which notes none
+    left = [event for event in wanted if knots or event.kind != EventKind.KNOT]
+    events, wanted = (run.events, left) if solver == 'exact' else (_lasting(run.events), _lasting(left))
+    estimate = error_estimate(run)
+    sure = [(a, b) for a, b in zip(events, wanted) if a.time < estimate.until_s or estimate.until_s == _DURATION]
+    for a, b in sure:
+        check((a.kind, a.direction) == (b.kind, b.direction), f'{a.kind.name} at {a.time} s is none')
+    before = [event for event in wanted if event.time < estimate.until_s - 2.0 * estimate.event_time_s]
+    check(len(before) <= len(sure), f'{len(before) - len(sure)} events missed before {estimate.until_s} s')
+    check(estimate.until_s == _DURATION or _has_reason(estimate, events, wanted),
+          f'events differ from {estimate.until_s} s, it says')
+    time = max((_apart(a, b) for a, b in sure), default=0.0)
+    position = max((abs(a.position - b.position) for a, b in sure), default=0.0)
+    if solver != 'exact':
+        judged.append(_Judged(time / estimate.event_time_s, len(sure), len(wanted)))
+    return max(time / estimate.event_time_s, position / estimate.position_m if position > 0.0 else 0.0)
+
+
+def _lasting(events: Sequence[Event]) -> list[Event]:
+    """Return the events without the ends of coasts of a moment after a break-away, as the estimate of steps does."""
+    away = [event.time for event in events if event.kind == EventKind.BREAKAWAY]
+    return [event for event in events if event.kind == EventKind.BREAKAWAY
+            or not any(0.0 <= event.time - time <= _MOMENT for time in away)]
+
+
+def _has_reason(estimate: ErrorEstimate, events: Sequence[Event], wanted: Sequence[Event]) -> bool:
+    """Whether two runs differ by more than an estimate tells."""
+    return len(events) != len(wanted) or any(
+        (a.kind, a.direction) != (b.kind, b.direction) or _apart(a, b) > estimate.event_time_s
+        for a, b in zip(events, wanted))
+
+
+def _apart(event: Event, other: Event) -> float:
+    """Return the seconds between two events, in exact arithmetic."""
+    return abs(float(Fraction(event.second) - Fraction(other.second)
+                     + (Fraction(event.fraction) - Fraction(other.fraction))))
