@@ -6,6 +6,7 @@ The truth is that of the reference.  Judged are the events up to the time `until
 must be those of the reference, and no further off than it says.  An `until_s` before the end must have its reason.
 """
 
+import math
 import random
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -116,9 +117,13 @@ def _ratio(_: str, run: Trajectory, wanted: Sequence[Event], judged: list[_Judge
 
 def _lasting(events: Sequence[Event]) -> list[Event]:
     """Return the events without the ends of coasts of a moment after a break-away, as the estimate of steps does."""
-    away = [event.time for event in events if event.kind == EventKind.BREAKAWAY]
-    return [event for event in events if event.kind == EventKind.BREAKAWAY
-            or not any(0.0 <= event.time - time <= _MOMENT for time in away)]
+    kept: list[Event] = []
+    away = -math.inf
+    for event in events:
+        away = event.time if event.kind == EventKind.BREAKAWAY else away
+        if event.kind == EventKind.BREAKAWAY or event.time > away + _MOMENT:
+            kept.append(event)
+    return kept
 
 
 def _has_reason(estimate: ErrorEstimate, events: Sequence[Event], wanted: Sequence[Event]) -> bool:
