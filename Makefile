@@ -12,7 +12,7 @@ SHELL := /bin/bash
 HERE := ros2_ws/on_this_machine
 TOOLS := ros2_ws/.venv/bin
 
-.PHONY: help build run test check extremes bench hil soak fuzz docs clean
+.PHONY: help build run test check extremes bench hil soak fuzz hostile docs clean
 
 help:  ## list the targets
 	@sed -nE 's/^([a-z]+):.*## (.*)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 14
@@ -51,6 +51,9 @@ soak: build  ## the node, recording, with a controller beside it for MINUTES=10;
 
 fuzz: tools  ## made-up files and runs for MINUTES=10; fails when one is not read or refused in one line, or runs wrong
 	@$(HERE) python3 -m tests.fuzz --minutes $(MINUTES)
+
+hostile: tools  ## scenes near all that an event search may miss, for MINUTES=10, with SEED=; fails when a judge finds one wrong
+	@$(HERE) python3 -m tests.hostile --minutes $(MINUTES) $(if $(SEED),--seed $(SEED))
 
 docs: tools  ## the pages in docs/ as a site in runs/docs/
 	@$(TOOLS)/mkdocs build && echo runs/docs/index.html

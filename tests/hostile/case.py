@@ -1,0 +1,130 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""A scene as values by dotted name, and what is run of it."""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+from stickslip_sim.axis import Axis, InitialState
+from stickslip_sim.courses import Course
+from stickslip_sim.energy import EnergyBalance
+from stickslip_sim.scene import Scene, scene_from_values
+from stickslip_sim.simulator import Simulator
+from stickslip_sim.words import Event, Instant, Sample
+
+Values = dict[str, Any]
+MOST_EVENTS = 120        # of a run that is judged; what comes later is cut off
+_SLICES = 32             # in which it is seen how far that many events go
+
+
+class Find(Exception):  # noqa: N818
+    """What a judge found wrong with a run, in one line."""
+
+
+class Undecided(Exception):  # noqa: N818
+    """A judge cannot tell: the data differ from a tie by rounding, or it takes too long."""
+
+
+class Parts(NamedTuple):
+    """All that a run is made of; the duration in s."""
+
+    axis: Axis
+    initial: InitialState
+    drive: Course
+    force: Course
+    duration: float
+
+
+@dataclass
+class Case:
+    """A scene and the seconds to run it."""
+
+    values: Values
+    duration: float
+
+    @cached_property
+    def scene(self) -> Scene:
+        """The scene; raises InputError."""
+        return scene_from_values(self.values, 'hostile')
+
+    @property
+    def parts(self) -> Parts:
+        """What is run; raises InputError."""
+        scene = self.scene
+        return Parts(scene.axis, scene.initial, scene.drive, scene.force, self.duration)
+
+
+class Run(NamedTuple):
+    """A run of the engine, cut into its inputs' pieces: events before the start, and (events, state) to each border."""
+
+    parts: Parts
+    at_start: list[Event]
+    start: Sample
+    stretches: list[tuple[list[Event], Sample]]
+    energy: EnergyBalance
+    size: int             # events
+
+    @property
+    def events(self) -> list[Event]:
+        """All events in the order of time."""
+        return self.at_start + [event for events, _ in self.stretches for event in events]
+
+
+def simulator(parts: Parts, accounting: bool = False) -> Simulator:
+    """Return the simulator at time 0."""
+    return Simulator(parts.axis, parts.initial, parts.drive, parts.force, accounting=accounting)
+
+
+def instant(seconds: float) -> Instant:
+    """Return a time in two parts."""
+    whole = math.floor(seconds)
+    return Instant(float(whole), seconds - whole)
+
+
+def all_events(parts: Parts) -> list[Event]:
+    """Run to the end in one call; raises SolverError."""
+    return simulator(parts).advance(instant(parts.duration))
+
+
+def run(parts: Parts) -> Run:
+    """Run with a state at each border of the inputs, about as far as MOST_EVENTS go.  Raises SolverError."""
+    parts = _cut(parts)
+    sim = simulator(parts, accounting=True)
+    at_start = list(sim.reset())
+    start = sim.sample()
+    stretches: list[tuple[list[Event], Sample]] = []
+    count, first = len(at_start), len(at_start)
+    for border in borders(parts):
+        events = sim.advance(instant(border))[first:]
+        first = 0
+        stretches.append((events, sim.sample()))
+        count += len(events)
+    energy = sim.energy
+    assert energy is not None
+    return Run(parts, at_start, start, stretches, energy, count)
+
+
+def _cut(parts: Parts) -> Parts:
+    """Return the parts with a duration in which hardly more than MOST_EVENTS fall."""
+    sim, count = simulator(parts), 0
+    borders_at = borders(parts)
+    for k in range(1, _SLICES + 1):
+        end = parts.duration * k / _SLICES
+        count += len(sim.advance(instant(end)))
+        if count > MOST_EVENTS or (len(borders_at) >= MOST_EVENTS and end > borders_at[-2]):
+            return parts._replace(duration=end)
+    return parts
+
+
+def borders(parts: Parts) -> list[float]:
+    """Return the times at which a piece of an input ends, and the end of the run."""
+    times: list[float] = []
+    time = 0.0
+    while len(times) < MOST_EVENTS:
+        time = min(parts.drive.piece_at(time).end, parts.force.piece_at(time).end)
+        if not time < parts.duration:
+            break
+        times.append(time)
+    return [*times, parts.duration]

@@ -1,0 +1,19 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Generators by name: each is a function of a random.Random and returns a Case."""
+
+import random
+from collections.abc import Callable, Mapping
+
+from ..case import Case
+from . import degenerate, inputs, machines, smooth
+
+Generator = Callable[[random.Random], Case]
+
+GENERATORS: Mapping[str, Generator] = {generator.__name__: generator for generator in (
+    machines.two_knots, machines.fig4_sweep, machines.any_machine,
+    degenerate.slopes, degenerate.critical_slip, degenerate.paper_critical, degenerate.critical_contact,
+    degenerate.equal_eigenvalues, degenerate.limit_velocities, degenerate.contacts, degenerate.touching,
+    degenerate.ties, inputs.grazing_sine, inputs.grazing_ramp, inputs.peak_at_knot, inputs.steady_at_knot,
+    inputs.step_at_event, inputs.resonance, inputs.sines, smooth.smooth)}
+PLAUSIBLE = frozenset({'two_knots', 'fig4_sweep', 'any_machine', 'smooth', 'sines'})

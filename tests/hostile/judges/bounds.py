@@ -1,0 +1,77 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Energy, and speeds: what no axis can do."""
+
+import math
+
+from stickslip_sim.axis import Axis
+from stickslip_sim.courses import Course
+
+from ..case import Find, Run
+
+_UNBALANCED = 1e-9   # of the throughput
+
+
+def judge(run: Run) -> None:
+    """Raise Find where the account of energy does not close, or a number is none, or a speed is beyond the bound."""
+    for event in run.events:
+        if not all(map(math.isfinite, event[5:11])):
+            raise Find(f'a number is not finite: {tuple(event)}')
+    bound = speed_bound(run)
+    samples = [sample for _, sample in run.stretches]
+    for time, speed in [(e.time, e.velocity) for e in run.events] + [(s.time, s.velocity) for s in samples]:
+        if abs(speed) > bound:
+            raise Find(f'a speed of {speed!r} m/s at {time!r} s; no more than {bound:.6g} is possible')
+    residual = abs(run.energy.residual)
+    if not residual <= _UNBALANCED * _energy(run):
+        raise Find(f'the account of energy does not close: a residual of {residual:.3g} J of {_energy(run):.3g} J')
+
+
+def _energy(run: Run) -> float:
+    """Return the throughput, or what a spring at the limit stores: a drive that comes back leaves no work."""
+    axis, energy = run.parts.axis, run.energy
+    limit = axis.normal_force * axis.friction.static.initial
+    return max(energy.throughput, energy.stored, energy.stored_at_start,
+               limit * limit / axis.drive_stiffness if axis.drive_stiffness > 0.0 else 0.0)
+
+
+def speed_bound(run: Run) -> float:
+    """Return a speed (m/s) that no slider can pass.
+
+    Seen from the drive, E = m (ẋ − v)²/2 + c (s − x)²/2 changes by the power of F_e and friction, the damper only
+    takes: sqrt(2 E/m) grows by (|F_e| + N mu)/m per second at the most, and by |dv|.  A rest begins anew.
+    """
+    axis, drive, force = run.parts.axis, run.parts.drive, run.parts.force
+    end = run.parts.duration
+    fastest, changes = _most(drive, end), _changes(drive, end)
+    pull = _most(force, end) + axis.normal_force * max(_coefficients(axis, run))
+    start = abs(run.parts.initial.velocity)
+    # a slip begins with a stretch that a rest can hold; one rest is as good as any other
+    stretch = (axis.normal_force * max(_coefficients(axis, run)) + _most(force, end)
+               + axis.drive_damping * (fastest + start))
+    stored = stretch / math.sqrt(axis.drive_stiffness * axis.mass) if axis.drive_stiffness > 0.0 else 0.0
+    return 1.001 * (start + 2.0 * fastest + changes + stored + pull / axis.mass * end) + 1e-300
+
+
+def _coefficients(axis: Axis, run: Run) -> list[float]:
+    return [*axis.friction.kinetic.coefficients, axis.friction.static.initial,
+            *(event.static_coefficient for event in run.events)]
+
+
+def _most(course: Course, end: float) -> float:
+    values = [abs(v) + abs(r) * max(min(end, stop) - t, 0.0) for t, stop, v, r in zip(
+        course.starts, (*course.starts[1:], course.period), course.values, course.rates)]
+    return max(values) + sum(abs(w.amplitude) for w in course.waves)
+
+
+def _changes(course: Course, end: float) -> float:
+    """Return a bound on how much the course changes up to the end."""
+    stops = (*course.starts[1:], min(course.period, end))
+    rise = sum(abs(r) * max(min(end, stop) - t, 0.0) for t, stop, r in zip(course.starts, stops, course.rates))
+    finals = [v + r * (stop - t) for t, stop, v, r in zip(course.starts, stops, course.values, course.rates)]
+    jumps = sum(abs(b - a) for a, b in zip(finals, course.values[1:])) + abs(course.values[0] - finals[-1])
+    turns = max(1.0, math.ceil(end / course.period)) if course.period < math.inf else 1.0
+    waves = sum(abs(w.amplitude) * (4.0 * w.frequency * end + 2.0) for w in course.waves)
+    return (rise + jumps) * turns + waves
+
+

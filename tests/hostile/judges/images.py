@@ -1,0 +1,122 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Mirrored, and in other units by powers of two: the same bits."""
+
+import math
+import random
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
+
+from stickslip_sim.axis import Axis, CompliantContact, InitialState
+from stickslip_sim.courses import FREQUENCIES, Course
+from stickslip_sim.errors import SolverError
+from stickslip_sim.friction import ExcessTable, KineticTable, StaticLaw
+from stickslip_sim.words import Event
+
+from ..case import Find, Parts, Run, all_events
+
+_POWERS = (-40, -7, 1, 13, 60)
+_TIMES = (-1, -3, -10, -20)
+_LIMIT = 0.999    # s: within the first second a time is one number
+
+
+def judge(run: Run, rng: random.Random) -> None:
+    """Run the mirror image and the scene in other units; raises Find unless all bits are the same."""
+    parts, events = run.parts, run.events
+    k = math.ldexp(1.0, rng.choice(_POWERS))
+    _compare('mirrored', _mirrored(parts), (_mirror(e) for e in events))
+    _compare(f'mass unit times {k:g}', _mass_unit(parts, k), (
+        e._replace(drive_force=k * e.drive_force, friction_force=k * e.friction_force) for e in events))
+    _compare(f'length unit times {k:g}', _length_unit(parts, k), (
+        e._replace(position=k * e.position, velocity=k * e.velocity, drive_position=k * e.drive_position,
+                   drive_force=k * e.drive_force, friction_force=k * e.friction_force) for e in events))
+    waves = [w.frequency for w in (*parts.drive.waves, *parts.force.waves)]
+    fast = [t for t in _TIMES if all(math.ldexp(w, -t) < FREQUENCIES[1] for w in waves)]
+    if fast:
+        _time_unit(parts, events, math.ldexp(1.0, rng.choice(fast)))
+
+
+def _compare(name: str, image: Parts, wanted: Iterable[Event]) -> None:
+    try:
+        seen = all_events(image)
+    except SolverError as error:
+        raise Find(f'{name}: refused: {error}') from None
+    wanted = list(wanted)
+    for i, (a, b) in enumerate(zip(seen, wanted)):
+        if a != b:
+            raise Find(f'{name}: event {i} is {_brief(a)} and not {_brief(b)}')
+    if len(seen) != len(wanted):
+        raise Find(f'{name}: {len(seen)} events and not {len(wanted)}')
+
+
+def _brief(event: Event) -> str:
+    return (f'{event.kind.name} to {event.mode.name} at {event.time!r} s, x {event.position!r}, u {event.velocity!r}, '
+            f'F_d {event.drive_force!r}')
+
+
+def _mirrored(parts: Parts) -> Parts:
+    initial = InitialState(-parts.initial.position, -parts.initial.velocity, parts.initial.rest_time)
+    return parts._replace(initial=initial, drive=_scaled(parts.drive, -1.0), force=_scaled(parts.force, -1.0))
+
+
+def _mirror(event: Event) -> Event:
+    return event._replace(direction=-event.direction, position=-event.position, velocity=-event.velocity,
+                          drive_position=-event.drive_position, drive_force=-event.drive_force,
+                          friction_force=-event.friction_force)
+
+
+def _mass_unit(parts: Parts, k: float) -> Parts:
+    axis = replace(_stiffened(parts.axis, k, k), mass=k * parts.axis.mass, normal_force=k * parts.axis.normal_force)
+    return parts._replace(axis=axis, force=_scaled(parts.force, k))
+
+
+def _length_unit(parts: Parts, k: float) -> Parts:
+    axis = replace(_faster(parts.axis, k), normal_force=k * parts.axis.normal_force)
+    initial = replace(parts.initial, position=k * parts.initial.position, velocity=k * parts.initial.velocity)
+    return parts._replace(axis=axis, initial=initial, drive=_scaled(parts.drive, k), force=_scaled(parts.force, k))
+
+
+def _time_unit(parts: Parts, events: Sequence[Event], k: float) -> None:
+    end = min(parts.duration, _LIMIT)
+    axis = _faster(_stiffened(parts.axis, 1.0 / (k * k), 1.0 / k), 1.0 / k)
+    law = axis.friction.static
+    law = StaticLaw(law.kind, law.initial, law.limit, k * law.time_constant, law.exponent)
+    axis = replace(axis, normal_force=axis.normal_force / (k * k), friction=replace(axis.friction, static=law))
+    initial = replace(parts.initial, velocity=parts.initial.velocity / k, rest_time=k * parts.initial.rest_time)
+    image = Parts(axis, initial, _quicker(parts.drive, k, 1.0 / k), _quicker(parts.force, k, 1.0 / (k * k)), k * end)
+    _compare(f'time unit times {k:g}', image, (
+        e._replace(fraction=k * e.fraction, velocity=e.velocity / k, drive_force=e.drive_force / (k * k),
+                   friction_force=e.friction_force / (k * k), rest_time=k * e.rest_time)
+        for e in events if e.time <= end))
+
+
+def _stiffened(axis: Axis, stiffer: float, damper: float) -> Axis:
+    contact = axis.contact
+    if isinstance(contact, CompliantContact):
+        contact = CompliantContact(stiffer * contact.stiffness, damper * contact.damping)
+    return replace(axis, drive_stiffness=stiffer * axis.drive_stiffness, drive_damping=damper * axis.drive_damping,
+                   contact=contact)
+
+
+def _faster(axis: Axis, k: float) -> Axis:
+    kinetic, excess = axis.friction.kinetic, axis.friction.excess
+    kinetic = KineticTable(tuple(k * v for v in kinetic.velocities), kinetic.coefficients, kinetic.end_slope / k)
+    if excess is not None:
+        excess = ExcessTable(tuple(k * v for v in excess.velocities), excess.fractions)
+    return replace(axis, friction=replace(axis.friction, kinetic=kinetic, excess=excess))
+
+
+def _scaled(course: Course, factor: float) -> Course:
+    return _mapped(course, lambda t: t, factor, factor, 1.0, course.period)
+
+
+def _quicker(course: Course, k: float, factor: float) -> Course:
+    return _mapped(course, lambda t: k * t, factor, factor / k, 1.0 / k, k * course.period)
+
+
+def _mapped(course: Course, time: Callable[[float], float], value: float, rate: float, frequency: float,
+            period: float) -> Course:
+    return Course(tuple(time(t) for t in course.starts), tuple(value * x for x in course.values),
+                  tuple(rate * x for x in course.rates), period,
+                  tuple(w._replace(amplitude=value * w.amplitude, frequency=frequency * w.frequency)
+                        for w in course.waves))

@@ -1,0 +1,83 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The automaton in multiple precision: the same events, within what rounding of the data may change."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from stickslip_sim.errors import SolverError
+from stickslip_sim.extremes.against import error_of_events
+from stickslip_sim.extremes.outcome import Missed
+from stickslip_sim.reference import simulate
+from stickslip_sim.words import Event
+from tests.fuzz.bounds import within
+
+from ..case import Find, Parts, Run, Undecided, all_events
+
+_DIGITS = 30
+_MOST_EVENTS = 20
+_PATIENCE = 20.0      # s
+_ERROR = 1e-11        # of the run's length and travel
+_ROUNDING = 1e-13     # of the data: what it changes, no double can be blamed for
+
+
+def judge(run: Run) -> None:
+    """Compare the first events; raises Find, or Undecided where rounding of the data changes as much."""
+    compare(run.parts, run.events, _MOST_EVENTS)
+
+
+def compare(parts: Parts, events: Sequence[Event], most: int, patience: float = _PATIENCE) -> None:
+    """Compare up to `most` events with the reference, as `judge`."""
+    if len(events) > most:
+        parts = parts._replace(duration=0.5 * (events[most - 1].time + events[most].time))
+        events = [event for event in events if event.time <= parts.duration]
+    try:
+        with within(patience):
+            _compare(parts, events)
+    except TimeoutError:
+        raise Undecided('the reference takes too long') from None
+    except SolverError as error:
+        raise Undecided(f'the reference gives up: {error}') from None
+
+
+def _compare(parts: Parts, events: Sequence[Event]) -> None:
+    wanted = _events(parts)
+    error, text = _error(events, wanted, parts.duration)
+    if error <= _ERROR:
+        return
+    axis = parts.axis
+    for sign in (1.0, -1.0):
+        off = sign * _ROUNDING
+        other = parts._replace(axis=replace(axis, mass=axis.mass * (1.0 + off),
+                                            drive_stiffness=axis.drive_stiffness * (1.0 - off),
+                                            drive_damping=axis.drive_damping * (1.0 + off),
+                                            normal_force=axis.normal_force * (1.0 + 0.7 * off)))
+        if _error(_events(other), wanted, parts.duration)[0] >= error:
+            raise Undecided('rounding of the data changes as much')
+    raise Find(text)
+
+
+def _events(parts: Parts) -> Sequence[Event]:
+    return simulate(parts.axis, parts.initial, parts.drive, parts.force, parts.duration, _DIGITS).events
+
+
+def _error(events: Sequence[Event], wanted: Sequence[Event], duration: float) -> tuple[float, str]:
+    try:
+        error = error_of_events(events, wanted, duration)
+        return error, f'an error of {error:.3g} of the length or the travel'
+    except Missed as missed:
+        k = next((i for i, (a, b) in enumerate(zip(events, wanted)) if (a.kind, a.direction) != (b.kind, b.direction)),
+                 min(len(events), len(wanted)))
+        times = [repr(e[k].time) if k < len(e) else 'none' for e in (events, wanted)]
+        return 1.0, f'{missed}; at {times[0]} s instead of {times[1]} s'
+
+
+def confirm(parts: Parts, patience: float = _PATIENCE) -> str:
+    """Return in words what the reference says to the events of a run."""
+    try:
+        compare(parts, all_events(parts), _MOST_EVENTS, patience)
+    except Find as find:
+        return f'the engine is wrong: {find}'
+    except (Undecided, SolverError) as error:
+        return f'undecided: {error}'
+    return f'the first {_MOST_EVENTS} events are right'

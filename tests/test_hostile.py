@@ -1,0 +1,126 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""A slice of the attack on the engine, and that each of its judges can fail.  `make hostile` attacks for longer."""
+
+import random
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from stickslip_sim.courses import constant
+from stickslip_sim.words import EventKind, Mode
+from tests.hostile import report
+from tests.hostile.attack import Found, Tally, judge_again, one_round
+from tests.hostile.case import Case, Find, Run, run
+from tests.hostile.generators import GENERATORS, draw
+from tests.hostile.judges import batch, bounds, guards, images, parts, reference
+
+CASE = Case(draw.paper() | draw.constant(0.002), 3.0)
+
+
+@pytest.fixture(scope='module')
+def good() -> Run:
+    return run(CASE.parts)
+
+
+def changed(good: Run, at: int, **changes: Any) -> Run:
+    """Return the run with an event changed; every border but the last is at its end."""
+    events, end = good.stretches[0]
+    return good._replace(stretches=[([*events[:at], events[at]._replace(**changes), *events[at + 1:]], end)])
+
+
+def without(good: Run, *gone: int) -> Run:
+    """Return the run without some events."""
+    events, end = good.stretches[0]
+    return good._replace(stretches=[([e for k, e in enumerate(events) if k not in gone], end)])
+
+
+def test_nothing_is_found_wrong() -> None:
+    found = one_round('slice', Tally(), list(GENERATORS), count=3, share=0.0)
+    assert not found, '\n'.join(f'{one.generator}, {one.judge}: {one.text}' for one in found)
+
+
+def test_a_good_run_passes_every_judge() -> None:
+    assert judge_again(CASE, 'good') == []
+
+
+def test_the_same_seed_makes_the_same_scenes() -> None:
+    for make in GENERATORS.values():
+        assert make(random.Random('again')).values == make(random.Random('again')).values
+
+
+def test_a_missed_event_is_seen(good: Run) -> None:
+    events = good.stretches[0][0]
+    knot = next(k for k, e in enumerate(events) if e.kind == EventKind.KNOT)
+    assert any('knot' in text and 'passed' in text for text in guards.judge([without(good, knot)])[0])
+    stick = next(k for k, e in enumerate(events) if e.kind == EventKind.STICK)
+    assert any('standstill was passed' in text for text in guards.judge([without(good, stick)])[0])
+    assert any('static limit was passed' in text for text in guards.judge([good._replace(stretches=[
+        ([], good.stretches[0][1]._replace(mode=Mode.STICK, position=0.0, velocity=0.0))])])[0])
+
+
+@pytest.mark.parametrize('later', [-1e-10, 1e-10])
+def test_an_event_at_another_time_is_seen(good: Run, later: float) -> None:
+    for k, event in enumerate(good.stretches[0][0]):
+        assert guards.judge([changed(good, k, fraction=event.fraction + later)])[0], event
+
+
+def test_another_state_is_seen(good: Run) -> None:
+    for k, event in enumerate(good.stretches[0][0]):
+        for name in ('position', 'velocity', 'drive_force'):
+            value = getattr(event, name)
+            other = value * (1.0 + 1e-9) if value else 1e-9
+            assert guards.judge([changed(good, k, **{name: other})])[0], (name, event)
+
+
+def test_an_invented_event_is_seen(good: Run) -> None:
+    events, end = good.stretches[0]
+    invented = events[0]._replace(fraction=events[0].fraction - 0.1, drive_force=events[0].drive_force - 120.0)
+    assert guards.judge([good._replace(stretches=[([invented, *events], end)])])[0]
+
+
+def test_a_graze_between_samples_is_seen() -> None:
+    # the force peaks 1e-9 above the limit, for 6e-5 s
+    peak = 0.24 * 3432.3275 * (1.0 + 1e-9)
+    values = draw.paper(**{'axis.drive_damping': 0.0, 'drive.course': 'ramp', 'drive.velocity': 2.0 * peak / 6e5,
+                           'drive.acceleration': -2.0 * peak / 6e5})
+    done = run(Case(values, 1.7).parts)
+    assert done.size > 0
+    still = done.start._replace(second=1.0, fraction=0.7, drive_force=peak * (1.0 - 0.49))
+    assert any('static limit was passed' in text for text in guards.judge([done._replace(
+        stretches=[([], still)])])[0])
+
+
+def test_other_bits_are_seen(good: Run) -> None:
+    k = len(good.stretches[0][0]) - 1
+    bent = changed(good, k, position=good.stretches[0][0][k].position * (1.0 + 2.0 ** -52))
+    for judge in (images.judge, parts.judge):
+        with pytest.raises(Find):
+            judge(bent, random.Random(0))
+    with pytest.raises(Find):
+        batch.judge(changed(good, k, velocity=1.0)._replace(parts=good.parts._replace(drive=constant(0.003))))
+
+
+def test_a_speed_and_an_energy_without_a_source_are_seen(good: Run) -> None:
+    with pytest.raises(Find, match='speed'):
+        bounds.judge(changed(good, 3, velocity=3.8e98))
+    with pytest.raises(Find, match='energy'):
+        bounds.judge(good._replace(energy=good.energy._replace(friction_loss=good.energy.friction_loss + 1e-6)))
+
+
+def test_the_reference_sees_a_missed_event(good: Run) -> None:
+    pytest.importorskip('mpmath')
+    short = good._replace(parts=good.parts._replace(duration=1.0))
+    events = [event for event in good.events if event.time <= 1.0]
+    reference.compare(short.parts, events, 20)
+    with pytest.raises(Find):
+        reference.compare(short.parts, events[:-1], 20)
+
+
+def test_a_find_is_written_and_judged_again(tmp_path: Path) -> None:
+    place = report.write(Found('slopes', 'a/b', 'guards', 'text', CASE), tmp_path, None)
+    case, seed = report.read(place)
+    assert seed == 'a/b'
+    assert case.parts == CASE.parts
+    assert judge_again(case, seed, reference_too=False) == []
