@@ -19,6 +19,26 @@ from tests.hostile.judges import batch, bounds, guards, images, parts, reference
 CASE = Case(draw.paper() | draw.constant(0.002), 3.0)
 
 
+# what the attack, and audits before it, found wrong: each with the seconds to run it
+KNOWN = {
+    'a steep fall overflows': (
+        draw.axis(1.0, 2.0, 0.0, 1.0) | draw.contact() | draw.static(1.5)
+        | draw.kinetic([0.0, 0.00273], [1.5, 1.0]) | draw.constant(0.1), 60.0),
+    'a step underflows near critical damping': (
+        draw.paper(**{'axis.drive_damping': 28982.753})
+        | draw.kinetic([0.0, 0.001, 0.003, 0.01, 0.035], [0.12, 0.12, 0.12, 0.12, 0.05])
+        | draw.constant(0.0286, -300.0), 1.0),
+    'psi ends right behind the break-away': (
+        draw.paper() | draw.contact(5e6, 15000.0) | draw.kinetic([0.0, 0.035], [0.12, 0.05], branches=True)
+        | {'friction.excess.velocities': [0.0, 0.00021428571427], 'friction.excess.fractions': [1.0, 0.0]}
+        | draw.constant(0.002), 1.2),
+    'a fast fade ends in a falling piece': (
+        draw.axis(1.0, 0.0, 0.0, 1.0) | draw.contact() | draw.static(0.1)
+        | draw.kinetic([0.0, 1e-6], [0.1, 0.001], 1e9) | draw.constant(0.0)
+        | {'initial.velocity': 1000.0, 'initial.rest_time': 0.0}, 1.0),
+}
+
+
 @pytest.fixture(scope='module')
 def good() -> Run:
     return run(CASE.parts)
@@ -39,6 +59,12 @@ def without(good: Run, *gone: int) -> Run:
 def test_nothing_is_found_wrong() -> None:
     found = one_round('slice', Tally(), list(GENERATORS), count=3, share=0.0)
     assert not found, '\n'.join(f'{one.generator}, {one.judge}: {one.text}' for one in found)
+
+
+@pytest.mark.parametrize('name', KNOWN)
+def test_a_scene_that_was_judged_wrong_is_right(name: str) -> None:
+    values, duration = KNOWN[name]
+    assert judge_again(Case(values, duration), name, reference_too=False) == []
 
 
 def test_a_good_run_passes_every_judge() -> None:

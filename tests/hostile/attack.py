@@ -9,12 +9,14 @@ from typing import NamedTuple
 
 from stickslip_sim.errors import InputError, SolverError
 
-from .case import Case, Find, Run, Undecided, run
+from .case import Case, Find, LastBits, Run, Undecided, run
 from .generators import GENERATORS, PLAUSIBLE
 from .judges import batch, bounds, guards, images, parts, reference
 
 PER_ROUND = 10               # scenes of each generator
 REFERENCE_SHARE = 0.02       # of the scenes; one takes a second
+TIES = frozenset({'touching', 'ties', 'steady_at_knot', 'equal_eigenvalues', 'grazing_ramp'})
+TIES_SHARE = 5.0             # times that share, where nothing but exact arithmetic tells what is right
 MOST_REFUSED = 0.03          # of plausible machines
 ENOUGH = 200                 # scenes from which on that share means something
 
@@ -67,7 +69,7 @@ def one_round(seed: str, tally: Tally, names: Sequence[str], count: int = PER_RO
         tally.events[name] += done.size
         tally.judged['guards'] += 1
         texts = [('guards', wrong[0])] if wrong else []
-        texts += list(_others(done, tag, share, tally, name))
+        texts += list(_others(done, tag, share * (TIES_SHARE if name in TIES else 1.0), tally, name))
         for judge, text in texts:
             tally.finds[name, judge] += 1
             found.append(Found(name, tag, judge, text, case))
@@ -92,6 +94,8 @@ def _others(done: Run, tag: str, share: float, tally: Tally, name: str) -> Itera
         tally.judged[judge] += 1
         try:
             work()
+        except LastBits as find:
+            yield 'bits', str(find)
         except Find as find:
             yield judge, str(find)
         except Undecided:

@@ -23,6 +23,10 @@ class Find(Exception):  # noqa: N818
     """What a judge found wrong with a run, in one line."""
 
 
+class LastBits(Find):
+    """The same events, but for digits that rounding may change."""
+
+
 class Undecided(Exception):  # noqa: N818
     """A judge cannot tell: the data differ from a tie by rounding, or it takes too long."""
 
@@ -109,11 +113,12 @@ def run(parts: Parts) -> Run:
 def _cut(parts: Parts) -> Parts:
     """Return the parts with a duration in which hardly more than MOST_EVENTS fall."""
     sim, count = simulator(parts), 0
-    borders_at = borders(parts)
+    if len(ends := borders(parts)) > MOST_EVENTS:
+        parts = parts._replace(duration=ends[MOST_EVENTS])
     for k in range(1, _SLICES + 1):
         end = parts.duration * k / _SLICES
         count += len(sim.advance(instant(end)))
-        if count > MOST_EVENTS or (len(borders_at) >= MOST_EVENTS and end > borders_at[-2]):
+        if count > MOST_EVENTS:
             return parts._replace(duration=end)
     return parts
 
@@ -122,7 +127,7 @@ def borders(parts: Parts) -> list[float]:
     """Return the times at which a piece of an input ends, and the end of the run."""
     times: list[float] = []
     time = 0.0
-    while len(times) < MOST_EVENTS:
+    while len(times) <= MOST_EVENTS:
         time = min(parts.drive.piece_at(time).end, parts.force.piece_at(time).end)
         if not time < parts.duration:
             break

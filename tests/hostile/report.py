@@ -44,5 +44,6 @@ def table(tally: Tally) -> str:
                      + ''.join(f'{tally.finds[name, judge] or "":>11}' for judge in judges))
     lines.append('judged: ' + ', '.join(f'{judge} {count}' for judge, count in tally.judged.items())
                  + f'; undecided {sum(tally.undecided.values())}')
+    lines += [f'refused of {name}: {text}' for name, text in tally.refusals.items()]
     return '\n'.join(lines)
 

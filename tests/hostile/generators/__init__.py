@@ -6,7 +6,7 @@ import random
 from collections.abc import Callable, Mapping
 
 from ..case import Case
-from . import degenerate, inputs, machines, smooth
+from . import degenerate, inputs, machines, ranges, smooth
 
 Generator = Callable[[random.Random], Case]
 
@@ -15,5 +15,6 @@ GENERATORS: Mapping[str, Generator] = {generator.__name__: generator for generat
     degenerate.slopes, degenerate.critical_slip, degenerate.paper_critical, degenerate.critical_contact,
     degenerate.equal_eigenvalues, degenerate.limit_velocities, degenerate.contacts, degenerate.touching,
     degenerate.ties, inputs.grazing_sine, inputs.grazing_ramp, inputs.peak_at_knot, inputs.steady_at_knot,
-    inputs.step_at_event, inputs.resonance, inputs.sines, smooth.smooth)}
+    inputs.step_at_event, inputs.resonance, inputs.sines, smooth.smooth,
+    ranges.static_laws, ranges.late, ranges.whole_range, ranges.excesses, ranges.odd_sines, ranges.periodic)}
 PLAUSIBLE = frozenset({'two_knots', 'fig4_sweep', 'any_machine', 'smooth', 'sines'})

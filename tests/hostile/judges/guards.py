@@ -226,8 +226,8 @@ def _wrong_limit(segment: Segment) -> Iterable[str]:
     event = segment.end.event
     if event is None or event.kind != EventKind.BREAKAWAY or segment.end.new_force:
         return
-    limit, _ = limit_along(segment, np.array([segment.length], dtype=Long))
+    limit, growth = limit_along(segment, np.array([segment.length], dtype=Long))
     normal = Long(segment.axis.normal_force)
     off = abs(Long(event.static_coefficient) * normal - limit[0])
-    if off > 1e-12 * abs(limit[0]):
+    if off > 1e-12 * abs(limit[0]) + MARGIN * _TIME * growth[0]:
         yield f'mu_s at {segment.end.label} is {event.static_coefficient!r} and not {float(limit[0] / normal)!r}'

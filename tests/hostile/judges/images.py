@@ -13,15 +13,16 @@ from stickslip_sim.errors import SolverError
 from stickslip_sim.friction import ExcessTable, KineticTable, StaticLaw
 from stickslip_sim.words import Event
 
-from ..case import Find, Parts, Run, all_events
+from ..case import Find, LastBits, Parts, Run, all_events
 
 _POWERS = (-40, -7, 1, 13, 60)
 _TIMES = (-1, -3, -10, -20)
+_ROUNDING = 1e-9  # of the duration: times that differ by no more are those of the same events
 _LIMIT = 0.999    # s: within the first second a time is one number
 
 
 def judge(run: Run, rng: random.Random) -> None:
-    """Run the mirror image and the scene in other units; raises Find unless all bits are the same."""
+    """Run the mirror image and the scene in other units; raises Find, or LastBits, unless all are the same."""
     parts, events = run.parts, run.events
     k = math.ldexp(1.0, rng.choice(_POWERS))
     _compare('mirrored', _mirrored(parts), (_mirror(e) for e in events))
@@ -42,11 +43,16 @@ def _compare(name: str, image: Parts, wanted: Iterable[Event]) -> None:
     except SolverError as error:
         raise Find(f'{name}: refused: {error}') from None
     wanted = list(wanted)
-    for i, (a, b) in enumerate(zip(seen, wanted)):
-        if a != b:
-            raise Find(f'{name}: event {i} is {_brief(a)} and not {_brief(b)}')
-    if len(seen) != len(wanted):
-        raise Find(f'{name}: {len(seen)} events and not {len(wanted)}')
+    first = next((i for i, (a, b) in enumerate(zip(seen, wanted)) if a != b), min(len(seen), len(wanted)))
+    if first < max(len(seen), len(wanted)):
+        text = ' and not '.join(_brief(events[first]) if first < len(events) else 'none' for events in (seen, wanted))
+        raise (LastBits if _alike(seen, wanted, image.duration) else Find)(f'{name}: event {first} is {text}')
+
+
+def _alike(seen: list[Event], wanted: list[Event], duration: float) -> bool:
+    return len(seen) == len(wanted) and all(
+        a.kind == b.kind and a.mode == b.mode and abs(a.time - b.time) <= _ROUNDING * duration
+        for a, b in zip(seen, wanted))
 
 
 def _brief(event: Event) -> str:

@@ -5,17 +5,18 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
+from stickslip_sim.courses import Course
 from stickslip_sim.errors import SolverError
 from stickslip_sim.extremes.against import error_of_events
 from stickslip_sim.extremes.outcome import Missed
 from stickslip_sim.reference import simulate
-from stickslip_sim.words import Event
+from stickslip_sim.words import Event, EventKind
 from tests.fuzz.bounds import within
 
 from ..case import Find, Parts, Run, Undecided, all_events
 
 _DIGITS = 30
-_MOST_EVENTS = 20
+_MOST_EVENTS, _MOST_CONFIRMED = 20, 60
 _PATIENCE = 20.0      # s
 _ERROR = 1e-11        # of the run's length and travel
 _ROUNDING = 1e-13     # of the data: what it changes, no double can be blamed for
@@ -45,16 +46,33 @@ def _compare(parts: Parts, events: Sequence[Event]) -> None:
     error, text = _error(events, wanted, parts.duration)
     if error <= _ERROR:
         return
+    if _slides_steadily(parts, events, wanted):
+        raise Undecided('it slides steadily within rounding')
     axis = parts.axis
     for sign in (1.0, -1.0):
         off = sign * _ROUNDING
-        other = parts._replace(axis=replace(axis, mass=axis.mass * (1.0 + off),
+        other = parts._replace(drive=_times(parts.drive, 1.0 + off), axis=replace(axis, mass=axis.mass * (1.0 + off),
                                             drive_stiffness=axis.drive_stiffness * (1.0 - off),
                                             drive_damping=axis.drive_damping * (1.0 + off),
                                             normal_force=axis.normal_force * (1.0 + 0.7 * off)))
         if _error(_events(other), wanted, parts.duration)[0] >= error:
             raise Undecided('rounding of the data changes as much')
     raise Find(text)
+
+
+def _times(course: Course, factor: float) -> Course:
+    waves = tuple(wave._replace(amplitude=factor * wave.amplitude) for wave in course.waves)
+    return replace(course, values=tuple(factor * x for x in course.values),
+                   rates=tuple(factor * x for x in course.rates), waves=waves)
+
+
+def _slides_steadily(parts: Parts, events: Sequence[Event], wanted: Sequence[Event]) -> bool:
+    """Whether the engine ends in a coast with the drive's velocity, but for rounding, where the reference goes on."""
+    if not events or events[-1].kind != EventKind.COAST or len(wanted) < len(events):
+        return False
+    last, other = events[-1], wanted[len(events) - 1]
+    drive = parts.drive.value_at(last.time)
+    return abs(last.time - other.time) <= _ERROR * parts.duration and abs(other.velocity - drive) <= 1e-14 * abs(drive)
 
 
 def _events(parts: Parts) -> Sequence[Event]:
@@ -75,9 +93,9 @@ def _error(events: Sequence[Event], wanted: Sequence[Event], duration: float) ->
 def confirm(parts: Parts, patience: float = _PATIENCE) -> str:
     """Return in words what the reference says to the events of a run."""
     try:
-        compare(parts, all_events(parts), _MOST_EVENTS, patience)
+        compare(parts, all_events(parts), _MOST_CONFIRMED, patience)
     except Find as find:
         return f'the engine is wrong: {find}'
     except (Undecided, SolverError) as error:
         return f'undecided: {error}'
-    return f'the first {_MOST_EVENTS} events are right'
+    return f'the first {_MOST_CONFIRMED} events are right'

@@ -43,6 +43,7 @@ class Node:
     deflection: float
     rest_time: float
     excess: Any
+    excess_noise: Any
     new_force: bool     # an input may have jumped at this instant
 
     @property
@@ -85,40 +86,46 @@ def segments(run: Run) -> Iterator[Segment]:
 def _nodes(run: Run, table: Table) -> Iterator[Node]:
     parts = run.parts
     jumps = {Instant(0.0, 0.0)}
-    for border in borders(parts)[:-1]:
+    for border in borders(parts):     # the end, too: an input may jump there
         whole = math.floor(border)
         jumps.add(Instant(float(whole), border - whole))
-    excess = Long(0)
+    excess = Long(0), Long(0)
     stretches = [(run.at_start, run.start), *run.stretches]
     for events, sample in stretches:
         for event in events:
             excess = _excess(event, excess, table)
-            yield _node_of_event(event, excess, event.instant in jumps, parts)
-        yield _node_of_sample(sample, excess)
+            yield _node_of_event(event, *excess, event.instant in jumps, parts)
+        yield _node_of_sample(sample, *excess)
 
 
-def _excess(event: Event, excess: Any, table: Table) -> Any:
+def _excess(event: Event, excess: tuple[Any, Any], table: Table) -> tuple[Any, Any]:
+    """Return E from this event on, and its rounding."""
     if event.kind not in (EventKind.BREAKAWAY, EventKind.REVERSE):
         return excess
     speed = abs(event.velocity)
     piece = table.piece(speed, True)
     psi, coefficient = table.psi(piece).of(Long(speed)), table.kinetic(piece).of(Long(speed))
     limit = Long(event.static_coefficient)
-    return (limit - coefficient) / psi if table.has_branches and psi > 0 and limit >= coefficient else Long(0)
+    if not (table.has_branches and psi > 0 and limit >= coefficient):
+        return Long(0), Long(0)
+    return (limit - coefficient) / psi, 4 * EPSILON * (4 * (limit - coefficient) + limit + abs(
+        table.kinetic(piece).slope * speed)) / psi + EPSILON * (limit - coefficient) * abs(
+            table.psi(piece).slope * speed) / (psi * psi)
 
 
-def _node_of_event(event: Event, excess: Any, jumped: bool, parts: Parts) -> Node:
+def _node_of_event(event: Event, excess: Any, excess_noise: Any, jumped: bool, parts: Parts) -> Node:
     contact, kinetic = parts.axis.contact, parts.axis.friction.kinetic
     deflection = 0.0
     if isinstance(contact, CompliantContact) and event.mode == Mode.STICK:
         deflection = event.direction * parts.axis.normal_force * kinetic.coefficients[0] / contact.stiffness
     return Node(event.instant, event, event.mode, event.direction, event.position, event.velocity, event.drive_force,
-                deflection, 0.0, excess, jumped)
+                deflection, 0.0, excess, excess_noise, jumped)
 
 
-def _node_of_sample(sample: Sample, excess: Any) -> Node:
+def _node_of_sample(sample: Sample, excess: Any, excess_noise: Any) -> Node:
     return Node(sample.instant, None, sample.mode, sample.direction, sample.position, sample.velocity,
-                sample.drive_force, sample.contact_deflection, sample.rest_time, excess, True)
+                sample.drive_force, sample.contact_deflection, sample.rest_time, excess,
+                excess_noise, True)
 
 
 def _segment(parts: Parts, table: Table, begin: Node, end: Node, length: Any) -> Segment:
@@ -182,7 +189,7 @@ def _segment(parts: Parts, table: Table, begin: Node, end: Node, length: Any) ->
     if contact is not None and mode == Mode.STICK:
         held = Long(contact.stiffness) * Long(begin.deflection) + Long(contact.damping) * u
     against = held if mode == Mode.STICK else sigma * normal * friction
-    sizes.append(abs(against) + (normal * axis.friction.static.initial if mode == Mode.STICK else 0))
+    sizes.append(abs(against) + normal * axis.friction.static.initial * (1 if mode == Mode.STICK else 0.1))
     rounding = FORCES * sum(sizes)
     start = np.zeros(d, dtype=Long)
     noise = np.zeros(d, dtype=Long)
@@ -245,9 +252,7 @@ def _segment(parts: Parts, table: Table, begin: Node, end: Node, length: Any) ->
     slack = np.array([rounding, rounding], dtype=Long)
     if mode in (Mode.ACCELERATING, Mode.DECELERATING):
         slack = np.array([_UNFELT * sum(sizes), 4 * EPSILON * abs(u)], dtype=Long)
-    e_noise = abs(begin.excess) * 16 * EPSILON
-    if begin.excess > 0:
-        e_noise += 4 * EPSILON * friction / max(table.psi(piece).of(Long(speed)), Long(1e-30))
+    e_noise = begin.excess_noise if mode == Mode.ACCELERATING else Long(0)
     drift = float((4 * EPSILON * (h + normal * slope_size) + normal * abs(table.psi(piece).slope) * e_noise) / m
                   + 4 * EPSILON * omega)
     return Segment(begin, end, length, rates, start, noise, float(pace),
