@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A slice of the attack on the engine, and that each of its judges can fail.  `make hostile` attacks for longer."""
 
+import math
 import random
 from pathlib import Path
 from typing import Any
@@ -14,9 +15,12 @@ from tests.hostile import report
 from tests.hostile.attack import Found, Tally, judge_again, one_round
 from tests.hostile.case import Case, Find, Run, run
 from tests.hostile.generators import GENERATORS, draw
-from tests.hostile.judges import batch, bounds, guards, images, parts, reference
+from tests.hostile.judges import batch, bounds, guards, images, parts, reference, touch
 
 CASE = Case(draw.paper() | draw.constant(0.002), 3.0)
+TOUCHING = Case(draw.axis(350.0, 6e5, 0.0, 3432.3275) | draw.contact(5e6, 0.0) | draw.static(0.12)
+                | draw.kinetic([0.0], [0.12]) | draw.constant(0.0)
+                | {'initial.velocity': 0.1, 'initial.rest_time': 0.0}, 1.0)
 
 
 # what the attack, and audits before it, found wrong: each with the seconds to run it
@@ -36,6 +40,7 @@ KNOWN = {
         draw.axis(1.0, 0.0, 0.0, 1.0) | draw.contact() | draw.static(0.1)
         | draw.kinetic([0.0, 1e-6], [0.1, 0.001], 1e9) | draw.constant(0.0)
         | {'initial.velocity': 1000.0, 'initial.rest_time': 0.0}, 1.0),
+    'a contact that swings without loss touches its limit': (TOUCHING.values, TOUCHING.duration),
 }
 
 
@@ -133,6 +138,15 @@ def test_a_speed_and_an_energy_without_a_source_are_seen(good: Run) -> None:
         bounds.judge(changed(good, 3, velocity=3.8e98))
     with pytest.raises(Find, match='energy'):
         bounds.judge(good._replace(energy=good.energy._replace(friction_loss=good.energy.friction_loss + 1e-6)))
+
+
+def test_a_break_away_at_a_touch_is_seen() -> None:
+    done = run(TOUCHING.parts)
+    stick = next(event for event in done.events if event.kind == EventKind.STICK)
+    period = 2.0 * math.pi / math.sqrt((6e5 + 5e6) / 350.0)
+    invented = stick._replace(kind=EventKind.BREAKAWAY, fraction=stick.fraction + 3.0 * period + 1e-10)
+    with pytest.raises(Find, match='3 periods'):
+        touch.judge(done._replace(stretches=[([stick, invented], done.stretches[-1][1])]))
 
 
 def test_the_reference_sees_a_missed_event(good: Run) -> None:

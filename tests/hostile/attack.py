@@ -11,7 +11,7 @@ from stickslip_sim.errors import InputError, SolverError
 
 from .case import Case, Find, LastBits, Run, Undecided, run
 from .generators import GENERATORS, PLAUSIBLE
-from .judges import batch, bounds, guards, images, parts, reference
+from .judges import batch, bounds, guards, images, parts, reference, touch
 
 PER_ROUND = 10               # scenes of each generator
 REFERENCE_SHARE = 0.02       # of the scenes; one takes a second
@@ -87,7 +87,8 @@ def _others(done: Run, tag: str, share: float, tally: Tally, name: str) -> Itera
     rng = random.Random(tag + '/judges')
     judges: dict[str, Callable[[], None]] = {
         'bounds': lambda: bounds.judge(done), 'images': lambda: images.judge(done, rng),
-        'parts': lambda: parts.judge(done, rng), 'batch': lambda: batch.judge(done)}
+        'parts': lambda: parts.judge(done, rng), 'batch': lambda: batch.judge(done),
+        'touch': lambda: touch.judge(done)}
     if random.Random(tag + '/reference').random() < share:
         judges['reference'] = lambda: reference.judge(done)
     for judge, work in judges.items():

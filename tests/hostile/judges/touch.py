@@ -1,0 +1,37 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""A contact that swings without loss: after a period it touches its limit again, and holds.
+
+With mu_s = mu_k(0), no damper and inputs at rest, the contact force starts on the limit at an arrest and moves inwards.
+It is back there after each whole period, exactly, and never beyond: what breaks away then is invented.  No arithmetic
+can tell, not even that of the reference; the argument does.
+"""
+
+import math
+from itertools import pairwise
+
+from stickslip_sim.axis import CompliantContact
+from stickslip_sim.words import EventKind
+
+from ..case import Find, Run
+
+_BESIDE = 1e-6    # of a period
+
+
+def judge(run: Run) -> None:
+    """Raise Find where a contact that only touches its limit breaks away."""
+    axis, drive, force = run.parts.axis, run.parts.drive, run.parts.force
+    contact, friction = axis.contact, axis.friction
+    if not isinstance(contact, CompliantContact) or contact.damping > 0.0 or axis.drive_damping > 0.0:
+        return
+    if any(drive.values) or any(drive.rates) or drive.waves or force.waves or any(force.rates) or len(force.values) > 1:
+        return
+    if friction.static.initial != friction.kinetic.coefficients[0]:
+        return
+    period = 2.0 * math.pi / math.sqrt((axis.drive_stiffness + contact.stiffness) / axis.mass)
+    for before, event in pairwise(run.events):
+        if before.kind == EventKind.STICK and event.kind == EventKind.BREAKAWAY:
+            turns = ((event.second - before.second) + (event.fraction - before.fraction)) / period
+            if abs(turns - round(turns)) < _BESIDE and round(turns) > 0:
+                raise Find(f'a break-away at {event.time!r} s, {(turns - round(turns)) * period:.3g} s beside a touch '
+                           f'of the limit, {round(turns)} periods after the arrest')
