@@ -11,8 +11,8 @@ from ..words import EventKind
 from .layout import (
     ACCELERATION, COMPLIANT, CONTACT_STIFFNESS, DAMPING, DEFLECTION, DIRECTION, DRIVE, EVENT_DIRECTION, EVENT_DRIVE,
     EVENT_DRIVE_FORCE, EVENT_FRACTION, EVENT_FRICTION, EVENT_KIND, EVENT_MODE, EVENT_POSITION, EVENT_REST, EVENT_SECOND,
-    EVENT_STATIC, EVENT_VELOCITY, EXCESS, F, FRACTION, F_RATE, MASS, MODE, NORMAL, ORIGIN, PIECE, POSITION, RESIDUAL,
-    REST, SECOND, SPRING, STATIC_INITIAL, STIFFNESS, V, VELOCITY, V_RATE, WAVES,
+    EVENT_STATIC, EVENT_VELOCITY, EXCESS, F, FRACTION, F_RATE, GAMMA, MASS, MODE, NORMAL, ORIGIN, PIECE, POSITION,
+    RESIDUAL, REST, SECOND, SPRING, STATIC_INITIAL, STIFFNESS, V, VELOCITY, V_RATE, WAVES,
 )
 from .motion import (
     ACCELERATING, COASTING, DECELERATING, STICK, contact_force, drive_force, friction_force, friction_line,
@@ -29,6 +29,7 @@ REVERSE = float(EventKind.REVERSE)
 KNOT = float(EventKind.KNOT)
 
 _ROUNDING = 8.0 * 2.220446049250313e-16
+_MUCH = 16.0     # so much more is lost on a steep piece of the table before the forces tell it better
 _TIE = 1e-15   # of the friction force: a closed-form acceleration smaller than that is a tie
 
 
@@ -75,10 +76,11 @@ def force_rate(p, s):
 
 
 @inlined
-def choose_slip(p, s, residual, tolerance):
-    """Set the slip sub-mode from R − B = `residual`; return False when the slider comes to rest instead.
+def choose_slip(p, s, residual, lower, tolerance):
+    """Set the slip sub-mode from R − B = `residual` and R = `lower`; return False when the slider comes to rest.
 
-    R = ±(F_d + F_e) − N mu_k along the slip and B = N e(|ẋ|), see docs/model.md.
+    R = ±(F_d + F_e) − N mu_k along the slip and B = N e(|ẋ|), see docs/model.md.  Neither is made from the other: where
+    B is large the small one would lose its digits.
     """
     direction = s[DIRECTION]
     speed = abs(s[VELOCITY])
@@ -95,10 +97,9 @@ def choose_slip(p, s, residual, tolerance):
     if speed == 0.0:
         return False
     piece = piece_above(p, speed)
-    _, _, psi, _ = friction_line(p, piece, speed)
+    coefficient, _, psi, _ = friction_line(p, piece, speed)
     band = p[NORMAL] * s[EXCESS] * psi
-    lower = residual + band
-    if abs(lower) <= tolerance:
+    if abs(lower) <= min(tolerance, force_rounding(p, s, coefficient)):
         lower = 0.0
     rests_on_edge = lower == 0.0 and ((band > 0.0 and rate > 0.0) or (rate == 0.0 and bend >= 0.0))
     if rests_on_edge or (lower > 0.0 and band > 0.0):
@@ -130,18 +131,18 @@ def break_away(p, s, direction, limit, margin):
     speed = abs(s[VELOCITY])
     coefficient, _, psi, _ = friction_line(p, piece_above(p, speed), speed)
     s[EXCESS] = 0.0
-    if has_branches(p) and psi > 0.0 and limit >= coefficient:
-        s[EXCESS] = (limit - coefficient) / psi
-        coefficient = limit
     s[DIRECTION] = direction
-    residual = margin + p[NORMAL] * (limit - coefficient)
     tolerance = force_rounding(p, s, limit)
     if p[COMPLIANT] != 0.0:
-        residual += direction * p[MASS] * s[ACCELERATION]
+        margin += direction * p[MASS] * s[ACCELERATION]
         tolerance = _TIE * p[NORMAL] * limit
+    residual = lower = margin + p[NORMAL] * (limit - coefficient)
+    if has_branches(p) and psi > 0.0 and limit >= coefficient:
+        s[EXCESS] = (limit - coefficient) / psi
+        residual = margin
     s[REST] = 0.0
     s[DEFLECTION] = 0.0
-    if not choose_slip(p, s, residual, tolerance):
+    if not choose_slip(p, s, residual, lower, tolerance):
         rest(p, s)
 
 
@@ -252,13 +253,25 @@ def leave_coast(p, s, events, row, kind):
 
 
 @compiled
-def cross_knot(p, s, events, row):
-    """Go on along the next piece of the friction table; the speed is that of the knot, exactly."""
+def cross_knot(p, s, events, row, before):
+    """Go on along the next piece of the friction table; the speed is that of the knot, exactly.
+
+    So is the acceleration of the balance of forces there, but for their rounding; that of the closed form is off by the
+    rounding of how it began, `before`, and of what the piece gave to it.  The one that is off less is taken.
+    """
+    lost = _ROUNDING * p[MASS] * (abs(before) + 2.0 * abs(s[GAMMA] * s[VELOCITY]))
     step = 1.0 if s[MODE] == ACCELERATING else -1.0
-    knot = s[PIECE] + (1.0 if step > 0.0 else 0.0)
-    s[VELOCITY] = s[DIRECTION] * knot_speed(p, int(knot))
-    write_event(p, s, events, row, KNOT, s[DIRECTION], friction_force(p, s, 0.0, s[VELOCITY], 0.0), p[STATIC_INITIAL])
+    knot = int(s[PIECE] + (1.0 if step > 0.0 else 0.0))
+    speed = knot_speed(p, knot)
+    coefficient, _, psi, _ = friction_line(p, knot, speed)
+    if s[MODE] == ACCELERATING:
+        coefficient += s[EXCESS] * psi
+    friction = s[DIRECTION] * p[NORMAL] * coefficient
+    s[VELOCITY] = s[DIRECTION] * speed
+    write_event(p, s, events, row, KNOT, s[DIRECTION], friction, p[STATIC_INITIAL])
     s[PIECE] += step
+    if lost > _MUCH * force_rounding(p, s, coefficient):
+        s[ACCELERATION] = (applied_force(p, s) - friction) / p[MASS]
     events[row][EVENT_MODE] = s[MODE]
 
 
@@ -272,8 +285,9 @@ def apply_inputs(p, s, events, row):
     speed = abs(s[VELOCITY])
     coefficient, _, psi, _ = friction_line(p, piece_above(p, speed), speed)
     upper = coefficient + s[EXCESS] * psi
-    residual = direction * applied_force(p, s) - p[NORMAL] * upper
-    if not choose_slip(p, s, residual, force_rounding(p, s, upper)):
+    push = direction * applied_force(p, s)
+    residual, lower = push - p[NORMAL] * upper, push - p[NORMAL] * coefficient
+    if not choose_slip(p, s, residual, lower, force_rounding(p, s, upper)):
         arrest(p, s, events, row)
         return True
     if s[MODE] == mode:

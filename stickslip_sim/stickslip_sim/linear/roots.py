@@ -164,7 +164,10 @@ def _bracket(osc, rate, jerk, snap, gap, turn):
     if turn < math.inf:
         return turn, _passage(osc, rate, jerk, snap, turn)[0]
     last = finite_horizon(osc, math.inf)
-    end = min(1.0 / (abs(osc[0]) + math.sqrt(osc[1])) if osc[0] != 0.0 or osc[1] > 0.0 else 1.0, last)
+    if osc[0] != 0.0 or osc[1] > 0.0:
+        end = min(1.0 / (abs(osc[0]) + math.sqrt(osc[1])), last)
+    else:
+        end = gap / rate if rate > 0.0 else math.sqrt(2.0 * gap / jerk)   # as without the next term
     while True:
         reached = _passage(osc, rate, jerk, snap, end)[0]
         if reached >= gap or end == last:

@@ -125,7 +125,7 @@ class Engine:
         elif kind == ARREST:
             arrest(p, s, events, row)
         elif kind == KNOT:
-            cross_knot(p, s, events, row)
+            cross_knot(p, s, events, row, 0.0)
         elif s[MODE] == COASTING:
             leave_coast(p, s, events, row, kind)
         else:
@@ -157,8 +157,8 @@ class Engine:
         """Set the sub-mode of a slip from the forces; return False when the slider comes to rest instead."""
         coefficient, psi = self._coefficients(p, s)
         upper = coefficient + s[EXCESS] * psi
-        residual = s[DIRECTION] * applied_force(p, s) - p[NORMAL] * upper
-        return choose_slip(p, s, residual, force_rounding(p, s, upper))
+        push = s[DIRECTION] * applied_force(p, s)
+        return choose_slip(p, s, push - p[NORMAL] * upper, push - p[NORMAL] * coefficient, force_rounding(p, s, upper))
 
     def _friction(self, p, s):
         """Return the friction force at the state, N."""

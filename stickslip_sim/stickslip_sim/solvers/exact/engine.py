@@ -12,9 +12,9 @@ in place and return the number of rows in use; `advance` also tells how it ended
 import math
 
 from ...axis.layout import (
-    ACCOUNTING, AT, COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DEFLECTION, DIRECTION, F, FRACTION, F_RATE, NEAR,
-    LAST, MASS, MODE, NEXT, NEXT_KIND, NORMAL, ORIGIN, PROGRESS, REST, SEARCHED, SECOND, STATE_SIZE, STORED_AT_START, V,
-    VELOCITY, V_RATE, WAVES,
+    ACCELERATION, ACCOUNTING, AT, COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DEFLECTION, DIRECTION, F, FRACTION,
+    F_RATE, NEAR, LAST, MASS, MODE, NEXT, NEXT_KIND, NORMAL, ORIGIN, PROGRESS, REST, SEARCHED, SECOND, STATE_SIZE,
+    STORED_AT_START, V, VELOCITY, V_RATE, WAVES,
 )
 from ...axis.motion import (
     COASTING, STAMP, STICK, begin_motion, drive_force, drive_travel, friction_force, friction_line, move_anchor,
@@ -59,7 +59,7 @@ def start(p, s, position, velocity, rest, v, v_rate, f, f_rate, waves, events, r
         speed = abs(velocity)
         coefficient, _, _, _ = friction_line(p, piece_above(p, speed), speed)
         residual = s[DIRECTION] * applied_force(p, s) - p[NORMAL] * coefficient
-        choose_slip(p, s, residual, force_rounding(p, s, coefficient))
+        choose_slip(p, s, residual, residual, force_rounding(p, s, coefficient))
     _begin(p, s)
     return row
 
@@ -105,7 +105,7 @@ def _keep_up(p, s, t):
 @inlined
 def _pass_event(p, s, due, second, fraction, events, row):
     """Go through the event that is due; return False, and stay before it, when the run is no longer sound."""
-    mode, begin = int(s[MODE]), s[VELOCITY]
+    mode, begin, acceleration = int(s[MODE]), s[VELOCITY], s[ACCELERATION]
     accounting = s[ACCOUNTING] != 0.0
     if accounting:
         book_works(p, s, due)
@@ -114,7 +114,7 @@ def _pass_event(p, s, due, second, fraction, events, row):
         return False
     s[LAST + mode] = due if s[NEXT_KIND] != COAST else 0.0
     contact = contact_energy(p, s, 0.0) if accounting else 0.0
-    _transition(p, s, events, row)
+    _transition(p, s, events, row, acceleration)
     if accounting:
         book_contact(p, s, contact)
     return True
@@ -205,14 +205,14 @@ def _anchor_at(p, s, second, fraction):
 
 
 @inlined
-def _transition(p, s, events, row):
+def _transition(p, s, events, row, before):
     kind = s[NEXT_KIND]
     if kind == BREAKAWAY:
         release(p, s, events, row)
     elif kind == ARREST:
         arrest(p, s, events, row)
     elif kind == KNOT:
-        cross_knot(p, s, events, row)
+        cross_knot(p, s, events, row, before)
     elif s[MODE] == COASTING:
         leave_coast(p, s, events, row, kind)
     else:
