@@ -13,6 +13,18 @@ Three arguments cover every guard of a linear mode; none of them scans:
    f(t) + f′(t) d − M d²/2 = 0.  Steps of that length never pass a root, and converge to a simple one quadratically.
 
 `first_crossing` is exact for polynomials of degree two.  "Never" is infinity.
+
+What the arguments assume of floating point (tests/test_floating_point.py holds each to it):
+
+a. *Overflow*: nothing is evaluated where a growing mode has grown by more than e⁶⁰⁰; it has left every bounded piece
+   before.  There a value is a number, a product of two is not, so that steps are taken in ratios (`householder`).
+b. *Underflow*: the rate of a mode that has died out may be 0 or have lost its digits.  A step from there is infinite
+   or beyond the bracket, and the bracket is halved; a value that is not 0 never gives a step of 0.
+c. *When a root is accepted*: inside a bracket whose ends have been evaluated and differ in sign, or where argument 2
+   proves that there is one root, and only when the value is within rounding of 0, the step's own error is, or no number
+   is left between the ends.  Loops allow for more halvings than there are between any two numbers.
+d. *Signs at the ends* are those of computed values, right but within some 1e-15 of the terms that add up: a peak that
+   passes the limit by less than that may be told either way.
 """
 
 import math
@@ -21,7 +33,7 @@ from ..compiled import compiled, inlined
 from .oscillator import integrals, short_integrals
 
 _EPSILON = 2.220446049250313e-16
-_ITERATIONS = 200
+_ITERATIONS = 2200   # halvings between any two numbers
 _DIRECT_STEPS = 8
 _OVERFLOW = 600.0   # largest exponent of a growing mode; by then it has left every bounded piece
 
@@ -123,9 +135,10 @@ def _direct_root(osc, rate, jerk, gap, half, t):
         if not size < t:
             break
         sharpness = size * (abs(change) / speed + frequency)
-        if sharpness < 0.3 and size * sharpness * sharpness * sharpness <= 0.1 * _EPSILON * t:
-            return t - step, t, g, slope, first, second
-        t -= step
+        root = t - step   # its own size counts: a guess may be far larger
+        if sharpness < 0.3 and size * sharpness * sharpness * sharpness <= 0.1 * _EPSILON * root and size <= 0.5 * t:
+            return root, t, g, slope, first, second
+        t = root
     return -1.0, -1.0, 0.0, 0.0, 0.0, 0.0
 
 
@@ -213,7 +226,7 @@ def _monotone_root(osc, rate, jerk, snap, gap, end, reached):
         size = abs(guess - t)
         if low <= guess <= high and size <= 0.5 * before:
             sharpness = size * (abs(change) / slope + frequency)
-            if sharpness < 0.3 and size * sharpness * sharpness * sharpness <= 0.1 * _EPSILON * t:
+            if sharpness < 0.3 and size * sharpness * sharpness * sharpness <= 0.1 * _EPSILON * guess:
                 return guess
         else:
             guess = 0.5 * (low + high)

@@ -14,6 +14,11 @@ F_c = P(t) + H(t): P is linear (quadratic under a ramp of the drive), H a decayi
    of now take its place.
 4. Where their bound proves that the guard falls all the way to its root, the root is bracketed and found there (under
    a concave law).
+
+In floating point: a contact that is not loaded any further holds where the envelope of all that is to come is within
+rounding of the limit (it may touch it in every period); else a guard within rounding of 0 that falls is at its root, so
+that a peak that stays below the limit by less than that may break it.  H never grows, and where it has died out the
+guard is P alone.
 """
 
 import math
@@ -291,7 +296,7 @@ def _bracketed_root(p, s, osc, side, low, high):
         guess = t - size
         if low <= guess <= high and abs(size) <= before:
             sharpness = abs(size) * (abs(bow / fall) + frequency)
-            if abs(newton) <= 2.0 * _EPSILON * t or abs(size) * sharpness * sharpness <= 0.1 * _EPSILON * t:
+            if abs(newton) <= 2.0 * _EPSILON * t or abs(size) * sharpness * sharpness <= 0.1 * _EPSILON * guess:
                 return guess
         else:
             guess = 0.5 * (low + high)

@@ -17,6 +17,10 @@ while coasting, 0 and nothing in a slip.  The search marches in safe steps, and 
 4. As long as mean + amplitudes + what is left of the free motion is below the limit, nothing can happen: the search
    leaps to the end of that, which under a constant mean is never.
 
+In floating point: ε is the size of rounding of the signal and of the forces at the anchor; what passes a limit by less
+is no event.  A root is accepted inside a bracket whose ends have been evaluated, when Newton's own error is rounding or
+no number is left in it; a growing slip is followed to e⁶⁰⁰ at most (`linear.roots`).
+
 The steps depend on the anchor alone, and the search rests at the last one (PROGRESS): splits of a run change no bit.
 """
 
@@ -35,7 +39,7 @@ from .static_guards import GAVE_UP, concave_root, is_concave, law, steep_start
 
 _EPSILON = 2.220446049250313e-16
 _STEPS = 10_000_000
-_ITERATIONS = 200
+_ITERATIONS = 2200   # halvings between any two numbers
 _WORTH_A_LEAP = 1e-6   # room between envelope and limit, as a part of what lies between the limits
 
 
@@ -232,7 +236,7 @@ def _root(p, s, osc, signal, side, gap, t, low, high):
         guess = t - value / fall if fall < 0.0 else math.inf
         size = abs(guess - t)
         if low <= guess <= high and size <= 0.5 * before:
-            if size * size * (curve + change * size) <= 0.2 * _EPSILON * t * -fall:
+            if size * size * (curve + change * size) <= 0.2 * _EPSILON * guess * -fall:
                 return guess
         else:
             guess = 0.5 * (low + high)

@@ -4,6 +4,10 @@
 
 N mu_s is concave for most laws.  A concave guard that is not negative at both ends of an interval has no root inside;
 where its end is negative it has one root, and a bracket to find it in.  A guard that is not concave takes safe steps.
+
+In floating point: the sign at the far end is that of a computed value, right but within rounding of the forces.  A root
+is accepted inside the bracket when the step's own error is rounding or no number is left between the ends; nothing here
+grows or dies out but exp(−t/τ), and where that is 0 the guard is a straight line.
 """
 
 import math
@@ -134,12 +138,14 @@ def concave_root(p, s, rest, force, rate, wave, decay, bend, horizon):
         s[ITERATIONS] += 1.0
         slope = normal * growth - rate - bend * t + decay * fading
         bow = -(normal * curvature + bend + decay * decay * fading)
-        step = value / slope if slope < 0.0 else -math.inf
-        step /= max(1.0 - 0.5 * step * bow / slope, 0.5)
-        guess = t - step
+        step = guess = math.inf
+        if slope < 0.0:
+            step = value / slope
+            step /= max(1.0 - 0.5 * step * bow / slope, 0.5)
+            guess = t - step
         if low <= guess <= high:
             sharpness = bow / slope + 1.0 / p[STATIC_TAU] + 3.0 / (rest + guess) + decay
-            if abs(step) <= 2.0 * _EPSILON * t or abs(step) * (step * sharpness) ** 2 <= 0.1 * _EPSILON * t:
+            if abs(step) <= 2.0 * _EPSILON * t or abs(step) * (step * sharpness) ** 2 <= 0.1 * _EPSILON * guess:
                 return guess
         else:
             guess = 0.5 * (low + high)
