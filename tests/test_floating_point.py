@@ -92,7 +92,7 @@ def allowed(osc: Oscillator, rate: float, jerk: float, t: float) -> float:
 
 
 def test_a_step_is_the_same_at_any_scale_and_never_0() -> None:
-    """(a, b) Powers of two up to the ends of the range of numbers change no bit; only a value of 0 gives a step of 0."""
+    """(a, b) Powers of two up to the ends of the range change no bit; only a value of 0 gives a step of 0."""
     rng = random.Random(7)
     for _ in range(500):
         value, slope = rng.uniform(-1.0, 1.0), rng.uniform(0.1, 2.0)

@@ -25,8 +25,6 @@ MAX_DURATION = 1e9         # s
 MAX_SAMPLES = 10_000_000   # 1.2 GB
 MAX_EVENTS = 5_000_000     # about as much
 _PARTS = 200               # of a run: progress is told, and Ctrl-C heard, this often
-_CYCLES = 10_000           # of the fastest wave in a part; adding up its work takes some 10 ms
-_MOST_PARTS = 1_000_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +57,7 @@ def run_offline(scene: Scene, duration: float, sample_period: float | Fraction |
     simulator = rig.simulator
     start = simulator.sample().mode
     cost = CostMeter()
-    events, rows = _run(rig, duration, sample_period, _part_count(scene, duration), progress)
+    events, rows = _run(rig, duration, sample_period, _PARTS, progress)
     spent = cost.so_far()
     simulator.judge()
     figures = summary(events, duration, start)
@@ -67,12 +65,6 @@ def run_offline(scene: Scene, duration: float, sample_period: float | Fraction |
                          simulator.root_iterations, simulator.sample(), simulator.energy, *spent)
     period = _decimal(sample_period) if sample_period else None
     return Trajectory(scene, duration, period, events, _columns(rows, period or Fraction(0)), figures, receipt)
-
-
-def _part_count(scene: Scene, duration: float) -> int:
-    """Return in how many parts to run: more of them where the account of energy follows a fast wave."""
-    fastest = max((wave.frequency for course in (scene.drive, scene.force) for wave in course.waves), default=0.0)
-    return min(max(_PARTS, math.ceil(duration * fastest / _CYCLES)), _MOST_PARTS)
 
 
 def _run(rig: Rig, duration: float, sample_period: float | Fraction | None, parts: int,

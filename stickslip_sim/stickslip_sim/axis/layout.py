@@ -49,11 +49,7 @@ METHOD, GRID_SECOND, GRID_TICKS, STEP_TICKS, SECOND_TICKS, LEAD = range(76, 82)
 # the oscillator that each mode had last
 KEPT = 82
 KEPT_SIZE = 5
-# the five works of this motion up to BOOKED after its anchor, and what rounding lost: all 0 but under waves, for long
-BOOKED = KEPT + 4 * KEPT_SIZE
-PARTS = BOOKED + 1
-WORK_COUNT = 5
-STATE_SIZE = PARTS + 2 * WORK_COUNT
+STATE_SIZE = KEPT + 4 * KEPT_SIZE
 
 # then a record for each wave, the first numbers as they are given: frequency Hz, phase turns, amplitudes m/s and N; at
 # the anchor its phase in turns, sine and cosine of that, and its pull in N/s (see `waves`)

@@ -288,6 +288,15 @@ def friction_force(p, s, deflection, u, applied):
 
 
 @inlined
+def slip_friction(p, s):
+    """Return the coefficient of friction on the present branch and piece as a line: at standstill, and its slope."""
+    coefficient, slope, psi, psi_slope = friction_line(p, int(s[PIECE]), 0.0)
+    if s[MODE] == ACCELERATING:
+        return coefficient + s[EXCESS] * psi, slope + s[EXCESS] * psi_slope
+    return coefficient, slope
+
+
+@inlined
 def has_branches(p):
     """Whether friction depends on the sign of the acceleration."""
     return p[BRANCHES] != 0.0

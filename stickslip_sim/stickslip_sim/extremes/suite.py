@@ -6,6 +6,7 @@ import time
 from collections.abc import Collection, Iterator
 
 from ..errors import InputError
+from .accounting import cost_of_the_account
 from .bits import mirrored_and_scaled, run_twice
 from .branches import coasting, ringing
 from .break_aways import at_the_limit, blows
@@ -80,6 +81,9 @@ EXTREMES = (
     Extreme('X23', 'slips critically damped to 1e-5 to 1e-13, from both sides',
             'stickslip 0.1.0: the same product underflowed, and 1 axis of 1000 missed its events',
             'the events of the reference, <= 1e-12', near_critical),
+    Extreme('X25', 'the account of energy: sines of 1 Hz to 1 MHz; stiff, over-damped, undamped, resonant contacts',
+            'not reported; 0.1.0 of this engine: a hold of 1000 s under 1 kHz 2.3 s for 54 us of motion, 1 MHz no end',
+            'the account costs at most as much again as the motion; balance <= 1e-12', cost_of_the_account),
     Extreme('X26', 'honest error estimates of all solvers, for steps of 10 µs to 10 ms and tolerances of 1e-3 to 1e-12',
             'a repeat with half the step or a tenth of the tolerance told a millionth of the error, 5e-9 s',
             'true error within the estimate, events those of the reference as far as it says', estimates),

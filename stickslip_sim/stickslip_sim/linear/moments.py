@@ -1,36 +1,114 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Time integrals of one decaying or growing wave, e^(−γt) (a cos νt + b sin νt), in closed form.
+"""Integrals over the motion x″ + 2γ x′ + ω² x = k₀ + k₁ t: of x, of its repeated integrals, and of x².
 
-The wave is the real part of Z e^(λt) with Z = a − i b and λ = −γ + i ν.  The forms divide by λ, so they are for spans
-of time that are not short against 1/|λ|; shorter ones are a matter of quadrature.
+They start from x and x′ at 0 and know nothing of where the motion is said to end; none is made from a balance.  Four
+cases, so that none divides by what vanishes:
+
+* a short span takes the power series of the equation at the five nodes of Gauss and Legendre's rule;
+* a swing is a polynomial and a wave Re Z e^(λt), whose products have closed integrals;
+* two real eigenvalues far apart are `far_apart`'s, and near critical damping the square is `critical_square`'s.
 """
 
 import math
 
 from ..compiled import compiled
+from .critical_square import free_square
+from .far_apart import far_apart
+from .oscillator import impulse
+
+_SHORT = 0.15        # (|γ| + |ν|) t up to which five nodes and ten powers are exact to rounding
+_APART = 0.09        # (ν/ω)² from which on the eigenvalues are far enough apart to be split
+_NODES = (0.046910077030668003601, 0.23076534494715845448, 0.5,
+          0.76923465505284154552, 0.9530899229693319964)
+_WEIGHTS = (0.11846344252809454376, 0.23931433524968323402, 0.28444444444444444444,
+            0.23931433524968323402, 0.11846344252809454376)
 
 
 @compiled
-def wave_moments(gamma, nu, t):
-    """Return ∫ e^(λτ) dτ and ∫ τ e^(λτ) dτ from 0 to t, each as real and imaginary part; ν > 0."""
-    decay = math.exp(-gamma * t)
-    real, imaginary = decay * math.cos(nu * t), decay * math.sin(nu * t)
-    zero_real, zero_imaginary = over_rate(gamma, nu, real - 1.0, imaginary)
-    one_real, one_imaginary = over_rate(gamma, nu, t * real - zero_real, t * imaginary - zero_imaginary)
-    return zero_real, zero_imaginary, one_real, one_imaginary
+def moments(osc, x, rate, k0, k1, t):
+    """Return x and x′ at t, and from 0 to t ∫x, ∫∫x, ∫∫∫x and ∫x²."""
+    gamma, omega2, nu, _, _ = osc
+    if (abs(gamma) + abs(nu)) * t < _SHORT:
+        return _short(gamma, omega2, x, rate, k0, k1, t)
+    if nu < 0.0 and nu * nu > _APART * omega2:
+        return far_apart(osc, x, rate, k0, k1, t)
+    ramp = k1 / omega2
+    level = (k0 - 2.0 * gamma * ramp) / omega2
+    z, z_rate = x - level, rate - ramp
+    if nu > 0.0 and nu * nu > _APART * omega2:
+        end, end_rate, square = _swing(gamma, nu, z, z_rate, t)
+    else:
+        g, slope = impulse(osc, t)
+        end, end_rate = z * (slope + 2.0 * gamma * g) + z_rate * g, z_rate * slope - omega2 * z * g
+        square = free_square(osc, z, z_rate, t)
+    once, once_end = _integral(gamma, omega2, z, z_rate), _integral(gamma, omega2, end, end_rate)
+    twice, twice_end = _integral(gamma, omega2, once, z), _integral(gamma, omega2, once_end, end)
+    thrice, thrice_end = _integral(gamma, omega2, twice, once), _integral(gamma, omega2, twice_end, once_end)
+    first = once_end - once
+    second = (twice_end - twice) - once * t
+    third = (thrice_end - thrice) - (twice + 0.5 * once * t) * t
+    square += 2.0 * (level * first + ramp * (t * first - second)) + ((level + ramp * t / 3.0) * ramp * t
+                                                                      + level * level) * t
+    return (level + ramp * t + end, ramp + end_rate, (level + 0.5 * ramp * t) * t + first,
+            (0.5 * level + ramp * t / 6.0) * t * t + second, (level / 6.0 + ramp * t / 24.0) * t * t * t + third,
+            square)
 
 
 @compiled
-def wave_square(gamma, nu, a, b, t):
-    """Return ∫ (e^(−γτ) (a cos ντ + b sin ντ))² dτ from 0 to t; ν > 0."""
-    real, imaginary, _, _ = wave_moments(2.0 * gamma, 2.0 * nu, t)
-    mean = t if gamma == 0.0 else -math.expm1(-2.0 * gamma * t) / (2.0 * gamma)
-    return 0.5 * ((a - b) * (a + b) * real + 2.0 * a * b * imaginary + (a * a + b * b) * mean)
+def _integral(gamma, omega2, z, rate):
+    """Return the integral of a free motion that is a free motion itself."""
+    return -(rate + 2.0 * gamma * z) / omega2
 
 
 @compiled
-def over_rate(gamma, nu, real, imaginary):
-    """Return (real + i imaginary)/λ as real and imaginary part."""
-    size = gamma * gamma + nu * nu
-    return (nu * imaginary - gamma * real) / size, -(gamma * imaginary + nu * real) / size
+def _short(gamma, omega2, x, rate, k0, k1, t):
+    a, b = -2.0 * gamma * t, -omega2 * t * t
+    x1 = rate * t
+    x2 = k0 * t * t + a * x1 + b * x      # the derivatives times powers of t
+    x3 = k1 * t * t * t + a * x2 + b * x1
+    x4 = a * x3 + b * x2
+    x5 = a * x4 + b * x3
+    x6 = a * x5 + b * x4
+    x7 = a * x6 + b * x5
+    x8 = a * x7 + b * x6
+    x9 = a * x8 + b * x7
+    x10 = a * x9 + b * x8
+    x2, x3, x4, x5, x6 = 0.5 * x2, x3 * (1.0 / 6.0), x4 * (1.0 / 24.0), x5 * (1.0 / 120.0), x6 * (1.0 / 720.0)
+    x7, x8, x9, x10 = x7 * (1.0 / 5040.0), x8 * (1.0 / 40320.0), x9 * (1.0 / 362880.0), x10 * (1.0 / 3628800.0)
+    square = 0.0
+    for i in range(5):
+        at = _NODES[i]
+        value = x + at * (x1 + at * (x2 + at * (x3 + at * (x4 + at * (x5 + at * (x6 + at * (x7 + at * (
+            x8 + at * (x9 + at * x10)))))))))
+        square += _WEIGHTS[i] * value * value
+    first = (x + (x1 * (1.0 / 2.0) + (x2 * (1.0 / 3.0) + (x3 * (1.0 / 4.0) + (
+        x4 * (1.0 / 5.0) + (x5 * (1.0 / 6.0) + (x6 * (1.0 / 7.0) + (x7 * (1.0 / 8.0) + (
+            x8 * (1.0 / 9.0) + (x9 * (1.0 / 10.0) + x10 * (1.0 / 11.0)))))))))))
+    second = (x * (1.0 / 2.0) + (x1 * (1.0 / 6.0) + (x2 * (1.0 / 12.0) + (x3 * (1.0 / 20.0) + (
+        x4 * (1.0 / 30.0) + (x5 * (1.0 / 42.0) + (x6 * (1.0 / 56.0) + (x7 * (1.0 / 72.0) + (
+            x8 * (1.0 / 90.0) + (x9 * (1.0 / 110.0) + x10 * (1.0 / 132.0)))))))))))
+    third = (x * (1.0 / 6.0) + (x1 * (1.0 / 24.0) + (x2 * (1.0 / 60.0) + (x3 * (1.0 / 120.0) + (
+        x4 * (1.0 / 210.0) + (x5 * (1.0 / 336.0) + (x6 * (1.0 / 504.0) + (x7 * (1.0 / 720.0) + (
+            x8 * (1.0 / 990.0) + (x9 * (1.0 / 1320.0) + x10 * (1.0 / 1716.0)))))))))))
+    end = x + (x1 + (x2 + (x3 + (x4 + (x5 + (x6 + (x7 + (x8 + (x9 + x10)))))))))
+    slope = x1 + (2.0 * x2 + (3.0 * x3 + (4.0 * x4 + (5.0 * x5 + (6.0 * x6 + (7.0 * x7 + (
+        8.0 * x8 + (9.0 * x9 + 10.0 * x10))))))))
+    return (end, slope / t if t > 0.0 else rate, first * t, second * t * t, third * t * t * t, square * t)
+
+
+@compiled
+def _swing(gamma, nu, z, rate, t):
+    """Return the free motion and its rate at t, and ∫z² of z = e^(−γt) (a cos νt + b sin νt)."""
+    lost = math.expm1(-gamma * t)
+    decay, sine, cosine = 1.0 + lost, math.sin(nu * t), math.cos(nu * t)
+    a, b = z, (rate + gamma * z) / nu
+    lost *= 2.0 + lost                                   # e^(−2γt) − 1
+    twice = decay * decay
+    real, imaginary = lost - 2.0 * twice * sine * sine, 2.0 * twice * sine * cosine   # of e^(2λt) − 1
+    size = 2.0 * (gamma * gamma + nu * nu)
+    real, imaginary = (nu * imaginary - gamma * real) / size, -(gamma * imaginary + nu * real) / size
+    mean = t if gamma == 0.0 else lost / (-2.0 * gamma)
+    square = 0.5 * ((a - b) * (a + b) * real + 2.0 * a * b * imaginary + (a * a + b * b) * mean)
+    return (decay * (a * cosine + b * sine), decay * ((b * nu - gamma * a) * cosine - (a * nu + gamma * b) * sine),
+            square)

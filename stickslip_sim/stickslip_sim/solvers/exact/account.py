@@ -6,35 +6,20 @@ Each sum carries what rounding has lost of it (Neumaier, ZAMM 54, 1974).
 """
 
 from ...axis.layout import (
-    BOOKED, CONTACT_EXCHANGE, PARAMETER_EXCHANGE, PARTS, STORED_AT_START, SUMS, SUM_COUNT, THROUGHPUT, WORK_COUNT,
+    CONTACT_EXCHANGE, NORMAL, PARAMETER_EXCHANGE, STATIC_LIMIT, STIFFNESS, STORED_AT_START, SUMS, SUM_COUNT, THROUGHPUT,
 )
 from ...compiled import compiled, inlined
-from .works import block, contact_energy, stored_energy, works
-
-
-@compiled
-def book_blocks(p, s, t):
-    """Add up what lies behind t in whole blocks: where they end does not depend on how often this is asked for."""
-    length = block(p, s)
-    while s[BOOKED] + length <= t:
-        end = s[BOOKED] + length
-        for item, work in enumerate(works(p, s, end)):
-            _add(s, PARTS + item, work, WORK_COUNT)
-        s[BOOKED] = end
+from .works import contact_energy, stored_energy, works
 
 
 @compiled
 def book_works(p, s, t):
     """Add the works from the anchor up to t, where the anchor is about to move."""
-    book_blocks(p, s, t)
     throughput = 0.0
-    for item, rest in enumerate(works(p, s, t)):
-        work = rest + _part(s, item)
-        _add(s, SUMS + item, work, SUM_COUNT)
+    for item, work in enumerate(works(p, s, t)):
+        _add(s, SUMS + item, work)
         throughput += abs(work)
-    _add(s, SUMS + THROUGHPUT, throughput, SUM_COUNT)
-    for item in range(BOOKED, PARTS + 2 * WORK_COUNT):
-        s[item] = 0.0
+    _add(s, SUMS + THROUGHPUT, throughput)
 
 
 @compiled
@@ -52,12 +37,10 @@ def book_parameters(p, s, before):
 @compiled
 def read_account(p, s, t, out):
     """Fill a row of `energy.EnergyBalance`: the sums, and what came up to t after the anchor."""
-    book_blocks(p, s, t)
     for item in range(SUM_COUNT):
         out[item] = s[SUMS + item] + s[SUMS + SUM_COUNT + item]
     throughput = out[THROUGHPUT]
-    for item, rest in enumerate(works(p, s, t)):
-        work = rest + _part(s, item)
+    for item, work in enumerate(works(p, s, t)):
         out[item] += work
         throughput += abs(work)
     out[7] = stored_energy(p, s, t)
@@ -78,6 +61,9 @@ def open_share(p, s, t):
         scale += abs(drive) + abs(external) + abs(friction) + abs(damper) + abs(contact)
     stored = stored_energy(p, s, t)
     scale = max(scale, max(stored, s[STORED_AT_START]))
+    if p[STIFFNESS] > 0.0:   # a load may come and go within one stick: what the spring holds at the limit counts, too
+        most = p[NORMAL] * p[STATIC_LIMIT]
+        scale = max(scale, 0.5 * most * most / p[STIFFNESS])
     return abs((given - taken) - (stored - s[STORED_AT_START])) / scale if scale > 0.0 else 0.0
 
 
@@ -86,20 +72,15 @@ def _sum(s, item):
     return s[SUMS + item] + s[SUMS + SUM_COUNT + item]
 
 
-@compiled
+@inlined
 def _book(s, item, amount):
-    _add(s, item, amount, SUM_COUNT)
-    _add(s, SUMS + THROUGHPUT, abs(amount), SUM_COUNT)
+    _add(s, item, amount)
+    _add(s, SUMS + THROUGHPUT, abs(amount))
 
 
-@compiled
-def _part(s, item):
-    return s[PARTS + item] + s[PARTS + WORK_COUNT + item]
-
-
-@compiled
-def _add(s, item, amount, count):
+@inlined
+def _add(s, item, amount):
     before = s[item]
     after = before + amount
     s[item] = after
-    s[item + count] += (before - after) + amount if abs(before) >= abs(amount) else (amount - after) + before
+    s[item + SUM_COUNT] += (before - after) + amount if abs(before) >= abs(amount) else (amount - after) + before

@@ -28,7 +28,7 @@ from ...axis.waves import inputs_at, load_waves, same_waves
 from ...compiled import compiled, inlined
 from .. import DONE, FULL, NO_PROGRESS, UNSOUND
 from ..sampling import write_sample
-from .account import book_blocks, book_contact, book_parameters, book_works, read_account
+from .account import book_contact, book_parameters, book_works, read_account
 from .judge import event_is_sound
 from .search import find_event
 from .works import contact_energy, stored_energy
@@ -75,14 +75,12 @@ def advance(p, s, second, fraction, events, row):
             find_event(p, s, reach)
         due = s[NEXT]
         if due > reach:
-            _keep_up(p, s, t)
             return row, DONE
         if due < 0.0:
             return row, NO_PROGRESS
         later = s[FRACTION] + due
         whole = 0.0 if later < 1.0 else math.floor(later)
         if (s[SECOND] + whole - second) + ((later - whole) - fraction) > 0.0:
-            _keep_up(p, s, min(t, due))
             return row, DONE   # its time, as it is written down, is still to come
         if row >= len(events):
             return row, FULL
@@ -93,13 +91,6 @@ def advance(p, s, second, fraction, events, row):
             return row, UNSOUND
         row += 1
         _begin(p, s)
-
-
-@inlined
-def _keep_up(p, s, t):
-    """Let the account have little to add up at the next event, however long a vibration holds."""
-    if s[ACCOUNTING] != 0.0 and s[WAVES] != 0.0:
-        book_blocks(p, s, t)
 
 
 @inlined

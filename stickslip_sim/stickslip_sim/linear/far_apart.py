@@ -1,0 +1,104 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Integrals over a motion with two real eigenvalues far apart, however slow the one and however fast the other.
+
+A fast exponential goes beside a slow motion a + b ∫e^(λ₁t) + k ∫∫e^(λ₁t), which becomes a polynomial where λ₁ vanishes;
+nothing divides by λ₁.
+"""
+
+import math
+
+from ..compiled import compiled
+
+_TERMS = 60          # never reached: 25 terms are below rounding
+
+
+@compiled
+def far_apart(osc, x, rate, k0, k1, t):
+    """Return what `moments` does, from x = a + b φ₁ + q₁ φ₂ + c e^(λ₂t), φₙ the repeated integrals of e^(λ₁t)."""
+    _, _, _, near, far = osc
+    if abs(near) > abs(far):
+        near, far = far, near
+    q1 = -k1 / far
+    q0 = (q1 - k0) / far
+    c = (rate - near * x - q0) / (far - near)
+    a = x - c
+    b = near * a + q0
+    grown, p1, p2, p3, p4, p5 = _repeated(near, t)
+    fast, f1, f2, f3, _, _ = _repeated(far, t)
+    end, end_rate = a + b * p1 + q1 * p2, b * grown + q1 * p1
+    both = _exponential(near + far, t)                          # ∫ of the product of the two exponentials
+    mixed = b * both + q1 * (p1 * fast - both) / far             # ∫ of the slow rate times the fast exponential
+    mixed = (end * fast - a - mixed) / far
+    square = (a * a * t + 2.0 * a * (b * p2 + q1 * p3) + b * b * _first_square(near, t, p1)
+              + q1 * (b * p2 * p2 + (q1 * _second_square(near, t, p1, p2, p3) if q1 != 0.0 else 0.0))
+              + c * (2.0 * mixed + c * _exponential(2.0 * far, t)))
+    return (end + c * fast, end_rate + c * far * fast, a * t + b * p2 + q1 * p3 + c * f1,
+            0.5 * a * t * t + b * p3 + q1 * p4 + c * f2, a * t * t * t / 6.0 + b * p4 + q1 * p5 + c * f3, square)
+
+
+@compiled
+def _exponential(rate, t):
+    return t if rate == 0.0 else math.expm1(rate * t) / rate
+
+
+@compiled
+def _repeated(rate, t):
+    """Return exp(rate t) and its first five repeated integrals from 0."""
+    z = rate * t
+    if abs(z) > 1.0:
+        first = math.expm1(z) / rate
+        second = (first - t) / rate
+        third = (second - 0.5 * t * t) / rate
+        fourth = (third - t * t * t / 6.0) / rate
+        return 1.0 + rate * first, first, second, third, fourth, (fourth - t * t * t * t / 24.0) / rate
+    weight, fifth, n = 1.0 / 120.0, 1.0 / 120.0, 5.0
+    for _ in range(_TERMS):
+        n += 1.0
+        weight *= z / n
+        fifth += weight
+        if abs(weight) < 1e-19:
+            break
+    square = t * t
+    fourth = 1.0 / 24.0 + z * fifth
+    third = 1.0 / 6.0 + z * fourth
+    second = 0.5 + z * third
+    first = 1.0 + z * second
+    return (1.0 + z * first, t * first, square * second, square * t * third, square * square * fourth,
+            square * square * t * fifth)
+
+
+@compiled
+def _first_square(rate, t, first):
+    """Return ∫φ₁² of the first integral of exp(rate t), which is `first` at t."""
+    z = rate * t
+    if abs(z) > 1.0:
+        return (_exponential(2.0 * rate, t) - 2.0 * first + t) / (rate * rate)
+    power, weight, total, n = 4.0, 0.5, 1.0 / 3.0, 2.0
+    for _ in range(_TERMS):
+        n += 1.0
+        power *= 2.0
+        weight *= z / n
+        term = (power - 2.0) * weight / (n + 1.0)
+        total += term
+        if abs(term) < 1e-18:
+            break
+    return t * t * t * total
+
+
+@compiled
+def _second_square(rate, t, first, second, third):
+    """Return ∫φ₂² of the second integral of exp(rate t)."""
+    z = rate * t
+    if abs(z) > 1.0:
+        return (_first_square(rate, t, first) - 2.0 * (t * second - third) + t * t * t / 3.0) / (rate * rate)
+    power, weight, total, n = 16.0, 1.0 / 24.0, 0.05, 4.0
+    for _ in range(_TERMS):
+        n += 1.0
+        power *= 2.0
+        weight *= z / n
+        term = (power - 2.0 * n - 2.0) * weight / (n + 1.0)
+        total += term
+        if abs(term) < 1e-18:
+            break
+    return t * t * t * t * t * total

@@ -1,0 +1,53 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The works of a short motion under sines, by Gauss and Legendre's rule over the powers."""
+
+import math
+
+from ...axis.layout import CONTACT_DAMPING, DAMPING, DIRECTION, FRACTION, MODE, NORMAL, SECOND, SPRING, STIFFNESS
+from ...axis.motion import STICK, drive_travel, slip_friction, travel
+from ...axis.waves import inputs_at
+from ...compiled import compiled
+
+# eight nodes of Gauss and Legendre's rule
+_NODES = (-0.96028985649753623168, -0.79666647741362673959, -0.52553240991632898582, -0.18343464249564980494,
+          0.18343464249564980494, 0.52553240991632898582, 0.79666647741362673959, 0.96028985649753623168)
+_WEIGHTS = (0.10122853629037625915, 0.22238103445337447054, 0.31370664587788728734, 0.36268378337836198297,
+            0.36268378337836198297, 0.31370664587788728734, 0.22238103445337447054, 0.10122853629037625915)
+_RADIANS = 1.5      # of a panel: the error for a product of two waves is then below 1e-15
+
+
+@compiled
+def panels(p, s, t, rate):
+    """Return the works of a moving mode up to t, from eight nodes a panel; `rate` is its fastest rate, rad/s."""
+    drive, external, friction, damper, contact = 0.0, 0.0, 0.0, 0.0, 0.0
+    count = math.floor(rate * t / _RADIANS) + 1.0
+    half = 0.5 * t / count
+    panel = 0.0
+    while panel < count:
+        for i in range(8):
+            weight = half * _WEIGHTS[i]
+            at = half * (2.0 * panel + 1.0 + _NODES[i])
+            of_drive, of_force, of_friction, of_damper, of_contact = _powers(p, s, at)
+            drive += weight * of_drive
+            external += weight * of_force
+            friction += weight * of_friction
+            damper += weight * of_damper
+            contact += weight * of_contact
+        panel += 1.0
+    return drive, external, friction, damper, contact
+
+
+@compiled
+def _powers(p, s, t):
+    y, u, _ = travel(p, s, t)
+    v, force = inputs_at(s, s[SECOND], s[FRACTION] + t, t)
+    ahead = v - u
+    pull = p[STIFFNESS] * (s[SPRING] + (drive_travel(s, t) - y)) + p[DAMPING] * ahead
+    friction, contact = 0.0, 0.0
+    if s[MODE] == STICK:
+        contact = p[CONTACT_DAMPING] * u * u
+    else:
+        steady, slope = slip_friction(p, s)
+        friction = p[NORMAL] * (s[DIRECTION] * steady + slope * u) * u
+    return pull * v, force * u, friction, p[DAMPING] * ahead * ahead, contact

@@ -1,0 +1,119 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The closed integrals of the energy account against many digits."""
+
+import cmath
+import math
+import random
+
+import mpmath as mp
+import pytest
+
+from stickslip_sim.linear.moments import moments
+from stickslip_sim.linear.oscillator import oscillator
+from stickslip_sim.linear.wave_products import (
+    cycle_within,
+    ramped_integral,
+    swept_integral,
+    wave_integral,
+    wave_moment,
+    wave_products,
+)
+from stickslip_sim.linear.waves import TURN
+
+KINDS = ('no damper', 'under-damped', 'near critical', 'over-damped', 'growing', 'no spring')
+
+
+def _exact(gamma: float, omega2: float, x: float, rate: float, k0: float, k1: float, t: float) -> list[mp.mpf]:
+    """Return x, x′, ∫x, ∫∫x, ∫∫∫x and ∫x² at t, by exponentials of matrices."""
+    matrix = mp.matrix(7)
+    matrix[0, 1], matrix[1, 0], matrix[1, 1], matrix[1, 2] = 1, -mp.mpf(omega2), -2 * mp.mpf(gamma), 1
+    matrix[2, 3] = matrix[4, 0] = matrix[5, 4] = matrix[6, 5] = 1
+    begin = mp.matrix([x, rate, k0, k1, 0, 0, 0])
+    end = mp.expm(matrix * mp.mpf(t), method='taylor') * begin
+    pairs = [(a, b) for a in range(4) for b in range(a, 4)]
+    products = mp.matrix(11)
+    for i, (a, b) in enumerate(pairs):
+        for j in range(4):
+            products[i, pairs.index((min(j, b), max(j, b)))] += matrix[a, j]
+            products[i, pairs.index((min(a, j), max(a, j)))] += matrix[b, j]
+    products[10, 0] = 1
+    start = mp.matrix([begin[a] * begin[b] for a, b in pairs] + [0])
+    total = (mp.expm(products * mp.mpf(t), method='taylor') * start)[10]
+    return [end[0], end[1], end[4], end[5], end[6], total]
+
+
+def _mode(rng: random.Random, kind: str) -> tuple[float, float]:
+    omega = 10.0 ** rng.uniform(-2, 3)
+    return {'no damper': (0.0, omega * omega),
+            'under-damped': (omega * rng.uniform(0.0, 0.99), omega * omega),
+            'near critical': (omega * (1.0 + rng.choice((0.0, 1e-15, -1e-12, 1e-8, -1e-4, 1e-3))), omega * omega),
+            'over-damped': (omega * 10.0 ** rng.uniform(0.1, 8.0), omega * omega),
+            'growing': (-omega * 10.0 ** rng.uniform(-4, 0.5), omega * omega),
+            'no spring': (omega, 0.0)}[kind]
+
+
+@pytest.mark.parametrize('kind', KINDS)
+def test_the_moments_of_a_motion(kind: str) -> None:
+    rng = random.Random(kind)
+    for _ in range(15):
+        gamma, omega2 = _mode(rng, kind)
+        fastest = abs(gamma) + math.sqrt(abs(gamma * gamma - omega2))
+        t = 10.0 ** rng.uniform(-5, 1) / fastest
+        x, rate, k0, k1 = (rng.uniform(-1, 1) * fastest ** power for power in range(4))
+        k1 *= rng.choice((0.0, 1.0))
+        with mp.workdps(60):
+            exact = _exact(gamma, omega2, x, rate, k0, k1, t)
+        size = abs(x) + abs(rate) * t + abs(k0) * t * t + abs(k1) * t ** 3     # of |x|, at most
+        size *= math.exp(max(-2.0 * gamma * t, 0.0))
+        found = moments(oscillator(gamma, omega2), x, rate, k0, k1, t)
+        scales = (size, size * (1.0 / t + fastest), size * t, size * t * t / 2, size * t ** 3 / 6, size * size * t)
+        for value, wanted, scale in zip(found, exact, scales, strict=True):
+            assert abs(value - float(wanted)) <= 2e-12 * scale, (gamma, omega2, t)
+
+
+def test_a_slow_motion_beside_a_fast_one_keeps_its_digits() -> None:
+    """Over-damped 1e8 times: ∫x² of a contact that creeps for a millisecond, a second, a year."""
+    gamma, omega2 = 1e10, 1e4
+    for t in (1e-9, 1e-3, 1.0, 3e7):
+        with mp.workdps(60):
+            nu = mp.sqrt(mp.mpf(gamma) ** 2 - omega2)
+            slow, fast = -omega2 / (gamma + nu), -(gamma + nu)
+            level = mp.mpf(2.0) / omega2
+            b = slow * level / (fast - slow)
+            a = -level - b
+            rates = ((level, mp.mpf(0)), (a, slow), (b, fast))
+            exact = sum(c * d * (mp.expm1((k + j) * t) / (k + j) if k + j else t) for c, k in rates for d, j in rates)
+        found = moments(oscillator(gamma, omega2), 0.0, 0.0, 2.0, 0.0, t)[5]
+        assert found == pytest.approx(float(exact), rel=1e-13)
+
+
+@pytest.mark.parametrize('span', [1e-9, 1e-3, 0.3, 1.0, 30.0, 1e4, 1e9])
+def test_the_integrals_of_waves(span: float) -> None:
+    rng = random.Random(7)
+    for apart in (0.0, 1e-12, 1e-6, 1e-2, 0.4, 3.0):
+        frequency, t = 3.0, span / (3.0 * TURN)
+        other = frequency * (1.0 + apart * rng.uniform(0.5, 1.0))
+        cycle, cycle_other = cycle_within(frequency, t), cycle_within(other, t)
+        w, w_other = TURN * frequency, TURN * other
+        zero, zero_other = wave_integral(frequency, cycle, t), wave_integral(other, cycle_other, t)
+        wave = cmath.exp(1j * TURN * cycle)
+        same, sum_ = wave_products(frequency, cycle, other, cycle_other, t)
+        with mp.workdps(50):
+            a, b = 2j * mp.pi * mp.mpf(frequency), 2j * mp.pi * mp.mpf(other)
+            expected = {'zero': _wave(a, t), 'same': _wave(a - b, t), 'sum': _wave(a + b, t),
+                        'one': (t * mp.exp(a * t) - _wave(a, t)) / a,
+                        'swept': (_wave(a, t) - t) / a, 'ramped': (_wave(a + b, t) - _wave(a, t)) / b}
+        found = {'zero': zero, 'same': same, 'sum': sum_, 'one': wave_moment(w, wave, zero, t),
+                 'swept': swept_integral(w, 1.0, 0.0, zero, wave_moment(w, wave, zero, t), t),
+                 'ramped': ramped_integral(w, wave, zero, w_other, zero_other, sum_, t)}
+        for name, value in found.items():
+            scale = max(abs(complex(expected[name])), {'one': t / w, 'swept': t / w}.get(name, 1.0 / w)
+                        if w * t > 1.0 else 0.0)
+            if name == 'ramped' and w * t > 1.0:
+                scale = max(scale, 1.0 / (w * w))
+            assert abs(value - complex(expected[name])) <= 4e-14 * scale, (name, apart)
+
+
+def _wave(rate: mp.mpc, t: float) -> mp.mpc:
+    return mp.expm1(rate * t) / rate if rate else mp.mpf(t)
