@@ -22,7 +22,7 @@ def test_every_mark_is_met(number: str) -> None:
     assert outcome.finding.cases > 0
 
 
-@pytest.mark.parametrize('number', ['X1', 'X2', 'X4', 'X5', 'X6', 'X16', 'X21'])
+@pytest.mark.parametrize('number', ['X1', 'X2', 'X4', 'X5', 'X6', 'X16', 'X21', 'X25'])
 def test_a_solver_that_steps_misses_the_mark(number: str) -> None:
     (outcome,) = judged(chosen([number]), STEPPED)
     assert not outcome.passed
@@ -32,7 +32,6 @@ def test_a_solver_that_steps_misses_the_mark(number: str) -> None:
 
 def test_the_extremes_are_in_their_order() -> None:
     numbers = [int(extreme.number.removeprefix('X')) for extreme in EXTREMES]
-    assert numbers == sorted(set(numbers))
     assert numbers == list(range(1, len(numbers) + 1))
 
 
