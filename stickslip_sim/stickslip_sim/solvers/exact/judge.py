@@ -10,7 +10,7 @@ What is allowed is far above rounding, and far below what a figure would show.
 
 from ...axis.layout import (
     ACCELERATION, CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, DEFLECTION, DIRECTION, F, FRACTION, F_RATE, KNOTS, MODE,
-    NEXT_KIND, NORMAL, PIECE, REST, SECOND, SPRING, STIFFNESS, V, VELOCITY, V_RATE, WAVES,
+    NEXT, NEXT_KIND, NORMAL, PIECE, REST, SECOND, SPRING, STIFFNESS, V, VELOCITY, V_RATE, WAVES,
 )
 from ...axis.motion import (
     ACCELERATING, COASTING, STICK, contact_force, drive_force, drive_travel, friction_line, is_rigid_stick, knot_speed,
@@ -29,7 +29,7 @@ _TIME = 8.0 * 2.220446049250313e-16
 def event_is_sound(p, s, begin):
     """Whether the anchor, moved to an event that began at the velocity `begin`, is where the event says, in balance."""
     if s[MODE] == STICK:
-        sound = _holds(p, s, s[SPRING], s[DEFLECTION], s[VELOCITY], s[ACCELERATION], s[V], s[F], s[REST], 1.0)
+        sound = _holds(p, s, s[NEXT], s[SPRING], s[DEFLECTION], s[VELOCITY], s[ACCELERATION], s[V], s[F], s[REST], 1.0)
     elif s[MODE] == COASTING:
         sound = _coasts(p, s, s[SPRING], s[V], s[F])
     else:
@@ -47,7 +47,7 @@ def is_sound(p, s, second, fraction):
         v, force = inputs_at(s, second, fraction, t)
     spring = spring_after(p, s, t, drive_travel(s, t), y, u, a)
     if s[MODE] == STICK:
-        sound = _holds(p, s, spring, s[DEFLECTION] + y, u, a, v, force, s[REST] + t, 0.0)
+        sound = _holds(p, s, t, spring, s[DEFLECTION] + y, u, a, v, force, s[REST] + t, 0.0)
     elif s[MODE] == COASTING:
         sound = _coasts(p, s, spring, v, force)
     else:
@@ -56,14 +56,14 @@ def is_sound(p, s, second, fraction):
 
 
 @inlined
-def _holds(p, s, spring, deflection, u, a, v, force, rest, share):
+def _holds(p, s, t, spring, deflection, u, a, v, force, rest, share):
     """Whether the force in stick is at most N mu_s, and at least `share` of that."""
     pull = drive_force(p, spring, v, u) + force
     top = p[NORMAL] * static_limit(p, rest)
     slack = ALLOWED * _forces(p, spring, v, u, force, top)
     if not is_rigid_stick(p, s):   # what a stiff one does within the rounding of the time
         pull = contact_force(p, deflection, u)
-        slack += _TIME * rest * (p[CONTACT_STIFFNESS] * abs(u) + p[CONTACT_DAMPING] * abs(a))
+        slack += _TIME * t * (p[CONTACT_STIFFNESS] * abs(u) + p[CONTACT_DAMPING] * abs(a))
     return share * top - slack <= abs(pull) <= top + slack
 
 
