@@ -10,13 +10,15 @@ import pytest
 from stickslip_sim.axis import InitialState
 from stickslip_sim.cli.main import run
 from stickslip_sim.errors import InputError
-from stickslip_sim.extremes.runs import make
+from stickslip_sim.extremes.runs import make, of_kind
 from stickslip_sim.scene import Scene, load_scene
 from stickslip_sim.study import Variation
 from stickslip_sim.study.critical import Critical, critical, default_range
+from stickslip_sim.study.points import scene_at
 from stickslip_sim.study.theory import critical_drop, critical_feed, feed_of_theory, healing_critical_feed
-from stickslip_sim.study.transitions import NO, OPEN, YES, Verdicts, course
+from stickslip_sim.study.transitions import FAILED, NO, OPEN, YES, Course, Doubt, Verdicts, course
 from stickslip_sim.study.variation import Numbers
+from stickslip_sim.words import EventKind
 from tests.axes import instant
 from tests.tool import Capture
 
@@ -44,7 +46,7 @@ def test_constant_friction_has_the_critical_feed_of_the_closed_form(zeta: float,
     assert transition.value == pytest.approx(expected, rel=ACCURACY)
     assert transition.low <= expected * (1.0 + 1e-12)
     assert transition.high >= expected * (1.0 - 1e-12)
-    assert found.from_sliding == (NO, ())
+    assert found.from_sliding == Course(NO, ())
     assert found.both == [(1e-3, transition.value)]
 
 
@@ -63,7 +65,7 @@ def test_growth_at_rest_has_its_critical_feed_within_what_is_told(law: str, accu
 def test_katos_law_below_one_has_no_critical_feed() -> None:
     scene = load_scene('paper_fig4_constant', {**GROWING, 'friction.static.law': 'kato',
                                                'friction.static.exponent': 0.5})
-    assert of_the_feed(scene, 1e-3, 0.1).from_rest == (YES, ())
+    assert of_the_feed(scene, 1e-3, 0.1).from_rest == Course(YES, ())
 
 
 def test_sliding_on_the_papers_slope_is_lost_from_2000_newtons_on_and_both_motions_are_told() -> None:
@@ -74,7 +76,8 @@ def test_sliding_on_the_papers_slope_is_lost_from_2000_newtons_on_and_both_motio
     (sticks,) = found.from_rest.transitions
     assert sticks.rises
     assert sticks.value < 1500.0
-    assert found.both == [(sticks.value, lost.value)]
+    assert not sticks.resolved
+    assert found.both == [(sticks.high, lost.value)]
 
 
 @pytest.mark.parametrize(('share', 'grows'), [(0.999, True), (1.001, False)])
@@ -88,6 +91,41 @@ def test_runs_from_sliding_agree(share: float, grows: bool) -> None:
     swings = [abs(event.velocity - 0.0175) for event in events]
     assert len(swings) > 100
     assert (swings[-1] > swings[0]) == grows
+
+
+def sticks_late(scene: Scene, duration: float, late: float) -> int:
+    """Return how many sticks come in the last `late` seconds of a run."""
+    simulator = make(scene.axis, scene.drive, scene.force, scene.initial)
+    parts = (simulator.advance(instant(end)) for end in np.linspace(0.0, duration, 21)[1:].tolist())
+    return sum(event.time > duration - late for part in parts for event in of_kind(part, EventKind.STICK))
+
+
+def test_sticks_between_reversals_last_however_heavy_the_slider_is() -> None:
+    """Forward slip, reversal, stick and again: the last complete cycle may be the one without a stick."""
+    scene = load_scene('paper_fig7', {'drive.velocity': 0.02})
+    found = critical(scene, Variation('axis.mass', 20000.0, 32000.0, log=True), 1e-6)
+    assert found.from_rest == Course(YES, ())
+
+
+@pytest.mark.parametrize(('changes', 'name', 'low', 'high'), [
+    ({}, 'axis.drive_damping', 1e4, 1.3e4), ({'drive.velocity': 0.02}, 'axis.normal_force', 1900.0, 2300.0)])
+def test_what_is_told_of_intermittent_stick_slip_is_what_long_runs_do(
+        changes: dict[str, object], name: str, low: float, high: float) -> None:
+    """Between sticks the slider swings, ever longer towards the border, and may slip out by chance."""
+    scene = load_scene('paper_fig8', changes)
+    (one,) = critical(scene, Variation(name, low, high, log=True), 1e-9).from_rest.transitions
+    assert not one.resolved
+    ends = [sticks_late(scene_at(scene.values, [name], np.array([value])), 1e4, 5e3) for value in (one.low, one.high)]
+    assert [count > 0 for count in ends] == [not one.rises, one.rises]
+
+
+def test_a_cycle_about_to_vanish_is_not_taken_for_one_that_stays() -> None:
+    """Just beyond the tangent bifurcation 8600 sticks come, ever more alike, and then none."""
+    scene = load_scene('paper_fig4_constant')
+    (one,) = critical(scene, Variation('axis.mass', 13.0, 14.0, log=True), 1e-9).from_rest.transitions
+    assert one.high > 13.453134863828902
+    value = np.array([max(one.high, 13.4531349)])
+    assert sticks_late(scene_at(scene.values, ['axis.mass'], value), 1e4, 5e3) > 1000
 
 
 def test_several_changes_are_all_found() -> None:
@@ -106,7 +144,50 @@ def test_what_cannot_be_told_stays_open() -> None:
     assert not one.resolved
     assert one.low == pytest.approx(1.999, abs=3e-4)
     assert one.high == pytest.approx(2.001, abs=3e-4)
-    assert course(lambda values: np.full(len(values), OPEN), 1.0, 2.0, False, 1e-9) == (OPEN, ())
+    for verdict in (OPEN, FAILED):
+        found = course(lambda values: np.full(len(values), verdict), 1.0, 2.0, False, 1e-9)  # noqa: B023
+        assert found == Course(verdict, (), (Doubt(1.0, 2.0, verdict == FAILED),))
+
+
+def test_what_cannot_be_told_between_two_equal_verdicts_or_at_an_end_is_told() -> None:
+    def judge(values: Numbers) -> Verdicts:
+        found = np.where((values > 2.0) & (values < 3.0), OPEN, YES)
+        return np.where(values > 8.0, FAILED, found).astype(np.int64)
+
+    found = course(judge, 1.0, 9.0, False, 1e-9)
+    assert (found.first, found.transitions) == (YES, ())
+    assert [(one.low, one.high, one.failed) for one in found.doubts] == [(2.0, 3.0, False), (8.0, 9.0, True)]
+    assert [found.at(value) for value in (1.5, 2.5, 5.0, 8.5)] == [YES, OPEN, YES, OPEN]
+
+
+def test_a_failed_run_between_two_verdicts_is_told() -> None:
+    def judge(values: Numbers) -> Verdicts:
+        return np.where(abs(values - 2.0) < 1e-3, FAILED, values > 2.0).astype(np.int64)
+
+    (one,) = course(judge, 1.0, 3.5, False, 1e-9).transitions
+    assert (one.resolved, one.failed) == (False, True)
+
+
+def test_verdicts_that_come_by_turns_are_no_figure() -> None:
+    """As near a motion that sticks by chance: beyond the ends of what is told no verdict contradicts."""
+    def judge(values: Numbers) -> Verdicts:
+        by_chance = np.mod(1e9 * np.sin(12345.0 * values), 1.0) > 0.5
+        return np.where(abs(values - 2.0) < 3e-3, by_chance, values > 2.0).astype(np.int64)
+
+    (one,) = course(judge, 1.0, 3.5, False, 1e-9).transitions
+    assert not one.resolved
+    assert one.rises
+    assert 1.99 < one.low <= 1.997 + 1e-4
+    assert 2.003 - 1e-4 <= one.high < 2.01
+
+
+def test_three_clear_changes_between_two_values_of_the_scan_are_three() -> None:
+    def judge(values: Numbers) -> Verdicts:
+        return (((values > 2.03) & (values < 2.05)) | (values > 2.07)).astype(np.int64)
+
+    found = course(judge, 1.0, 6.0, False, 1e-12).transitions
+    assert [one.value for one in found] == pytest.approx([2.03, 2.05, 2.07], rel=1e-11)
+    assert [(one.rises, one.resolved) for one in found] == [(True, True), (False, True), (True, True)]
 
 
 def test_the_finest_accuracy_ends() -> None:

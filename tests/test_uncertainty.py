@@ -147,7 +147,7 @@ def test_percentiles_of_one_number_are_those_of_the_monotonic_theory() -> None:
     low, high = ENDS['drive.velocity']
     feeds = high - (high - low) * np.array(PERCENTS) / 100.0   # the slowest have the longest periods
     assert found.percentiles['period'] == pytest.approx(period(STATIC, 6e5, feeds), rel=3e-3)
-    assert found.points == found.solved == 2048
+    assert found.points == found.known == 2048
 
 
 def test_points_without_a_cycle_have_a_share_and_no_percentile() -> None:
@@ -171,9 +171,9 @@ def test_points_without_a_cycle_have_a_share_and_no_percentile() -> None:
 def test_of_points_that_nobody_could_solve_nothing_is_told() -> None:
     sample = Saltelli((uniform('axis.mass', 300.0, 400.0),), 16)
     columns = {**{name: np.full(sample.count, np.nan) for name in FIGURES}, 'settled': np.zeros(sample.count),
-               'motion': np.full(sample.count, float(Motion.UNSOLVED))}
+               'motion': np.full(sample.count, float(Motion.FAILED))}
     found = uncertainty_of(sample, columns)
-    assert (found.solved, found.stick_slip) == (0, None)
+    assert (found.known, found.failed, found.undecided, found.stick_slip) == (0, 32, 0, None)
     assert {*found.percentiles.values(), *found.indices.values()} == {None}
 
 

@@ -106,9 +106,11 @@ def test_where_nothing_was_solved_that_is_what_it_tells(tmp_path: Path, file: st
                str(tmp_path / 'out')]
     assert run(command) == 0
     titles, *lines = (tmp_path / 'out' / TABLE).read_text().splitlines()
-    unsolved = [','.join([*line.split(',')[:2], 'unsolved', '0.0', *[''] * 9]) for line in lines]
-    (tmp_path / 'out' / TABLE).write_text('\n'.join((titles, *unsolved, '')))
+    failed = [','.join([*line.split(',')[:2], 'failed', *[''] * 10]) for line in lines]
+    (tmp_path / 'out' / TABLE).write_text('\n'.join((titles, *failed, '')))
     capsys.readouterr()
     assert run([*command, '--resume']) == 0
-    assert 'stick-slip in a share that is not known of 32 independent points, 32 unsolved' in capsys.readouterr().out
+    out = capsys.readouterr().out
+    assert 'stick-slip in a share that is not known of 0 of 32 independent points, 32 failed\n' in out
+    assert '64 of 64 points failed: the exact engine gave up; see column motion\n' in out
     assert json.loads((tmp_path / 'out' / 'uncertainty.json').read_text())['stick_slip'] is None

@@ -91,6 +91,28 @@ class BatchFigures:
     settling_time: Numbers       # s, the break-away from which on the periods settle, see `settled`
 
 
+@dataclass(frozen=True, slots=True)
+class Rounds:
+    """Arrays with one entry an axis, of its rounds: from one break-away out of stick to the next.
+
+    Without a round the figures of the last one are NaN.
+    """
+
+    sticks: Numbers          # rounds that do more than touch rest
+    last_stick: Numbers      # s, end of the last of these sticks
+    longest_pause: Numbers   # s, between the ends of two of them, in the second half of the run
+    round_count: Numbers     # of all rounds
+    round_period: Numbers    # s
+    round_stick: Numbers     # s in stick, at its end
+    round_travel: Numbers    # m, of the longest of its slips
+    round_peak: Numbers      # m/s
+    round_force: Numbers     # N, friction at the break-away
+    round_settling: Numbers  # s, the break-away from which on each round takes as long as the one before, to SETTLED
+    least_speed: Numbers     # m/s, of the latest swing of the slip that goes on
+    lasts: NDArray[np.bool_]  # that slip never comes to rest again
+    window: Numbers          # the latest rounds in turn, oldest first: (axes, rounds, 4); NaN before there were so many
+
+
 def run_batch(axis: Axis, duration: float, *, drive_velocity: ArrayLike, external_force: ArrayLike = 0.0,
               initial: InitialState | None = None, threads: int | None = None, **changes: ArrayLike) -> BatchFigures:
     """Run an axis for `duration` s under every `drive_velocity` (m/s) and `external_force` (N), with `changes` to it.
@@ -99,6 +121,31 @@ def run_batch(axis: Axis, duration: float, *, drive_velocity: ArrayLike, externa
     number of cores to use (default: all).  Raises InputError on unknown names, lengths that do not match, and values
     without a meaning; nothing runs then.
     """
+    return figures_in(_rows_of(axis, duration, 0, drive_velocity, external_force, initial, threads, changes))
+
+
+def run_rounds(axis: Axis, duration: float, window: int, *, drive_velocity: ArrayLike, external_force: ArrayLike = 0.0,
+               initial: InitialState | None = None, threads: int | None = None,
+               **changes: ArrayLike) -> tuple[BatchFigures, Rounds]:
+    """Run axes as `run_batch` does; return with the figures those of the rounds, and the last `window` of them."""
+    out = _rows_of(axis, duration, window, drive_velocity, external_force, initial, threads, changes)
+    return figures_in(out), rounds_in(out)
+
+
+def rounds_in(out: Numbers) -> Rounds:
+    """Return what rows of figures, filled by `solvers.exact.cycles`, say of the rounds."""
+    columns: dict[str, Any] = {name: out[:, getattr(cycles, name.upper())].copy() for name in Rounds.__slots__
+                               if name != 'window'}
+    columns['lasts'] = columns['lasts'] == 1.0
+    kept = (out.shape[1] - cycles.ROW_SIZE) // cycles.ROUND_SIZE
+    window = out[:, cycles.ROW_SIZE:].reshape(len(out), kept, cycles.ROUND_SIZE)
+    turns = (columns['round_count'][:, None].astype(int) + np.arange(kept)) % max(kept, 1)
+    return Rounds(**columns, window=np.take_along_axis(window, turns[:, :, None], axis=1))
+
+
+def _rows_of(axis: Axis, duration: float, window: int, drive_velocity: ArrayLike, external_force: ArrayLike,
+             initial: InitialState | None, threads: int | None, changes: Mapping[str, ArrayLike]) -> Numbers:
+    """Return a row of figures for each axis; raises InputError."""
     initial = initial or InitialState()
     check_start(axis, initial)
     if threads is not None and not 1 <= threads <= 1024:
@@ -115,12 +162,13 @@ def run_batch(axis: Axis, duration: float, *, drive_velocity: ArrayLike, externa
     _check_friction(parameters)
     inputs = np.stack([np.broadcast_to(velocity, count), np.broadcast_to(force, count)], axis=1)
     starts = np.tile([initial.position, initial.velocity, initial.rest_time], (count, 1))
-    return _figures(_run(parameters, inputs, starts, float(duration), threads or os.cpu_count() or 1))
+    return _run(parameters, inputs, starts, float(duration), window, threads or os.cpu_count() or 1)
 
 
-def _run(parameters: Numbers, inputs: Numbers, starts: Numbers, duration: float, threads: int) -> Numbers:
+def _run(parameters: Numbers, inputs: Numbers, starts: Numbers, duration: float, window: int,
+         threads: int) -> Numbers:
     count = len(parameters)
-    out = np.empty((count, cycles.ROW_SIZE))
+    out = np.full((count, cycles.ROW_SIZE + cycles.ROUND_SIZE * window), np.nan)
 
     def work(first: int) -> None:
         state = np.zeros(STATE_SIZE)
@@ -133,7 +181,8 @@ def _run(parameters: Numbers, inputs: Numbers, starts: Numbers, duration: float,
     return out
 
 
-def _figures(out: Numbers) -> BatchFigures:
+def figures_in(out: Numbers) -> BatchFigures:
+    """Return the figures in rows that were filled by `solvers.exact.cycles`."""
     columns: dict[str, Any] = {name: out[:, getattr(cycles, name.upper())].copy() for name in BatchFigures.__slots__
                                if name != 'settled'}
     before = out[:, cycles.PERIOD_BEFORE]

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from ..study.variation import Variation
 
 _ACCURACY = 1e-9
+_DIGITS = 12   # of ends that are too small or large to be written out
 
 
 @click.command(short_help='Find the value at which stick-slip begins or ends.')
@@ -60,17 +61,34 @@ def _lines(scene: 'Scene', found: 'Critical') -> list[str]:
 
 
 def _told(start: str, course: 'Course', unit: str, digits: int, yes: str, no: str) -> list[str]:
-    """Return a line for each transition of a course, or one that there is none."""
-    from ..study.transitions import OPEN, YES
+    """Return a line for each transition of a course, or one that there is none, and for each stretch in doubt."""
+    from ..study.transitions import NO, YES
 
-    if not course.transitions:
-        all_over = 'it cannot be told' if course.first == OPEN else yes if course.first == YES else no
-        return [f'{start:14} no transition: {all_over} all over the range']
-    return [f'{start:14} {_value(one, unit, digits)}: '
-            + (f'{no} below, {yes} above' if one.rises else f'{yes} below, {no} above') for one in course.transitions]
+    found = [(one.low, f'{_value(one, unit, digits)}: '
+              + (f'{no} below, {yes} above' if one.rises else f'{yes} below, {no} above'))
+             for one in course.transitions]
+    if not found and course.first >= NO:
+        where = 'elsewhere in' if course.doubts else 'all over'
+        found = [(-math.inf, f'no transition: {yes if course.first == YES else no} {where} the range')]
+    found += [(one.low, f'{_stretch("from {} to {}", one.low, one.high, unit)}: {_why(one.failed)}')
+              for one in course.doubts]
+    return [f'{start:14} {text}' for _, text in sorted(found)]
 
 
 def _value(one: 'Transition', unit: str, digits: int) -> str:
     if one.resolved:
         return f'{one.value:.{digits}g}{unit}'
-    return f'between {one.low:.{digits + 2}g} and {one.high:.{digits + 2}g}{unit}, where it settles too slowly'
+    return f'{_stretch("between {} and {}", one.low, one.high, unit)}, {_why(one.failed)}'
+
+
+def _why(failed: bool) -> str:
+    return 'not judged, the exact engine gave up' if failed else 'undecided'
+
+
+def _stretch(words: str, low: float, high: float, unit: str) -> str:
+    """Return a stretch with as many digits as its length has a use for, rounded outwards."""
+    step = 10.0 ** (math.floor(math.log10(high - low)) - 1)
+    decimals = max(0, -round(math.log10(step)))
+    ends = math.floor(low / step) * step, math.ceil(high / step) * step
+    return words.format(*(f'{end:.{decimals}f}' if 1e-4 <= abs(end) < 1e9 else f'{end:.{_DIGITS}g}' for end in ends)
+                        ) + unit

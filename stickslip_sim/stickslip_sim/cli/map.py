@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from .files import check_distinct, check_picture, whole
+from .sweeping import tell_failed
 
 if TYPE_CHECKING:
     from ..plots.stability import Pick
@@ -48,6 +49,7 @@ def map_(folder: str, pictures: tuple[str, ...], show: str, picks: tuple[str, ..
             work.draw_bifurcation(study, columns, paths, progress)
         else:
             work.draw_map(study, columns, show, motions, paths)
+    tell_failed(study, columns)
 
 
 def _check_pictures(pictures: tuple[str, ...]) -> None:

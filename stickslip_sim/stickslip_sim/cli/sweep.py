@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from .sweeping import carry_out, crew_of, study_options
+from .sweeping import carry_out, crew_of, study_options, tell_failed
 
 if TYPE_CHECKING:
     from ..study import Study
@@ -51,7 +51,8 @@ def _tell(study: 'Study', folder: 'Folder', ran: int) -> None:
     columns = read_columns(folder.path / TABLE, study)
     counts = Counter(MOTIONS[Motion(int(motion))] for motion in columns['motion'])
     motions = ', '.join(f'{count} {word}' for word, count in counts.most_common())
-    unsettled = int((columns['settled'] == 0.0).sum())
+    unsettled = int(((columns['settled'] == 0.0) & (columns['motion'] != Motion.UNDECIDED)).sum())
     print(f'{study.scene.name}: {study.count} points, {ran} of them run now: {motions}'
           + (f'; {unsettled} had not settled' if unsettled else ''))
+    tell_failed(study, columns)
     print(f'{folder.path / TABLE}')

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from ..study import Study
     from ..study.crew import Crew
     from ..study.folder import Folder
+    from ..study.pictures import Columns
 
 _MOST_WORKERS = 1024
 _OPTIONS = (
@@ -66,6 +67,16 @@ def carry_out(study: 'Study', out: str, crew: AbstractContextManager['Crew | Non
                 return folder, work.sweep(study, folder, members, progress)
         except KeyboardInterrupt:
             raise KeyboardInterrupt(f'interrupted; what is done is kept in {out}, --resume goes on') from None
+
+
+def tell_failed(study: 'Study', columns: 'Columns') -> None:
+    """Say how many points of a study failed, if any did."""
+    from ..study.figures import Motion
+
+    failed = int((columns['motion'] == Motion.FAILED).sum())
+    if failed:
+        engine = study.scene.solver.name
+        print(f'{failed} of {study.count} points failed: the {engine} engine gave up; see column motion')
 
 
 def _processes(workers: str) -> int:

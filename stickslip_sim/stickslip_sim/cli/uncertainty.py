@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .files import check_picture, whole, write_text
-from .sweeping import carry_out, crew_of, study_options
+from .sweeping import carry_out, crew_of, study_options, tell_failed
 
 if TYPE_CHECKING:
     from ..study import Saltelli
@@ -53,6 +53,7 @@ def uncertainty(scene: str, file: str, samples: int, plot: str | None, out: str,
     if plot is not None:
         _draw(sample, columns, found, plot)
     print(f'{loaded.name}: {samples} samples of {len(study.names)} parameters, {study.count} points, {ran} run now')
+    tell_failed(study, columns)
     print('\n'.join((*_laws(sample), '', *_percentiles(found), '', *_indices(sample, found), '', str(result))))
 
 
@@ -68,8 +69,8 @@ def _plain(sample: 'Saltelli', found: 'Uncertainty') -> dict[str, Any]:
     from ..study.uncertainty import PERCENTS
 
     return {
-        'samples': sample.samples, 'seed': sample.seed, 'points': found.points, 'solved': found.solved,
-        'unsettled': found.unsettled,
+        'samples': sample.samples, 'seed': sample.seed, 'points': found.points, 'known': found.known,
+        'failed': found.failed, 'undecided': found.undecided, 'unsettled': found.unsettled,
         'kept_of_distributions': {one.name: one.kept for one in sample.variations},
         'stick_slip': found.stick_slip,
         'percentiles': {name: values and {str(percent): value for percent, value in zip(PERCENTS, values)}
@@ -96,11 +97,12 @@ def _percentiles(found: 'Uncertainty') -> list[str]:
     from ..study.uncertainty import PERCENTS, SPREAD
     from .format import quantity
 
-    doubts = ((found.points - found.solved, 'unsolved'), (found.unsettled, 'had not settled'))
+    doubts = ((found.failed, 'failed'), (found.undecided, 'undecided'),
+              (found.unsettled, 'had not settled'))
     doubt = ''.join(f', {count} {what}' for count, what in doubts if count)
     head = f'{"of those":22}' + ''.join(f'{f"{percent} %":>13}' for percent in PERCENTS)
     share = 'a share that is not known' if found.stick_slip is None else f'{found.stick_slip:.2%}'
-    return [f'stick-slip in {share} of {found.points} independent points{doubt}', head,
+    return [f'stick-slip in {share} of {found.known} of {found.points} independent points{doubt}', head,
             *(f'{name:22}' + ''.join(f'{quantity(value, SPREAD[name], 4):>13}' for value in values)
               if values else f'{name:22}{"none":>13}' for name, values in found.percentiles.items())]
 

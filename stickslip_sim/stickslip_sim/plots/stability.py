@@ -25,8 +25,9 @@ from .motion import Motion, phase_plane
 from .scale import Scale
 
 MOST_PICKS = 6
-PLAIN = ('smooth sliding', 'sliding that swings on', 'at rest', 'unsolved')
-_PLAIN_COLOURS = ('#f2f2f2', '#c4c4c4', '#56B4E9', '#222222')
+PLAIN = ('smooth sliding', 'sliding that swings on', 'at rest', 'failed', 'undecided')
+_PLAIN_COLOURS = ('#f2f2f2', '#c4c4c4', '#56B4E9', '#ffffff', '#ffffff')
+_HATCHES = {3: ('xxxxxx', RED), 4: ('//////', BLACK)}   # what is not known is no colour
 _LOST = (0, (4.0, 2.0))
 _DECADE = 10.0
 _HEIGHT, _PORTRAIT_HEIGHT = 3.3, 1.6   # in
@@ -86,8 +87,11 @@ def _map(panel: Axes, scales: tuple[Scale, Scale, Scale], field: Field, lines: L
     plain = np.where(np.isnan(field.values), field.plain, np.nan)
     panel.pcolormesh(*at, plain, cmap=ListedColormap(_PLAIN_COLOURS), vmin=-0.5, vmax=len(PLAIN) - 0.5,
                      shading='flat', rasterized=True)
-    handles += [Patch(facecolor=_PLAIN_COLOURS[k], edgecolor=GREY, linewidth=0.4, label=PLAIN[k])
-                for k in range(len(PLAIN)) if (plain == k).any()]
+    for k, (hatch, ink) in _HATCHES.items():
+        if (plain == k).any():
+            panel.pcolor(*at, np.where(plain == k, plain, np.nan), facecolor='none', edgecolor=ink, hatch=hatch,
+                         linewidth=0.0, rasterized=True)
+    handles += [_patch(k) for k in range(len(PLAIN)) if (plain == k).any()]
     if not np.isnan(field.values).all():
         ticks = LogLocator(subs=(1.0, 2.0, 5.0)) if isinstance(bar.norm, LogNorm) else None
         panel.figure.colorbar(bar, ax=panel, label=colour.label, pad=0.02, ticks=ticks, format='%g').minorticks_off()
@@ -99,6 +103,12 @@ def _map(panel: Axes, scales: tuple[Scale, Scale, Scale], field: Field, lines: L
     for pick, letter in zip(picks, ascii_uppercase):
         _mark(panel, x.shown(pick.x), y.shown(pick.y), letter)
     legend_outside(panel.figure, 'upper left', handles, [str(handle.get_label()) for handle in handles], ncols=2)
+
+
+def _patch(place: int) -> Patch:
+    """Return what explains a place in `PLAIN`."""
+    hatch, ink = _HATCHES.get(place, ('', GREY))
+    return Patch(facecolor=_PLAIN_COLOURS[place], edgecolor=ink, hatch=hatch, linewidth=0.4, label=PLAIN[place])
 
 
 def _norm(values: Numbers, scale: Scale) -> Normalize:

@@ -18,10 +18,11 @@ from ..scene import Scene
 from .figures import Motion, Numbers, figures_of
 from .points import runs_in_batches, scene_at, works_in_batches
 from .steady import sliding_slope
-from .transitions import NO, OPEN, YES, Course, Verdicts, course
+from .transitions import FAILED, NO, OPEN, YES, Course, Verdicts, course
 from .variation import Variation, checked, parameter_of
 
 _PATIENCE = 20_000   # cycles that a motion is given to settle
+_DOUBLINGS = 20      # of its first run
 _WIDTH = 100.0       # times up and down from the scene's own value, where no range is given
 FINEST = 1e-15
 
@@ -38,7 +39,7 @@ class Critical:
     @property
     def both(self) -> list[tuple[float, float]]:
         """Stretches in which stick-slip goes on from rest, and sliding from sliding."""
-        marks = [one.value for one in (*self.from_rest.transitions, *self.from_sliding.transitions)]
+        marks = (*self.from_rest.marks, *self.from_sliding.marks)
         ends = sorted({self.over.low, *marks, self.over.high})
         return _joined([(a, b) for a, b in pairwise(ends) if self.from_rest.at(0.5 * (a + b)) == YES
                         and self.from_sliding.at(0.5 * (a + b)) == NO])
@@ -81,11 +82,12 @@ class _Judge:
 
     def sticks(self, numbers: Numbers) -> Verdicts:
         """Whether stick-slip goes on, from the start of the scene."""
-        runs = runs_in_batches(self.values, [self.name], numbers[:, None], None, _PATIENCE)
+        runs = runs_in_batches(self.values, [self.name], numbers[:, None], None, _PATIENCE, _DOUBLINGS)
         figures = figures_of(runs)
-        slips = figures.motion == Motion.STICK_SLIP
-        unknown = (slips & (figures.settled == 0.0) & runs.fades) | (figures.motion == Motion.UNSOLVED)
-        return np.where(unknown, OPEN, np.where(slips, YES, NO))
+        verdicts = np.where(figures.motion == Motion.STICK_SLIP, YES, NO)
+        verdicts[(figures.motion == Motion.UNDECIDED) | runs.late] = OPEN   # where late, a neighbour may never slide
+        verdicts[figures.motion == Motion.FAILED] = FAILED
+        return verdicts
 
     def loses_sliding(self, numbers: Numbers) -> Verdicts:
         """Whether a disturbance of steady sliding grows."""

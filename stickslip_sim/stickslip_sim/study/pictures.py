@@ -24,7 +24,8 @@ from .variation import Numbers, Variation
 UNITS = {'amplitude': 'm', 'period': 's', 'stick_share': '', 'peak_speed': 'm/s', 'break_away_force': 'N',
          'settling_time': 's', 'cycles': '', 'duration': 's'}
 Columns = Mapping[str, Numbers]
-_PLAIN = {Motion.AT_REST: 2, Motion.SMOOTH_SLIDING: 0, Motion.UNSOLVED: 3}
+_PLAIN = {Motion.AT_REST: 2, Motion.SMOOTH_SLIDING: 0, Motion.FAILED: 3,
+          Motion.UNDECIDED: 4}
 
 
 def check_drawable(study: Study, shown: str) -> None:
@@ -68,8 +69,8 @@ def draw_uncertainty(sample: Saltelli, columns: Columns, found: Uncertainty, pat
     """Draw how the figures of a sample spread, and the indices of those that have them."""
     spreads = [Spread(Scale(name, SPREAD[name]), values, found.percentiles[name] or ())
                for name, values in spread_of(sample, columns).items()]
-    heading = ('no point could be solved' if found.stick_slip is None else
-               f'{100.0 * found.stick_slip:.3g} % of {found.solved} points stick and slip')
+    heading = ('of no point it is known' if found.stick_slip is None else
+               f'{100.0 * found.stick_slip:.3g} % of {found.known} points stick and slip')
     names = [one.name for one in sample.variations]
     shares = [_shares(figure, [of[name] for name in names]) for figure, of in found.indices.items() if of]
     plot_uncertainty(spreads, heading, names, shares, path)

@@ -9,16 +9,15 @@ from typing import Any
 
 import numpy as np
 
-from ..analysis import Cycle, cycle_figures
+from ..batch import figures_in, rounds_in
 from ..errors import InputError, SolverError
 from ..friction import StaticLawKind
 from ..offline import Trajectory, run_offline
 from ..scene import Scene, scene_from_values
 from ..scene.values import overridden
-from ..solvers.exact.cycles import SETTLED
-from ..words import Event, EventKind, Mode
+from ..solvers.exact import cycles
 from .figures import Numbers, Runs, no_runs
-from .settling import PATIENCE, run_settled
+from .settling import DOUBLINGS, PATIENCE, run_settled, runs_of
 from .variation import changes_at
 
 _OF_THE_BATCH = {
@@ -45,7 +44,7 @@ def works_in_batches(scene: Scene) -> bool:
 
 
 def runs_in_batches(values: Values, names: Sequence[str], points: Numbers, duration: float | None,
-                    patience: int = PATIENCE) -> Runs:
+                    patience: int = PATIENCE, doublings: int = DOUBLINGS) -> Runs:
     """Run points by the compiled batch: a scene for each set of numbers that it cannot vary, and all others at once."""
     others = [k for k, name in enumerate(names) if name not in _OF_THE_BATCH]
     runs = no_runs(len(points))
@@ -54,20 +53,23 @@ def runs_in_batches(values: Values, names: Sequence[str], points: Numbers, durat
         members = np.flatnonzero(belongs.reshape(-1) == k)
         scene = scene_at(values, [names[other] for other in others], sets[k])
         inputs = _inputs(scene, names, points[members])
-        runs.put(members, run_settled(scene.axis, scene.initial, inputs, duration, patience))
+        runs.put(members, run_settled(scene.axis, scene.initial, inputs, duration, patience, doublings))
     return runs
 
 
 def runs_alone(values: Values, names: Sequence[str], points: Numbers, duration: float) -> Runs:
     """Run points one after the other, each as `simulate` would."""
     runs = no_runs(len(points))
+    runs.duration[:] = duration
     for k, point in enumerate(points):
         try:
-            row = _row(run_offline(scene_at(values, names, point), duration))
+            scene = scene_at(values, names, point)
+            run = run_offline(scene, duration)
         except (SolverError, InputError):   # it gave up, or found more events than can be held
-            row = {'complete': False}
-        for name, value in {'duration': duration, **row}.items():
-            getattr(runs, name)[k] = value
+            continue
+        runs.put([k], _of_a_run(run))
+        runs.stick_share[k] = run.summary.stick_share
+        runs.lasts[k] &= works_in_batches(scene)   # with anything else nothing is known of what is to come
     return replace(runs, settled=runs.settled | runs.slides_on)
 
 
@@ -80,28 +82,12 @@ def _inputs(scene: Scene, names: Sequence[str], points: Numbers) -> dict[str, Nu
     return {name: np.array(np.broadcast_to(values, len(points)), dtype=float) for name, values in columns.items()}
 
 
-def _row(run: Trajectory) -> dict[str, Any]:
-    """Return the numbers of `Runs` for one run; those of a cycle are of the last one."""
-    cycles, begins = cycle_figures(run.events), [event.time for event in run.events if _begins(event)]
-    last = cycles[-1] if cycles else None
-    row = {name: getattr(last, name) if last else math.nan
-           for name in ('stick_time', 'period', 'slip_travel', 'peak_speed', 'break_away_force')}
-    final = [event.mode for event in run.events] or [_start_mode(run.scene)]
-    return {**row, 'complete': True, 'events': len(run.events), 'cycles': len(cycles),
-            'settled': run.summary.settled, 'stick_share': run.summary.stick_share, 'final_mode': final[-1],
-            'last_break_away': begins[-1] if begins else math.nan, 'settling_time': _settling_time(cycles)}
-
-
-def _begins(event: Event) -> bool:
-    return event.kind == EventKind.REVERSE or (event.kind == EventKind.BREAKAWAY and event.mode != Mode.STICK)
-
-
-def _start_mode(scene: Scene) -> Mode:
-    return scene.make_rig().simulator.sample().mode
-
-
-def _settling_time(cycles: Sequence[Cycle]) -> float:
-    """Return when the first of the cycles begins from which on no period differs from the one before."""
-    unlike = [cycle.begin for before, cycle in zip((None, *cycles), cycles)
-              if before is None or abs(cycle.period - before.period) >= SETTLED * cycle.period]
-    return unlike[-1] if unlike else math.nan
+def _of_a_run(run: Trajectory) -> Runs:
+    """Return what is known of a run that is complete."""
+    out = np.empty((1, cycles.ROW_SIZE))
+    cycles.clear(out[0])
+    out[0][cycles.FINAL_MODE] = run.scene.make_rig().simulator.sample().mode
+    for event in run.events:
+        cycles.book(out[0], np.array(event, dtype=float), 0.5 * run.duration)
+    out[0][cycles.COMPLETE] = 1.0
+    return runs_of(figures_in(out), rounds_in(out), run.duration)

@@ -1,79 +1,135 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Runs of as many axes as asked for, each long enough that its motion is the one that stays.
+"""Runs of as many axes as asked for, each long enough that it is known which motion stays.
 
 An axis runs for at least eight times a natural period and the time in which its drive loads the spring to the static
-limit, rounded up to a power of two.  It runs twice as long, from the start, until two runs end in the same cycle (stick
-time and period within 1e-6 of each other and of the cycle before), or until a slip has gone on for more than half of
-the run and either no event comes any more or steady sliding is stable.  With the events of `patience` cycles, or 1024
-times as long as the first run, it is left as it is: not settled.
+limit, rounded up to a power of two.  It runs twice as long, from the start, until one of these is known:
+
+* it sticks and slips for ever: in this run and in the one before the latest rounds repeat, one by one or in groups,
+  and end alike (`repetition`);
+* it never sticks again: the least speed of the slip that goes on grows from swing to swing (the argument is that of
+  `solvers.exact.cycles`), or a slip took more than half of the run and twice the time brought no event more;
+* it is at rest for ever: nothing pulls.
+
+With the events of `patience` cycles, or after so many `doublings`, it is left as it is, not settled.  Then it sticks
+and slips where sticks came all through the second half of the run, no pause between them _PAUSE times as long as the
+mean one, and took no smaller share of it than of the first half.  It slides where the slider came to rest only for a
+moment, if at all, and turned.  Anything else is undecided: sticks that come again after long pauses, or wane, and
+swings that come ever closer to standstill.
 """
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..axis import Axis, InitialState
-from ..batch import BatchFigures, run_batch
-from ..solvers.exact.cycles import SETTLED
+from ..batch import BatchFigures, Rounds, run_rounds
+from ..solvers.exact.cycles import ROUND_SIZE
 from ..words import Mode
 from .figures import RUN_FIELDS, Flags, Numbers, Runs, no_runs
+from .repetition import ends_alike, group_size
 from .steady import sliding_slope
 
 PATIENCE = 400     # cycles
-_LOADINGS = 8.0     # of the spring, and natural periods, that a run has at least
-_EVENTS = 8         # of a cycle, or of a swing without a stick, as a rule
-_DOUBLINGS = 10
+DOUBLINGS = 10
+_LOADINGS = 8.0    # of the spring, and natural periods, that a run has at least
+_EVENTS = 8        # of a cycle, or of a swing without a stick, as a rule
+_WINDOW = 64       # rounds
+_PAUSE = 4.0
+_LEAST_ROUNDS = 8  # with a stick in the second half, to speak of a mean pause
 _FADING = 0.95     # of the share of stick, from a run to one twice as long
+_CALMED = 0.5      # of the least speed's distance from the drive's, from a run to one twice as long
+_CALM = 1e-6       # of the drive's speed
+_SAME_SWING = 1e-9
+_SINGLE = 1.5      # rounds of one length, where they do not come in groups
+_LATE = 64.0       # first runs before the slip that lasts
 
 
 def run_settled(axis: Axis, initial: InitialState, inputs: Mapping[str, Numbers], duration: float | None = None,
-                patience: int = PATIENCE) -> Runs:
+                patience: int = PATIENCE, doublings: int = DOUBLINGS) -> Runs:
     """Run an axis under `inputs` as of `batch.run_batch`, of one length, for `duration` s or until it settles."""
     count = len(inputs['drive_velocity'])
     if duration is not None:
-        runs = _runs(axis, initial, inputs, duration)
+        runs, _ = _runs(axis, initial, inputs, duration)
         return replace(runs, settled=np.where(runs.slides_on, sliding_slope(axis, inputs) >= 0.0, runs.settled))
-    runs = no_runs(count)
+    runs, windows = no_runs(count), np.full((count, _WINDOW, ROUND_SIZE), np.nan)
     exponents = _first_exponents(axis, inputs)
-    last = exponents + _DOUBLINGS
+    first, last = 2.0 ** exponents, exponents + doublings
     pending = np.arange(count)
     while len(pending):
-        before = _taken(runs, pending)
+        before = _Stage(_taken(runs, pending), windows[pending])
         for exponent in np.unique(exponents[pending]):
             some = pending[exponents[pending] == exponent]
-            runs.put(some, _runs(axis, initial, {name: values[some] for name, values in inputs.items()},
-                                 2.0 ** float(exponent)))
-        now = _taken(runs, pending)
-        settled = _is_settled(before, now, axis, {name: values[pending] for name, values in inputs.items()})
+            of_some = {name: values[some] for name, values in inputs.items()}
+            found, windows[some] = _runs(axis, initial, of_some, 2.0 ** float(exponent))
+            runs.put(some, found)
+        now = _Stage(_taken(runs, pending), windows[pending])
+        of_pending = {name: values[pending] for name, values in inputs.items()}
+        known, settled = _known(before, now, axis, of_pending)
         runs.settled[pending] = settled
-        runs.fades[pending] = now.stick_share < _FADING * before.stick_share
-        goes_on = ~settled & now.complete & (now.events < _EVENTS * patience) & (exponents[pending] < last[pending])
+        single = now.runs.last_stick - now.runs.round_settling > _SINGLE * now.runs.round_period
+        runs.round_settling[pending] = np.where(single, now.runs.round_settling, np.nan)
+        runs.undecided[pending] = ~known & _is_open(before.runs, now.runs)
+        goes_on = ~known & now.runs.complete & (now.runs.events < _EVENTS * patience) & (
+            exponents[pending] < last[pending])
         pending = pending[goes_on]
         exponents[pending] += 1
-    return runs
+    return replace(runs, late=runs.lasts & (runs.sticks > 0.0) & (runs.last_break_away > _LATE * first))
 
 
-def _is_settled(before: Runs, now: Runs, axis: Axis, inputs: Mapping[str, Numbers]) -> Flags:
-    """Return which runs show the motion that stays, beside those half as long."""
-    same = np.ones(len(now.cycles), dtype=bool)
-    for name in ('stick_time', 'period'):
-        one, other = getattr(before, name), getattr(now, name)
-        same &= np.abs(one - other) <= SETTLED * np.abs(other)
-    goes_on = (now.cycles > before.cycles) & now.settled & same & ~now.slides_on
-    slides = now.slides_on & ((sliding_slope(axis, inputs) >= 0.0) | (now.events == before.events))
+class _Stage(NamedTuple):
+    """Runs of one length, and the latest rounds of each."""
+
+    runs: Runs
+    windows: Numbers
+
+
+def _known(before: _Stage, now: _Stage, axis: Axis, inputs: Mapping[str, Numbers]) -> tuple[Flags, Flags]:
+    """Return of which runs it is known what they end in, beside those half as long, and which are there already."""
+    runs = now.runs
+    is_stable = sliding_slope(axis, inputs) >= 0.0
+    swings_on, calms = _swings(before.runs, runs, np.abs(inputs['drive_velocity']))
+    slides = (runs.slides_on & (runs.events == before.runs.events)) | (is_stable & calms)
     pulls_no_more = inputs['drive_velocity'] * _number(axis, inputs, 'drive_stiffness') == 0.0
-    settled: Flags = goes_on | slides | (pulls_no_more & (now.final_mode == Mode.STICK))
-    return settled
+    settled: Flags = (_repeats(before, now, _static_force(axis, inputs)) | slides
+                      | (pulls_no_more & (runs.final_mode == Mode.STICK)))
+    return settled | swings_on | (runs.lasts & ~is_stable), settled
+
+
+def _swings(before: Runs, now: Runs, speed: Numbers) -> tuple[Flags, Flags]:
+    """Return which slips that last swing on as they are, and which calm down; `speed` is the drive's."""
+    gaps = [np.abs(speed - one.least_speed) for one in (before, now)]
+    same_slip = now.lasts & (before.duration > 0.0) & (before.last_break_away == now.last_break_away)
+    calms = same_slip & (gaps[1] <= np.maximum(_CALMED * gaps[0], _CALM * speed))
+    return same_slip & ~calms & (np.abs(gaps[1] - gaps[0]) <= _SAME_SWING * gaps[1]), calms
+
+
+def _repeats(before: _Stage, now: _Stage, force: Numbers) -> Flags:
+    """Return which runs stick and slip in a cycle, or a group of cycles, that stays."""
+    judged = np.where(before.runs.duration > 0.0, now.runs.round_count - before.runs.round_count, 0.0)
+    size = group_size(now.windows, np.minimum(judged, _WINDOW), force)
+    repeats: Flags = (size > 0.0) & ~now.runs.slides_on & ends_alike(before.windows, now.windows, size, force)
+    return repeats
+
+
+def _is_open(before: Runs, now: Runs) -> Flags:
+    """Return of which runs that did not settle it cannot be told whether they go on to stick and slip."""
+    late = now.sticks - before.sticks
+    with np.errstate(divide='ignore', invalid='ignore'):
+        pause = np.maximum(now.longest_pause, now.duration - now.last_stick)
+        sticks = (late >= _LEAST_ROUNDS) & (pause * late <= _PAUSE * (now.duration - before.duration))
+    sticks &= now.stick_share >= _FADING * before.stick_share
+    turns = (now.sticks == 0.0) & (now.cycles > before.cycles)
+    is_open: Flags = ~(sticks | turns | now.lasts | now.rests_on)
+    return is_open
 
 
 def _first_exponents(axis: Axis, inputs: Mapping[str, Numbers]) -> Any:
     """Return of which power of two the shortest run is, for each axis."""
     stiffness = _number(axis, inputs, 'drive_stiffness')
-    force = _number(axis, inputs, 'normal_force') * np.maximum(
-        _number(axis, inputs, 'static_limit'), _number(axis, inputs, 'static_initial'))
+    force = _static_force(axis, inputs)
     with np.errstate(divide='ignore', invalid='ignore', over='ignore'):
         swing = 2.0 * np.pi * np.sqrt(_number(axis, inputs, 'mass') / stiffness)
         load = (force + np.abs(inputs['external_force'])) / (stiffness * np.abs(inputs['drive_velocity']))
@@ -82,6 +138,13 @@ def _first_exponents(axis: Axis, inputs: Mapping[str, Numbers]) -> Any:
 
 
 _SHORTEST, _LONGEST = 1e-9, 1e15   # s
+
+
+def _static_force(axis: Axis, inputs: Mapping[str, Numbers]) -> Numbers:
+    """Return the largest force that static friction can hold, N."""
+    force: Numbers = _number(axis, inputs, 'normal_force') * np.maximum(
+        _number(axis, inputs, 'static_limit'), _number(axis, inputs, 'static_initial'))
+    return np.broadcast_to(force, len(inputs['drive_velocity']))
 
 
 def _number(axis: Axis, inputs: Mapping[str, Numbers], name: str) -> Numbers:
@@ -93,11 +156,17 @@ def _number(axis: Axis, inputs: Mapping[str, Numbers], name: str) -> Numbers:
                     else getattr(axis, name))
 
 
-def _runs(axis: Axis, initial: InitialState, inputs: Mapping[str, Numbers], duration: float) -> Runs:
-    found: BatchFigures = run_batch(axis, duration, initial=initial, threads=1, **inputs)
-    return Runs(np.full(len(found.cycles), duration),
-                **{name: getattr(found, name) for name in RUN_FIELDS if hasattr(found, name)},
-                fades=np.zeros(len(found.cycles), dtype=bool))
+def runs_of(figures: BatchFigures, rounds: Rounds, duration: float) -> Runs:
+    """Return what is known of runs of one length."""
+    no = np.zeros((2, len(figures.cycles)), dtype=bool)
+    known = {name: getattr(one, name) for one in (figures, rounds) for name in one.__slots__ if name in RUN_FIELDS}
+    return Runs(np.full(len(figures.cycles), duration), **known, undecided=no[0], late=no[1])
+
+
+def _runs(axis: Axis, initial: InitialState, inputs: Mapping[str, Numbers], duration: float) -> tuple[Runs, Numbers]:
+    """Return runs of one length, and the latest rounds of each."""
+    figures, rounds = run_rounds(axis, duration, _WINDOW, initial=initial, threads=1, **inputs)
+    return runs_of(figures, rounds, duration), rounds.window
 
 
 def _taken(runs: Runs, places: Any) -> Runs:

@@ -1,10 +1,14 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Where the verdict on a number changes: a scan, then nested sections of each stretch in which it does."""
+"""Where the verdict on a number changes: a scan, then nested sections of each stretch in which it does.
+
+Where verdicts cannot be told, or come by turns however closely one looks, the change lies in between; beyond both ends
+of such a stretch more values are judged, until none of them contradicts.
+"""
 
 import math
-from collections.abc import Callable
-from itertools import pairwise
+from collections.abc import Callable, Sequence
+from itertools import groupby, pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -12,25 +16,28 @@ from numpy.typing import NDArray
 
 from .figures import Numbers
 
-NO, YES, OPEN = 0, 1, -1   # verdicts; OPEN: it cannot be told
+NO, YES, OPEN, FAILED = 0, 1, -1, -2   # verdicts; OPEN: it cannot be told; FAILED: the run went wrong
 Verdicts = NDArray[np.int64]
 Judge = Callable[[Numbers], Verdicts]
 
 _SCAN = 65       # values
 _SECTIONS = 16   # of a stretch, all judged at once
 _GAIN = 0.9      # a stretch that shrinks less is as short as it gets
+_SPLITS = 1      # so often a stretch may turn out to have several changes
+_BEYOND = 4.0    # lengths of a stretch, so far beyond it is looked
 
 
 class Transition(NamedTuple):
     """The verdict is `not rises` at `low` and `rises` at `high`; in between it is not known.
 
-    `resolved`: the two are as close as was asked for.
+    `resolved`: the two are as close as was asked for.  `failed`: in between are runs that went wrong.
     """
 
     low: float
     high: float
     rises: bool
     resolved: bool
+    failed: bool = False
 
     @property
     def value(self) -> float:
@@ -38,16 +45,57 @@ class Transition(NamedTuple):
         return self.low + 0.5 * (self.high - self.low)
 
 
+class Doubt(NamedTuple):
+    """Between `low` and `high`, with one verdict on either side or an end of the range, are values without any.
+
+    `failed`: their runs went wrong.
+    """
+
+    low: float
+    high: float
+    failed: bool
+
+
 class Course(NamedTuple):
-    """The verdict over a range: that at its low end, and where it changes."""
+    """The verdict over a range: that at its low end, where it changes, and where it is not known."""
 
     first: int
     transitions: tuple[Transition, ...]
+    doubts: tuple[Doubt, ...] = ()
 
     def at(self, value: float) -> int:
-        """Return the verdict at a value that lies in no transition."""
+        """Return the verdict at a value; OPEN where it is not known."""
+        unknown = [(one.low, one.high) for one in self.doubts]
+        unknown += [(one.low, one.high) for one in self.transitions if not one.resolved]
+        if self.first < NO or any(low < value < high for low, high in unknown):
+            return OPEN
         passed = sum(one.value < value for one in self.transitions)
         return self.first if passed % 2 == 0 else 1 - self.first
+
+    @property
+    def marks(self) -> list[float]:
+        """The values at which what `at` returns may change."""
+        ends = [end for one in self.transitions for end in ((one.value,) if one.resolved else (one.low, one.high))]
+        return [*ends, *(end for one in self.doubts for end in (one.low, one.high))]
+
+
+class _Scan(NamedTuple):
+    """Values in their order, and the verdicts on them."""
+
+    values: Numbers
+    verdicts: Verdicts
+
+    def known(self) -> list[int]:
+        """Return the places of the values that have a verdict."""
+        return [int(place) for place in np.flatnonzero(self.verdicts >= NO)]
+
+    def changes(self) -> list[tuple[int, int]]:
+        """Return the places of neighbours among those whose verdicts differ."""
+        return [(a, b) for a, b in pairwise(self.known()) if self.verdicts[a] != self.verdicts[b]]
+
+    def has_failed(self, first: int, last: int) -> bool:
+        """Whether a run from a place to another went wrong."""
+        return bool((self.verdicts[first:last + 1] == FAILED).any())
 
 
 def course(judge: Judge, low: float, high: float, log: bool, accuracy: float,
@@ -57,29 +105,81 @@ def course(judge: Judge, low: float, high: float, log: bool, accuracy: float,
     Two changes between neighbours of the scan, 65 values, even or in steps of one ratio (`log`), cancel each other.
     """
     values = np.asarray((np.geomspace if log else np.linspace)(low, high, _SCAN), dtype=np.float64)
-    verdicts = judge(values)
-    known = np.flatnonzero(verdicts != OPEN)
-    if not len(known):
-        return Course(OPEN, ())
-    changes = [(a, b) for a, b in pairwise(known) if verdicts[a] != verdicts[b]]
-    found = []
+    scan = _Scan(values, judge(values))
+    known, changes = scan.known(), scan.changes()
+    if not known:
+        failed = scan.has_failed(0, _SCAN)
+        return Course(FAILED if failed else OPEN, (), (Doubt(low, high, failed),))
+    found: list[Transition] = []
     for k, (a, b) in enumerate(changes):
-        found.append(_narrowed(judge, float(values[a]), float(values[b]), bool(verdicts[b]), accuracy))
+        found += _narrowed(judge, _part(scan, a, b), accuracy, _SPLITS)
         if progress:
             progress((k + 1) / len(changes))
-    return Course(int(verdicts[known[0]]), tuple(found))
+    return Course(int(scan.verdicts[known[0]]), tuple(found), tuple(_doubts(scan)))
 
 
-def _narrowed(judge: Judge, low: float, high: float, rises: bool, accuracy: float) -> Transition:
-    """Return the transition in a stretch at whose ends the verdicts differ."""
-    while high - low > max(accuracy * max(abs(low), abs(high)), 2.0 * math.ulp(max(abs(low), abs(high)))):
-        values = np.unique(np.linspace(low, high, _SECTIONS + 1)[1:-1])
-        verdicts = judge(values)
-        after = np.flatnonzero(verdicts == int(rises))
-        end = int(after[0]) if len(after) else len(values)
-        before = np.flatnonzero(verdicts[:end] == int(not rises))
-        closer = (float(values[before[-1]]) if len(before) else low, float(values[end]) if end < len(values) else high)
-        if closer[1] - closer[0] > _GAIN * (high - low):
-            return Transition(low, high, rises, False)
-        low, high = closer
-    return Transition(low, high, rises, True)
+def _doubts(scan: _Scan) -> list[Doubt]:
+    """Return where a scan has no verdict, but where the verdict changes."""
+    found, last = [], len(scan.values) - 1
+    for is_known, group in groupby(range(last + 1), lambda place: scan.verdicts[place] >= NO):
+        places = list(group)
+        before, after = max(places[0] - 1, 0), min(places[-1] + 1, last)
+        at_an_end = places[0] == 0 or places[-1] == last
+        if not is_known and (at_an_end or scan.verdicts[before] == scan.verdicts[after]):
+            found.append(Doubt(float(scan.values[before]), float(scan.values[after]), scan.has_failed(before, after)))
+    return found
+
+
+def _narrowed(judge: Judge, scan: _Scan, accuracy: float, splits: int) -> list[Transition]:
+    """Return the transitions in a scan at whose ends the verdicts differ: one, or more where each of them is clear."""
+    rises, whole = bool(scan.verdicts[-1]), scan
+    while True:
+        low, high = float(scan.values[0]), float(scan.values[-1])
+        size = max(abs(low), abs(high))
+        if high - low <= max(accuracy * size, 2.0 * math.ulp(size)):
+            return [Transition(low, high, rises, True)]
+        inner = np.unique(np.linspace(low, high, _SECTIONS + 1)[1:-1])
+        scan = _Scan(np.array([low, *inner, high]), np.array([int(not rises), *judge(inner), int(rises)]))
+        changes = scan.changes()
+        if len(changes) > 1:
+            clear = _each(judge, scan, changes, accuracy, splits)
+            return clear or [_widened(judge, scan, changes[0][0], changes[-1][1], whole)]
+        (a, b), = changes
+        if scan.values[b] - scan.values[a] > _GAIN * (high - low):
+            return [_widened(judge, scan, a, b, whole)]
+        scan = _part(scan, a, b)
+
+
+def _each(judge: Judge, scan: _Scan, changes: Sequence[tuple[int, int]], accuracy: float,
+          splits: int) -> list[Transition]:
+    """Return the transition of each of several changes; nothing unless all are clear."""
+    found: list[Transition] = []
+    for a, b in changes if splits else ():
+        parts = _narrowed(judge, _part(scan, a, b), accuracy, splits - 1)
+        if not all(one.resolved for one in parts):
+            return []
+        found += parts
+    return found
+
+
+def _widened(judge: Judge, scan: _Scan, first: int, last: int, whole: _Scan) -> Transition:
+    """Return the transition between two places of a scan, moved apart until the values beyond agree with its ends."""
+    rises, failed = bool(whole.verdicts[-1]), scan.has_failed(first, last)
+    ends = [float(scan.values[first]), float(scan.values[last])]
+    for side, limit, wanted in ((0, float(whole.values[0]), int(not rises)), (1, float(whole.values[-1]), int(rises))):
+        while ends[side] != limit:
+            reach = _BEYOND * (ends[1] - ends[0])
+            far = max(ends[0] - reach, limit) if side == 0 else min(ends[1] + reach, limit)
+            beyond = np.linspace(ends[side], far, _SECTIONS + 1)[1:]
+            verdicts = judge(np.asarray(beyond, dtype=np.float64))
+            against = np.flatnonzero(verdicts != wanted)
+            if not len(against):
+                break
+            failed |= bool((verdicts == FAILED).any())
+            ends[side] = float(beyond[against[-1] + 1]) if against[-1] + 1 < len(beyond) else far
+    return Transition(ends[0], ends[1], rises, False, failed)
+
+
+def _part(scan: _Scan, first: int, last: int) -> _Scan:
+    """Return what lies between two places, with both."""
+    return _Scan(scan.values[first:last + 1], scan.verdicts[first:last + 1])

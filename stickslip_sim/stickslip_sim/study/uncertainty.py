@@ -36,14 +36,17 @@ class Index(NamedTuple):
 
 
 class Uncertainty(NamedTuple):
-    """`stick_slip` is the share of those of `points` that were `solved`; cycles of `unsettled` still differ at the end.
+    """`stick_slip` is the share of those of `points` that are `known`; all others `failed`, or are `undecided`.
 
-    `percentiles` are for each figure, of the points that stick and slip and have it.  `indices` are for each figure and
-    each number; None where a point does not have the figure, or all have the same.
+    Cycles of `unsettled` still differ at the end.  `percentiles` are for each figure, of the points that stick and slip
+    and have it.  `indices` are for each figure and each number; None where a point does not have the figure, or all
+    have the same.
     """
 
     points: int
-    solved: int
+    known: int
+    failed: int
+    undecided: int
     unsettled: int
     stick_slip: float | None
     percentiles: Mapping[str, list[float] | None]
@@ -56,11 +59,13 @@ def uncertainty_of(sample: Saltelli, columns: Mapping[str, Numbers]) -> Uncertai
     slips = _slips(sample, columns)
     drawn = slips[:, :2]
     unsettled = (columns['settled'].reshape(slips.shape)[:, :2] == 0.0) & ~np.isnan(drawn)
-    solved = int((~np.isnan(drawn)).sum())
+    motion = columns['motion'].reshape(slips.shape)[:, :2]
+    count = int((~np.isnan(drawn)).sum())
+    failed, undecided = (int((motion == one).sum()) for one in (Motion.FAILED, Motion.UNDECIDED))
     names = [one.name for one in sample.variations]
     indices = {name: sobol_indices(values) for name, values in {'stick_slip': slips, **known}.items()}
     return Uncertainty(
-        drawn.size, solved, int(unsettled.sum()), float(np.nansum(drawn)) / solved if solved else None,
+        drawn.size, count, failed, undecided, int(unsettled.sum()), float(np.nansum(drawn)) / count if count else None,
         {name: _percentiles(values) for name, values in spread_of(sample, columns).items()},
         {name: dict(zip(names, found, strict=True)) if found else None for name, found in indices.items()})
 
@@ -92,9 +97,9 @@ def sobol_indices(values: Numbers) -> list[Index] | None:
 
 
 def _slips(sample: Saltelli, columns: Mapping[str, Numbers]) -> Numbers:
-    """Return for each sample and each of its points 1 for stick-slip, 0 without, NaN where nobody could solve it."""
+    """Return for each sample and each of its points 1 for stick-slip, 0 without, NaN where that is not known."""
     motion = columns['motion'].reshape(sample.samples, sample.each)
-    return np.where(motion == Motion.UNSOLVED, np.nan, (motion == Motion.STICK_SLIP).astype(float))
+    return np.where(np.isin(motion, (Motion.FAILED, Motion.UNDECIDED)), np.nan, motion == Motion.STICK_SLIP)
 
 
 def _percentiles(values: Numbers) -> list[float] | None:

@@ -3,33 +3,52 @@
 """Many axes, one after the other: each runs under constant inputs, and only the figures of its cycles are kept.
 
 The figures are those of `analysis.Cycle` and `analysis.Summary`, from the same events.
+
+A round goes from one break-away out of stick to the next; a slip that reverses at once does not end it.  A round whose
+stick is less than LEAST_STICK of it only touches rest.
+
+A slip lasts for ever once its least speed grows from swing to swing.  While it goes on, under constant inputs, stretch
+of the spring and speed are one autonomous motion in a plane: friction is a continuous function of the two (with two
+branches, too: coasting fills what is between them), so that no two paths cross.  The border at which the slider begins
+to accelerate is passed once a turn, at a speed below the drive's; a path that comes back there at a higher speed than
+it had before is shut in by its own last turn, which stays clear of standstill.  After a break-away the turn begins at
+the speed of that, with a force that accelerates already: the same holds.
 """
 
 import math
 
 from ...axis.layout import (
-    EVENT_DIRECTION, EVENT_FRACTION, EVENT_FRICTION, EVENT_KIND, EVENT_MODE, EVENT_POSITION, EVENT_REST, EVENT_SECOND,
-    EVENT_STATIC, EVENT_VELOCITY, MODE,
+    EVENT_DIRECTION, EVENT_DRIVE_FORCE, EVENT_FRACTION, EVENT_FRICTION, EVENT_KIND, EVENT_MODE, EVENT_POSITION,
+    EVENT_REST, EVENT_SECOND, EVENT_STATIC, EVENT_VELOCITY, MODE,
 )
-from ...axis.motion import STICK
-from ...axis.transitions import ARREST, BREAKAWAY, REVERSE
+from ...axis.motion import ACCELERATING, STICK
+from ...axis.transitions import ACCELERATE, ARREST, BREAKAWAY, DECELERATE, REVERSE
 from ...compiled import compiled, compiled_without_lock
 from .. import DONE, FULL
 from .engine import advance, start
 from .judge import is_sound
 
-SETTLED = 1e-6   # relative change of the period from one cycle to the next
+SETTLED = 1e-6       # relative change of the period from one cycle to the next
+LEAST_STICK = 1e-6   # of a round: less is a slip that only touches rest, as in motion without any damping
+_SAME = 1e-12        # of the least speed of a swing: one that loses less is the same again
 
 # a row of figures; `batch.BatchFigures` names the same
 (EVENTS, CYCLES, COMPLETE, FINAL_MODE, FIRST_BREAK_AWAY, STICK_SHARE, PERIOD_BEFORE, DIRECTION, REST_TIME, SLIP_TIME,
  STICK_TIME, PERIOD, SLIP_TRAVEL, JUMP, PEAK_SPEED, BREAK_AWAY_FORCE, STATIC_COEFFICIENT, LAST_BREAK_AWAY,
  SETTLING_TIME) = range(19)
+# and of rounds; `batch.Rounds` names the same
+(STICKS, LAST_STICK, LONGEST_PAUSE, ROUND_COUNT, ROUND_PERIOD, ROUND_STICK, ROUND_TRAVEL, ROUND_PEAK, ROUND_FORCE,
+ ROUND_SETTLING, LEAST_SPEED, LASTS) = range(19, 31)
 # behind it what is not told: since when the mode holds; the slip that goes on or was the last, whether it goes on,
 # whether it ended at standstill, where it began and ended, and its figures so far
 (SINCE_SECOND, SINCE_FRACTION, SLIPS, IS_OVER, BEGIN_SECOND, BEGIN_FRACTION, BEGIN_POSITION, STOP_SECOND, STOP_FRACTION,
- STOP_POSITION, PEAK, FORCE, REST, STATIC, WAY) = range(19, 34)
-FIGURES = 19
-ROW_SIZE = 34
+ STOP_POSITION, PEAK, FORCE, REST, STATIC, WAY) = range(31, 46)
+# whether it has slowed down since its speed was least; when the round began, if one did, and its figures so far
+(HAS_SLOWED, HAS_ROUND, FROM_SECOND, FROM_FRACTION, TRAVEL_SO_FAR, PEAK_SO_FAR, FORCE_AT_FIRST) = range(46, 53)
+FIGURES = 31
+ROW_SIZE = 53
+# a longer row has the latest rounds behind that, in turn: stick time, period, and drive force and speed at the end
+ROUND_SIZE = 4
 
 
 @compiled_without_lock
@@ -37,12 +56,13 @@ def run_axes(p, inputs, starts, duration, first, last, s, events, waves, out):
     """Run the axes `first` to `last` of the rows of `p` (parameters), `inputs` (v, F_e), `starts` (x, ẋ, rest time).
 
     Rows of `out` get the figures; NaN where there is none.  `s` is a state that keeps the account of energy.
+    Rows of `out` get the figures; NaN where there is none.  Pauses between sticks count in the second half alone.
     """
     second = math.floor(duration)
     fraction = duration - second
     for i in range(first, last):
         row = out[i]
-        _clear(row)
+        clear(row)
         rows = start(p[i], s, starts[i][0], starts[i][1], starts[i][2], inputs[i][0], 0.0, inputs[i][1], 0.0, waves,
                      events, 0)
         row[FINAL_MODE] = STICK if rows > 0 else s[MODE]
@@ -50,7 +70,7 @@ def run_axes(p, inputs, starts, duration, first, last, s, events, waves, out):
         while ended == FULL:
             rows, ended = advance(p[i], s, second, fraction, events, rows)
             for k in range(rows):
-                _book(row, events[k])
+                book(row, events[k], 0.5 * duration)
             rows = 0
         if row[FINAL_MODE] == STICK:
             row[STICK_SHARE] += (second - row[SINCE_SECOND]) + (fraction - row[SINCE_FRACTION])
@@ -59,14 +79,17 @@ def run_axes(p, inputs, starts, duration, first, last, s, events, waves, out):
 
 
 @compiled
-def _clear(row):
+def clear(row):
+    """Begin a row."""
     for k in range(ROW_SIZE):
         row[k] = math.nan if k < FIGURES else 0.0
     row[EVENTS] = row[CYCLES] = row[STICK_SHARE] = 0.0
+    row[STICKS] = row[LONGEST_PAUSE] = row[ROUND_COUNT] = row[LASTS] = 0.0
 
 
 @compiled
-def _book(row, e):
+def book(row, e, half):
+    """Take the next event of a run, whose second half begins at `half` s."""
     kind, mode = e[EVENT_KIND], e[EVENT_MODE]
     row[EVENTS] += 1.0
     begins = kind == REVERSE or (kind == BREAKAWAY and mode != STICK)
@@ -84,7 +107,23 @@ def _book(row, e):
     if begins:
         if row[IS_OVER] != 0.0:
             _end_cycle(row, e)
+            if row[HAS_ROUND] != 0.0:
+                row[TRAVEL_SO_FAR] = max(row[TRAVEL_SO_FAR], row[SLIP_TRAVEL])
+                row[PEAK_SO_FAR] = max(row[PEAK_SO_FAR], row[PEAK_SPEED])
+                if kind == BREAKAWAY:
+                    _end_round(row, e, half)
         _begin_slip(row, e)
+        if kind == BREAKAWAY:
+            _begin_round(row, e)
+    elif kind == DECELERATE:
+        row[HAS_SLOWED] = 1.0
+    elif kind == ACCELERATE and mode == ACCELERATING:
+        speed = abs(e[EVENT_VELOCITY])
+        if row[HAS_SLOWED] != 0.0 and speed >= row[LEAST_SPEED] * (1.0 - _SAME):
+            row[LASTS] = 1.0
+        row[LEAST_SPEED], row[HAS_SLOWED] = speed, 0.0
+    elif mode == STICK:
+        row[LASTS] = 0.0
 
 
 @compiled
@@ -113,3 +152,34 @@ def _begin_slip(row, e):
     row[PEAK] = abs(e[EVENT_VELOCITY])
     row[FORCE], row[REST], row[STATIC] = abs(e[EVENT_FRICTION]), e[EVENT_REST], e[EVENT_STATIC]
     row[WAY] = e[EVENT_DIRECTION]
+    row[LEAST_SPEED], row[HAS_SLOWED], row[LASTS] = row[PEAK], 0.0, 0.0
+
+
+@compiled
+def _begin_round(row, e):
+    row[HAS_ROUND] = 1.0
+    row[FROM_SECOND], row[FROM_FRACTION] = e[EVENT_SECOND], e[EVENT_FRACTION]
+    row[TRAVEL_SO_FAR] = row[PEAK_SO_FAR] = 0.0
+    row[FORCE_AT_FIRST] = row[FORCE]
+
+
+@compiled
+def _end_round(row, e, half):
+    time = e[EVENT_SECOND] + e[EVENT_FRACTION]
+    before = row[ROUND_PERIOD]
+    row[ROUND_PERIOD] = (e[EVENT_SECOND] - row[FROM_SECOND]) + (e[EVENT_FRACTION] - row[FROM_FRACTION])
+    if not abs(row[ROUND_PERIOD] - before) < SETTLED * row[ROUND_PERIOD]:   # also after the first
+        row[ROUND_SETTLING] = row[FROM_SECOND] + row[FROM_FRACTION]
+    row[ROUND_STICK], row[ROUND_TRAVEL] = row[STICK_TIME], row[TRAVEL_SO_FAR]
+    row[ROUND_PEAK], row[ROUND_FORCE] = row[PEAK_SO_FAR], row[FORCE_AT_FIRST]
+    if row[ROUND_STICK] > LEAST_STICK * row[ROUND_PERIOD]:
+        if time >= half and row[STICKS] > 0.0:
+            row[LONGEST_PAUSE] = max(row[LONGEST_PAUSE], time - row[LAST_STICK])
+        row[STICKS] += 1.0
+        row[LAST_STICK] = time
+    kept = (len(row) - ROW_SIZE) // ROUND_SIZE
+    if kept > 0:
+        at = ROW_SIZE + ROUND_SIZE * int(row[ROUND_COUNT] % kept)
+        row[at], row[at + 1] = row[ROUND_STICK], row[ROUND_PERIOD]
+        row[at + 2], row[at + 3] = e[EVENT_DRIVE_FORCE], e[EVENT_VELOCITY]
+    row[ROUND_COUNT] += 1.0
