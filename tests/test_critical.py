@@ -3,6 +3,7 @@
 """Critical values: the closed forms of the literature, bistability, and what is refused."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -181,6 +182,20 @@ def test_verdicts_that_come_by_turns_are_no_figure() -> None:
     assert 2.003 - 1e-4 <= one.high < 2.01
 
 
+@pytest.mark.parametrize('seed', range(40))
+def test_both_ends_of_what_is_told_have_the_verdict_that_is_told(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    width, likely = 10.0 ** rng.uniform(-6.0, -1.0), rng.uniform(0.1, 0.9)
+
+    def judge(values: Numbers) -> Verdicts:
+        by_chance = np.mod(1e9 * np.sin(12345.0 * values + seed), 1.0) < likely
+        found = np.where(abs(values - 2.0) < width, by_chance, values > 2.0)
+        return np.where(abs(values - 2.0) < 0.1 * width, OPEN, found).astype(np.int64)
+
+    for one in course(judge, 1.0, 3.5, False, 1e-9).transitions:
+        assert judge(np.array([one.low, one.high])).tolist() == [int(not one.rises), int(one.rises)]
+
+
 def test_three_clear_changes_between_two_values_of_the_scan_are_three() -> None:
     def judge(values: Numbers) -> Verdicts:
         return (((values > 2.03) & (values < 2.05)) | (values > 2.07)).astype(np.int64)
@@ -210,6 +225,16 @@ def test_the_tool_says_that_there_is_no_transition(capsys: Capture) -> None:
     out = capsys.readouterr().out
     assert out.count('no transition') == 2
     assert 'stick-slip all over the range' in out
+
+
+def test_the_tool_tells_what_is_undecided(capsys: Capture) -> None:
+    """With no more digits than the stretch has a use for, rounded outwards."""
+    assert run(['critical', 'paper_fig8', '--of', 'axis.drive_damping', '--between', '1.1e4:1.2e4']) == 0
+    out = capsys.readouterr().out
+    told = r'^from rest      between [\d.]+ and [\d.]+ N s/m, undecided: stick-slip below, no stick-slip above$'
+    assert re.search(told, out, re.MULTILINE), out
+    low, high = map(float, re.findall(r'between ([\d.]+) and ([\d.]+) N', out)[0])
+    assert low < 11490.0 < 11491.0 < high
 
 
 def test_without_a_range_it_looks_about_the_value_of_the_scene() -> None:

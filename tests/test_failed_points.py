@@ -119,7 +119,8 @@ def test_uncertainty_counts_them_and_averages_over_the_others(tmp_path: Path, ca
     assert 10 < found['failed'] < 22
     assert found['stick_slip'] == 1.0
     assert found['indices']['amplitude'] is None
-    assert f'stick-slip in 100.00% of {found["known"]} of 32 independent points, {found["failed"]} failed' in said
+    assert (f'stick-slip in 100.00% of those {found["known"]} of 32 independent points where it is known, '
+            f'{found["failed"]} failed') in said
     assert 'of 48 points failed: the exact engine gave up; see column motion' in said
 
 

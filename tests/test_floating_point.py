@@ -88,7 +88,9 @@ def test_a_slip_that_dies_out_before_its_turn_keeps_its_root() -> None:
 def allowed(osc: Oscillator, rate: float, jerk: float, t: float) -> float:
     """Return how far rounding of the terms of r moves a root."""
     g, slope, first, _, _ = integrals(osc, t)
-    return 1e-14 * (abs(rate * g) + abs(jerk * first)) / abs(rate * slope + jerk * g) + 1e-14 * t
+    terms: float = abs(rate * g) + abs(jerk * first)
+    speed: float = abs(rate * slope + jerk * g)
+    return 1e-14 * terms / speed + 1e-14 * t
 
 
 def test_a_step_is_the_same_at_any_scale_and_never_0() -> None:

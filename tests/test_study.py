@@ -223,6 +223,19 @@ def test_a_run_twice_as_long_ends_in_the_same_cycle(seed: int) -> None:
             assert longer.events[EventKind.STICK] <= figures.cycles[k] + 1
 
 
+def test_a_slider_that_coasts_nearly_as_fast_as_its_drive_is_not_yet_sliding_for_ever() -> None:
+    """Its second slip brings no event for seconds, at 6.8 mm/s; then it sticks and slips on."""
+    scene = load_scene('paper_fig8', {
+        'axis.mass': 115.82957334408503, 'axis.drive_stiffness': 1899777.28494845,
+        'axis.drive_damping': 4534.61867091659, 'axis.normal_force': 3745.8605070997946,
+        'contact.stiffness': 1334524.75239396, 'contact.damping': 3705.5319733103565,
+        'friction.static.time_constant': 0.1873409621137062})
+    figures = grid(scene, 'drive.velocity=0.0066:0.0070:5').figures(0, 5)
+    assert (figures.motion == Motion.STICK_SLIP).all()
+    late = run_offline(load_scene('paper_fig8', {**scene.values, 'drive.velocity': 0.0068}), 100.0).events
+    assert sum(event.kind == EventKind.STICK and event.time > 50.0 for event in late) > 100
+
+
 def test_where_the_slider_only_just_comes_to_rest_the_events_are_those_of_the_reference() -> None:
     """The corner of the grid of docs/maps.md in which scipy misses break-aways."""
     pytest.importorskip('mpmath')

@@ -111,6 +111,6 @@ def test_where_nothing_was_solved_that_is_what_it_tells(tmp_path: Path, file: st
     capsys.readouterr()
     assert run([*command, '--resume']) == 0
     out = capsys.readouterr().out
-    assert 'stick-slip in a share that is not known of 0 of 32 independent points, 32 failed\n' in out
+    assert 'a share that is not known of those 0 of 32 independent points where it is known, 32 failed\n' in out
     assert '64 of 64 points failed: the exact engine gave up; see column motion\n' in out
     assert json.loads((tmp_path / 'out' / 'uncertainty.json').read_text())['stick_slip'] is None

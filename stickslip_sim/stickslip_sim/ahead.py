@@ -33,6 +33,8 @@ def compile_ahead(folder: str) -> None:
     """Write the extension modules for the sources in use into a package folder; old ones are removed."""
     from .compiled import ahead_name
     from .solvers.exact import cycles, engine, judge
+
+    judged: Any = judge.is_sound
     from .solvers.fixed_step import loop
 
     for old in Path(folder).glob('_ahead_*'):
@@ -40,7 +42,7 @@ def compile_ahead(folder: str) -> None:
     steps = _module(ahead_name('steps'), folder)
     for name, signature in _EXACT.items():
         steps.export(f'exact_{name}', signature)(getattr(engine, name).py_func)
-    steps.export('exact_is_sound', f'b1({_AT})')(judge.is_sound.py_func)
+    steps.export('exact_is_sound', f'b1({_AT})')(judged.py_func)
     for name, signature in _FIXED.items():
         steps.export(f'fixed_step_{name}', signature)(getattr(loop, name).py_func)
     steps.compile()

@@ -110,6 +110,7 @@ class Rounds:
     round_settling: Numbers  # s, the break-away from which on each round takes as long as the one before, to SETTLED
     least_speed: Numbers     # m/s, of the latest swing of the slip that goes on
     lasts: NDArray[np.bool_]  # that slip never comes to rest again
+    last_velocity: Numbers   # m/s, at the last event
     window: Numbers          # the latest rounds in turn, oldest first: (axes, rounds, 4); NaN before there were so many
 
 
@@ -176,6 +177,10 @@ def _run(parameters: Numbers, inputs: Numbers, starts: Numbers, duration: float,
         exact.run_axes(parameters, inputs, starts, duration, first, min(first + _AT_A_TIME, count), state,
                        np.empty((_ROWS, EVENT_SIZE)), np.empty(0), out)
 
+    if threads == 1 or count <= _AT_A_TIME:   # starting a thread takes longer than many a run
+        for first in range(0, count, _AT_A_TIME):
+            work(first)
+        return out
     with ThreadPoolExecutor(threads) as pool:
         list(pool.map(work, range(0, count, _AT_A_TIME)))
     return out

@@ -6,6 +6,7 @@
     ├── InputError       a scene, parameter, command, file or flag is wrong
     ├── RecordingError   a run cannot be written or read
     ├── SolverError      the solver gave up
+    │   └── UnsoundError what it found contradicts itself
     └── VerdictError     what was judged did not pass
 
 Each carries one line of text for people and the exit code of the tool.
@@ -53,6 +54,10 @@ class SolverError(StickslipError):
     """The solver cannot go on; the last state it reached is still valid."""
 
     exit_code = 4
+
+
+class UnsoundError(SolverError):
+    """A run contradicts its own motion or its balance of energy: the solver is at fault, and it has no figures."""
 
 
 class VerdictError(StickslipError):

@@ -14,7 +14,7 @@ from .checkpoints import event_of, state_of
 from .compiled import IS_COMPILED
 from .courses import Course
 from .energy import EnergyBalance
-from .errors import InputError, SolverError
+from .errors import InputError, SolverError, UnsoundError
 from .inputs import Inputs
 from .solvers import DONE, FULL, OUT_OF_RANGE, UNSOUND, Solver, exact
 from .words import Event, EventKind, Instant, Mode, Sample
@@ -91,7 +91,7 @@ class Simulator:
         return EnergyBalance(*map(float, self._energies))
 
     def judge(self) -> None:
-        """Raise SolverError when the state contradicts its own mode or balance of energy; needs an account.
+        """Raise UnsoundError when the state contradicts its own mode or balance of energy; needs an account.
 
         Each event is judged as the run goes on; this is for its end, or any time that its figures are looked at.
         """
@@ -99,11 +99,11 @@ class Simulator:
                 self._parameters, self._state, *self._time):
             raise self._unsound()
 
-    def _unsound(self) -> SolverError:
+    def _unsound(self) -> UnsoundError:
         mode = _MODES[int(self._state[MODE])].name
-        return SolverError(f'the run contradicts its own motion or balance of energy at t = {self._time.seconds!r} s, '
-                           f'in mode {mode}: none of its figures can be trusted; the solver is at fault, not the '
-                           'scene: please report both')
+        return UnsoundError(f'the run contradicts its own motion or balance of energy at t = {self._time.seconds!r} s, '
+                            f'in mode {mode}: none of its figures can be trusted; the solver is at fault, not the '
+                            'scene: please report both')
 
     def advance(self, to: Instant) -> list[Event]:
         """Bring the state to a time that is not before the present one; return the events up to then.

@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
-from stickslip_sim.errors import InputError, SolverError
+from stickslip_sim.errors import InputError, SolverError, UnsoundError
 
 from .case import Case, Find, LastBits, Run, Undecided, run
 from .generators import GENERATORS, PLAUSIBLE
@@ -54,6 +54,7 @@ def one_round(seed: str, tally: Tally, names: Sequence[str], count: int = PER_RO
               share: float = REFERENCE_SHARE) -> list[Found]:
     """Make up `count` scenes with each generator and judge them; the same seed makes the same scenes."""
     made: list[tuple[str, str, Case, Run]] = []
+    unsound: list[Found] = []
     for name in names:
         for k in range(count):
             tag = f'{seed}/{name}/{k}'
@@ -61,10 +62,13 @@ def one_round(seed: str, tally: Tally, names: Sequence[str], count: int = PER_RO
             tally.scenes[name] += 1
             try:
                 made.append((name, tag, case, run(case.parts)))
+            except UnsoundError as error:
+                tally.finds[name, 'itself'] += 1
+                unsound.append(Found(name, tag, 'itself', str(error), case))
             except (InputError, SolverError) as error:
                 tally.refused[name] += 1
                 tally.refusals[name] = str(error)
-    found = []
+    found = unsound
     for (name, tag, case, done), wrong in zip(made, guards.judge([done for *_, done in made])):
         tally.events[name] += done.size
         tally.judged['guards'] += 1
@@ -78,7 +82,10 @@ def one_round(seed: str, tally: Tally, names: Sequence[str], count: int = PER_RO
 
 def judge_again(case: Case, tag: str, reference_too: bool = True) -> list[tuple[str, str]]:
     """Return what all judges find wrong with a scene."""
-    done = run(case.parts)
+    try:
+        done = run(case.parts)
+    except UnsoundError as error:
+        return [('itself', str(error))]
     return [('guards', text) for text in guards.judge([done])[0]] + list(
         _others(done, tag, float(reference_too), Tally(), ''))
 

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 _MOST_PICKS = 6
 _MOST_EVENTS = 10_000   # that a phase plane shows
+_SWINGS_ON = 16.0        # times as long as it took to know that
 _SHOWN = 'amplitude'
 
 
@@ -75,7 +76,7 @@ def _check_complete(sweep: 'Folder') -> None:
 
 
 def _pick(study: 'Study', text: str) -> 'Pick':
-    """Return a point of the map with its motion, simulated as long as the study would."""
+    """Return a point of the map with its motion, as long as in the study, or longer where it only just swings on."""
     from ..paper.fresh import simulate
     from ..paper.windows import motion_of
     from ..plots.stability import Pick
@@ -84,7 +85,10 @@ def _pick(study: 'Study', text: str) -> 'Pick':
 
     point = point_of(study, text)
     runs = study.runs(point[None, :])
-    duration = float(runs.duration[0]) * min(1.0, _MOST_EVENTS / max(float(runs.events[0]), 1.0))
+    figures = figures_of(runs)
+    swings = figures.motion[0] == Motion.SMOOTH_SLIDING and figures.settled[0] == 0.0
+    duration = float(runs.duration[0]) * min(_SWINGS_ON if swings and study.duration is None else 1.0,
+                                             _MOST_EVENTS / max(float(runs.events[0]), 1.0))
     motion = motion_of(simulate(study.scene_at(point), duration))
-    sticks = figures_of(runs).motion[0] == Motion.STICK_SLIP
+    sticks = figures.motion[0] == Motion.STICK_SLIP
     return Pick(*pick(study, point), motion if sticks else motion._replace(cycle=None))

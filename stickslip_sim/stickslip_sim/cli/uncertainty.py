@@ -102,7 +102,9 @@ def _percentiles(found: 'Uncertainty') -> list[str]:
     doubt = ''.join(f', {count} {what}' for count, what in doubts if count)
     head = f'{"of those":22}' + ''.join(f'{f"{percent} %":>13}' for percent in PERCENTS)
     share = 'a share that is not known' if found.stick_slip is None else f'{found.stick_slip:.2%}'
-    return [f'stick-slip in {share} of {found.known} of {found.points} independent points{doubt}', head,
+    points = f'{found.points} independent points'
+    known = points if found.known == found.points else f'those {found.known} of {points} where it is known'
+    return [f'stick-slip in {share} of {known}{doubt}', head,
             *(f'{name:22}' + ''.join(f'{quantity(value, SPREAD[name], 4):>13}' for value in values)
               if values else f'{name:22}{"none":>13}' for name, values in found.percentiles.items())]
 

@@ -81,6 +81,7 @@ class Runs:
     round_settling: Numbers
     least_speed: Numbers
     lasts: Flags
+    last_velocity: Numbers
     undecided: Flags
     late: Flags
 

@@ -9,6 +9,8 @@ leaves (_STILL).  Small alone is not enough: just beyond the border at which a c
 for thousands of times, as if they settled, and then leave.
 """
 
+from typing import Any
+
 import numpy as np
 
 from .figures import LEAST_STICK, Flags, Numbers
@@ -16,6 +18,7 @@ from .figures import LEAST_STICK, Flags, Numbers
 REPEATED = 1e-6      # of what each number is compared with
 _STILL = 1e-11       # of the period, for stick times, and of the same for the others
 _TURNS = 3           # so often a group has to be there
+_NEARLY = 1e-2       # the same
 _LONGEST = 16        # rounds in a group
 
 
@@ -25,26 +28,42 @@ def group_size(window: Numbers, judged: Numbers, force: Numbers) -> Numbers:
     `window` has the latest rounds of each axis, as `batch.Rounds`; so many of them as `judged` says count, and `force`
     (N) is what drive forces are compared with.
     """
-    kept = window.shape[1]
-    sizes = _sizes(window, force)
-    scaled, still = window / sizes, window / np.concatenate([sizes[:, :, 1:2], sizes[:, :, 1:]], axis=2)
-    known = np.arange(kept) >= kept - judged[:, None]
     found: Numbers = np.zeros(len(window))
-    for size in range(min(_LONGEST, kept // _TURNS), 0, -1):
-        counted = known[:, :-size]   # the earlier of the two
-        order = np.cumsum(counted, axis=1)
-        late = counted & (2 * order > order[:, -1:])
-        repeats = _agree(scaled, size, counted, REPEATED) & _agree(still, size, late, _STILL)
-        found = np.where(repeats & (judged >= _TURNS * size), float(size), found)
+    some = np.flatnonzero(judged >= _TURNS)
+    if not len(some):
+        return found
+    longest = min(_LONGEST, window.shape[1] // _TURNS)
+    ends = window[some, -1 - longest:]   # looked at first: mostly that is enough
+    likely = _within(np.abs(ends[:, -1:] - ends[:, -2::-1]) / _sizes(ends, force[some]), REPEATED)
+    for size in range(1, longest + 1):
+        tried = some[likely[:, size - 1] & (judged[some] >= _TURNS * size) & (found[some] == 0.0)]
+        if len(tried):
+            found[tried[_repeats(window[tried], judged[tried], force[tried], size)]] = size
     return found
+
+
+def drifts(window: Numbers, judged: Numbers, force: Numbers) -> Flags:
+    """Return whether rounds are nearly those before them, one by one, so that who has not settled drifts slowly."""
+    counted = (np.arange(window.shape[1]) >= window.shape[1] - judged[:, None])[:, :-1]
+    return (judged >= _TURNS) & _agree(window / _sizes(window, force), 1, counted, _NEARLY)
+
+
+def _repeats(window: Numbers, judged: Numbers, force: Numbers, size: int) -> Flags:
+    """Return whether groups of one size repeat."""
+    sizes = _sizes(window, force)
+    counted = (np.arange(window.shape[1]) >= window.shape[1] - judged[:, None])[:, :-size]   # the earlier of the two
+    order = np.cumsum(counted, axis=1)
+    late = counted & (2 * order > order[:, -1:])
+    still = window / np.concatenate([sizes[:, :, 1:2], sizes[:, :, 1:]], axis=2)
+    return _agree(window / sizes, size, counted, REPEATED) & _agree(still, size, late, _STILL)
 
 
 def ends_alike(before: Numbers, now: Numbers, size: Numbers, force: Numbers) -> Flags:
     """Return whether the last round of `before` is one of the last group of `now`; both are windows."""
     kept = now.shape[1]
     sizes = _sizes(now, force)
-    changes = np.abs((now - before[:, -1:]) / sizes).max(axis=2)
-    alike: Flags = ((np.arange(kept) >= kept - size[:, None]) & (changes <= REPEATED)).any(axis=1)
+    same = _within(np.abs((now - before[:, -1:]) / sizes), REPEATED)
+    alike: Flags = np.any((np.arange(kept) >= kept - size[:, None]) & same, axis=1)
     return alike
 
 
@@ -60,6 +79,13 @@ def _sizes(window: Numbers, force: Numbers) -> Numbers:
 
 def _agree(scaled: Numbers, size: int, counted: Flags, tolerance: float) -> Flags:
     """Return whether all rounds that count are the ones `size` later."""
-    changes = np.abs(scaled[:, size:] - scaled[:, :-size]).max(axis=2)
-    agree: Flags = ~(counted & ~(changes <= tolerance)).any(axis=1)
+    agree: Flags = np.all(~counted | _within(np.abs(scaled[:, size:] - scaled[:, :-size]), tolerance), axis=1)
     return agree
+
+
+def _within(changes: Any, tolerance: float) -> Flags:
+    """Return whether all four numbers of each round change no more than that."""
+    fine = changes <= tolerance
+    within: Flags = np.logical_and(np.logical_and(fine[:, :, 0], fine[:, :, 1]),
+                                   np.logical_and(fine[:, :, 2], fine[:, :, 3]))
+    return within   # numpy's `all` over so short an axis takes five times as long

@@ -8,7 +8,8 @@ limit, rounded up to a power of two.  It runs twice as long, from the start, unt
 * it sticks and slips for ever: in this run and in the one before the latest rounds repeat, one by one or in groups,
   and end alike (`repetition`);
 * it never sticks again: the least speed of the slip that goes on grows from swing to swing (the argument is that of
-  `solvers.exact.cycles`), or a slip took more than half of the run and twice the time brought no event more;
+  `solvers.exact.cycles`), or a slip took more than half of the run and twice the time brought no event more, nor
+  will more time, as it does where the slider coasts a little faster or slower than its drive;
 * it is at rest for ever: nothing pulls.
 
 With the events of `patience` cycles, or after so many `doublings`, it is left as it is, not settled.  Then it sticks
@@ -29,7 +30,7 @@ from ..batch import BatchFigures, Rounds, run_rounds
 from ..solvers.exact.cycles import ROUND_SIZE
 from ..words import Mode
 from .figures import RUN_FIELDS, Flags, Numbers, Runs, no_runs
-from .repetition import ends_alike, group_size
+from .repetition import drifts, ends_alike, group_size
 from .steady import sliding_slope
 
 PATIENCE = 400     # cycles
@@ -41,8 +42,10 @@ _PAUSE = 4.0
 _LEAST_ROUNDS = 8  # with a stick in the second half, to speak of a mean pause
 _FADING = 0.95     # of the share of stick, from a run to one twice as long
 _CALMED = 0.5      # of the least speed's distance from the drive's, from a run to one twice as long
+_WANED = 0.99      # the same, at least: it is on its way
 _CALM = 1e-6       # of the drive's speed
 _SAME_SWING = 1e-9
+_MORE = 1.5        # times the events, in a run twice as long
 _SINGLE = 1.5      # rounds of one length, where they do not come in groups
 _LATE = 64.0       # first runs before the slip that lasts
 
@@ -71,7 +74,10 @@ def run_settled(axis: Axis, initial: InitialState, inputs: Mapping[str, Numbers]
         runs.settled[pending] = settled
         single = now.runs.last_stick - now.runs.round_settling > _SINGLE * now.runs.round_period
         runs.round_settling[pending] = np.where(single, now.runs.round_settling, np.nan)
-        runs.undecided[pending] = ~known & _is_open(before.runs, now.runs)
+        runs.undecided[pending] = False
+        if not known.all():
+            runs.undecided[pending] = ~known & (_is_open(before.runs, now.runs)
+                                                | _drifts(before, now, axis, of_pending))
         goes_on = ~known & now.runs.complete & (now.runs.events < _EVENTS * patience) & (
             exponents[pending] < last[pending])
         pending = pending[goes_on]
@@ -87,31 +93,55 @@ class _Stage(NamedTuple):
 
 
 def _known(before: _Stage, now: _Stage, axis: Axis, inputs: Mapping[str, Numbers]) -> tuple[Flags, Flags]:
-    """Return of which runs it is known what they end in, beside those half as long, and which are there already."""
+    """Return of which runs it is known what they end in, beside those half as long, and which are there, or near it."""
     runs = now.runs
     is_stable = sliding_slope(axis, inputs) >= 0.0
-    swings_on, calms = _swings(before.runs, runs, np.abs(inputs['drive_velocity']))
-    slides = (runs.slides_on & (runs.events == before.runs.events)) | (is_stable & calms)
+    swings_on, wanes, calms = _swings(before.runs, runs, np.abs(inputs['drive_velocity']))
     pulls_no_more = inputs['drive_velocity'] * _number(axis, inputs, 'drive_stiffness') == 0.0
-    settled: Flags = (_repeats(before, now, _static_force(axis, inputs)) | slides
-                      | (pulls_no_more & (runs.final_mode == Mode.STICK)))
-    return settled | swings_on | (runs.lasts & ~is_stable), settled
+    stays: Flags = (_repeats(before, now, _static_force(axis, inputs)) | (is_stable & calms)
+                    | (runs.slides_on & (runs.events == before.runs.events) & _is_steady(runs, inputs, is_stable))
+                    | (pulls_no_more & (runs.final_mode == Mode.STICK)))
+    return stays | swings_on | (runs.lasts & ~is_stable), stays | (is_stable & wanes)
 
 
-def _swings(before: Runs, now: Runs, speed: Numbers) -> tuple[Flags, Flags]:
-    """Return which slips that last swing on as they are, and which calm down; `speed` is the drive's."""
+def _is_steady(runs: Runs, inputs: Mapping[str, Numbers], is_stable: Flags) -> Flags:
+    """Return which slips without a further event are steady: any but those that coast at another speed than the drive.
+
+    Such coasting ends, however late; close to the drive's speed, where steady sliding is stable, that changes nothing.
+    """
+    apart = np.abs(runs.last_velocity - inputs['drive_velocity'])
+    close = np.where(is_stable, _CALM, 0.0) * np.abs(inputs['drive_velocity'])
+    steady: Flags = (runs.final_mode != Mode.COASTING) | (runs.events == 0.0) | (apart <= close)
+    return steady
+
+
+def _swings(before: Runs, now: Runs, speed: Numbers) -> tuple[Flags, Flags, Flags]:
+    """Return which slips that last swing on as they are, which wane, and which calm down.
+
+    `speed` is the drive's.
+    """
     gaps = [np.abs(speed - one.least_speed) for one in (before, now)]
     same_slip = now.lasts & (before.duration > 0.0) & (before.last_break_away == now.last_break_away)
-    calms = same_slip & (gaps[1] <= np.maximum(_CALMED * gaps[0], _CALM * speed))
-    return same_slip & ~calms & (np.abs(gaps[1] - gaps[0]) <= _SAME_SWING * gaps[1]), calms
+    goes_on = now.events >= _MORE * before.events   # there were swings since
+    swings_on = same_slip & goes_on & (np.abs(gaps[1] - gaps[0]) <= _SAME_SWING * gaps[1]) & (gaps[1] > _CALM * speed)
+    wanes, calms = (same_slip & (gaps[1] <= np.maximum(share * gaps[0], _CALM * speed)) for share in (_WANED, _CALMED))
+    return swings_on, wanes, calms
 
 
 def _repeats(before: _Stage, now: _Stage, force: Numbers) -> Flags:
     """Return which runs stick and slip in a cycle, or a group of cycles, that stays."""
     judged = np.where(before.runs.duration > 0.0, now.runs.round_count - before.runs.round_count, 0.0)
     size = group_size(now.windows, np.minimum(judged, _WINDOW), force)
+    if not size.any():
+        return size > 0.0
     repeats: Flags = (size > 0.0) & ~now.runs.slides_on & ends_alike(before.windows, now.windows, size, force)
     return repeats
+
+
+def _drifts(before: _Stage, now: _Stage, axis: Axis, inputs: Mapping[str, Numbers]) -> Flags:
+    """Return which runs change little from round to round, by which a cycle may still vanish."""
+    judged = np.minimum(now.runs.round_count - before.runs.round_count, _WINDOW)
+    return drifts(now.windows, judged, _static_force(axis, inputs)) & ~(now.runs.lasts | now.runs.rests_on)
 
 
 def _is_open(before: Runs, now: Runs) -> Flags:

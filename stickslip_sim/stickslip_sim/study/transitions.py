@@ -24,7 +24,8 @@ _SCAN = 65       # values
 _SECTIONS = 16   # of a stretch, all judged at once
 _GAIN = 0.9      # a stretch that shrinks less is as short as it gets
 _SPLITS = 1      # so often a stretch may turn out to have several changes
-_BEYOND = 4.0    # lengths of a stretch, so far beyond it is looked
+_BEYOND = 8.0    # lengths of a stretch, so far beyond it is looked
+_PROBES = 64     # values there, so that verdicts that are rare by chance are met
 
 
 class Transition(NamedTuple):
@@ -167,16 +168,19 @@ def _widened(judge: Judge, scan: _Scan, first: int, last: int, whole: _Scan) -> 
     rises, failed = bool(whole.verdicts[-1]), scan.has_failed(first, last)
     ends = [float(scan.values[first]), float(scan.values[last])]
     for side, limit, wanted in ((0, float(whole.values[0]), int(not rises)), (1, float(whole.values[-1]), int(rises))):
+        contradicts = False   # the end itself
         while ends[side] != limit:
             reach = _BEYOND * (ends[1] - ends[0])
             far = max(ends[0] - reach, limit) if side == 0 else min(ends[1] + reach, limit)
-            beyond = np.linspace(ends[side], far, _SECTIONS + 1)[1:]
+            beyond = np.linspace(ends[side], far, _PROBES + 1)[1:]
             verdicts = judge(np.asarray(beyond, dtype=np.float64))
             against = np.flatnonzero(verdicts != wanted)
-            if not len(against):
-                break
             failed |= bool((verdicts == FAILED).any())
-            ends[side] = float(beyond[against[-1] + 1]) if against[-1] + 1 < len(beyond) else far
+            if not len(against):
+                ends[side] = float(beyond[0]) if contradicts else ends[side]
+                break
+            contradicts = bool(against[-1] + 1 == len(beyond))
+            ends[side] = far if contradicts else float(beyond[against[-1] + 1])
     return Transition(ends[0], ends[1], rises, False, failed)
 
 

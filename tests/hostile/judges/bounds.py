@@ -10,6 +10,7 @@ from stickslip_sim.courses import Course
 from ..case import Find, Run
 
 _UNBALANCED = 1e-9   # of the throughput
+_ROUNDING = 1e-14    # of the forces that add up, along the way: a drive damper may be huge, and its force nothing
 
 
 def judge(run: Run) -> None:
@@ -23,7 +24,7 @@ def judge(run: Run) -> None:
         if abs(speed) > bound:
             raise Find(f'a speed of {speed!r} m/s at {time!r} s; no more than {bound:.6g} is possible')
     residual = abs(run.energy.residual)
-    if not residual <= _UNBALANCED * _energy(run):
+    if not residual <= _UNBALANCED * _energy(run) + _ROUNDING * _forces(run) * _way(run):
         raise Find(f'the account of energy does not close: a residual of {residual:.3g} J of {_energy(run):.3g} J')
 
 
@@ -33,6 +34,19 @@ def _energy(run: Run) -> float:
     limit = axis.normal_force * axis.friction.static.initial
     return max(energy.throughput, energy.stored, energy.stored_at_start,
                limit * limit / axis.drive_stiffness if axis.drive_stiffness > 0.0 else 0.0)
+
+
+def _forces(run: Run) -> float:
+    axis, end = run.parts.axis, run.parts.duration
+    fastest = _most(run.parts.drive, end) + max((abs(e.velocity) for e in run.events), default=0.0)
+    stretch = max((abs(e.drive_force) for e in run.events), default=0.0)
+    return (2.0 * axis.drive_damping * fastest + stretch + _most(run.parts.force, end)
+            + axis.normal_force * max(_coefficients(axis, run)))
+
+
+def _way(run: Run) -> float:
+    return 2.0 * _most(run.parts.drive, run.parts.duration) * run.parts.duration + max(
+        (abs(e.position - run.start.position) for e in run.events), default=0.0)
 
 
 def speed_bound(run: Run) -> float:

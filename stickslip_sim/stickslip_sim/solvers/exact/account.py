@@ -5,9 +5,7 @@
 Each sum carries what rounding has lost of it (Neumaier, ZAMM 54, 1974).
 """
 
-from ...axis.layout import (
-    CONTACT_EXCHANGE, NORMAL, PARAMETER_EXCHANGE, STATIC_LIMIT, STIFFNESS, STORED_AT_START, SUMS, SUM_COUNT, THROUGHPUT,
-)
+from ...axis.layout import CONTACT_EXCHANGE, PARAMETER_EXCHANGE, STORED_AT_START, SUMS, SUM_COUNT, THROUGHPUT
 from ...compiled import compiled, inlined
 from .works import contact_energy, stored_energy, works
 
@@ -49,8 +47,8 @@ def read_account(p, s, t, out):
 
 
 @compiled
-def open_share(p, s, t):
-    """Return what the balance leaves open at t after the anchor, as a share of what went through or is stored."""
+def balance(p, s, t):
+    """Return what the balance leaves open at t after the anchor, and what went through or is stored, J."""
     given = _sum(s, 0) + _sum(s, 1) + _sum(s, CONTACT_EXCHANGE) + _sum(s, PARAMETER_EXCHANGE)
     taken = _sum(s, 2) + _sum(s, 3) + _sum(s, 4)
     scale = _sum(s, THROUGHPUT)
@@ -60,11 +58,7 @@ def open_share(p, s, t):
         taken += friction + damper + contact
         scale += abs(drive) + abs(external) + abs(friction) + abs(damper) + abs(contact)
     stored = stored_energy(p, s, t)
-    scale = max(scale, max(stored, s[STORED_AT_START]))
-    if p[STIFFNESS] > 0.0:   # a load may come and go within one stick: what the spring holds at the limit counts, too
-        most = p[NORMAL] * p[STATIC_LIMIT]
-        scale = max(scale, 0.5 * most * most / p[STIFFNESS])
-    return abs((given - taken) - (stored - s[STORED_AT_START])) / scale if scale > 0.0 else 0.0
+    return abs((given - taken) - (stored - s[STORED_AT_START])), max(scale, max(stored, s[STORED_AT_START]))
 
 
 @inlined

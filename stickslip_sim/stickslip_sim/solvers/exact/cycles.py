@@ -38,15 +38,15 @@ _SAME = 1e-12        # of the least speed of a swing: one that loses less is the
  SETTLING_TIME) = range(19)
 # and of rounds; `batch.Rounds` names the same
 (STICKS, LAST_STICK, LONGEST_PAUSE, ROUND_COUNT, ROUND_PERIOD, ROUND_STICK, ROUND_TRAVEL, ROUND_PEAK, ROUND_FORCE,
- ROUND_SETTLING, LEAST_SPEED, LASTS) = range(19, 31)
+ ROUND_SETTLING, LEAST_SPEED, LASTS, LAST_VELOCITY) = range(19, 32)
 # behind it what is not told: since when the mode holds; the slip that goes on or was the last, whether it goes on,
 # whether it ended at standstill, where it began and ended, and its figures so far
 (SINCE_SECOND, SINCE_FRACTION, SLIPS, IS_OVER, BEGIN_SECOND, BEGIN_FRACTION, BEGIN_POSITION, STOP_SECOND, STOP_FRACTION,
- STOP_POSITION, PEAK, FORCE, REST, STATIC, WAY) = range(31, 46)
+ STOP_POSITION, PEAK, FORCE, REST, STATIC, WAY) = range(32, 47)
 # whether it has slowed down since its speed was least; when the round began, if one did, and its figures so far
-(HAS_SLOWED, HAS_ROUND, FROM_SECOND, FROM_FRACTION, TRAVEL_SO_FAR, PEAK_SO_FAR, FORCE_AT_FIRST) = range(46, 53)
-FIGURES = 31
-ROW_SIZE = 53
+(HAS_SLOWED, HAS_ROUND, FROM_SECOND, FROM_FRACTION, TRAVEL_SO_FAR, PEAK_SO_FAR, FORCE_AT_FIRST) = range(47, 54)
+FIGURES = 32
+ROW_SIZE = 54
 # a longer row has the latest rounds behind that, in turn: stick time, period, and drive force and speed at the end
 ROUND_SIZE = 4
 
@@ -55,8 +55,8 @@ ROUND_SIZE = 4
 def run_axes(p, inputs, starts, duration, first, last, s, events, waves, out):
     """Run the axes `first` to `last` of the rows of `p` (parameters), `inputs` (v, F_e), `starts` (x, ẋ, rest time).
 
-    Rows of `out` get the figures; NaN where there is none.  `s` is a state that keeps the account of energy.
     Rows of `out` get the figures; NaN where there is none.  Pauses between sticks count in the second half alone.
+    `s` is a state that keeps the account of energy.
     """
     second = math.floor(duration)
     fraction = duration - second
@@ -92,6 +92,7 @@ def book(row, e, half):
     """Take the next event of a run, whose second half begins at `half` s."""
     kind, mode = e[EVENT_KIND], e[EVENT_MODE]
     row[EVENTS] += 1.0
+    row[LAST_VELOCITY] = e[EVENT_VELOCITY]
     begins = kind == REVERSE or (kind == BREAKAWAY and mode != STICK)
     if mode != row[FINAL_MODE]:
         if row[FINAL_MODE] == STICK:
