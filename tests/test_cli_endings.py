@@ -128,15 +128,6 @@ def test_an_interrupted_run_leaves_nothing(number: signal.Signals, code: int, tm
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_vibration_that_takes_hours_to_account_for_can_be_interrupted() -> None:
-    vibration = ('drive.velocity=0.0', 'force.course=sine', 'force.amplitude=800.0', 'force.frequency=1e4')
-    with started('--duration', '1e6', *(word for change in vibration for word in ('--set', change))) as process:
-        time.sleep(0.5)
-        process.send_signal(signal.SIGINT)
-        _, err = process.communicate(timeout=30)
-    assert (process.returncode, err) == (130, 'stickslip: interrupted\n')
-
-
 @pytest.mark.ros
 def test_an_interrupted_bag_vanishes(tmp_path: Path) -> None:
     with started('--duration', '500', '--bag', tmp_path / 'bag') as process:

@@ -30,9 +30,9 @@ def exact_passage(gamma: float, omega2: float, rate: float, jerk: float, gap: fl
 
 
 def growing(rng: random.Random) -> tuple[Oscillator, float, float, float]:
-    """Return a growing slip (over-damped or not), its first acceleration, how that changes, and its growth."""
+    """Return a growing slip (over-damped, critical or not), its first acceleration, how that changes, and its growth."""
     growth = 10.0 ** rng.uniform(0.0, 6.0)
-    omega2 = rng.choice((0.01, 0.9, 1.5)) * growth * growth
+    omega2 = rng.choice((0.01, 0.9, 1.5, 1.0 + 10.0 ** rng.uniform(-13.0, -5.0))) * growth * growth
     osc = oscillator(-growth, omega2)
     rate = 10.0 ** rng.uniform(-3.0, 1.0)
     return osc, rate, rng.uniform(0.1, 1.0) * rate * growth, growth

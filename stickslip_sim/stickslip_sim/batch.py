@@ -13,7 +13,7 @@ import os
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -24,6 +24,7 @@ from .axis.layout import (
     STATIC_EXPONENT, STATIC_INITIAL, STATIC_LIMIT, STATIC_TAU, STIFFNESS, TABLE,
 )
 from .errors import InputError
+from .scene import PARAMETERS
 from .solvers import exact
 from .solvers.exact import cycles
 
@@ -33,33 +34,24 @@ _ROWS = 64          # of the event table
 _AT_A_TIME = 250    # axes that a thread takes
 
 
-@dataclass(frozen=True, slots=True)
-class _Column:
-    """A number of an axis that may differ from axis to axis: where it stands, its least value and its unit."""
+class _Column(NamedTuple):
+    """A number that may differ from axis to axis: the parameter of a scene that it is, and where it stands."""
 
+    parameter: str
     at: int
-    low: float
-    above: bool
-    unit: str
-
-    def check(self, name: str, values: Numbers) -> None:
-        bad = ~(np.isfinite(values) & ((values > self.low) if self.above else (values >= self.low)))
-        if bad.any():
-            raise InputError(name, float(values[bad][0]), f'finite and {">" if self.above else ">="} {self.low:g}'
-                             f' {self.unit}'.rstrip(), f'look at index {int(np.flatnonzero(bad)[0])} of the array')
 
 
 COLUMNS: Mapping[str, _Column] = {
-    'mass': _Column(MASS, 0.0, True, 'kg'),
-    'drive_stiffness': _Column(STIFFNESS, 0.0, False, 'N/m'),
-    'drive_damping': _Column(DAMPING, 0.0, False, 'N s/m'),
-    'normal_force': _Column(NORMAL, 0.0, False, 'N'),
-    'contact_stiffness': _Column(CONTACT_STIFFNESS, 0.0, True, 'N/m'),
-    'contact_damping': _Column(CONTACT_DAMPING, 0.0, False, 'N s/m'),
-    'static_initial': _Column(STATIC_INITIAL, 0.0, False, ''),
-    'static_limit': _Column(STATIC_LIMIT, 0.0, False, ''),
-    'static_time_constant': _Column(STATIC_TAU, 0.0, True, 's'),
-    'static_exponent': _Column(STATIC_EXPONENT, 0.0, True, ''),
+    'mass': _Column('axis.mass', MASS),
+    'drive_stiffness': _Column('axis.drive_stiffness', STIFFNESS),
+    'drive_damping': _Column('axis.drive_damping', DAMPING),
+    'normal_force': _Column('axis.normal_force', NORMAL),
+    'contact_stiffness': _Column('contact.stiffness', CONTACT_STIFFNESS),
+    'contact_damping': _Column('contact.damping', CONTACT_DAMPING),
+    'static_initial': _Column('friction.static.initial', STATIC_INITIAL),
+    'static_limit': _Column('friction.static.limit', STATIC_LIMIT),
+    'static_time_constant': _Column('friction.static.time_constant', STATIC_TAU),
+    'static_exponent': _Column('friction.static.exponent', STATIC_EXPONENT),
 }
 
 
@@ -153,13 +145,15 @@ def _rows_of(axis: Axis, duration: float, window: int, drive_velocity: ArrayLike
         raise InputError('threads', threads, '1 to 1024', 'leave it out for all cores')
     if not 0.0 < duration < np.inf:
         raise InputError('duration', duration, 'finite and > 0 s', 'give the seconds to simulate')
-    velocity, force = _finite('drive_velocity', drive_velocity), _finite('external_force', external_force)
+    velocity = _in_range('drive.velocity', 'drive_velocity', drive_velocity)
+    force = _in_range('force.constant', 'external_force', external_force)
     arrays = {name: np.atleast_1d(np.asarray(values, dtype=np.float64)) for name, values in changes.items()}
     count = _common_length({'drive_velocity': velocity, 'external_force': force, **arrays})
     parameters = np.tile(np.array(pack(axis)), (count, 1))
     for name, values in arrays.items():
-        _column(name, axis).check(name, values)
-        parameters[:, COLUMNS[name].at] = values
+        column = _column(name, axis)
+        _check_range(column.parameter, name, values)
+        parameters[:, column.at] = values
     _check_friction(parameters)
     inputs = np.stack([np.broadcast_to(velocity, count), np.broadcast_to(force, count)], axis=1)
     starts = np.tile([initial.position, initial.velocity, initial.rest_time], (count, 1))
@@ -196,11 +190,21 @@ def figures_in(out: Numbers) -> BatchFigures:
     return BatchFigures(**columns)
 
 
-def _finite(name: str, values: ArrayLike) -> Numbers:
+def _in_range(parameter: str, name: str, values: ArrayLike) -> Numbers:
     numbers = np.atleast_1d(np.asarray(values, dtype=np.float64))
-    if not np.isfinite(numbers).all():
-        raise InputError(name, float(numbers[~np.isfinite(numbers)][0]), 'finite', 'drop it')
+    _check_range(parameter, name, numbers)
     return numbers
+
+
+def _check_range(parameter: str, name: str, values: Numbers) -> None:
+    """Raise InputError, under a name of the batch, unless all values are such as a scene may have for a parameter."""
+    known = next(known for known in PARAMETERS if known.name == parameter)
+    low, high = -np.inf if known.low is None else known.low, np.inf if known.high is None else known.high
+    good = np.isfinite(values) & ((values > low) if known.low_open else (values >= low)) & (values <= high)
+    if not good.all():
+        index = int(np.flatnonzero(~good.reshape(-1))[0])
+        raise InputError(name, float(values.reshape(-1)[index]), f'finite and {known.range} {known.unit}'.rstrip(),
+                         f'look at index {index} of the array')
 
 
 def _common_length(arrays: Mapping[str, Numbers]) -> int:

@@ -38,6 +38,7 @@ TICK = 0.1             # s; a search no longer than that begins with a bound, wh
 STAMP = 2.0 ** -51     # s, more than the time of an event is rounded by
 _SIXTH = 1.0 / 6.0
 _LONG = 1e3            # so much longer than the spring's stretch a slide has to be for the balance to be the better one
+_LONG_RING = 1e10      # (ω t)², beyond which the third power of the way from there would tell
 _SPLIT = 131073.0      # splits off the upper 36 bits of a number (Dekker 1971)
 
 
@@ -133,7 +134,10 @@ def tick_integrals(s, t):
 
     Ticks of one length differ by the rounding of their times.  That number is the same for them, and what was computed
     for it is kept; the way from there is less than 1e-11 of t.  The result depends on t alone, not on what is kept.
+    What has rung for so long that this is part of a turn is evaluated at t.
     """
+    if s[OMEGA2] * t * t > _LONG_RING:
+        return short_integrals(oscillator_of(s), t)
     big = _SPLIT * t
     near = big - (big - t)
     gamma, omega2 = s[GAMMA], s[OMEGA2]

@@ -174,9 +174,9 @@ def _passage_under_ramp(osc, rate, jerk, snap, gap, horizon):
 @compiled
 def _bracket(osc, rate, jerk, snap, gap, turn):
     """Return an end of the rise of r at which it has reached the gap, and r there."""
-    if turn < math.inf:
-        return turn, _passage(osc, rate, jerk, snap, turn)[0]
     last = finite_horizon(osc, math.inf)
+    if turn <= last and turn < math.inf:
+        return turn, _passage(osc, rate, jerk, snap, turn)[0]
     if osc[0] != 0.0 or osc[1] > 0.0:
         end = min(1.0 / (abs(osc[0]) + math.sqrt(osc[1])), last)
     else:

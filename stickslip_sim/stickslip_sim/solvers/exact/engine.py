@@ -76,7 +76,7 @@ def advance(p, s, second, fraction, events, row):
         due = s[NEXT]
         if due > reach:
             return row, DONE
-        if due < 0.0:
+        if not due >= 0.0:   # given up, or no number
             return row, NO_PROGRESS
         later = s[FRACTION] + due
         whole = 0.0 if later < 1.0 else math.floor(later)

@@ -11,15 +11,15 @@ What is allowed is far above rounding, and far below what a figure would show.
 import math
 
 from ...axis.layout import (
-    ACCELERATION, CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, DEFLECTION, DIRECTION, DRIVE, F, FRACTION, F_RATE, KNOTS,
-    MODE, NEXT, NEXT_KIND, NORMAL, PIECE, POSITION, REST, SECOND, SPRING, STATIC_LIMIT, STIFFNESS, V, VELOCITY, V_RATE,
-    WAVES,
+    ACCELERATION, CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, DEFLECTION, DIRECTION, DRIVE, F, FRACTION, F_RATE, GAMMA,
+    KNOTS, MASS, MODE, NEXT, NEXT_KIND, NORMAL, PIECE, POSITION, REST, SECOND, SPRING, STATIC_LIMIT, STIFFNESS, V,
+    VELOCITY, V_RATE, WAVES,
 )
 from ...axis.motion import (
     ACCELERATING, COASTING, STICK, contact_force, drive_force, drive_travel, friction_line, is_rigid_stick, knot_speed,
     spring_after, static_limit, travel,
 )
-from ...axis.transitions import COAST, band_of
+from ...axis.transitions import ACCELERATE, COAST, band_of
 from ...axis.waves import inputs_at
 from ...compiled import compiled, inlined
 from .account import balance
@@ -35,7 +35,8 @@ def event_is_sound(p, s, begin):
     if s[MODE] == STICK:
         sound = _holds(p, s, s[NEXT], s[SPRING], s[DEFLECTION], s[VELOCITY], s[ACCELERATION], s[V], s[F], s[REST], 1.0)
     elif s[MODE] == COASTING:
-        sound = _coasts(p, s, s[SPRING], s[V], s[F])
+        end = band_of(p, s) if s[NEXT_KIND] == ACCELERATE else 0.0
+        sound = _coasts(p, s, s[SPRING], s[V], s[F], end, end)
     else:
         sound = _slips(p, s, s[VELOCITY], begin, s[NEXT_KIND] != COAST)
     return sound and _balances(p, s, 0.0, s[SPRING], s[V], s[VELOCITY], s[F])
@@ -53,7 +54,7 @@ def is_sound(p, s, second, fraction):
     if s[MODE] == STICK:
         sound = _holds(p, s, t, spring, s[DEFLECTION] + y, u, a, v, force, s[REST] + t, 0.0)
     elif s[MODE] == COASTING:
-        sound = _coasts(p, s, spring, v, force)
+        sound = _coasts(p, s, spring, v, force, 0.0, band_of(p, s))
     else:
         sound = _slips(p, s, u, s[VELOCITY], False)
     return sound and _balances(p, s, t, spring, v, u, force)
@@ -72,13 +73,13 @@ def _holds(p, s, t, spring, deflection, u, a, v, force, rest, share):
 
 
 @inlined
-def _coasts(p, s, spring, v, force):
-    """Whether the residual while coasting is within the band."""
+def _coasts(p, s, spring, v, force, low, high):
+    """Whether the residual while coasting is between two ends of its band."""
     u = s[VELOCITY]
     friction = p[NORMAL] * friction_line(p, int(s[PIECE]), abs(u))[0]
     residual = s[DIRECTION] * (drive_force(p, spring, v, u) + force) - friction
     slack = ALLOWED * _forces(p, spring, v, u, force, friction)
-    return -slack <= residual <= band_of(p, s) + slack
+    return low - slack <= residual <= high + slack
 
 
 @inlined
@@ -103,8 +104,11 @@ def _balances(p, s, t, spring, v, u, force):
     top = p[NORMAL] * p[STATIC_LIMIT]
     if p[STIFFNESS] > 0.0:
         scale = max(scale, 0.5 * top * top / p[STIFFNESS])
+    forces = _forces(p, spring, v, u, force, top)
+    if s[MODE] != STICK and s[MODE] != COASTING:   # on a steep piece of the table
+        forces += 2.0 * p[MASS] * abs(s[GAMMA]) * (abs(v) + abs(u))
     way = abs(s[DRIVE]) + abs(s[POSITION]) + (abs(v) + abs(u)) * t
-    return left <= ALLOWED * scale + _ROUNDING * _forces(p, spring, v, u, force, top) * way and scale < math.inf
+    return left <= ALLOWED * scale + _ROUNDING * forces * way and scale < math.inf
 
 
 @inlined

@@ -33,7 +33,8 @@ _FEW = 3.0          # radians that are left to panels
 _SOME = 24.0        # and those where a wave would have to be interpolated otherwise
 _NEAR = 1.0         # up to which its phase is taken from that of the oscillator
 _CLOSE = 0.07       # (|γ| + |w − ν|) t up to which a wave is interpolated
-_WIDE = 1.25        # radians over which it is
+_WIDE = 1.25        # radians over which it is,
+_OF_OWN = 0.6       # or that part of the oscillator's own, which is not to be turned back
 _HARDLY = 0.01      # radians of a wave and of the oscillator that are left to panels, however fast other waves are
 # Chebyshev's twenty points, those above 0, and Lagrange's weights for the middle between them
 _POINTS = (0.996917333733127976, 0.972369920397676602, 0.923879532511286756, 0.852640164354092222,
@@ -91,9 +92,10 @@ def moving_works(p, s, t):
     if not close:
         return _closed(p, s, osc, t, 0.0)
     drive, external, friction, damper, contact = 0.0, 0.0, 0.0, 0.0, 0.0
+    wide = min(_WIDE, _OF_OWN * osc[2] * t) / (TURN * t)
     for i in range(20):
         share, point = (_SHARES[i], _POINTS[i]) if i < 10 else (_SHARES[i - 10], -_POINTS[i - 10])
-        of_drive, of_force, of_friction, of_damper, of_contact = _closed(p, s, osc, t, point * _WIDE / (TURN * t))
+        of_drive, of_force, of_friction, of_damper, of_contact = _closed(p, s, osc, t, point * wide)
         drive += share * of_drive
         external += share * of_force
         friction += share * of_friction
@@ -106,7 +108,7 @@ def moving_works(p, s, t):
 def _is_close(osc, w, t):
     """Whether a wave hardly leaves the oscillator's own within t."""
     gamma, _, nu, _, _ = osc
-    return nu * t > 1.0 and (abs(gamma) + abs(w - nu)) * t < _CLOSE
+    return nu > 0.0 and (abs(gamma) + abs(w - nu)) * t < _CLOSE
 
 
 @compiled
@@ -205,11 +207,13 @@ def _answer(p, s, osc, k, t, shift, slope):
     """
     gamma, _, nu, near, far = osc
     frequency, phase, v, f = _given(s, k)
-    cycle, apart = cycle_within(frequency, t), TURN * frequency - nu
-    if nu * t > 1.0 and (abs(gamma) + abs(apart)) * t < _NEAR:
-        if shift != 0.0 and _is_close(osc, TURN * frequency, t):
-            frequency += shift
-            apart += TURN * shift
+    apart = TURN * frequency - nu
+    near_resonance = nu * t > 1.0 and (abs(gamma) + abs(apart)) * t < _NEAR
+    if shift != 0.0 and _is_close(osc, TURN * frequency, t):
+        frequency += shift
+        apart += TURN * shift
+    cycle = cycle_within(frequency, t)
+    if near_resonance:
         cycle = (math.atan2(math.sin(nu * t), math.cos(nu * t)) + apart * t) / TURN
     w = TURN * frequency
     divisor = complex(gamma, apart) * complex(gamma, w + nu) if nu > 0.0 else complex(-near, w) * complex(-far, w)

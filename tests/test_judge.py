@@ -1,0 +1,165 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""A run that went wrong says so: a doctored event, state or account ends it, at the event or at the end."""
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from stickslip_sim.axis import Axis, InitialState, pack
+from stickslip_sim.axis.layout import (
+    ACCOUNTING,
+    EVENT_SIZE,
+    MODE,
+    NEXT,
+    NORMAL,
+    POSITION,
+    SEARCHED,
+    SECOND,
+    SPRING,
+    STATE_SIZE,
+    SUMS,
+    VELOCITY,
+)
+from stickslip_sim.cli.main import run as tool
+from stickslip_sim.courses import Course, Wave, constant
+from stickslip_sim.errors import UnsoundError
+from stickslip_sim.extremes.runs import COMPLIANT, RIGID, Contact, instant, paper_axis
+from stickslip_sim.scene import solver as scene_solver
+from stickslip_sim.simulator import Simulator
+from stickslip_sim.solvers import Solver, exact
+from stickslip_sim.solvers.exact import cycles
+from stickslip_sim.words import Mode
+
+Doctor = Callable[[Any], None]
+
+
+def doctored(change: Doctor, mode: Mode | None = None) -> Solver:
+    """Return the exact solver with a state that is changed once: when it is in a mode, after the first half second."""
+    done: list[bool] = []
+
+    def advance(p: Any, s: Any, *arguments: Any) -> Any:
+        rows, end = exact.advance(p, s, *arguments)
+        if not done and s[SECOND] + s[SECOND + 1] > 0.5 and (mode is None or s[MODE] == mode):
+            done.append(True)
+            change(s)
+        return rows, end
+
+    return exact.SOLVER._replace(advance=advance)
+
+
+def run_in_steps(axis: Axis, solver: Solver, end: float = 3.0) -> None:
+    """Run at 1 kHz, and judge the end."""
+    simulator = Simulator(axis, InitialState(), constant(0.002), constant(0.0), solver, accounting=True)
+    for tick in range(1, round(1000 * end) + 1):
+        simulator.advance(instant(tick / 1000))
+    simulator.judge()
+
+
+def event_too_early(s: Any) -> None:
+    """Let the next event come after nine tenths of its time."""
+    s[NEXT] *= 0.9
+    s[SEARCHED] = math.inf
+
+
+def no_event(s: Any) -> None:
+    """Let no event come any more."""
+    s[NEXT] = s[SEARCHED] = math.inf
+
+
+def lost_energy(s: Any) -> None:
+    """Let a hundredth of the drive's work be lost."""
+    s[SUMS] *= 0.99
+
+
+def other_place(s: Any) -> None:
+    """Let the slider jump by a hundredth of its spring's stretch."""
+    jump = 0.01 * s[SPRING]
+    s[POSITION] -= jump
+    s[SPRING] += jump
+
+
+def not_a_number(s: Any) -> None:
+    """Let the speed be no number."""
+    s[VELOCITY] = math.nan
+
+
+@pytest.mark.parametrize('contact', [RIGID, COMPLIANT])
+@pytest.mark.parametrize('mode', [Mode.STICK, Mode.ACCELERATING, Mode.COASTING, Mode.DECELERATING])
+def test_an_event_that_is_none_ends_the_run(contact: Contact, mode: Mode) -> None:
+    with pytest.raises(UnsoundError, match=f'at t = .* in mode {mode.name}: none of its figures can be trusted'):
+        run_in_steps(paper_axis(contact), doctored(event_too_early, mode))
+
+
+@pytest.mark.parametrize('contact', [RIGID, COMPLIANT])
+@pytest.mark.parametrize('mode', [Mode.STICK, Mode.ACCELERATING, Mode.COASTING, Mode.DECELERATING])
+def test_an_event_that_is_missed_is_told_at_the_end(contact: Contact, mode: Mode) -> None:
+    with pytest.raises(UnsoundError, match=f'at t = 3.0 s, in mode {mode.name}'):
+        run_in_steps(paper_axis(contact), doctored(no_event, mode))
+
+
+@pytest.mark.parametrize('change', [lost_energy, other_place, not_a_number])
+@pytest.mark.parametrize('contact', [RIGID, COMPLIANT])
+def test_a_balance_that_is_open_ends_the_run(contact: Contact, change: Doctor) -> None:
+    with pytest.raises(UnsoundError):
+        run_in_steps(paper_axis(contact), doctored(change))
+
+
+@pytest.mark.parametrize('contact', [RIGID, COMPLIANT])
+def test_a_sound_run_passes(contact: Contact) -> None:
+    run_in_steps(paper_axis(contact), doctored(lambda s: None))
+
+
+def test_the_tool_gives_no_figure_of_such_a_run(monkeypatch: pytest.MonkeyPatch,
+                                                capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setattr(scene_solver.exact, 'SOLVER', doctored(event_too_early))
+    assert tool(['simulate', 'paper_fig7', '--duration', '5']) == 4
+    told = capsys.readouterr()
+    assert told.out == ''
+    assert 'contradicts its own motion or balance of energy at t = ' in told.err
+    assert len(told.err.splitlines()) == 1
+
+
+def test_an_axis_of_a_batch_beyond_the_range_of_numbers_is_not_complete() -> None:
+    parameters = np.tile(np.array(pack(paper_axis(RIGID))), (2, 1))
+    parameters[1, NORMAL] = 1e250
+    state = np.zeros(STATE_SIZE)
+    state[ACCOUNTING] = 1.0
+    out = np.zeros((2, cycles.ROW_SIZE))
+    with np.errstate(all='ignore'):   # what numpy says when this runs as plain Python
+        exact.run_axes(parameters, np.array([[0.002, 0.0], [1e200, 0.0]]), np.array([[0.0, 0.0, math.inf]] * 2), 3.0, 0, 2,
+                       state, np.empty((64, EVENT_SIZE)), np.empty(0), out)
+    assert out[:, cycles.COMPLETE].tolist() == [1.0, 0.0]
+
+
+@pytest.mark.parametrize('contact', [RIGID, COMPLIANT])
+def test_a_load_that_comes_and_goes_within_one_stick_is_sound(contact: Contact) -> None:
+    """Nothing went through in the end: rounding is all that the balance leaves, and all that it could be held to."""
+    drive = Course((0.0, 0.1, 0.2), (0.0, 0.001, 0.0), (0.01, -0.01, 0.0), waves=(Wave(1e-4, 5.0, 0.0),))
+    simulator = Simulator(paper_axis(contact), InitialState(), drive, constant(0.0), accounting=True)
+    for tick in range(1, 1001):
+        simulator.advance(instant(tick / 1000))
+        simulator.judge()
+
+
+def test_a_contact_that_gives_way_against_its_motion_obeys_newton() -> None:
+    """Friction is made small at every instant of a ring-down; from then on m ẍ = F_d + F_e − F, and energy balances."""
+    axis = paper_axis(COMPLIANT)
+    turned = 0
+    for k in range(200):
+        simulator = Simulator(axis, InitialState(), constant(0.002), constant(0.0), accounting=True)
+        simulator.advance(instant(0.9275 + 1e-4 * k))   # the first stick begins at 0.927385 s
+        before = simulator.sample()
+        simulator.change_axis(replace(axis, normal_force=1.0))
+        after = simulator.sample()
+        turned += before.velocity * before.friction_force < 0.0 and after.mode != Mode.STICK
+        pull = after.drive_force + after.external_force - after.friction_force
+        assert axis.mass * after.acceleration == pytest.approx(pull, abs=1e-9)
+        simulator.advance(instant(1.2))
+        simulator.judge()
+    assert turned > 20
+
