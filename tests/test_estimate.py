@@ -170,3 +170,17 @@ def _worst(got: list[Any], want: list[str]) -> float:
     return max(abs(float(Fraction(a) + Fraction(b) - Fraction(text))) for (a, b), text in zip(got, want))
 
 
+
+
+def test_a_slip_that_ends_without_deceleration_is_known_to_the_root_of_rounding_only() -> None:
+    """Undamped, mu_s = mu_k: the slip ends where its deceleration does.  The reference has the double root exactly."""
+    scene = load_scene('paper_fig4_constant', {
+        'axis.mass': 1.0, 'axis.drive_stiffness': 884.9307126484309, 'axis.drive_damping': 0.0,
+        'axis.normal_force': 9.80665, 'friction.static.law': 'constant',
+        'friction.static.initial': 0.9102081478452411, 'friction.kinetic.velocities': [0.0, 7.488383618872175e-07],
+        'friction.kinetic.coefficients': [0.9102081478452411] * 2, 'drive.velocity': 0.016676163303787093})
+    run = run_offline(scene, 1.2)
+    wanted = simulate(scene.axis, scene.initial, scene.drive, scene.force, 1.2, 40).events
+    stop, other = (next(e for e in events if e.kind == EventKind.STICK) for events in (run.events, wanted))
+    off = abs(stop.fraction - other.fraction)
+    assert 1e-10 < off <= error_estimate(run).event_time_s < 1e-8

@@ -16,7 +16,7 @@ Oscillator = tuple[float, float, float, float, float]
 
 
 def exact_passage(gamma: float, omega2: float, rate: float, jerk: float, gap: float, near: float) -> float:
-    """Return the root near a time of r(t) = gap, in 60 digits: r = rate g + jerk G₁ from the two eigenvalues."""
+    """Return the root near a time of r(t) = gap, in 60 digits: r = rate g + jerk G₁ from both eigenvalues."""
     with mp.workdps(60):
         nu = mp.sqrt(mp.mpc(mp.mpf(gamma) ** 2 - mp.mpf(omega2)))
         one, two = -mp.mpf(gamma) + nu, -mp.mpf(gamma) - nu
@@ -26,11 +26,12 @@ def exact_passage(gamma: float, omega2: float, rate: float, jerk: float, gap: fl
             first = (mp.expm1(one * t) / one - mp.expm1(two * t) / two) / (one - two)
             return mp.re(rate * g + jerk * first) - mp.mpf(gap)
 
-        return float(mp.findroot(value, (mp.mpf(near) * (1 - mp.mpf(2) ** -40), mp.mpf(near) * (1 + mp.mpf(2) ** -40))))
+        off = mp.mpf(2) ** -40
+        return float(mp.findroot(value, (near * (1 - off), near * (1 + off))))
 
 
 def growing(rng: random.Random) -> tuple[Oscillator, float, float, float]:
-    """Return a growing slip (over-damped, critical or not), its first acceleration, how that changes, and its growth."""
+    """Return a growing slip (over-damped, critical or not), its acceleration, how that changes, and its growth."""
     growth = 10.0 ** rng.uniform(0.0, 6.0)
     omega2 = rng.choice((0.01, 0.9, 1.5, 1.0 + 10.0 ** rng.uniform(-13.0, -5.0))) * growth * growth
     osc = oscillator(-growth, omega2)
@@ -93,18 +94,17 @@ def allowed(osc: Oscillator, rate: float, jerk: float, t: float) -> float:
     return 1e-14 * terms / speed + 1e-14 * t
 
 
-def test_a_step_is_the_same_at_any_scale_and_never_0() -> None:
-    """(a, b) Powers of two up to the ends of the range change no bit; only a value of 0 gives a step of 0."""
+def test_a_step_is_the_same_at_any_scale() -> None:
+    """(a, b) Powers of two up to the ends of the range change no bit: no product in it leaves the range."""
     rng = random.Random(7)
     for _ in range(500):
         value, slope = rng.uniform(-1.0, 1.0), rng.uniform(0.1, 2.0)
         change, third = rng.uniform(-2.0, 2.0), rng.uniform(-2.0, 2.0)
-        step = householder(value, slope, change, third)
+        step, _ = householder(value, slope, change, third)
         for exponent in (-900, -500, -330, 330, 500, 900):
             k = 2.0 ** exponent
-            assert householder(k * value, k * slope, k * change, k * third) == step
-        assert householder(0.0, slope, change, third) == 0.0
-        assert householder(5e-324 * rng.choice((-1.0, 1.0)), 1e300, change, third) == math.inf
+            assert householder(k * value, k * slope, k * change, k * third)[0] == step
+        assert householder(0.0, slope, change, third)[0] == 0.0
 
 
 def test_a_root_is_accepted_where_the_value_is_rounding() -> None:

@@ -29,7 +29,6 @@ from stickslip_sim.cli.main import run as tool
 from stickslip_sim.courses import Course, Wave, constant
 from stickslip_sim.errors import UnsoundError
 from stickslip_sim.extremes.runs import COMPLIANT, RIGID, Contact, instant, paper_axis
-from stickslip_sim.scene import solver as scene_solver
 from stickslip_sim.simulator import Simulator
 from stickslip_sim.solvers import Solver, exact
 from stickslip_sim.solvers.exact import cycles
@@ -116,7 +115,7 @@ def test_a_sound_run_passes(contact: Contact) -> None:
 
 def test_the_tool_gives_no_figure_of_such_a_run(monkeypatch: pytest.MonkeyPatch,
                                                 capsys: pytest.CaptureFixture[str]) -> None:
-    monkeypatch.setattr(scene_solver.exact, 'SOLVER', doctored(event_too_early))
+    monkeypatch.setattr('stickslip_sim.scene.solver.exact.SOLVER', doctored(event_too_early))
     assert tool(['simulate', 'paper_fig7', '--duration', '5']) == 4
     told = capsys.readouterr()
     assert told.out == ''
@@ -131,8 +130,8 @@ def test_an_axis_of_a_batch_beyond_the_range_of_numbers_is_not_complete() -> Non
     state[ACCOUNTING] = 1.0
     out = np.zeros((2, cycles.ROW_SIZE))
     with np.errstate(all='ignore'):   # what numpy says when this runs as plain Python
-        exact.run_axes(parameters, np.array([[0.002, 0.0], [1e200, 0.0]]), np.array([[0.0, 0.0, math.inf]] * 2), 3.0, 0, 2,
-                       state, np.empty((64, EVENT_SIZE)), np.empty(0), out)
+        exact.run_axes(parameters, np.array([[0.002, 0.0], [1e200, 0.0]]), np.array([[0.0, 0.0, math.inf]] * 2), 3.0,
+                       0, 2, state, np.empty((64, EVENT_SIZE)), np.empty(0), out)
     assert out[:, cycles.COMPLETE].tolist() == [1.0, 0.0]
 
 

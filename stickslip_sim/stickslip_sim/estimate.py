@@ -4,7 +4,8 @@
 
 The exact solver makes rounding errors only.  It runs again with every number of the scene off by one rounding unit,
 which also gives every operation of the run another rounding; how far the events move apart is what rounding does to
-this very run.  What the sums of time and position lose in every run alike is added.
+this very run.  What the sums of time and position lose in every run alike is added, and so is what rounding of the
+speed does to a slip that ends with hardly any deceleration: its time is a double root, which symmetric data keep.
 
 Other solvers are compared with the exact one on the same scene, and its own estimate is added.  A repeat with half the
 step or a tenth of the tolerances tells nothing: an event is noticed up to a step late, so that two runs may be late
@@ -25,6 +26,7 @@ from .words import Event, EventKind
 
 REPEATS = 3
 _SAFETY = 4.0   # of the largest shift among so few repeats
+_OF_SPEEDS = 2.0 ** -50   # what rounding leaves of a speed, as a part of the fastest of its slip
 _HALF_ULP = 2.0 ** -54   # of a number below 1: the most that storing it can lose
 _MOMENT = 1e-6   # s; a coast this short after a break-away hangs on the last remains of a contact's ring-down
 _KNOTS = 800   # of the table that stands for a smooth law; many, and below the most that there can be
@@ -65,13 +67,31 @@ def _of_rounding(run: Trajectory) -> ErrorEstimate:
     lost = _HALF_ULP * (1 + len(run.events))
     size = 2.0 * max((abs(event.position) for event in run.events), default=0.0)
     estimate = ErrorEstimate(
-        lost * min(run.duration, 1.0) + _SAFETY * max((shift.time for shift in shifts), default=0.0),
+        lost * min(run.duration, 1.0) + _of_soft_stops(run) + _SAFETY * max(
+            (shift.time for shift in shifts), default=0.0),
         lost * size + _SAFETY * max((shift.position for shift in shifts), default=0.0), until,
         f'{_SAFETY:g} times the largest shift of an event in {len(others)} repeats with every number of the scene '
         'moved by 2^-52 of itself')
     if until >= run.duration:
         return estimate
     return estimate._replace(how=f'{estimate.how}; the events differ from t = {until:.6g} s: unknown from there')
+
+
+def _of_soft_stops(run: Trajectory) -> float:
+    """Return how far rounding of the speed may move the softest arrest, s: δ/|ẍ|, or √(2δ/|x⃛|) without deceleration."""
+    axis, drive, force = run.scene.axis, run.scene.drive, run.scene.force
+    worst = fastest = 0.0
+    for event in run.events:
+        fastest = max(fastest, abs(event.velocity))
+        if event.kind == EventKind.BREAKAWAY:
+            fastest = abs(event.velocity)
+        elif event.kind == EventKind.STICK and fastest > 0.0:
+            left = abs(event.drive_force + force.value_at(event.time) - event.friction_force)
+            jerk = axis.drive_stiffness * abs(drive.value_at(event.time))
+            off = _OF_SPEEDS * fastest * axis.mass
+            moved = min(off / left if left > 0.0 else math.inf, math.sqrt(2.0 * off / jerk) if jerk > 0.0 else math.inf)
+            worst = max(worst, min(moved, run.duration))
+    return worst
 
 
 def _perturbed_scenes(scene: Scene) -> list[Scene]:

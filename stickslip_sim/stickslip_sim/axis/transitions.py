@@ -259,7 +259,7 @@ def cross_knot(p, s, events, row, before):
     So is the acceleration of the balance of forces there, but for their rounding; that of the closed form is off by the
     rounding of how it began, `before`, and of what the piece gave to it.  The one that is off less is taken.
     """
-    lost = _ROUNDING * p[MASS] * (abs(before) + 2.0 * abs(s[GAMMA] * s[VELOCITY]))
+    lost = p[MASS] * (abs(before) + 2.0 * abs(s[GAMMA] * s[VELOCITY]))
     step = 1.0 if s[MODE] == ACCELERATING else -1.0
     knot = int(s[PIECE] + (1.0 if step > 0.0 else 0.0))
     speed = knot_speed(p, knot)
@@ -270,7 +270,7 @@ def cross_knot(p, s, events, row, before):
     s[VELOCITY] = s[DIRECTION] * speed
     write_event(p, s, events, row, KNOT, s[DIRECTION], friction, p[STATIC_INITIAL])
     s[PIECE] += step
-    if lost > _MUCH * force_rounding(p, s, coefficient):
+    if lost > _MUCH * p[NORMAL] * coefficient and _ROUNDING * lost > _MUCH * force_rounding(p, s, coefficient):
         s[ACCELERATION] = (applied_force(p, s) - friction) / p[MASS]
     events[row][EVENT_MODE] = s[MODE]
 

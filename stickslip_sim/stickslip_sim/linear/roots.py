@@ -130,13 +130,14 @@ def _direct_root(osc, rate, jerk, gap, half, t):
             break
         value = rate * g + jerk * first - gap
         change = jerk * slope - rate * (2.0 * osc[0] * slope + osc[1] * g)
-        step = householder(value, speed, change, -2.0 * osc[0] * change - osc[1] * speed)
+        step, ratio = householder(value, speed, change, -2.0 * osc[0] * change - osc[1] * speed)
         size = abs(step)
         if not size < t:
             break
-        sharpness = size * (abs(change) / speed + frequency)
+        sharpness = size * (abs(ratio) + frequency)
         root = t - step   # its own size counts: a guess may be far larger
-        if sharpness < 0.3 and size * sharpness * sharpness * sharpness <= 0.1 * _EPSILON * root and size <= 0.5 * t:
+        if sharpness < 0.3 and size * sharpness * sharpness * sharpness <= 0.1 * _EPSILON * root and (
+                size <= 0.5 * t and (size > 0.0 or value == 0.0)):
             return root, t, g, slope, first, second
         t = root
     return -1.0, -1.0, 0.0, 0.0, 0.0, 0.0
@@ -144,17 +145,19 @@ def _direct_root(osc, rate, jerk, gap, half, t):
 
 @inlined
 def householder(value, slope, change, third):
-    """Return Householder's third-order step to the zero of f from f, f′ > 0, f″ and f‴; infinite where there is none.
+    """Return Householder's third-order step to the zero of f from f, f′ > 0, f″ and f‴, and f″/f′.
 
-    Its error is about size (size (f″/f′ + frequency))³.  The form is one of ratios: products of three derivatives leave
-    the range of numbers long before the derivatives do, and a step of 0 that came of that would pass for the zero.
+    The step is infinite where there is none.  Its error is about size (size (f″/f′ + frequency))³.  The form is one of
+    ratios: products of three derivatives leave the range of numbers long before the derivatives do.  A step of 0 is a
+    root only where f is 0.
     """
     inverse = 1.0 / slope
     newton = value * inverse
-    bend = newton * (change * inverse)
+    ratio = change * inverse
+    bend = newton * ratio
     curve = 6.0 * (1.0 - bend) + newton * newton * (third * inverse)
     step = newton * (6.0 - 3.0 * bend) / curve if curve > 0.0 else math.inf
-    return step if step != 0.0 or value == 0.0 else math.inf
+    return step, ratio
 
 
 @compiled
@@ -220,12 +223,13 @@ def _monotone_root(osc, rate, jerk, snap, gap, end, reached):
             high = t
         if abs(value) <= 2.0 * _EPSILON * t * slope:
             return min(max(t - value / slope, low), high) if slope > 0.0 else t
-        guess = math.inf
+        guess, ratio = math.inf, 0.0
         if slope > 0.0:
-            guess = t - householder(value, slope, change, snap - 2.0 * osc[0] * change - osc[1] * slope)
+            step, ratio = householder(value, slope, change, snap - 2.0 * osc[0] * change - osc[1] * slope)
+            guess = t - step
         size = abs(guess - t)
-        if low <= guess <= high and size <= 0.5 * before:
-            sharpness = size * (abs(change) / slope + frequency)
+        if low <= guess <= high and size <= 0.5 * before and (size > 0.0 or value == 0.0):
+            sharpness = size * (abs(ratio) + frequency)
             if sharpness < 0.3 and size * sharpness * sharpness * sharpness <= 0.1 * _EPSILON * guess:
                 return guess
         else:

@@ -107,8 +107,8 @@ def odd_sines(rng: random.Random) -> Case:
         frequencies = [frequency, draw.near(rng, frequency, 1e-14, 1e-3)]
         amplitudes = [0.02, -0.02]
     else:
-        # below 1e-6 Hz the account of energy loses digits to the way that such a sine goes (2e-9 at 4e-9 Hz)
-        frequencies = [rng.choice((draw.powers(rng, 1e-6, 1e-2), draw.powers(rng, 100.0, 3000.0)))]
+        # below 1e-5 Hz the account of energy loses digits to the way that such a sine goes (2e-9 at 4e-9 Hz)
+        frequencies = [rng.choice((draw.powers(rng, 1e-5, 1e-2), draw.powers(rng, 100.0, 3000.0)))]
         amplitudes = [draw.powers(rng, 1e-3, 1.0)]
     values |= {'drive.amplitudes': amplitudes, 'drive.frequencies': frequencies,
                'drive.phases': [rng.choice((0.0, 0.5 * math.pi, rng.uniform(-3.0, 3.0))) for _ in frequencies]}

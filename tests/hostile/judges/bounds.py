@@ -40,7 +40,11 @@ def _forces(run: Run) -> float:
     axis, end = run.parts.axis, run.parts.duration
     fastest = _most(run.parts.drive, end) + max((abs(e.velocity) for e in run.events), default=0.0)
     stretch = max((abs(e.drive_force) for e in run.events), default=0.0)
-    return (2.0 * axis.drive_damping * fastest + stretch + _most(run.parts.force, end)
+    table = axis.friction.kinetic
+    slopes = [abs((b - a) / (w - v)) for a, b, v, w in zip(table.coefficients, table.coefficients[1:], table.velocities,
+                                                          table.velocities[1:])]
+    steepest = axis.normal_force * max([abs(table.end_slope), *slopes])
+    return (2.0 * (axis.drive_damping + steepest) * fastest + stretch + _most(run.parts.force, end)
             + axis.normal_force * max(_coefficients(axis, run)))
 
 

@@ -48,6 +48,8 @@ def _compare(parts: Parts, events: Sequence[Event]) -> None:
         return
     if _slides_steadily(parts, events, wanted):
         raise Undecided('it slides steadily within rounding')
+    if _stops_softly(events, wanted, parts):
+        raise Undecided('it stops with no acceleration left: a double root is right to the root of rounding')
     if _touches(events, wanted, parts.duration):
         raise Undecided('the reference breaks away for a moment at a touch: `touch` judges these')
     axis = parts.axis
@@ -75,6 +77,16 @@ def _slides_steadily(parts: Parts, events: Sequence[Event], wanted: Sequence[Eve
     last, other = events[-1], wanted[len(events) - 1]
     drive = parts.drive.value_at(last.time)
     return abs(last.time - other.time) <= _ERROR * parts.duration and abs(other.velocity - drive) <= 1e-14 * abs(drive)
+
+
+def _stops_softly(events: Sequence[Event], wanted: Sequence[Event], parts: Parts) -> bool:
+    """Whether the first event that is off is an arrest at which the forces are in balance but for 1e-6."""
+    for k, event in enumerate(events):
+        off = k >= len(wanted) or abs(event.time - wanted[k].time) > _ERROR * parts.duration
+        if off:
+            left = event.drive_force + parts.force.value_at(event.time) - event.friction_force
+            return event.kind == EventKind.STICK and abs(left) <= 1e-6 * abs(event.friction_force)
+    return False
 
 
 def _touches(events: Sequence[Event], wanted: Sequence[Event], duration: float) -> bool:

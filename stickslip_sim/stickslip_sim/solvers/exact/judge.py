@@ -29,7 +29,7 @@ _ROUNDING = 64.0 * 2.220446049250313e-16   # of forces that add up
 _TIME = 8.0 * 2.220446049250313e-16        # of a time
 
 
-@inlined
+@compiled
 def event_is_sound(p, s, begin):
     """Whether the anchor, moved to an event that began at the velocity `begin`, is where the event says, in balance."""
     if s[MODE] == STICK:

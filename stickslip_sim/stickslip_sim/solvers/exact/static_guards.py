@@ -86,12 +86,13 @@ def _exponential_root(p, s, force, rate, horizon):
         fall = b - wane
         if fall <= 0.0:
             break
-        step = householder(d * fading + b * z - gap, fall, wane, -wane)
-        sharpness = abs(step) * (1.0 + wane / fall)
+        value = d * fading + b * z - gap
+        step, ratio = householder(value, fall, wane, -wane)
+        sharpness = abs(step) * (1.0 + ratio)
         z -= step
         if z <= 0.0 or not sharpness < 0.5:
             break
-        if abs(step) * sharpness * sharpness * sharpness <= 0.1 * _EPSILON * z:
+        if abs(step) * sharpness * sharpness * sharpness <= 0.1 * _EPSILON * z and (step != 0.0 or value == 0.0):
             return z * tau
     return -1.0
 
