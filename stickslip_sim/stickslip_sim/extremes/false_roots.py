@@ -22,7 +22,7 @@ _REST = InitialState()
 
 def steep_pieces(setup: Setup) -> Finding:
     """X22: kinetic friction that falls within 0.05 to 50 mm/s: slips grow by e²⁴⁰ and more."""
-    tally = Tally(1e-11)
+    tally = Tally(1e-12)
     tally.judge(_equals_the_reference, setup.solver, _blown_up(), 0.1, 0.0, 60.0)
     for k in setup.choose(tuple(range(0, 400, 2)), (186, 210)):
         tally.judge(_equals_the_reference, setup.solver, _paper_axis(5e-5 * 10.0 ** (k / 399)), 0.01, 0.0, 3.0)

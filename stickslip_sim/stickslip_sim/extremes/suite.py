@@ -78,7 +78,7 @@ EXTREMES = (
             'the events of the reference, <= 1e-12', shaken),
     Extreme('X22', 'kinetic friction that falls within 0.05 to 50 mm/s: slips grow by a factor of up to e⁶⁰⁰',
             'stickslip 0.1.0: a product of three derivatives overflowed, and a step of 0 passed for the root; 8 of 400 '
-            'axes left for 1e95 km/s', 'the events of the reference, <= 1e-11', steep_pieces),
+            'axes left for 1e95 km/s', 'the events of the reference, <= 1e-12', steep_pieces),
     Extreme('X23', 'slips critically damped to 1e-5 to 1e-13, from both sides',
             'stickslip 0.1.0: the same product underflowed, and 1 axis of 1000 missed its events',
             'the events of the reference, <= 1e-12', near_critical),

@@ -35,7 +35,8 @@ def markdown_text(outcomes: Sequence[Outcome], quick: bool) -> str:
              'is missed.',
              '', f'{met} of {len(outcomes)} marks met; {told}.', '',
              'The column "elsewhere" was measured on the paper\'s data with scipy 1.17, SUNDIALS CVODE (scikit-sundae',
-             '1.2), MuJoCo 4.0 and Drake 1.51, or is taken from their documentation and issues.', '',
+             '1.2), MuJoCo 4.0 and Drake 1.51, or is taken from their documentation and issues.  From X22 on it is',
+             'what stickslip 0.1.0 did: these came of an attack, [told here](accuracy.md#what-an-attack-found).', '',
              '| # | extreme | elsewhere | mark | measured | met |', '|---|---|---|---|---|---|']
     for outcome in outcomes:
         cells = (outcome.number, outcome.name, outcome.elsewhere, outcome.mark, outcome.finding.figure,
