@@ -71,12 +71,13 @@ def _times(course: Course, factor: float) -> Course:
 
 
 def _slides_steadily(parts: Parts, events: Sequence[Event], wanted: Sequence[Event]) -> bool:
-    """Whether the engine ends in a coast with the drive's velocity, but for rounding, where the reference goes on."""
-    if not events or events[-1].kind != EventKind.COAST or len(wanted) < len(events):
-        return False
-    last, other = events[-1], wanted[len(events) - 1]
-    drive = parts.drive.value_at(last.time)
-    return abs(last.time - other.time) <= _ERROR * parts.duration and abs(other.velocity - drive) <= 1e-14 * abs(drive)
+    """Whether all that differs comes at the drive's velocity, but for rounding of the fastest speed of the run."""
+    k = next((i for i, (a, b) in enumerate(zip(events, wanted)) if a.kind != b.kind
+              or abs(a.time - b.time) > _ERROR * parts.duration), min(len(events), len(wanted)))
+    rest = [*events[k:], *wanted[k:]]
+    fastest = max([abs(parts.initial.velocity), *(abs(event.velocity) for event in events)])
+    return bool(rest) and all(abs(event.velocity - parts.drive.value_at(event.time)) <= 1e-14 * fastest
+                              for event in rest)
 
 
 def _stops_softly(events: Sequence[Event], wanted: Sequence[Event], parts: Parts) -> bool:
