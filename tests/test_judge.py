@@ -29,10 +29,11 @@ from stickslip_sim.cli.main import run as tool
 from stickslip_sim.courses import Course, Wave, constant
 from stickslip_sim.errors import UnsoundError
 from stickslip_sim.extremes.runs import COMPLIANT, RIGID, Contact, instant, paper_axis
+from stickslip_sim.scene import load_scene
 from stickslip_sim.simulator import Simulator
 from stickslip_sim.solvers import Solver, exact
 from stickslip_sim.solvers.exact import cycles
-from stickslip_sim.words import Mode
+from stickslip_sim.words import EventKind, Mode
 
 Doctor = Callable[[Any], None]
 
@@ -162,3 +163,21 @@ def test_a_contact_that_gives_way_against_its_motion_obeys_newton() -> None:
         simulator.judge()
     assert turned > 20
 
+
+
+def test_a_speed_that_peaks_on_a_knot_turns_there() -> None:
+    """The acceleration at the knot is 0 within rounding, or less: the slider must not be taken to go on upwards."""
+    scene = load_scene('paper_fig8', {
+        'axis.mass': 87696.35152955492, 'axis.drive_stiffness': 12406160936.812164,
+        'axis.drive_damping': 98442867.19902536, 'axis.normal_force': 968220.714862454,
+        'contact.stiffness': 16092415817.98671, 'contact.damping': 0.0,
+        'friction.static.initial': 0.9709148537627836, 'friction.static.limit': 1.9266025074642252,
+        'friction.static.time_constant': 4.079918791087288, 'friction.acceleration_dependence': False,
+        'friction.kinetic.velocities': [0.0, 0.019210304325592047, 0.026136200024539705],
+        'friction.kinetic.coefficients': [0.764754331846208, 0.28753352922809755, 0.11548099698903541],
+        'drive.velocity': 0.011023211591484136})
+    simulator = Simulator(scene.axis, scene.initial, scene.drive, scene.force, accounting=True)
+    events = simulator.advance(instant(0.2))
+    simulator.judge()
+    assert [event.kind for event in events] == [EventKind.BREAKAWAY, EventKind.KNOT, EventKind.DECELERATE]
+    assert events[2].time - events[1].time < 1e-9

@@ -82,6 +82,7 @@ def test_first_zero_is_the_first(kind: str) -> None:
 def test_first_zero_of_a_start_at_zero_is_half_a_period() -> None:
     assert first_zero(oscillator(3.0, 1000.0), 0.0, 2.0) == pytest.approx(math.pi / math.sqrt(991.0), rel=1e-15)
     assert first_zero(oscillator(50.0, 1000.0), 0.0, 2.0) == math.inf
+    assert first_zero(oscillator(50.0, 1000.0), 0.0, -2.0) == first_zero(oscillator(3.0, 1000.0), 0.0, -2.0) == 0.0
 
 
 @pytest.mark.parametrize('snap', [0.0, 40.0, -40.0])

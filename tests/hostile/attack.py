@@ -106,5 +106,7 @@ def _others(done: Run, tag: str, share: float, tally: Tally, name: str) -> Itera
             yield 'bits', str(find)
         except Find as find:
             yield judge, str(find)
+        except SolverError as error:
+            yield judge, f'refused: {error}'
         except Undecided:
             tally.undecided[name, judge] += 1

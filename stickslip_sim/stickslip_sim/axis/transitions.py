@@ -272,6 +272,8 @@ def cross_knot(p, s, events, row, before):
     s[PIECE] += step
     if lost > _MUCH * p[NORMAL] * coefficient and _ROUNDING * lost > _MUCH * force_rounding(p, s, coefficient):
         s[ACCELERATION] = (applied_force(p, s) - friction) / p[MASS]
+    if step * s[DIRECTION] * s[ACCELERATION] < 0.0:   # the speed peaks here: a tie, which the force's rate decides
+        s[ACCELERATION] = 0.0
     events[row][EVENT_MODE] = s[MODE]
 
 

@@ -47,7 +47,9 @@ def first_zero(osc, z, jerk):
             return math.pi / nu
         return math.atan2(abs(z) * nu, gamma * z - jerk) / nu
     fall = -(jerk + slow * z)
-    if z == 0.0 or fall <= 0.0:
+    if z == 0.0:
+        return 0.0 if jerk < 0.0 else math.inf
+    if fall <= 0.0:
         return math.inf
     if nu == 0.0:
         return z / fall

@@ -12,8 +12,8 @@ import math
 
 from ...axis.layout import (
     ACCELERATION, CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, DEFLECTION, DIRECTION, DRIVE, F, FRACTION, F_RATE, GAMMA,
-    KNOTS, MASS, MODE, NEXT, NEXT_KIND, NORMAL, PIECE, POSITION, REST, SECOND, SPRING, STATIC_LIMIT, STIFFNESS, V,
-    VELOCITY, V_RATE, WAVES,
+    KNOTS, MASS, MODE, NEXT, NEXT_KIND, NORMAL, PIECE, POSITION, REST, SECOND, SPRING, STATIC_INITIAL, STATIC_LIMIT,
+    STIFFNESS, V, VELOCITY, V_RATE, WAVES,
 )
 from ...axis.motion import (
     ACCELERATING, COASTING, STICK, contact_force, drive_force, drive_travel, friction_line, is_rigid_stick, knot_speed,
@@ -78,7 +78,7 @@ def _coasts(p, s, spring, v, force, low, high):
     u = s[VELOCITY]
     friction = p[NORMAL] * friction_line(p, int(s[PIECE]), abs(u))[0]
     residual = s[DIRECTION] * (drive_force(p, spring, v, u) + force) - friction
-    slack = ALLOWED * _forces(p, spring, v, u, force, friction)
+    slack = ALLOWED * _forces(p, spring, v, u, force, p[NORMAL] * p[STATIC_INITIAL])
     return low - slack <= residual <= high + slack
 
 
