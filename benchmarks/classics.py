@@ -10,14 +10,14 @@ from typing import NamedTuple
 
 from scipy.optimize import brentq
 
-from stickslip_sim.analysis import cycle_figures
 from stickslip_sim.axis import Axis, Friction, InitialState, RigidContact
-from stickslip_sim.courses import Course, Wave, constant
-from stickslip_sim.extremes.runs import instant, make, of_kind, run
+from stickslip_sim.core.input_profile import Course, Wave, constant
+from stickslip_sim.core.types import Event, EventKind, Sample
+from stickslip_sim.extremes.shared_axes import instant, make, of_kind, run
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind, kinetic_table
 from stickslip_sim.friction.smooth import hyperbolic
+from stickslip_sim.simulation.cycles import cycle_figures
 from stickslip_sim.study.theory import Oscillator, critical_feed
-from stickslip_sim.words import Event, EventKind, Sample
 
 from .closed_forms import coulomb_cycle, den_hartog, healing_stick_time, slip_speed, swing_ratio
 

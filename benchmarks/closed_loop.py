@@ -8,14 +8,14 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from stickslip_sim.axis import Axis, InitialState
-from stickslip_sim.control import Controller, Following, Moves, Setpoint
-from stickslip_sim.courses import constant
-from stickslip_sim.grid import Grid
+from stickslip_sim.controllers import Controller, Following, Moves, Setpoint
+from stickslip_sim.core.input_profile import constant
+from stickslip_sim.core.time_grid import Grid
+from stickslip_sim.core.types import Event, EventKind, Sample
 from stickslip_sim.rig import Rig
 from stickslip_sim.rig.encoder import EncoderSettings
 from stickslip_sim.rig.settings import RigSettings
 from stickslip_sim.solvers import exact
-from stickslip_sim.words import Event, EventKind, Sample
 
 RATE = 1000.0   # steps a second
 

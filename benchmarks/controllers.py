@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from stickslip_sim.axis import Axis
-from stickslip_sim.control import BranchCompensation, Cascade, Controller, Moves
+from stickslip_sim.controllers import BranchCompensation, Cascade, Controller, Moves
 from stickslip_sim.rig.encoder import EncoderSettings
 from stickslip_sim.scene import load_scene
 

@@ -9,9 +9,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from stickslip_sim.analysis import mode_spans
 from stickslip_sim.axis import Axis
-from stickslip_sim.words import Mode
+from stickslip_sim.core.types import Mode
+from stickslip_sim.simulation.cycles import mode_spans
 
 from .closed_loop import Run
 

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.linalg import expm
 
 from stickslip_sim.axis import Axis
-from stickslip_sim.control import Cascade
+from stickslip_sim.controllers import Cascade
 
 from .closed_loop import RATE
 

@@ -33,8 +33,8 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.serialization import serialize_message
 
 from stickslip_msgs.msg import DriveVelocity, FrictionForce, SliderState, StepTiming
-from stickslip_sim.grid import Grid
-from stickslip_sim.pacing import Pacer, wake_precisely
+from stickslip_sim.core.time_grid import Grid
+from stickslip_sim.realtime.pacing import Pacer, wake_precisely
 
 LOOPS = {
     'timer-single': 'rclpy timer, SingleThreadedExecutor',

@@ -22,11 +22,11 @@ import numpy as np
 from stickslip_sim.bench.peers import scipy_ivp
 from stickslip_sim.bench.peers.peer import Setting
 from stickslip_sim.bench.problem import Outcome, Problem
+from stickslip_sim.core.types import EventKind
 from stickslip_sim.scene import Scene, load_scene
 from stickslip_sim.study import Grid, Motion, Saltelli, Study, variation
 from stickslip_sim.study.table import lines
 from stickslip_sim.study.uncertain_file import load_uncertain
-from stickslip_sim.words import EventKind
 
 from .page import replace_generated
 

@@ -8,9 +8,9 @@ converges to with smaller steps is not the coasting motion.  `python3 -m benchma
 
 from typing import NamedTuple
 
-from stickslip_sim.analysis import cycle_figures
 from stickslip_sim.axis import Axis
-from stickslip_sim.extremes.runs import RIGID, paper_axis, run
+from stickslip_sim.extremes.shared_axes import RIGID, paper_axis, run
+from stickslip_sim.simulation.cycles import cycle_figures
 
 FEED = 0.002                   # m/s
 STEPS = 1e-4, 1e-5, 1e-6       # s

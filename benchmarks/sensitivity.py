@@ -9,7 +9,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from stickslip_sim.offline import Trajectory, run_offline
+from stickslip_sim.runs.offline import Trajectory, run_offline
 from stickslip_sim.scene import load_scene
 
 Changes = Mapping[str, object]

@@ -17,7 +17,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from stickslip_sim.axis import Axis, CompliantContact
-from stickslip_sim.words import EventKind, Mode
+from stickslip_sim.core.types import EventKind, Mode
 
 State = NDArray[np.float64]   # position, velocity
 Guard = Callable[[float, State], float]

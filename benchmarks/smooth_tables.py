@@ -10,13 +10,13 @@ import sys
 from typing import NamedTuple
 
 from stickslip_sim.axis import Axis, CompliantContact, Friction, InitialState, RigidContact
-from stickslip_sim.courses import constant
+from stickslip_sim.core.input_profile import constant
+from stickslip_sim.core.types import EventKind, Instant
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind, kinetic_table
 from stickslip_sim.friction.kinetic import default_excess
 from stickslip_sim.friction.refine import table_error
 from stickslip_sim.friction.smooth import stribeck
-from stickslip_sim.simulator import Simulator
-from stickslip_sim.words import EventKind, Instant
+from stickslip_sim.simulation.simulator import Simulator
 
 from .smooth_reference import SmoothEvent, SmoothRun
 

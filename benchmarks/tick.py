@@ -23,7 +23,7 @@ from rclpy.node import Node
 from stickslip_msgs.msg import FrictionForce, SliderState
 from stickslip_sim.axis.layout import EVENT_SIZE
 from stickslip_sim.bench.cases import make_case
-from stickslip_sim.bench.own import state_for
+from stickslip_sim.bench.own_solvers import state_for
 from stickslip_sim.bench.ratios import at_most
 from stickslip_sim.solvers import exact
 

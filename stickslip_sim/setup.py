@@ -22,7 +22,7 @@ class BuildAndCompile(build_py):
         super().run()
         environment = {**os.environ, 'STICKSLIP_COMPILED': 'jit', 'PYTHONPATH': os.pathsep.join(
             [os.path.abspath(self.build_lib), *filter(None, os.environ.get('PYTHONPATH', '').split(os.pathsep))])}
-        done = subprocess.run([sys.executable, '-m', f'{NAME}.ahead', os.path.join(self.build_lib, NAME)],
+        done = subprocess.run([sys.executable, '-m', f'{NAME}.solvers.ahead', os.path.join(self.build_lib, NAME)],
                               env=environment, capture_output=True, text=True, check=False)
         if done.returncode != 0:
             reason = (done.stderr.strip().splitlines() or ['no reason given'])[-1]

@@ -2,6 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Axes and runs that several tests use: those of the extremes suite."""
 
-from stickslip_sim.extremes.runs import COMPLIANT, RIGID, Contact, instant, make, of_kind, paper_axis, random_axis, run
+from stickslip_sim.extremes.shared_axes import (
+    COMPLIANT,
+    RIGID,
+    Contact,
+    instant,
+    make,
+    of_kind,
+    paper_axis,
+    random_axis,
+    run,
+)
 
 __all__ = ['COMPLIANT', 'RIGID', 'Contact', 'instant', 'make', 'of_kind', 'paper_axis', 'random_axis', 'run']

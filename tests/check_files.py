@@ -6,13 +6,13 @@ import math
 import shutil
 from pathlib import Path
 
+from stickslip_sim.check.judgement import Outcome, judge
 from stickslip_sim.check.limits import limits_of
 from stickslip_sim.check.sources import Evidence, simulated
-from stickslip_sim.check.verdict import Outcome, judge
-from stickslip_sim.offline import run_offline
+from stickslip_sim.config.ros_yaml import read_yaml
 from stickslip_sim.recording import RunFacts, write_bag
+from stickslip_sim.runs.offline import run_offline
 from stickslip_sim.scene import Scene, load_scene, scene_from_values
-from stickslip_sim.scene.ros_yaml import read_yaml
 from tests import tool
 from tests.tool import Capture
 

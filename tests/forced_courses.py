@@ -7,7 +7,7 @@ import random
 from dataclasses import replace
 
 from stickslip_sim.axis import Axis
-from stickslip_sim.courses import Course, Wave, constant, ramp, steps, table
+from stickslip_sim.core.input_profile import Course, Wave, constant, ramp, steps, table
 
 
 def with_waves(course: Course, *waves: tuple[float, float, float]) -> Course:

@@ -9,9 +9,9 @@ from pathlib import Path
 
 from mcap.reader import make_reader
 
+from stickslip_sim.core.types import Event, EventKind, Mode, Sample
 from stickslip_sim.recording.messages import Fields, header
 from stickslip_sim.recording.run import RunFacts
-from stickslip_sim.words import Event, EventKind, Mode, Sample
 
 FACTS = RunFacts('made_up', '/**:\n  ros__parameters:\n    scene: made_up\n', 'ab' * 32, 'exact', 7, 1000.0)
 

@@ -8,8 +8,8 @@ from dataclasses import replace
 from typing import Any
 
 from stickslip_sim.axis import Axis, InitialState
-from stickslip_sim.courses import Course, constant
-from stickslip_sim.grid import Grid
+from stickslip_sim.core.input_profile import Course, constant
+from stickslip_sim.core.time_grid import Grid
 from stickslip_sim.rig import Fault, NoteKind, Product, Rig
 from stickslip_sim.rig.faults import RULES
 from stickslip_sim.rig.settings import RigSettings

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from stickslip_sim.errors import InputError
+from stickslip_sim.core.errors import InputError
 
 HEAD = '/**:\n  ros__parameters:\n'
 

@@ -5,11 +5,11 @@
 import math
 
 from stickslip_sim.axis import Axis, InitialState
-from stickslip_sim.courses import Course, constant
+from stickslip_sim.core.input_profile import Course, constant
+from stickslip_sim.core.types import Event, EventKind, Sample
 from stickslip_sim.scene import Scene
-from stickslip_sim.simulator import Simulator
+from stickslip_sim.simulation.simulator import Simulator
 from stickslip_sim.solvers import Solver, exact
-from stickslip_sim.words import Event, EventKind, Sample
 from tests.axes import instant
 
 _A_MOMENT = 1e-6   # s; a coast this short after a break-away is decided by rounding (docs/model.md)

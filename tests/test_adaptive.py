@@ -10,14 +10,14 @@ from typing import Any
 import pytest
 
 from stickslip_sim.axis import CompliantContact, Friction, InitialState
-from stickslip_sim.courses import Course, Wave, steps, table
-from stickslip_sim.errors import InputError, SolverError
+from stickslip_sim.core.errors import InputError, SolverError
+from stickslip_sim.core.input_profile import Course, Wave, steps, table
+from stickslip_sim.core.types import Event, EventKind, Mode
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
 from stickslip_sim.friction.kinetic import default_excess
-from stickslip_sim.offline import run_offline
+from stickslip_sim.runs.offline import run_offline
 from stickslip_sim.scene import load_scene
 from stickslip_sim.solvers import adaptive
-from stickslip_sim.words import Event, EventKind, Mode
 from tests.axes import COMPLIANT, RIGID, instant, of_kind, paper_axis
 from tests.conftest import Program
 from tests.solver_runs import EXACT, firm, make, of_scene, simulate
@@ -221,5 +221,5 @@ def test_bad_settings_are_refused(settings: dict[str, Any], name: str) -> None:
 
 
 def test_scipy_is_loaded_only_by_those_who_use_it(in_a_process: Program) -> None:
-    program = 'import sys\nimport stickslip_sim.offline\nprint("scipy" in sys.modules)'
+    program = 'import sys\nimport stickslip_sim.runs.offline\nprint("scipy" in sys.modules)'
     assert in_a_process(program, compiled=False).split() == ['False']

@@ -12,13 +12,13 @@ import pytest
 from stickslip_sim.advise import advice as work
 from stickslip_sim.advise.absent import absent_parts
 from stickslip_sim.advise.advice import Advice
+from stickslip_sim.advise.advice_report import as_json, is_needed, text_lines
 from stickslip_sim.advise.duration import default_duration
-from stickslip_sim.advise.figures import Difference, difference, event_difference
+from stickslip_sim.advise.figure_distance import Difference, difference, event_difference
 from stickslip_sim.advise.parts import parts_of, without_idle_waves
-from stickslip_sim.advise.report import as_json, is_needed, text_lines
-from stickslip_sim.advise.runs import Reference, Trial, costs, reference_of, try_changes
+from stickslip_sim.advise.recommendation import best_trial, least_scene
 from stickslip_sim.advise.settings import solver_settings
-from stickslip_sim.advise.verdict import best_trial, least_scene
+from stickslip_sim.advise.trial_runs import Reference, Trial, costs, reference_of, try_changes
 from stickslip_sim.bench.measure import Cost
 from stickslip_sim.cli.main import run
 from stickslip_sim.scene import Scene, changed, load_scene, scene_from_values

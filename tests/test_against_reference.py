@@ -11,7 +11,7 @@ from itertools import pairwise
 
 import pytest
 
-from stickslip_sim.simulator import Simulator
+from stickslip_sim.simulation.simulator import Simulator
 from tests.axes import instant
 from tests.reference.objects import inputs_of
 from tests.reference.stored import stored

@@ -7,10 +7,10 @@ from itertools import pairwise
 
 import pytest
 
-from stickslip_sim.analysis import Cycle, EventTally, Span, cycle_figures, mode_spans, summary
 from stickslip_sim.axis import InitialState
-from stickslip_sim.courses import table
-from stickslip_sim.words import Event, EventKind, Mode
+from stickslip_sim.core.input_profile import table
+from stickslip_sim.core.types import Event, EventKind, Mode
+from stickslip_sim.simulation.cycles import Cycle, EventTally, Span, cycle_figures, mode_spans, summary
 from tests.axes import COMPLIANT, RIGID, Contact, paper_axis, run
 
 

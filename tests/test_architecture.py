@@ -27,8 +27,8 @@ def test_an_installed_package_starts_without_a_compiler(in_a_process: Program) -
         pytest.skip('this is the source tree, which compiles at its first start; `make test` tests the installed copy')
     program = '''
 import sys
-from stickslip_sim.compiled import hot_path
-from stickslip_sim.offline import run_offline
+from stickslip_sim.core.jit import hot_path
+from stickslip_sim.runs.offline import run_offline
 from stickslip_sim.scene import load_scene
 run_offline(load_scene('paper_fig8'), 1.0)
 print(hot_path(), 'numba' in sys.modules)

@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from stickslip_sim.analysis import Summary, summary
 from stickslip_sim.axis import Axis, CompliantContact, InitialState
-from stickslip_sim.batch import COLUMNS, BatchFigures, run_batch
-from stickslip_sim.errors import InputError
+from stickslip_sim.core.errors import InputError
+from stickslip_sim.core.types import Event, EventKind, Mode
 from stickslip_sim.friction import StaticLaw, StaticLawKind
-from stickslip_sim.words import Event, EventKind, Mode
+from stickslip_sim.runs.batch import COLUMNS, BatchFigures, run_batch
+from stickslip_sim.simulation.cycles import Summary, summary
 from tests.axes import COMPLIANT, RIGID, instant, make, paper_axis, random_axis
 from tests.conftest import Program
 
@@ -23,7 +23,7 @@ LAST_CYCLE = ('direction', 'rest_time', 'slip_time', 'stick_time', 'period', 'sl
               'break_away_force', 'static_coefficient')
 PROGRAM = '''
 import dataclasses
-from stickslip_sim.batch import run_batch
+from stickslip_sim.runs.batch import run_batch
 from tests.axes import COMPLIANT, RIGID, paper_axis
 for contact in (RIGID, COMPLIANT):
     figures = run_batch(paper_axis(contact), 4.0, drive_velocity=[0.0, 0.001, 0.005, -0.03],

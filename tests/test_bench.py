@@ -14,16 +14,16 @@ from stickslip_sim.bench.cases import case_names, make_case
 from stickslip_sim.bench.contestants import PEERS
 from stickslip_sim.bench.errors import Truth, errors_of, pair
 from stickslip_sim.bench.outside import FIRST_SLIP
-from stickslip_sim.bench.own import exact_solver
+from stickslip_sim.bench.own_solvers import exact_solver
 from stickslip_sim.bench.peers import dop853, euler, scipy_ivp
 from stickslip_sim.bench.peers.peer import EXACT, Peer, Setting
 from stickslip_sim.bench.problem import Outcome, Problem
 from stickslip_sim.bench.race import race
+from stickslip_sim.bench.race_report import as_case, as_json, markdown, text_table
 from stickslip_sim.bench.ratios import Ratio, at_least, at_most, ratios
-from stickslip_sim.bench.report import as_case, as_json, markdown, text_table
 from stickslip_sim.cli.main import run
-from stickslip_sim.courses import constant
-from stickslip_sim.words import EventKind
+from stickslip_sim.core.input_profile import constant
+from stickslip_sim.core.types import EventKind
 from tests.axes import COMPLIANT, RIGID, instant, make, paper_axis
 from tests.conftest import Program
 

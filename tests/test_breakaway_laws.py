@@ -8,9 +8,9 @@ import mpmath as mp
 import pytest
 
 from stickslip_sim.axis import Axis, CompliantContact, Friction, InitialState
-from stickslip_sim.courses import ramp
+from stickslip_sim.core.input_profile import ramp
+from stickslip_sim.core.types import EventKind
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
-from stickslip_sim.words import EventKind
 from tests.axes import RIGID, run
 
 NORMAL, STIFFNESS, DAMPING = 3432.3275, 6e5, 4000.0

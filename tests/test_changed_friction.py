@@ -7,11 +7,11 @@ from typing import Any
 
 import pytest
 
-from stickslip_sim.errors import InputError, SolverError
+from stickslip_sim.core.errors import InputError, SolverError
+from stickslip_sim.core.types import Event, EventKind
 from stickslip_sim.recording import checkpoint_file
 from stickslip_sim.rig import Rig
 from stickslip_sim.scene import changed, load_scene
-from stickslip_sim.words import Event, EventKind
 from tests.axes import instant
 from tests.rigs import inject, run
 

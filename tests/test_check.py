@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from stickslip_sim.offline import run_offline
+from stickslip_sim.runs.offline import run_offline
 from stickslip_sim.scene import load_scene, scene_from_values
 from tests.check_files import DECAY, FREE, FREQUENCY, START_VELOCITY, evidence, free_position, judged, measured
 

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from stickslip_sim.offline import run_offline
+from stickslip_sim.core.types import Sample
 from stickslip_sim.recording import BagWriter, RunFacts, topics, write_bag
+from stickslip_sim.runs.offline import run_offline
 from stickslip_sim.scene import load_scene
-from stickslip_sim.words import Sample
 from tests.check_files import DURATION, LIMITS, limits_file, node_bag, refused
 from tests.tool import Capture
 

@@ -12,8 +12,8 @@ import pytest
 
 from stickslip_sim.check.kinds import KINDS
 from stickslip_sim.cli.main import run
-from stickslip_sim.offline import run_offline
 from stickslip_sim.recording import OfflineBag, RunFacts, read_run
+from stickslip_sim.runs.offline import run_offline
 from stickslip_sim.scene import load_scene
 from tests.check_files import DURATION, LIMITS, checked, cut, limits_file, node_bag, refused
 from tests.tool import Capture

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from stickslip_sim.errors import InputError
+from stickslip_sim.core.errors import InputError
 from stickslip_sim.recording import checkpoint_file
 from stickslip_sim.rig import Fault, Product, Rig
 from stickslip_sim.scene import Scene, changed, load_scene

@@ -34,12 +34,12 @@ from benchmarks.classics import (
 from benchmarks.closed_forms import coulomb_cycle, den_hartog
 from benchmarks.naive_switching import exact_slip, naive_slip
 from benchmarks.paper import PAGE, tables
-from stickslip_sim.analysis import cycle_figures
 from stickslip_sim.axis import InitialState
-from stickslip_sim.courses import constant
+from stickslip_sim.core.input_profile import constant
+from stickslip_sim.core.types import EventKind
 from stickslip_sim.friction import StaticLawKind
+from stickslip_sim.simulation.cycles import cycle_figures
 from stickslip_sim.study.theory import critical_drop, critical_feed, healing_critical_feed
-from stickslip_sim.words import EventKind
 from tests.axes import RIGID, of_kind, paper_axis, run
 
 HEALING_FEED = healing_critical_feed(UNDAMPED.stiffness, NORMAL * 0.12 / HEALING.time_constant)   # m/s

@@ -15,10 +15,10 @@ import pytest
 
 from stickslip_sim import __version__
 from stickslip_sim.cli.main import run
-from stickslip_sim.estimate import error_estimate
-from stickslip_sim.offline import run_offline
+from stickslip_sim.core.types import EventKind, Mode
+from stickslip_sim.runs.error_estimate import error_estimate
+from stickslip_sim.runs.offline import run_offline
 from stickslip_sim.scene import load_scene, scene_names
-from stickslip_sim.words import EventKind, Mode
 from tests.tool import Capture, tool
 
 EVENT_HEADER = 'time,kind,direction,position,velocity,drive_force,friction_force,static_coefficient,rest_time'

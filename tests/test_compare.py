@@ -15,19 +15,19 @@ import pytest
 
 from stickslip_sim.cli.compare import _named_apart
 from stickslip_sim.cli.main import run
-from stickslip_sim.offline import run_offline
-from stickslip_sim.paper.characteristics import characteristics_of
-from stickslip_sim.paper.conventional import characteristics_beside
-from stickslip_sim.paper.fresh import simulate
-from stickslip_sim.paper.recorded import history_of_run
-from stickslip_sim.paper.ring_down import closed_form, identified
-from stickslip_sim.paper.statement import Outcome
-from stickslip_sim.paper.statements import judged
-from stickslip_sim.paper.windows import motion_of
+from stickslip_sim.compare.characteristics import characteristics_of
+from stickslip_sim.compare.conventional import characteristics_beside
+from stickslip_sim.compare.fresh import simulate
+from stickslip_sim.compare.recorded import history_of_run
+from stickslip_sim.compare.ring_down import closed_form, identified
+from stickslip_sim.compare.statement import Outcome
+from stickslip_sim.compare.statements import judged
+from stickslip_sim.compare.windows import motion_of
+from stickslip_sim.core.types import EventKind
 from stickslip_sim.plots.characteristics import plot_characteristics
-from stickslip_sim.plots.motion import plot_motion
+from stickslip_sim.plots.paper_panels import plot_motion
+from stickslip_sim.runs.offline import run_offline
 from stickslip_sim.scene import load_scene
-from stickslip_sim.words import EventKind
 from tests.rewritten_bags import rewritten
 from tests.tool import Capture
 

@@ -12,7 +12,7 @@ from rosbags.rosbag2 import Writer as BagWriter
 from rosbags.typesys import Stores, get_typestore
 
 from stickslip_sim.cli.main import run
-from stickslip_sim.paper.recorded import history_of_run
+from stickslip_sim.compare.recorded import history_of_run
 from stickslip_sim.recording import read_run
 from tests import tool
 from tests.rewritten_bags import rewritten
@@ -154,6 +154,6 @@ def test_a_failure_leaves_nothing(tmp_path: Path, capsys: Capture, monkeypatch: 
     def full(*_: object) -> str:
         raise OSError(28, 'No space left on device')
 
-    monkeypatch.setattr('stickslip_sim.paper.report.page', full)
+    monkeypatch.setattr('stickslip_sim.compare.report_folder.page', full)
     assert 'No space left on device' in refused(capsys, tmp_path, 'paper_fig7', '--duration', '1')
     assert list(tmp_path.iterdir()) == []

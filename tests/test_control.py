@@ -12,7 +12,7 @@ import pytest
 from benchmarks.closed_loop import RATE, close_loop, figures
 from benchmarks.controllers import AXIS, CREEP, PAGE, by_model, controllers
 from benchmarks.linear_loop import loop_matrix, most_delay
-from stickslip_sim.control import (
+from stickslip_sim.controllers import (
     AT_REST,
     BranchCompensation,
     Cascade,

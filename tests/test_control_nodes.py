@@ -15,9 +15,9 @@ import pytest
 
 from benchmarks.closed_loop import close_loop
 from benchmarks.controllers import AXIS, controllers
-from stickslip_sim.control import Moves
-from stickslip_sim.errors import InputError
-from stickslip_sim.words import EventKind
+from stickslip_sim.controllers import Moves
+from stickslip_sim.core.errors import InputError
+from stickslip_sim.core.types import EventKind
 from tests.ros_nodes import Client, assert_clean, client, executable, running
 from tests.waiting import DEADLINE, wait_for
 
@@ -27,7 +27,7 @@ from sensor_msgs.msg import JointState  # isort: skip
 from std_srvs.srv import Trigger  # isort: skip
 
 from stickslip_msgs.srv import Step
-from stickslip_sim.ros.controller_node import measurement
+from stickslip_sim.ros.controllers.controller_node import measurement
 
 pytestmark = pytest.mark.ros
 

@@ -7,8 +7,8 @@ import random
 
 import pytest
 
-from stickslip_sim.courses import Course, Wave, constant, ramp, steps, table
-from stickslip_sim.errors import InputError
+from stickslip_sim.core.errors import InputError
+from stickslip_sim.core.input_profile import Course, Wave, constant, ramp, steps, table
 
 
 def test_pieces_of_a_periodic_course_follow_each_other_for_any_period() -> None:

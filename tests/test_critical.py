@@ -10,8 +10,9 @@ import pytest
 
 from stickslip_sim.axis import InitialState
 from stickslip_sim.cli.main import run
-from stickslip_sim.errors import InputError
-from stickslip_sim.extremes.runs import make, of_kind
+from stickslip_sim.core.errors import InputError
+from stickslip_sim.core.types import EventKind
+from stickslip_sim.extremes.shared_axes import make, of_kind
 from stickslip_sim.scene import Scene, load_scene
 from stickslip_sim.study import Variation
 from stickslip_sim.study.critical import Critical, critical, default_range
@@ -19,7 +20,6 @@ from stickslip_sim.study.points import scene_at
 from stickslip_sim.study.theory import critical_drop, critical_feed, feed_of_theory, healing_critical_feed
 from stickslip_sim.study.transitions import FAILED, NO, OPEN, YES, Course, Doubt, Verdicts, course
 from stickslip_sim.study.variation import Numbers
-from stickslip_sim.words import EventKind
 from tests.axes import instant
 from tests.tool import Capture
 

@@ -11,7 +11,7 @@ from random import Random
 import pytest
 from mcap.writer import CompressionType
 
-from stickslip_sim.errors import RecordingError, RecordingWarning
+from stickslip_sim.core.errors import RecordingError, RecordingWarning
 from stickslip_sim.recording import RecordedMessage, read_run
 from stickslip_sim.recording.playback import Recording
 from tests.check_files import LIMITS, limits_file

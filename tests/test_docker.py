@@ -21,7 +21,9 @@ from tests.ros_nodes import client, executable
 from tests.tool import restore_interrupt
 from tests.waiting import DEADLINE
 
-from stickslip_sim.ros.controller_parameters import COMMON, COMPENSATION  # isort: skip  # after ros_nodes, which skips
+from stickslip_sim.ros.controllers.controller_parameters import (  # isort: skip  # after ros_nodes, which skips
+    COMMON, COMPENSATION,
+)
 
 FILES = ['docker/Dockerfile', 'docker/Dockerfile.ros']
 KNOWN = {'sim_node': set(BY_NAME), 'compensating_controller': {entry.name for entry in (*COMMON, *COMPENSATION)}}

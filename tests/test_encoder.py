@@ -10,11 +10,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from stickslip_sim.errors import InputError
+from stickslip_sim.core.errors import InputError
+from stickslip_sim.core.types import Mode, Sample
 from stickslip_sim.rig import Measured, Product
 from stickslip_sim.rig.encoder import Encoder, EncoderSettings
 from stickslip_sim.scene import load_scene
-from stickslip_sim.words import Mode, Sample
 from tests.rigs import RATE, Script, inject, make, run
 
 MICRON = 1e-6

@@ -10,12 +10,12 @@ from itertools import pairwise
 import pytest
 
 from stickslip_sim.axis import Axis, CompliantContact, Friction, InitialState
-from stickslip_sim.courses import Course, Wave, constant, ramp, steps
-from stickslip_sim.energy import EnergyBalance
+from stickslip_sim.core.energy import EnergyBalance
+from stickslip_sim.core.input_profile import Course, Wave, constant, ramp, steps
+from stickslip_sim.core.types import EventKind, Instant, Mode
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
 from stickslip_sim.scene import load_scene
-from stickslip_sim.simulator import Simulator
-from stickslip_sim.words import EventKind, Instant, Mode
+from stickslip_sim.simulation.simulator import Simulator
 from tests.axes import COMPLIANT, RIGID, instant, paper_axis, random_axis
 from tests.conftest import Program
 
@@ -228,10 +228,10 @@ def test_a_reset_counts_anew() -> None:
 
 def test_plain_python_keeps_the_same_account(in_a_process: Program) -> None:
     program = '''
-from stickslip_sim.courses import constant
-from stickslip_sim.simulator import Simulator
+from stickslip_sim.core.input_profile import constant
+from stickslip_sim.simulation.simulator import Simulator
 from stickslip_sim.axis import InitialState
-from stickslip_sim.words import Instant
+from stickslip_sim.core.types import Instant
 from tests.axes import COMPLIANT, paper_axis
 simulator = Simulator(paper_axis(COMPLIANT), InitialState(), constant(0.002), constant(0.0), accounting=True)
 print(simulator.advance(Instant(4.0, 0.0)), simulator.sample(), simulator.energy)
@@ -314,9 +314,9 @@ def test_near_critical_damping_the_balance_closes(critical: float) -> None:
 COUNTED = """
 import sys
 from stickslip_sim.axis import CompliantContact, InitialState
-from stickslip_sim.courses import Course, Wave
-from stickslip_sim.simulator import Simulator
-from stickslip_sim.words import Instant
+from stickslip_sim.core.input_profile import Course, Wave
+from stickslip_sim.simulation.simulator import Simulator
+from stickslip_sim.core.types import Instant
 from tests.axes import RIGID, paper_axis
 calls = 0
 def count(frame, event, argument):
@@ -354,11 +354,11 @@ import math
 from stickslip_sim.axis import motion
 from stickslip_sim.axis.layout import NEXT, SPRING, VELOCITY
 from stickslip_sim.axis import InitialState
-from stickslip_sim.courses import constant
+from stickslip_sim.core.input_profile import constant
 from stickslip_sim.linear import roots
-from stickslip_sim.simulator import Simulator
+from stickslip_sim.simulation.simulator import Simulator
 from stickslip_sim.solvers.exact import engine
-from stickslip_sim.words import Instant
+from stickslip_sim.core.types import Instant
 from tests.axes import COMPLIANT, RIGID, paper_axis
 def late(find):
     def find_late(p, s, due):

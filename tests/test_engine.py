@@ -10,10 +10,10 @@ from itertools import pairwise
 import pytest
 
 from stickslip_sim.axis import CompliantContact, InitialState
-from stickslip_sim.courses import Course, ramp, steps, table
-from stickslip_sim.errors import SolverError
+from stickslip_sim.core.errors import SolverError
+from stickslip_sim.core.input_profile import Course, ramp, steps, table
+from stickslip_sim.core.types import Event, EventKind, Instant, Mode
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
-from stickslip_sim.words import Event, EventKind, Instant, Mode
 from tests.axes import COMPLIANT, RIGID, Contact, instant, make, of_kind, paper_axis, run
 from tests.conftest import Program
 

@@ -7,8 +7,8 @@ import math
 import pytest
 
 from stickslip_sim.axis import Axis, Friction
+from stickslip_sim.core.types import EventKind
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
-from stickslip_sim.words import EventKind
 from tests.axes import COMPLIANT, RIGID, Contact, of_kind, paper_axis, run
 
 # model.md: kind, t / s, x / m, ẋ / (m/s), F_d / N, from 40-digit arithmetic

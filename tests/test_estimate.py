@@ -14,13 +14,13 @@ import pytest
 
 from benchmarks.smooth_reference import SmoothRun
 from stickslip_sim.axis import InitialState
-from stickslip_sim.courses import steps
-from stickslip_sim.estimate import error_estimate
-from stickslip_sim.offline import run_offline
-from stickslip_sim.perturbation import ROUNDING_UNIT, perturbed
+from stickslip_sim.core.input_profile import steps
+from stickslip_sim.core.types import EventKind
 from stickslip_sim.reference import simulate
+from stickslip_sim.runs.error_estimate import error_estimate
+from stickslip_sim.runs.offline import run_offline
+from stickslip_sim.runs.perturbation import ROUNDING_UNIT, perturbed
 from stickslip_sim.scene import Scene, SolverSettings, load_scene
-from stickslip_sim.words import EventKind
 from tests.reference.objects import axis_of, course_of
 from tests.test_against_reference import RUNS
 

@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 
 from stickslip_sim.cli.main import run
-from stickslip_sim.errors import RecordingError
-from stickslip_sim.offline import run_offline
+from stickslip_sim.core.errors import RecordingError
+from stickslip_sim.core.types import EventKind
 from stickslip_sim.recording import read_run
+from stickslip_sim.runs.offline import run_offline
 from stickslip_sim.scene import load_scene
-from stickslip_sim.words import EventKind
 from tests.rewritten_bags import rewritten
 from tests.tool import Capture, refused
 

@@ -7,8 +7,8 @@ from typing import Any, ClassVar
 
 import pytest
 
-from stickslip_sim.errors import InputError
-from stickslip_sim.grid import Grid
+from stickslip_sim.core.errors import InputError
+from stickslip_sim.core.time_grid import Grid
 from stickslip_sim.rig import Fault, NoteKind
 from stickslip_sim.rig.faults import MAX_FAULTS, RULES
 from stickslip_sim.scene import load_scene

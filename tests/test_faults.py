@@ -11,13 +11,13 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from stickslip_sim.axis import Axis, InitialState
-from stickslip_sim.courses import constant, steps
-from stickslip_sim.grid import Grid
+from stickslip_sim.core.input_profile import constant, steps
+from stickslip_sim.core.time_grid import Grid
+from stickslip_sim.core.types import Instant
 from stickslip_sim.rig import Fault, NoteKind
 from stickslip_sim.rig.faults import Faults
 from stickslip_sim.scene import load_scene
-from stickslip_sim.simulator import Simulator
-from stickslip_sim.words import Instant
+from stickslip_sim.simulation.simulator import Simulator
 from tests.rigs import AXIS, STUCK, Script, bits, inject, make, run, told
 
 GRID = Grid(1000.0)

@@ -9,12 +9,12 @@ from dataclasses import replace
 import pytest
 
 from stickslip_sim.axis import Axis, Friction, InitialState
-from stickslip_sim.courses import Course, Wave, steps, table
-from stickslip_sim.errors import InputError, SolverError
+from stickslip_sim.core.errors import InputError, SolverError
+from stickslip_sim.core.input_profile import Course, Wave, steps, table
+from stickslip_sim.core.types import EventKind, Mode
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
 from stickslip_sim.scene import load_scene
 from stickslip_sim.solvers import adaptive, fixed_step
-from stickslip_sim.words import EventKind, Mode
 from tests.axes import COMPLIANT, RIGID, instant, of_kind, paper_axis
 from tests.conftest import Program
 from tests.solver_runs import EXACT, firm, make, of_scene, order, simulate

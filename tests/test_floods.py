@@ -15,10 +15,10 @@ from typing import Any
 
 import pytest
 
+from stickslip_sim.config.ros_yaml import plain_value
 from stickslip_sim.recording import read_run
 from stickslip_sim.rig import NoteKind
 from stickslip_sim.scene import Scene, load_scene
-from stickslip_sim.scene.ros_yaml import plain_value
 from tests.replays import assert_same_states, made_again
 from tests.ros_nodes import client, node_and_client, recording_into, running
 from tests.waiting import wait_for

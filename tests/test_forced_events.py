@@ -10,11 +10,11 @@ from typing import Any
 import pytest
 
 from stickslip_sim.axis import CompliantContact, InitialState
-from stickslip_sim.courses import Course, constant, steps
+from stickslip_sim.core.input_profile import Course, constant, steps
+from stickslip_sim.core.types import Event, EventKind, Instant, Mode
+from stickslip_sim.extremes.grazing_drive import FREQUENCIES, PHASES, grazing_drive
 from stickslip_sim.friction import StaticLaw, StaticLawKind
-from stickslip_sim.grazing import FREQUENCIES, PHASES, grazing_drive
 from stickslip_sim.reference import simulate
-from stickslip_sim.words import Event, EventKind, Instant, Mode
 from tests.axes import COMPLIANT, RIGID, instant, make, paper_axis, random_axis, run
 from tests.conftest import Program
 from tests.forced_courses import random_courses, with_waves

@@ -12,8 +12,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from stickslip_sim.axis import Axis, CompliantContact
-from stickslip_sim.courses import Course, constant
-from stickslip_sim.words import Event, EventKind, Mode
+from stickslip_sim.core.input_profile import Course, constant
+from stickslip_sim.core.types import Event, EventKind, Mode
 from tests.axes import COMPLIANT, RIGID, make, paper_axis, random_axis
 from tests.forced_courses import random_courses, with_waves
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from stickslip_sim.study.memory import free_memory
+from stickslip_sim.study.free_memory import free_memory
 
 MACHINE = {'proc/meminfo': 'MemTotal: 9000 kB\nMemAvailable:    8000 kB\n'}
 

@@ -11,7 +11,7 @@ pytest.importorskip('rclpy')
 from rcl_interfaces.msg import Parameter, ParameterEvent, ParameterType, ParameterValue
 from rclpy.serialization import serialize_message
 
-from stickslip_sim.errors import RecordingError
+from stickslip_sim.core.errors import RecordingError
 from stickslip_sim.recording import Topic
 from stickslip_sim.recording.topics import PARAMETER_EVENTS, RIG_EVENT
 from stickslip_sim.rig import NoteKind

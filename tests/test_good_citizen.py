@@ -16,7 +16,7 @@ from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 
-from stickslip_sim.errors import RecordingWarning
+from stickslip_sim.core.errors import RecordingWarning
 from stickslip_sim.recording import RecordedMessage, Run, read_run, schema
 from stickslip_sim.recording.schemas import store_of
 from stickslip_sim.recording.topics import RECORDED, Topic
@@ -24,7 +24,7 @@ from stickslip_sim.recording.topics import RECORDED, Topic
 pytest.importorskip('rclpy')
 from rclpy.serialization import deserialize_message
 
-from stickslip_sim.ros.topics import message_type
+from stickslip_sim.ros.node.topics import message_type
 from tests.eventful_runs import eventful_run
 from tests.ros_nodes import Client
 from tests.waiting import wait_for

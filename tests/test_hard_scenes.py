@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from stickslip_sim.simulator import Simulator
+from stickslip_sim.simulation.simulator import Simulator
 from tests.axes import instant
 from tests.reference.objects import exact_run, inputs_of
 

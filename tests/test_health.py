@@ -8,10 +8,10 @@ import subprocess
 import pytest
 from diagnostic_msgs.msg import DiagnosticStatus
 
-from stickslip_sim.errors import StickslipError
+from stickslip_sim.core.errors import StickslipError
 from tests.ros_nodes import client, executable, running
 
-from stickslip_sim.ros.health_node import judge  # isort: skip  # after ros_nodes, which skips without ROS
+from stickslip_sim.ros.diagnostics.health_node import judge  # isort: skip  # after ros_nodes, which skips without ROS
 
 pytestmark = pytest.mark.ros
 

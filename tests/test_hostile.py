@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 
-from stickslip_sim.courses import constant
-from stickslip_sim.words import EventKind, Mode
+from stickslip_sim.core.input_profile import constant
+from stickslip_sim.core.types import EventKind, Mode
 from tests.hostile import report
 from tests.hostile.attack import Found, Tally, judge_again, one_round
 from tests.hostile.case import Case, Find, Run, run

@@ -14,7 +14,7 @@ import pytest
 import zstandard
 from mcap.opcode import Opcode
 
-from stickslip_sim.errors import RecordingError
+from stickslip_sim.core.errors import RecordingError
 from stickslip_sim.recording import read_run
 from tests.fuzz.bags import Record, file_of
 

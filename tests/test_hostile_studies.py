@@ -120,6 +120,6 @@ def test_nothing_that_a_link_leads_to_is_changed(folder: Path, capsys: pytest.Ca
 
 
 def test_the_longest_scene_has_room_in_a_description(folder: Path) -> None:
-    from stickslip_sim.scene.ros_yaml import SIZE_LIMIT
+    from stickslip_sim.config.ros_yaml import SIZE_LIMIT
 
     assert LONGEST > 4 * SIZE_LIMIT > (folder / SIDECAR).stat().st_size

@@ -12,12 +12,12 @@ pytest.importorskip('rclpy')
 from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
 
-from stickslip_sim.commands import CommandSlot
-from stickslip_sim.errors import InputError
+from stickslip_sim.core.errors import InputError
+from stickslip_sim.realtime.command_slot import CommandSlot
 from stickslip_sim.recording import MessageCodec
 from stickslip_sim.recording.messages import header
 from stickslip_sim.rig import Measured
-from stickslip_sim.ros.joints import JOINTS, JointStatePacker, commanded_velocity, disregarded
+from stickslip_sim.ros.node.joints import JOINTS, JointStatePacker, commanded_velocity, disregarded
 
 # lark, which rosidl's Python brings in, imports modules that Python wants to rename.
 pytestmark = pytest.mark.filterwarnings("ignore:module 'sre_:DeprecationWarning")

@@ -26,14 +26,14 @@ from stickslip_sim.axis.layout import (
     VELOCITY,
 )
 from stickslip_sim.cli.main import run as tool
-from stickslip_sim.courses import Course, Wave, constant
-from stickslip_sim.errors import UnsoundError
-from stickslip_sim.extremes.runs import COMPLIANT, RIGID, Contact, instant, paper_axis
+from stickslip_sim.core.errors import UnsoundError
+from stickslip_sim.core.input_profile import Course, Wave, constant
+from stickslip_sim.core.types import EventKind, Mode
+from stickslip_sim.extremes.shared_axes import COMPLIANT, RIGID, Contact, instant, paper_axis
 from stickslip_sim.scene import load_scene
-from stickslip_sim.simulator import Simulator
+from stickslip_sim.simulation.simulator import Simulator
 from stickslip_sim.solvers import Solver, exact
-from stickslip_sim.solvers.exact import cycles
-from stickslip_sim.words import EventKind, Mode
+from stickslip_sim.solvers.exact import many_axes
 
 Doctor = Callable[[Any], None]
 
@@ -129,11 +129,11 @@ def test_an_axis_of_a_batch_beyond_the_range_of_numbers_is_not_complete() -> Non
     parameters[1, NORMAL] = 1e250
     state = np.zeros(STATE_SIZE)
     state[ACCOUNTING] = 1.0
-    out = np.zeros((2, cycles.ROW_SIZE))
+    out = np.zeros((2, many_axes.ROW_SIZE))
     with np.errstate(all='ignore'):   # what numpy says when this runs as plain Python
         exact.run_axes(parameters, np.array([[0.002, 0.0], [1e200, 0.0]]), np.array([[0.0, 0.0, math.inf]] * 2), 3.0,
                        0, 2, state, np.empty((64, EVENT_SIZE)), np.empty(0), out)
-    assert out[:, cycles.COMPLETE].tolist() == [1.0, 0.0]
+    assert out[:, many_axes.COMPLETE].tolist() == [1.0, 0.0]
 
 
 @pytest.mark.parametrize('contact', [RIGID, COMPLIANT])

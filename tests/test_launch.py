@@ -13,7 +13,9 @@ from stickslip_sim.scene.schema import BY_NAME
 from tests.launch_files import FILES, LAUNCH, Started, launched
 from tests.ros_nodes import assert_clean, client, executable, running
 
-from stickslip_sim.ros.controller_parameters import COMMON, COMPENSATION  # isort: skip  # after ros_nodes, which skips
+from stickslip_sim.ros.controllers.controller_parameters import (  # isort: skip  # after ros_nodes, which skips
+    COMMON, COMPENSATION,
+)
 from stickslip_sim.ros.replay.settings import PARAMETERS  # isort: skip
 from tests.ros2_control_client import Description  # isort: skip
 

@@ -9,7 +9,7 @@ import pytest
 from sensor_msgs.msg import JointState
 
 from stickslip_sim.recording import topics as names
-from stickslip_sim.ros import neighbours
+from stickslip_sim.ros.diagnostics import graph_monitor
 from tests.ros2_control_client import THRESHOLD, Rule, always, hardware_interface, near_is_silent
 from tests.ros_nodes import Client, client, running
 from tests.waiting import wait_for
@@ -59,9 +59,9 @@ class TestNeighbours:
 
     def test_a_controller_bears_its_name_from_the_first_look_on(self, monkeypatch: pytest.MonkeyPatch) -> None:
         """ROS knows a publisher some 40 ms before it knows whose it is."""
-        monkeypatch.setattr(neighbours, '_PATIENCE', 60)    # looks, which take as long as those of the node
+        monkeypatch.setattr(graph_monitor, '_PATIENCE', 60)    # looks, which take as long as those of the node
         with client() as watcher:
-            publishers = neighbours._Publishers(watcher.node, [names.JOINT_COMMANDS])
+            publishers = graph_monitor._Publishers(watcher.node, [names.JOINT_COMMANDS])
 
             def changed() -> bool:
                 time.sleep(0.05)

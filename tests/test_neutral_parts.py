@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from stickslip_sim.offline import Trajectory, run_offline
+from stickslip_sim.core.types import EventKind
+from stickslip_sim.runs.offline import Trajectory, run_offline
 from stickslip_sim.scene import load_scene
-from stickslip_sim.words import EventKind
 
 DURATION, PERIOD = 3.0, 0.01   # s
 CONSTANT = {'friction.static.law': 'constant', 'friction.static.initial': 0.2}

@@ -11,10 +11,10 @@ from typing import Any
 
 import pytest
 
+from stickslip_sim.core.types import EventKind, Instant
 from stickslip_sim.scene import load_scene
 from stickslip_sim.scene.schema import PARAMETERS
-from stickslip_sim.simulator import Simulator
-from stickslip_sim.words import EventKind, Instant
+from stickslip_sim.simulation.simulator import Simulator
 from tests.ros_nodes import Client, NodeProcess, client, nanoseconds, running
 from tests.waiting import wait_for
 

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from stickslip_sim.errors import RecordingWarning
+from stickslip_sim.core.errors import RecordingWarning
+from stickslip_sim.core.types import EventKind
 from stickslip_sim.recording import read_run
-from stickslip_sim.words import EventKind
 from tests.ros_nodes import assert_clean, client, recording_into, running
 from tests.waiting import wait_for
 

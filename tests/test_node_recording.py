@@ -8,14 +8,16 @@ from typing import Any
 
 import pytest
 
-from stickslip_sim.errors import RecordingWarning
+from stickslip_sim.core.errors import RecordingWarning
 from stickslip_sim.recording import Run, read_run
 from stickslip_sim.scene import load_scene
 from tests.ros_nodes import assert_clean, client, recording_into, running
 from tests.tool import restore_interrupt
 from tests.waiting import wait_for
 
-from stickslip_sim.ros.recordings import Recordings  # isort: skip  # after tests.ros_nodes, which skips without ROS
+from stickslip_sim.ros.node.recordings import (  # isort: skip  # after tests.ros_nodes, which skips without ROS
+    Recordings,
+)
 
 pytestmark = pytest.mark.ros
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from stickslip_sim.errors import InputError
+from stickslip_sim.core.errors import InputError
 from stickslip_sim.scene import load_scene
 from tests.ros_nodes import assert_clean, client, executable, running
 

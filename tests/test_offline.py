@@ -9,11 +9,11 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from stickslip_sim.energy import EnergyBalance
-from stickslip_sim.errors import InputError
-from stickslip_sim.offline import MAX_SAMPLES, Trajectory, check_times, run_offline
+from stickslip_sim.core.energy import EnergyBalance
+from stickslip_sim.core.errors import InputError
+from stickslip_sim.core.types import Event, EventKind, Sample
+from stickslip_sim.runs.offline import MAX_SAMPLES, Trajectory, check_times, run_offline
 from stickslip_sim.scene import load_scene
-from stickslip_sim.words import Event, EventKind, Sample
 
 
 @pytest.fixture(scope='module')
@@ -131,6 +131,6 @@ def test_too_many_samples_are_refused_with_their_number() -> None:
 
 
 def test_too_many_events_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr('stickslip_sim.offline.MAX_EVENTS', 10)
+    monkeypatch.setattr('stickslip_sim.runs.offline.MAX_EVENTS', 10)
     with pytest.raises(InputError, match='at most 10 events'):
         run_offline(load_scene('paper_fig8'), 60.0)

@@ -4,7 +4,7 @@
 
 import pytest
 
-from stickslip_sim.offline import run_offline
+from stickslip_sim.runs.offline import run_offline
 from stickslip_sim.scene import load_scene
 
 FAULTS = {'faults.ids': ['dry', 'knock', 'stop'], 'faults.kinds': ['friction_scale', 'force_pulse', 'drive_freeze'],

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from stickslip_sim.grid import Grid
-from stickslip_sim.pacing import Pacer
+from stickslip_sim.core.time_grid import Grid
+from stickslip_sim.realtime.pacing import Pacer
 
 MS = 1_000_000
 

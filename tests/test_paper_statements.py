@@ -9,13 +9,13 @@ from pathlib import Path
 import pytest
 
 from stickslip_sim.cli.main import run
-from stickslip_sim.paper.fresh import simulate
-from stickslip_sim.paper.history import History
-from stickslip_sim.paper.recorded import history_of_run
-from stickslip_sim.paper.statement import Finding, Outcome
-from stickslip_sim.paper.statements import STATEMENTS, judged
+from stickslip_sim.compare.fresh import simulate
+from stickslip_sim.compare.history import History
+from stickslip_sim.compare.recorded import history_of_run
+from stickslip_sim.compare.statement import Finding, Outcome
+from stickslip_sim.compare.statements import STATEMENTS, judged
+from stickslip_sim.core.types import EventKind
 from stickslip_sim.scene import load_scene
-from stickslip_sim.words import EventKind
 
 HOLDS, FAILS, NOT_APPLICABLE = Outcome
 CONTINUITY, TWO_VALUES, OSCILLATION, LIMIT_CYCLE, CONTACT, LONG_REST = (statement.name for statement in STATEMENTS)

@@ -13,9 +13,9 @@ import pytest
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from stickslip_sim.offline import Columns, run_offline
 from stickslip_sim.plots import plot_run
-from stickslip_sim.plots.look import Numbers, legend_outside, thinned
+from stickslip_sim.plots.style import Numbers, legend_outside, thinned
+from stickslip_sim.runs.offline import Columns, run_offline
 from stickslip_sim.scene import load_scene
 
 PNG = b'\x89PNG\r\n\x1a\n'

@@ -13,7 +13,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from stickslip_sim.errors import RecordingError
+from stickslip_sim.core.errors import RecordingError
+from stickslip_sim.core.types import Event, Sample
 from stickslip_sim.recording import (
     RECORDED,
     MessageCodec,
@@ -22,7 +23,6 @@ from stickslip_sim.recording import (
     topics,
 )
 from stickslip_sim.recording.messages import Packer, header
-from stickslip_sim.words import Event, Sample
 from tests.recorded_runs import friction_force, mode_event, slider_state
 from tests.waiting import wait_for
 

@@ -8,7 +8,8 @@ from typing import Any
 import pytest
 from rosbags.rosbag2 import StoragePlugin, Writer
 
-from stickslip_sim.errors import RecordingError
+from stickslip_sim.core.errors import RecordingError
+from stickslip_sim.core.types import EventKind
 from stickslip_sim.recording import (
     RECORDED,
     BagWriter,
@@ -21,7 +22,6 @@ from stickslip_sim.recording import (
 from stickslip_sim.recording.messages import Packer
 from stickslip_sim.recording.schemas import store_of
 from stickslip_sim.recording.topics import MODE_EVENT, SLIDER_STATE
-from stickslip_sim.words import EventKind
 from tests.recorded_runs import events
 
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from stickslip_sim.errors import RecordingError, RecordingWarning
+from stickslip_sim.core.errors import RecordingError, RecordingWarning
 from stickslip_sim.recording import (
     RecorderThread,
     open_run,
@@ -90,7 +90,7 @@ class TestThread:
         recorder.put(0, b'', 0, 0, 0)
         assert (recorder.written, recorder.dropped) == (0, 1)
 
-    @pytest.mark.filterwarnings('ignore::stickslip_sim.errors.RecordingWarning')   # it is still being written
+    @pytest.mark.filterwarnings('ignore::stickslip_sim.core.errors.RecordingWarning')   # it is still being written
     def test_few_messages_reach_the_disk_within_a_second(self, tmp_path: Path) -> None:
         recorder = RecorderThread(open_run(tmp_path / 'run', FACTS))
         recorder.put(0, b'only one', 0, 0, 0)
@@ -141,7 +141,7 @@ print(recorder.failure, recorder.written, sep='|')
     def test_no_room_from_the_start(self, tmp_path: Path) -> None:
         code = f'''
 import resource
-from stickslip_sim.errors import RecordingError
+from stickslip_sim.core.errors import RecordingError
 from stickslip_sim.recording import open_run
 from tests.recorded_runs import FACTS
 resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))

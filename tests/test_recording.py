@@ -12,7 +12,8 @@ from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 
-from stickslip_sim.errors import RecordingError, RecordingWarning
+from stickslip_sim.core.errors import RecordingError, RecordingWarning
+from stickslip_sim.core.types import Sample
 from stickslip_sim.recording import (
     messages,
     open_run,
@@ -21,7 +22,6 @@ from stickslip_sim.recording import (
     samples_of,
     write_bag,
 )
-from stickslip_sim.words import Sample
 from tests.recorded_runs import FACTS, events, friction_force, mode_event, samples, slider_state
 
 COUNTS = {

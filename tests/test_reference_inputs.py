@@ -13,11 +13,11 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from stickslip_sim.axis import Axis, Friction, InitialState, RigidContact
-from stickslip_sim.courses import Course, Wave, constant, steps, table
-from stickslip_sim.errors import InputError, StickslipError
+from stickslip_sim.core.errors import InputError, StickslipError
+from stickslip_sim.core.input_profile import Course, Wave, constant, steps, table
+from stickslip_sim.core.types import EventKind, Mode
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
 from stickslip_sim.reference import simulate
-from stickslip_sim.words import EventKind, Mode
 from tests.axes import COMPLIANT, RIGID, of_kind, paper_axis
 from tests.conftest import Program
 
@@ -266,8 +266,8 @@ def test_missing_mpmath_is_one_line(in_a_process: Program) -> None:
 import sys
 sys.modules['mpmath'] = None
 from stickslip_sim.axis import InitialState
-from stickslip_sim.courses import constant
-from stickslip_sim.errors import {StickslipError.__name__}
+from stickslip_sim.core.input_profile import constant
+from stickslip_sim.core.errors import {StickslipError.__name__}
 from stickslip_sim.reference import simulate
 from tests.axes import RIGID, paper_axis
 try:

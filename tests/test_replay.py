@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 from mcap.writer import Writer
 
-from stickslip_sim.errors import RecordingWarning
+from stickslip_sim.core.errors import RecordingWarning
 from stickslip_sim.recording import open_run, read_run, schema, write_bag
 from stickslip_sim.recording.topics import CLOCK, PARAMETER_EVENTS, RECORDED, SLIDER_STATE, Topic
 from tests.recorded_runs import FACTS, damage, events, samples
@@ -26,7 +26,7 @@ from std_srvs.srv import SetBool, Trigger  # isort: skip
 
 from stickslip_msgs.msg import SliderState  # isort: skip
 from stickslip_sim.ros.replay.settings import PARAMETERS  # isort: skip
-from stickslip_sim.ros.topics import message_type, qos  # isort: skip
+from stickslip_sim.ros.node.topics import message_type, qos  # isort: skip
 
 pytestmark = pytest.mark.ros
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from mcap.writer import CompressionType, Writer
 
-from stickslip_sim.errors import RecordingError
+from stickslip_sim.core.errors import RecordingError
 from stickslip_sim.recording import QosProfile, write_bag
 from stickslip_sim.recording.playback import Recording
 from stickslip_sim.recording.topics import RECORDED

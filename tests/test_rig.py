@@ -11,19 +11,19 @@ from typing import Any
 import pytest
 
 from stickslip_sim.axis import InitialState
-from stickslip_sim.courses import Course, Wave, constant
-from stickslip_sim.errors import InputError, SolverError
-from stickslip_sim.grid import Grid
-from stickslip_sim.pacing import Unpaced
+from stickslip_sim.core.errors import InputError, SolverError
+from stickslip_sim.core.input_profile import Course, Wave, constant
+from stickslip_sim.core.time_grid import Grid
+from stickslip_sim.core.types import EventKind
+from stickslip_sim.realtime.pacing import Unpaced
+from stickslip_sim.realtime.step_loop import StepLoop
+from stickslip_sim.realtime.watchdog import Watchdog
 from stickslip_sim.rig import Fault, Product, Rig
 from stickslip_sim.rig.drive import DriveLimits
 from stickslip_sim.rig.encoder import EncoderSettings
 from stickslip_sim.rig.settings import RigSettings
-from stickslip_sim.rig.watchdog import Watchdog
-from stickslip_sim.ros.loop import StepLoop
 from stickslip_sim.scene import load_scene
-from stickslip_sim.simulator import Simulator
-from stickslip_sim.words import EventKind
+from stickslip_sim.simulation.simulator import Simulator
 from tests.rigs import AXIS, STUCK, Order, Script, bits, inject, make, random_script, run, tired_after
 
 STEPS = 600

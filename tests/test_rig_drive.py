@@ -10,11 +10,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from stickslip_sim.axis import InitialState
-from stickslip_sim.courses import Course, Wave, constant
+from stickslip_sim.core.input_profile import Course, Wave, constant
+from stickslip_sim.core.types import Instant
 from stickslip_sim.rig import Fault, NoteKind, Product, Rig
 from stickslip_sim.rig.drive import Drive, DriveLimits
-from stickslip_sim.simulator import Simulator
-from stickslip_sim.words import Instant
+from stickslip_sim.simulation.simulator import Simulator
 from tests.rigs import AXIS, Order, bits, inject, make, run, told
 
 WAVY = Course((0.0,), (0.002,), (0.0,), waves=(Wave(1e-3, 3.0, 0.4), Wave(5e-4, 11.0, 0.0)))

@@ -7,9 +7,9 @@ import pathlib
 
 import pytest
 
+from stickslip_sim.config.ros_yaml import plain_value
 from stickslip_sim.scene import load_scene, scene_from_values, scene_names
 from stickslip_sim.scene.load import _SHIPPED
-from stickslip_sim.scene.ros_yaml import plain_value
 from tests.scene_files import HEAD, write
 
 rclpy = pytest.importorskip('rclpy')

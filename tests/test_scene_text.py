@@ -7,8 +7,8 @@ import math
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from stickslip_sim.config.ros_yaml import read_yaml
 from stickslip_sim.scene import load_scene, scene_from_values
-from stickslip_sim.scene.ros_yaml import read_yaml
 from stickslip_sim.scene.sections import parameters_of
 
 masses = st.floats(1e-9, 1e12)

@@ -6,14 +6,14 @@ from pathlib import Path
 
 import pytest
 
-from stickslip_sim import offline
-from stickslip_sim.courses import MAX_WAVES
+from stickslip_sim.config import parameter, ros_yaml
+from stickslip_sim.core.input_profile import MAX_WAVES
 from stickslip_sim.friction.kinetic import MAX_KNOTS
 from stickslip_sim.recording import opening, reader, records, schemas
-from stickslip_sim.rerun import steps
 from stickslip_sim.rig.faults import MAX_FAULTS
-from stickslip_sim.scene import parameter, ros_yaml
+from stickslip_sim.runs import offline
 from stickslip_sim.study import folder
+from stickslip_sim.verify import steps
 
 ROWS = [line for line in (Path(__file__).parents[1] / 'docs/security.md').read_text().splitlines() if '|' in line]
 
@@ -39,8 +39,8 @@ def test_limits(what: str, limits: tuple[int, ...]) -> None:
 def test_limits_of_the_node() -> None:
     pytest.importorskip('rclpy')
     from stickslip_msgs.srv import Step
-    from stickslip_sim.ros.bounded_node import MOST_PARAMETERS
-    from stickslip_sim.ros.topics import COMMAND_SIZE
+    from stickslip_sim.ros.node.bounded_node import MOST_PARAMETERS
+    from stickslip_sim.ros.node.topics import COMMAND_SIZE
 
     page = '\n'.join(ROWS)
     assert f'| a message on a command topic | {COMMAND_SIZE} bytes |' in page

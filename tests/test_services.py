@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from stickslip_sim.errors import InputError
+from stickslip_sim.core.errors import InputError
 from stickslip_sim.recording import read_run
 from stickslip_sim.rig import Fault
 from stickslip_sim.rig.faults import RULES

@@ -6,9 +6,9 @@ import itertools
 
 import pytest
 
+from stickslip_sim.core.types import Event, EventKind, Mode, Sample
 from stickslip_sim.scene import load_scene
-from stickslip_sim.simulator import Simulator
-from stickslip_sim.words import Event, EventKind, Mode, Sample
+from stickslip_sim.simulation.simulator import Simulator
 from tests.axes import instant
 
 

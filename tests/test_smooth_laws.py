@@ -11,13 +11,13 @@ import pytest
 from benchmarks.smooth_reference import SmoothEvent, SmoothRun
 from benchmarks.smooth_tables import CASES, FEED, LAW, axis_of, compared, knots_on_the_curve, smooth_events
 from stickslip_sim.axis import CompliantContact, RigidContact
-from stickslip_sim.errors import InputError
+from stickslip_sim.core.errors import InputError
+from stickslip_sim.core.types import EventKind
 from stickslip_sim.friction import KineticTable, SmoothExcess, SmoothKinetic, excess_table, kinetic_table
 from stickslip_sim.friction.kinetic import MAX_KNOTS, default_excess
 from stickslip_sim.friction.smooth import cosine, exponential, hyperbolic, power, stribeck
 from stickslip_sim.scene import load_scene, scene_from_values
-from stickslip_sim.simulator import Simulator
-from stickslip_sim.words import EventKind
+from stickslip_sim.simulation.simulator import Simulator
 from tests.axes import COMPLIANT, RIGID, instant
 from tests.scene_files import refusal
 

@@ -8,16 +8,16 @@ from collections.abc import Iterator
 import pytest
 
 from stickslip_sim.axis import InitialState
-from stickslip_sim.commands import CommandSlot
-from stickslip_sim.courses import constant
-from stickslip_sim.grid import Grid
-from stickslip_sim.pacing import Pacer, Unpaced
+from stickslip_sim.core.input_profile import constant
+from stickslip_sim.core.time_grid import Grid
+from stickslip_sim.core.types import Instant
+from stickslip_sim.realtime.command_slot import CommandSlot
+from stickslip_sim.realtime.pacing import Pacer, Unpaced
+from stickslip_sim.realtime.step_loop import StepLoop
+from stickslip_sim.realtime.watchdog import Watchdog
 from stickslip_sim.rig import Product, Rig
 from stickslip_sim.rig.settings import RigSettings
-from stickslip_sim.rig.watchdog import Watchdog
-from stickslip_sim.ros.loop import StepLoop
 from stickslip_sim.solvers import Solver, exact
-from stickslip_sim.words import Instant
 from tests.axes import COMPLIANT, make, paper_axis
 from tests.rigs import make as make_rig
 from tests.rigs import tired_after

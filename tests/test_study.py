@@ -10,16 +10,16 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from stickslip_sim.analysis import cycle_figures
-from stickslip_sim.errors import InputError
-from stickslip_sim.extremes.runs import elapsed
-from stickslip_sim.offline import run_offline
+from stickslip_sim.core.errors import InputError
+from stickslip_sim.core.types import Event, EventKind, Mode
+from stickslip_sim.extremes.shared_axes import elapsed
+from stickslip_sim.runs.offline import run_offline
 from stickslip_sim.scene import Scene, load_scene
+from stickslip_sim.simulation.cycles import cycle_figures
 from stickslip_sim.study import MOTIONS, Figures, Grid, Motion, Sobol, Study, variation
-from stickslip_sim.study.figures import RUN_FIELDS
+from stickslip_sim.study.point_figures import RUN_FIELDS
 from stickslip_sim.study.points import runs_alone
 from stickslip_sim.study.theory import critical_feed, feed_of_theory
-from stickslip_sim.words import Event, EventKind, Mode
 
 CONSTANT = {'friction.static.law': 'constant', 'friction.static.initial': 0.24,
             'friction.kinetic.velocities': [0.0], 'friction.kinetic.coefficients': [0.12]}

@@ -14,10 +14,10 @@ import numpy as np
 import pytest
 
 from stickslip_sim.cli.main import run
-from stickslip_sim.study import Study, room
+from stickslip_sim.study import Study, resources
 from stickslip_sim.study.description import study_of
-from stickslip_sim.study.figures import FIGURES
 from stickslip_sim.study.folder import PARQUET, PARTIAL, SIDECAR, TABLE, Folder
+from stickslip_sim.study.point_figures import FIGURES
 from stickslip_sim.study.table import header, read_columns
 from tests.tool import Capture, refused, restore_interrupt
 
@@ -247,7 +247,7 @@ def test_two_processes_do_not_share_a_folder(tmp_path: Path, uninterrupted: byte
 
 def test_more_workers_than_memory_holds_are_refused(tmp_path: Path, capsys: Capture,
                                                     monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(room, 'free_memory', lambda: 200_000_000)
+    monkeypatch.setattr(resources, 'free_memory', lambda: 200_000_000)
     monkeypatch.setattr(os, 'sched_getaffinity', lambda _: range(5))
     for workers in ('5', 'all'):
         error = refused(capsys, 'sweep', *SMALL, '--workers', workers, '--out', tmp_path / 'out')

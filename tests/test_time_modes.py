@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from stickslip_sim.errors import InputError
-from stickslip_sim.offline import run_offline
+from stickslip_sim.core.errors import InputError
 from stickslip_sim.recording import Run, read_run
+from stickslip_sim.runs.offline import run_offline
 from stickslip_sim.scene import Scene, load_scene
 from tests.replays import FIELDS, assert_same_states, made_again
 from tests.rigs import run

@@ -9,11 +9,11 @@ import pytest
 from numpy.typing import NDArray
 from scipy import stats
 
-from stickslip_sim.errors import InputError
+from stickslip_sim.core.errors import InputError
 from stickslip_sim.scene import load_scene
 from stickslip_sim.study import Distribution, Saltelli, Study
 from stickslip_sim.study.description import description, study_of
-from stickslip_sim.study.figures import FIGURES, Motion
+from stickslip_sim.study.point_figures import FIGURES, Motion
 from stickslip_sim.study.uncertain_file import uncertain_of
 from stickslip_sim.study.uncertainty import PERCENTS, sobol_indices, uncertainty_of
 

@@ -11,8 +11,8 @@ import pytest
 from stickslip_sim.cli.main import run
 from stickslip_sim.recording import flat_layout, read_run
 from stickslip_sim.recording.topics import FRICTION_FORCE, SLIDER_STATE, Topic
-from stickslip_sim.rerun.original import open_original
-from stickslip_sim.rerun.verdict import verify
+from stickslip_sim.verify.original import open_original
+from stickslip_sim.verify.verification import verify
 from tests.rewritten_bags import rewritten
 from tests.tool import Capture
 from tests.verify_tool import verified

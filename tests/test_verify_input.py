@@ -9,12 +9,12 @@ from random import Random
 import pytest
 
 from stickslip_sim.cli.main import run
-from stickslip_sim.errors import StickslipError
-from stickslip_sim.offline import run_offline
-from stickslip_sim.receipt import plain
-from stickslip_sim.rerun.original import open_original
+from stickslip_sim.core.errors import StickslipError
+from stickslip_sim.core.types import EventKind
+from stickslip_sim.runs.offline import run_offline
+from stickslip_sim.runs.receipt import plain
 from stickslip_sim.scene import load_scene
-from stickslip_sim.words import EventKind
+from stickslip_sim.verify.original import open_original
 from tests.rewritten_bags import rewritten
 from tests.tool import Capture
 from tests.verify_tool import refused, verified

@@ -10,9 +10,9 @@ import pytest
 
 from stickslip_sim.cli.main import run as tool
 from stickslip_sim.recording import read_run
-from stickslip_sim.rerun.original import open_original
-from stickslip_sim.rerun.verdict import Verdict, verify
 from stickslip_sim.rig import NoteKind
+from stickslip_sim.verify.original import open_original
+from stickslip_sim.verify.verification import Verdict, verify
 from tests.rewritten_bags import rewritten
 from tests.ros_nodes import Client, client, running
 

@@ -7,13 +7,13 @@ from collections.abc import Callable, Mapping
 
 import pytest
 
-from stickslip_sim.commands import CommandSlot
-from stickslip_sim.errors import InputError
-from stickslip_sim.grid import Grid
-from stickslip_sim.pacing import Pacer, StepClock, Unpaced
+from stickslip_sim.core.errors import InputError
+from stickslip_sim.core.time_grid import Grid
+from stickslip_sim.realtime.command_slot import CommandSlot
+from stickslip_sim.realtime.pacing import Pacer, StepClock, Unpaced
+from stickslip_sim.realtime.step_loop import StepLoop
+from stickslip_sim.realtime.watchdog import Watchdog
 from stickslip_sim.rig import NoteKind, Product
-from stickslip_sim.rig.watchdog import Watchdog
-from stickslip_sim.ros.loop import StepLoop
 from stickslip_sim.scene import load_scene
 from tests.rigs import make, told
 from tests.test_pacing import FakeClock

@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from stickslip_sim.grid import Grid
+from stickslip_sim.core.time_grid import Grid
 from stickslip_sim.rig import Fault, NoteKind
-from stickslip_sim.rig.wire import Wire
+from stickslip_sim.rig.command_channel import Wire
 from tests.rigs import Order, Script, inject, make, run, told
 
 GRID = Grid(1000.0)

@@ -23,14 +23,14 @@ from rclpy.serialization import serialize_message
 from rclpy.signals import SignalHandlerOptions
 
 from stickslip_msgs.msg import DriveVelocity, ExternalForce, FrictionForce, SliderState
-from stickslip_sim.grid import Grid
-from stickslip_sim.pacing import Pacer, wake_precisely
+from stickslip_sim.core.time_grid import Grid
+from stickslip_sim.realtime.pacing import Pacer, wake_precisely
+from stickslip_sim.realtime.timing_statistics import Ledger
 from stickslip_sim.recording import RECORDED, RecorderThread, RunFacts, open_run
 from stickslip_sim.recording import topics as names
-from stickslip_sim.ros.conversion import set_stamp
-from stickslip_sim.ros.ledger import Ledger
-from stickslip_sim.ros.life import make_executor
-from stickslip_sim.ros.topics import publisher, subscription
+from stickslip_sim.ros.node.conversion import set_stamp
+from stickslip_sim.ros.node.topics import publisher, subscription
+from stickslip_sim.ros.process.program import make_executor
 
 POLL = 0.1                # s
 SWITCH_INTERVAL = 2e-4    # s, as in sim_node

@@ -22,8 +22,8 @@ from rclpy.qos import QoSProfile
 
 from stickslip_msgs.msg import DriveVelocity, SliderState
 from stickslip_sim.recording import topics as names
-from stickslip_sim.ros.life import make_executor
-from stickslip_sim.ros.topics import publisher
+from stickslip_sim.ros.node.topics import publisher
+from stickslip_sim.ros.process.program import make_executor
 
 from ..loop import cpu_seconds
 from .process import waited_seconds

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from hypothesis.strategies import DrawFn, SearchStrategy
 
 from stickslip_sim.axis import Axis, CompliantContact, Friction, InitialState, RigidContact
-from stickslip_sim.courses import Course, Wave, constant, ramp, steps, table
+from stickslip_sim.core.input_profile import Course, Wave, constant, ramp, steps, table
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
 from stickslip_sim.friction.kinetic import default_excess
 

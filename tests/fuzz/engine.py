@@ -6,10 +6,10 @@ import math
 from collections.abc import Sequence
 from itertools import pairwise
 
-from stickslip_sim.errors import SolverError
-from stickslip_sim.extremes.runs import instant, scaled
-from stickslip_sim.simulator import Simulator
-from stickslip_sim.words import Event, EventKind, Mode, Sample
+from stickslip_sim.core.errors import SolverError
+from stickslip_sim.core.types import Event, EventKind, Mode, Sample
+from stickslip_sim.extremes.shared_axes import instant, scaled
+from stickslip_sim.simulation.simulator import Simulator
 
 from .axes import Case
 

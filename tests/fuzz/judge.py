@@ -5,12 +5,12 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from stickslip_sim.errors import SolverError
+from stickslip_sim.core.errors import SolverError
+from stickslip_sim.core.types import Event
 from stickslip_sim.extremes.against import error_of_events
 from stickslip_sim.extremes.outcome import Missed
-from stickslip_sim.extremes.runs import instant
+from stickslip_sim.extremes.shared_axes import instant
 from stickslip_sim.reference import simulate
-from stickslip_sim.words import Event
 
 from .axes import Case
 from .engine import simulator

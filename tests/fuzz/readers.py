@@ -11,18 +11,18 @@ from typing import Any
 from stickslip_sim.check.limits import limits_of
 from stickslip_sim.check.sources import recorded
 from stickslip_sim.cli.export import csv_lines
-from stickslip_sim.errors import LINE_LIMIT, RecordingWarning, StickslipError
-from stickslip_sim.paper.recorded import history_of_run
+from stickslip_sim.compare.recorded import history_of_run
+from stickslip_sim.config.ros_yaml import read_yaml
+from stickslip_sim.core.errors import LINE_LIMIT, RecordingWarning, StickslipError
 from stickslip_sim.recording import Run, read_run
 from stickslip_sim.recording.playback import Recording
-from stickslip_sim.rerun.original import open_original
-from stickslip_sim.rerun.verdict import verify
 from stickslip_sim.scene import load_scene, parse_override, parse_scene
-from stickslip_sim.scene.ros_yaml import read_yaml
 from stickslip_sim.study import Grid, Study, variation
 from stickslip_sim.study.pictures import check_drawable, point_of
 from stickslip_sim.study.uncertain_file import uncertain_of
 from stickslip_sim.study.variation import range_of
+from stickslip_sim.verify.original import open_original
+from stickslip_sim.verify.verification import verify
 
 from .studies import Edited
 from .tool import tool

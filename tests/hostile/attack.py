@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
-from stickslip_sim.errors import InputError, SolverError, UnsoundError
+from stickslip_sim.core.errors import InputError, SolverError, UnsoundError
 
 from .case import Case, Find, LastBits, Run, Undecided, run
 from .generators import GENERATORS, PLAUSIBLE

@@ -8,11 +8,11 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 from stickslip_sim.axis import Axis, InitialState
-from stickslip_sim.courses import Course
-from stickslip_sim.energy import EnergyBalance
+from stickslip_sim.core.energy import EnergyBalance
+from stickslip_sim.core.input_profile import Course
+from stickslip_sim.core.types import Event, Instant, Sample
 from stickslip_sim.scene import Scene, scene_from_values
-from stickslip_sim.simulator import Simulator
-from stickslip_sim.words import Event, Instant, Sample
+from stickslip_sim.simulation.simulator import Simulator
 
 Values = dict[str, Any]
 MOST_EVENTS = 120        # of a run that is judged; what comes later is cut off

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from stickslip_sim.axis import Axis, CompliantContact, Friction, InitialState, RigidContact
-from stickslip_sim.courses import Course, Wave
+from stickslip_sim.core.input_profile import Course, Wave
 from stickslip_sim.friction import ExcessTable, KineticTable, StaticLaw, StaticLawKind
 from stickslip_sim.friction.kinetic import default_excess
 from stickslip_sim.reference import ReferenceRun, simulate

@@ -6,14 +6,14 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import NamedTuple, TypeVar
 
 from ..bench.measure import Cost
-from ..errors import InputError
-from ..estimate import ErrorEstimate, error_estimate
+from ..core.errors import InputError
+from ..runs.error_estimate import ErrorEstimate, error_estimate
 from ..scene import Scene
 from .absent import absent_parts
 from .parts import parts_of
-from .runs import Reference, Trial, costs, reference_of, try_changes, with_costs
+from .recommendation import Least, PartTrial, best_trial, least_scene
 from .settings import solver_settings
-from .verdict import Least, PartTrial, best_trial, least_scene
+from .trial_runs import Reference, Trial, costs, reference_of, try_changes, with_costs
 
 _FINER = 0.1   # of the stated error of a table, to see what that error does
 _MEASURING = 10   # items of work, about, that all costs together are

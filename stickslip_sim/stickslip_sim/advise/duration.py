@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """How long to simulate: what may be asked for, and what is enough when nobody says."""
 
-from ..errors import InputError
-from ..offline import run_offline
+from ..core.errors import InputError
+from ..runs.offline import run_offline
 from ..scene import Scene, changed
-from .runs import BY_EXACT
+from .trial_runs import BY_EXACT
 
 _CYCLES = 20
 _SHORTEST, _LONGEST = 10.0, 320.0   # s

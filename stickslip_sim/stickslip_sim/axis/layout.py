@@ -57,7 +57,7 @@ WAVE_FREQUENCY, WAVE_PHASE, WAVE_V, WAVE_F, WAVE_TURNS, WAVE_SINE, WAVE_COSINE, 
 WAVE_INPUTS = 4
 WAVE_SIZE = 9
 
-# a row of the event table; words.Event has the same order
+# a row of the event table; types.Event has the same order
 (EVENT_SECOND, EVENT_FRACTION, EVENT_KIND, EVENT_MODE, EVENT_DIRECTION, EVENT_POSITION, EVENT_VELOCITY, EVENT_DRIVE,
  EVENT_DRIVE_FORCE, EVENT_FRICTION, EVENT_STATIC, EVENT_REST) = range(12)
 EVENT_SIZE = 12
@@ -65,5 +65,5 @@ EVENT_SIZE = 12
 # a row of energies; energy.EnergyBalance has the same order
 ENERGY_SIZE = 10
 
-# a row of samples; words.Sample has the same order
+# a row of samples; types.Sample has the same order
 SAMPLE_SIZE = 15

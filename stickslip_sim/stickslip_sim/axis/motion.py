@@ -15,10 +15,10 @@ with w = s − x, and b the slope of the friction branch on the present piece of
 their own answer, see `waves`.
 """
 
-from ..compiled import compiled, inlined
+from ..core.jit import compiled, inlined
 from ..friction.static import static_coefficient
 from ..linear.oscillator import integrals, oscillator, short_integrals
-from ..words import Mode
+from ..core.types import Mode
 from .layout import (
     ACCELERATION, AT, AT_FIRST, AT_G, AT_RATE, AT_SECOND, BASE_V, BRANCHES, COMPLIANT, CONTACT_DAMPING,
     CONTACT_STIFFNESS, DAMPING, DEFLECTION, DIRECTION, DRIVE, EXCESS, F, FAST, FRACTION, F_RATE, GAMMA, NEAR,

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ..errors import InputError
+from ..core.errors import InputError
 from ..friction import ExcessTable, KineticTable, StaticLaw
 from ..friction.kinetic import merged_knots
 

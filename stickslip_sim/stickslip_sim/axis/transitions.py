@@ -6,8 +6,8 @@ Ties are decided by where the force moves next: a residual within rounding of ze
 rate, then of the rate's rate, decides.
 """
 
-from ..compiled import compiled, inlined
-from ..words import EventKind
+from ..core.jit import compiled, inlined
+from ..core.types import EventKind
 from .layout import (
     ACCELERATION, COMPLIANT, CONTACT_STIFFNESS, DAMPING, DEFLECTION, DIRECTION, DRIVE, EVENT_DIRECTION, EVENT_DRIVE,
     EVENT_DRIVE_FORCE, EVENT_FRACTION, EVENT_FRICTION, EVENT_KIND, EVENT_MODE, EVENT_POSITION, EVENT_REST, EVENT_SECOND,

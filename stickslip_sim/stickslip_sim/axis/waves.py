@@ -13,7 +13,7 @@ not depend on how a run is split.
 
 import math
 
-from ..compiled import compiled
+from ..core.jit import compiled
 from ..linear.waves import TURN, phase_at, turns, wave_response
 from .layout import (
     BASE_F, BASE_V, DAMPING, F, FRACTION, F_RATE, MASS, SECOND, STATE_SIZE, STIFFNESS, V, VELOCITY, V_RATE, WAVES,

@@ -5,8 +5,8 @@
 import math
 
 from ..axis import Axis, CompliantContact, Friction, InitialState, RigidContact
-from ..courses import Course, constant
-from ..errors import InputError
+from ..core.errors import InputError
+from ..core.input_profile import Course, constant
 from ..friction import KineticTable, StaticLaw, StaticLawKind
 from ..friction.kinetic import default_excess
 from ..scene import load_scene, scene_names

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Who races: the solvers of this product, and the peers."""
 
-from .own import own_solvers
+from .own_solvers import own_solvers
 from .peers import dop853, euler, mujoco, scipy_ivp, sksundae, sundials
 from .peers.peer import Peer
 

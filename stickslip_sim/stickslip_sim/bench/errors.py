@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
-from ..words import Event, EventKind
+from ..core.types import Event, EventKind
 from .problem import Outcome
 
 BOUNDARIES = (EventKind.BREAKAWAY, EventKind.STICK, EventKind.REVERSE)

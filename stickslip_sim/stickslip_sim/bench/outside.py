@@ -13,7 +13,7 @@ from collections.abc import Iterator
 
 from .cases import make_case
 from .measure import measure
-from .own import exact_solver
+from .own_solvers import exact_solver
 from .peers import scipy_ivp
 from .peers.peer import EXACT, Setting
 from .ratios import Ratio, at_least, at_most
@@ -25,8 +25,8 @@ _COLD_MARK, _START_MARK, _START_AIM = 6.0, 0.6, 0.2       # s
 # up to the first slip: an axis that nothing has moved yet needs little of the hot path
 FIRST_SLIP = '''
 from stickslip_sim.scene import load_scene
-from stickslip_sim.simulator import Simulator
-from stickslip_sim.words import Instant
+from stickslip_sim.simulation.simulator import Simulator
+from stickslip_sim.core.types import Instant
 scene = load_scene('paper_fig8')
 simulator = Simulator(scene.axis, scene.initial, scene.drive, scene.force)
 simulator.advance(Instant(0.0, 0.8))

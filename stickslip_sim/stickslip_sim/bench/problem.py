@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..axis import Axis, InitialState, pack
-from ..courses import Course
+from ..core.input_profile import Course
 
 Numbers = NDArray[np.float64]
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
-from ..errors import SolverError
+from ..core.errors import SolverError
 from ..reference import simulate as simulate_reference
 from .errors import Errors, Truth, errors_of
 from .measure import Cost, measure, sample

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from ..axis import Axis
-from ..batch import run_batch
-from ..courses import constant
+from ..core.input_profile import constant
+from ..runs.batch import run_batch
 from .cases import make_case
 from .measure import sample
 from .peers import scipy_ivp

@@ -5,8 +5,8 @@
 from collections.abc import Sequence
 from xml.etree import ElementTree
 
-from .report import told
-from .verdict import Outcome
+from .check_report import told
+from .judgement import Outcome
 
 
 def junit_text(name: str, outcomes: Sequence[Outcome]) -> str:

@@ -10,13 +10,13 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ..errors import InputError
+from ..config.ros_yaml import read_yaml
+from ..config.strict import section
+from ..core.errors import InputError
 from ..scene import Parameter
 from ..scene.load import named, read_text
-from ..scene.ros_yaml import read_yaml
-from ..scene.strict import section
 from .kinds import FARTHEST, KINDS, TARGET, TIMING, Kind
-from .motion import Reference
+from .observed_motion import Reference
 
 _LATEST = 1e15   # s, as in a scene
 _PAGE = 'docs/check.md'

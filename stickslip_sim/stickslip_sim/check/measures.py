@@ -12,10 +12,10 @@ from typing import NamedTuple
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
-from ..analysis import cycle_figures, mode_spans
-from ..errors import InputError
-from ..words import EventKind, Mode
-from .motion import Motion, Points
+from ..core.errors import InputError
+from ..core.types import EventKind, Mode
+from ..simulation.cycles import cycle_figures, mode_spans
+from .observed_motion import Motion, Points
 
 
 class Measured(NamedTuple):

@@ -12,12 +12,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import RecordingError, RecordingWarning, one_line
-from ..offline import Trajectory
+from ..core.errors import RecordingError, RecordingWarning, one_line
+from ..core.types import EventKind, Mode
 from ..recording import Run, columns_of, events_of, read_run
 from ..recording.topics import SLIDER_STATE
-from ..words import EventKind, Mode
-from .motion import Motion
+from ..runs.offline import Trajectory
+from .observed_motion import Motion
 
 _STATE_FIELDS = ('step', 'time', 'position', 'velocity', 'drive_position', 'mode')
 

@@ -30,9 +30,9 @@ def advise(scene: str, tolerance: float, duration: float | None, changes: tuple[
     """Run SCENE without each of its parts and with each solver; print what changes, and the least that T asks for."""
     _check(out, scene_out)
     from ..advise import advice as work
+    from ..advise.advice_report import as_json, text_lines, verdict_lines
     from ..advise.duration import check_duration, default_duration
-    from ..advise.report import as_json, text_lines, verdict_lines
-    from ..advise.runs import changes_between
+    from ..advise.trial_runs import changes_between
     from ..scene import load_scene, parse_override
     from ..scene.values import overridden
     from .progress import progress_bar
@@ -55,7 +55,7 @@ def advise(scene: str, tolerance: float, duration: float | None, changes: tuple[
 
 def _check(out: str | None, scene_out: str | None) -> None:
     """Raise before the work begins when an output cannot be written."""
-    from ..errors import InputError
+    from ..core.errors import InputError
 
     targets = [(option, path) for option, path in (('--out', out), ('--scene-out', scene_out)) if path is not None]
     for option, path in targets:

@@ -32,8 +32,8 @@ def bench(chosen: tuple[str, ...], more: tuple[str, ...], out: str | None, round
     from ..bench.contestants import contestants
     from ..bench.outside import outside_ratios
     from ..bench.race import race
+    from ..bench.race_report import as_json, marks_table, text_table
     from ..bench.ratios import ratios
-    from ..bench.report import as_json, marks_table, text_table
     from ..bench.throughput import batch_ratios
     from .progress import progress_bar
 
@@ -53,13 +53,13 @@ def bench(chosen: tuple[str, ...], more: tuple[str, ...], out: str | None, round
 
 def _compile_here() -> None:
     """Have numba compile the hot path as it compiles the rivals: the race runs loops of its own around it."""
-    if 'stickslip_sim.compiled' not in sys.modules:
+    if 'stickslip_sim.core.jit' not in sys.modules:
         os.environ.setdefault('STICKSLIP_COMPILED', 'jit')
 
 
 def _made(path: str) -> Path:
     """Make the folder before the work begins; an earlier benchmark in it is replaced."""
-    from ..errors import InputError
+    from ..core.errors import InputError
 
     folder = Path(path)
     try:
@@ -71,7 +71,7 @@ def _made(path: str) -> Path:
 
 def _write(folder: Path, data: dict[str, Any]) -> None:
     from ..bench.cases import LETTERS
-    from ..bench.report import markdown
+    from ..bench.race_report import markdown
     from ..plots import Line, plot_trade
 
     write_text(str(folder / 'bench.json'), [json.dumps(data, indent=1, allow_nan=False) + '\n'])

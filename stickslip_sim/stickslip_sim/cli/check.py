@@ -26,12 +26,12 @@ def check(source: str, limits_file: str, duration: float | None, changes: tuple[
           json_file: str | None) -> None:
     """Check RUN_OR_SCENE - a run folder, or a scene to simulate - against limits; exit with 3 when one is not kept."""
     _check_outputs(junit, json_file)
+    from ..check.check_report import as_json, failures, verdict_line
+    from ..check.judgement import judge
     from ..check.junit import junit_text
     from ..check.limits import load_limits
-    from ..check.report import as_json, failures, verdict_line
-    from ..check.verdict import judge
-    from ..errors import VerdictError
-    from .verdicts import table_lines
+    from ..core.errors import VerdictError
+    from .check_table import table_lines
 
     limits = load_limits(limits_file)
     evidence = _evidence(source, limits, duration, changes)
@@ -71,7 +71,7 @@ def _simulated(source: str, limits: 'Limits', duration: float, changes: tuple[st
     """Return the motion of a scene with a sample each step, as its node would record it."""
     from ..check.limits import check_fit
     from ..check.sources import simulated
-    from ..offline import check_times, run_offline
+    from ..runs.offline import check_times, run_offline
     from ..scene import load_scene, parse_override
     from .progress import progress_bar
 

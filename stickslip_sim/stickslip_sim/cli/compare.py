@@ -11,8 +11,8 @@ from .files import check_new_folder, new_folder
 from .sources import is_recorded
 
 if TYPE_CHECKING:
-    from ..paper.history import History
-    from ..paper.report import Judged
+    from ..compare.history import History
+    from ..compare.report_folder import Judged
 
 _MOST = 8   # runs, rows of a picture
 
@@ -30,8 +30,8 @@ def compare(runs: tuple[str, ...], out: str, duration: float | None, changes: tu
     to a run does not hold.
     """
     _check(runs, out, duration, changes)
-    from ..errors import VerdictError
-    from ..paper.report import write_report
+    from ..compare.report_folder import write_report
+    from ..core.errors import VerdictError
     from .progress import progress_bar
 
     histories = []
@@ -52,7 +52,7 @@ def compare(runs: tuple[str, ...], out: str, duration: float | None, changes: tu
 
 def _check(runs: tuple[str, ...], out: str, duration: float | None, changes: tuple[str, ...]) -> None:
     """Raise before the work begins when the output cannot be written or an option has no effect."""
-    from ..errors import InputError
+    from ..core.errors import InputError
 
     check_new_folder('--out', out)
     if len(runs) > _MOST:
@@ -65,8 +65,8 @@ def _check(runs: tuple[str, ...], out: str, duration: float | None, changes: tup
 
 def _history(run: str, duration: float | None, changes: tuple[str, ...]) -> 'History':
     from ..advise.duration import default_duration
-    from ..paper.fresh import simulate
-    from ..paper.recorded import history_of_run
+    from ..compare.fresh import simulate
+    from ..compare.recorded import history_of_run
     from ..scene import load_scene, parse_override
 
     if is_recorded(run):

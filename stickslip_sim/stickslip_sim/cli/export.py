@@ -75,7 +75,7 @@ def _cells(column: 'NDArray[Any]') -> list[object]:
 
 
 def _check_parquet(path: str) -> None:
-    from ..errors import InputError
+    from ..core.errors import InputError
 
     if not (find_spec('pandas') and (find_spec('fastparquet') or find_spec('pyarrow'))):
         raise InputError('--parquet', path, 'written by pandas with fastparquet or pyarrow, which are not installed',

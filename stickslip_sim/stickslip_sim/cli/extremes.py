@@ -21,10 +21,10 @@ def extremes(only: str | None, quick: bool, out: str | None) -> None:
     if out is not None:
         _check_out(out)
     _check_mpmath()
-    from ..errors import VerdictError
+    from ..core.errors import VerdictError
     from ..extremes.outcome import Setup
+    from ..extremes.result_table import headline, json_text, markdown_text, row
     from ..extremes.suite import chosen, judged
-    from ..extremes.tables import headline, json_text, markdown_text, row
 
     selected = chosen([number.strip().upper() for number in only.split(',')] if only is not None else [])
     print(headline())
@@ -45,7 +45,7 @@ def extremes(only: str | None, quick: bool, out: str | None) -> None:
 
 
 def _check_out(out: str) -> None:
-    from ..errors import InputError
+    from ..core.errors import InputError
     if Path(out).suffix not in _FORMATS:
         raise InputError('--out', out, 'a file ending in .json or .md', 'name it so')
     check_file('--out', out)
@@ -54,7 +54,7 @@ def _check_out(out: str) -> None:
 def _check_mpmath() -> None:
     from importlib.util import find_spec
 
-    from ..errors import InputError
+    from ..core.errors import InputError
     if find_spec('mpmath') is None:
         raise InputError('mpmath', None, 'installed: the figures are judged in its arithmetic', 'pip install mpmath')
 

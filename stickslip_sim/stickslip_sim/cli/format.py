@@ -4,8 +4,8 @@
 
 import math
 
-from ..analysis import Cycle, Summary
-from ..words import EventKind
+from ..core.types import EventKind
+from ..simulation.cycles import Cycle, Summary
 
 _PREFIXES = ((1e3, 'k'), (1.0, ''), (1e-3, 'm'), (1e-6, 'µ'), (1e-9, 'n'))
 _LINES = (

@@ -18,7 +18,7 @@ from typing import NoReturn
 import click
 
 from .. import __version__
-from ..errors import StickslipError, internal_error
+from ..core.errors import StickslipError, internal_error
 from .advise import advise
 from .bench import bench
 from .check import check

@@ -60,7 +60,7 @@ def _check_pictures(pictures: tuple[str, ...]) -> None:
 
 
 def _check_picks(study: 'Study', picks: tuple[str, ...]) -> None:
-    from ..errors import InputError
+    from ..core.errors import InputError
 
     if picks and len(study.names) != 2:
         raise click.UsageError('--pick is for a map of two parameters.')
@@ -69,7 +69,7 @@ def _check_picks(study: 'Study', picks: tuple[str, ...]) -> None:
 
 
 def _check_complete(sweep: 'Folder') -> None:
-    from ..errors import InputError
+    from ..core.errors import InputError
 
     if not sweep.is_complete:
         raise InputError('folder', str(sweep.path), 'that of a complete sweep', 'run the sweep again with --resume')
@@ -77,11 +77,11 @@ def _check_complete(sweep: 'Folder') -> None:
 
 def _pick(study: 'Study', text: str) -> 'Pick':
     """Return a point of the map with its motion, as long as in the study, or longer where it only just swings on."""
-    from ..paper.fresh import simulate
-    from ..paper.windows import motion_of
+    from ..compare.fresh import simulate
+    from ..compare.windows import motion_of
     from ..plots.stability import Pick
-    from ..study.figures import Motion, figures_of
     from ..study.pictures import pick, point_of
+    from ..study.point_figures import Motion, figures_of
 
     point = point_of(study, text)
     runs = study.runs(point[None, :])

@@ -13,7 +13,7 @@ import click
 from .files import STDOUT, check_distinct, check_file, check_new_folder, check_picture, whole, write_text
 
 if TYPE_CHECKING:
-    from ..offline import Trajectory
+    from ..runs.offline import Trajectory
     from ..scene import Scene
 
 _PLOT_POINTS = 20_000
@@ -50,7 +50,7 @@ def simulate(scene: str, changes: tuple[str, ...], **options: object) -> None:
     """
     wishes = _Wishes(**options)  # type: ignore[arg-type]
     _check(wishes)
-    from ..offline import check_times, run_offline
+    from ..runs.offline import check_times, run_offline
     from ..scene import load_scene, parse_override
     from .progress import progress_bar
 
@@ -91,14 +91,14 @@ def _sample_period(wishes: _Wishes, scene: 'Scene') -> Fraction | float | None:
 
 def _with_estimate(run: 'Trajectory') -> 'Trajectory':
     """Return the run with an estimate of its error in the receipt; that takes a few more runs."""
-    from ..estimate import error_estimate
+    from ..runs.error_estimate import error_estimate
 
     return replace(run, receipt={**run.receipt, 'error_estimate': error_estimate(run)._asdict()})
 
 
 def _write(wishes: _Wishes, run: 'Trajectory') -> None:
     """Write the outputs, standard output last: whoever reads it may leave early."""
-    from .tables import event_lines, sample_lines
+    from .csv_tables import event_lines, sample_lines
 
     if wishes.bag is not None:
         _write_bag(wishes.bag, run)
@@ -144,7 +144,7 @@ def _draw(path: str, run: 'Trajectory') -> None:
 
 def _sampled(run: 'Trajectory', period: Fraction) -> 'Trajectory':
     """Return the same run with other samples."""
-    from ..offline import run_offline
+    from ..runs.offline import run_offline
 
     if run.sample_period == period:
         return run

@@ -44,8 +44,8 @@ def _study(scene: str, ranges: tuple[str, ...], sobol: int | None, duration: flo
 def _tell(study: 'Study', folder: 'Folder', ran: int) -> None:
     from collections import Counter
 
-    from ..study.figures import MOTIONS, Motion
     from ..study.folder import TABLE
+    from ..study.point_figures import MOTIONS, Motion
     from ..study.table import read_columns
 
     columns = read_columns(folder.path / TABLE, study)

@@ -13,9 +13,9 @@ import click
 
 if TYPE_CHECKING:
     from ..study import Study
-    from ..study.crew import Crew
     from ..study.folder import Folder
     from ..study.pictures import Columns
+    from ..study.workers import Crew
 
 _MOST_WORKERS = 1024
 _OPTIONS = (
@@ -39,7 +39,7 @@ def study_options(command: Command) -> Command:
 def crew_of(workers: str | None, scheduler: str | None) -> AbstractContextManager['Crew | None']:
     """Return who works on a study: nobody else, processes, or a cluster; raises InputError and UsageError."""
     from ..study.cluster import cluster
-    from ..study.crew import processes
+    from ..study.workers import processes
 
     if scheduler is not None:
         if workers is not None:
@@ -71,7 +71,7 @@ def carry_out(study: 'Study', out: str, crew: AbstractContextManager['Crew | Non
 
 def tell_failed(study: 'Study', columns: 'Columns') -> None:
     """Say how many points of a study failed, if any did."""
-    from ..study.figures import Motion
+    from ..study.point_figures import Motion
 
     failed = int((columns['motion'] == Motion.FAILED).sum())
     if failed:
@@ -80,8 +80,8 @@ def tell_failed(study: 'Study', columns: 'Columns') -> None:
 
 
 def _processes(workers: str) -> int:
-    from ..errors import InputError
-    from ..study.room import check_room_for_workers
+    from ..core.errors import InputError
+    from ..study.resources import check_room_for_workers
 
     if workers == 'all':
         count = len(os.sched_getaffinity(0))

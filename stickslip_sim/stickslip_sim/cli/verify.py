@@ -11,10 +11,10 @@ import click
 from .files import check_new_folder, new_folder
 
 if TYPE_CHECKING:
-    from ..rerun.original import Original
-    from ..rerun.verdict import Verdict
-    from ..rerun.what_if import Side
     from ..scene import Scene
+    from ..verify.original import Original
+    from ..verify.verification import Verdict
+    from ..verify.what_if import Side
 
 
 @click.command(short_help='Run a recorded run again; with --set, what would have been.')
@@ -28,11 +28,11 @@ def verify(run: str, changes: tuple[str, ...], out: str | None) -> None:
     beside it.
     """
     _check(changes, out)
-    from ..errors import VerdictError
-    from ..rerun.original import open_original
-    from ..rerun.verdict import verify as judge
-    from ..rerun.what_if import other_scene
+    from ..core.errors import VerdictError
     from ..scene import parse_override
+    from ..verify.original import open_original
+    from ..verify.verification import verify as judge
+    from ..verify.what_if import other_scene
     from .progress import progress_bar
 
     original = open_original(run)
@@ -59,7 +59,7 @@ def _check(changes: tuple[str, ...], out: str | None) -> None:
 
 
 def _tell(original: 'Original', verdict: 'Verdict') -> None:
-    from ..rerun.original import made_with
+    from ..verify.original import made_with
 
     if verdict.missing:
         print(f'note: {verdict.missing} steps have no recorded state')
@@ -76,7 +76,7 @@ def _amount(verdict: 'Verdict') -> str:
 
 
 def _what_if(original: 'Original', scene: 'Scene', changes: dict[str, object], out: str | None) -> None:
-    from ..rerun.what_if import other_side, recorded_side
+    from ..verify.what_if import other_side, recorded_side
     from .format import beside_lines
     from .progress import progress_bar
 
@@ -92,7 +92,7 @@ def _what_if(original: 'Original', scene: 'Scene', changes: dict[str, object], o
 
 def _write(folder: Path, scene: 'Scene', changes: dict[str, object], recorded: 'Side', other: 'Side') -> None:
     from ..plots import plot_beside
-    from ..receipt import plain
+    from ..runs.receipt import plain
 
     told = ', '.join(f'{name} = {value}' for name, value in changes.items())
     plot_beside(recorded.columns, other.columns, f'{scene.name}\nwhat if {told}', folder / 'what_if.png')

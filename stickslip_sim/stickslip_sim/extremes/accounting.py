@@ -9,13 +9,13 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from ..axis import Axis, CompliantContact, InitialState
-from ..courses import Course, Wave, constant, steps
+from ..core.input_profile import Course, Wave, constant, steps
+from ..core.types import Instant
 from ..scene import load_scene
-from ..simulator import Simulator
+from ..simulation.simulator import Simulator
 from ..solvers import Solver
-from ..words import Instant
 from .outcome import Finding, Setup, Tally, check
-from .runs import COMPLIANT, RIGID, paper_axis
+from .shared_axes import COMPLIANT, RIGID, paper_axis
 
 _ROUNDS = 11
 _SHORTEST = 1e-2    # s of CPU time that a round takes at least

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from ..axis import Axis, InitialState
-from ..courses import Course
+from ..core.input_profile import Course
+from ..core.types import Event
 from ..reference import simulate
 from ..solvers import Solver
-from ..words import Event
 from .outcome import check
-from .runs import instant, make
+from .shared_axes import instant, make
 
 DIGITS = 40
 

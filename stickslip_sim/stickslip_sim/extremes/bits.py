@@ -11,13 +11,13 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from ..axis import Axis, CompliantContact
-from ..courses import Course
+from ..core.input_profile import Course
+from ..core.types import Event, Sample
 from ..friction import ExcessTable, KineticTable, StaticLaw
-from ..simulator import Simulator
+from ..simulation.simulator import Simulator
 from ..solvers import Solver, exact
-from ..words import Event, Sample
 from .outcome import Finding, Setup, Tally, check
-from .runs import instant, make, random_axis, random_courses, run, scaled
+from .shared_axes import instant, make, random_axis, random_courses, run, scaled
 
 
 def mirrored_and_scaled(setup: Setup) -> Finding:

@@ -6,14 +6,14 @@ import random
 from dataclasses import replace
 
 from ..axis import Axis, CompliantContact, InitialState
-from ..courses import constant
+from ..core.input_profile import constant
+from ..core.types import Event, EventKind
 from ..friction import KineticTable, StaticLaw, StaticLawKind
 from ..friction.kinetic import default_excess
 from ..solvers import Solver
-from ..words import Event, EventKind
 from .against import error_of_run
 from .outcome import Finding, Setup, Tally, check
-from .runs import CONTACTS, Contact, instant, make, of_kind, paper_axis, run, with_static
+from .shared_axes import CONTACTS, Contact, instant, make, of_kind, paper_axis, run, with_static
 
 
 def coasting(setup: Setup) -> Finding:

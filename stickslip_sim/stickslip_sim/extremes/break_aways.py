@@ -9,13 +9,13 @@ from dataclasses import replace
 from mpmath import mpf, workdps
 
 from ..axis import Axis, CompliantContact, InitialState
-from ..courses import Course, ramp, steps
+from ..core.input_profile import Course, ramp, steps
+from ..core.types import Event, EventKind
 from ..friction import StaticLaw, StaticLawKind
 from ..solvers import Solver
-from ..words import Event, EventKind
 from .closed_form import DIGITS, Jump, Number, contact_force, exact, root_near, static_coefficient
 from .outcome import Finding, Setup, Tally, check
-from .runs import CONTACTS, RIGID, Contact, paper_axis, random_axis, run, with_static
+from .shared_axes import CONTACTS, RIGID, Contact, paper_axis, random_axis, run, with_static
 
 _BLOW, _LENGTH = 33e3, 0.002   # N, s
 

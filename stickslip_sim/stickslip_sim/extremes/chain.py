@@ -15,7 +15,7 @@ import numpy as np
 from mpmath import mpf, workdps
 
 from ..axis import Axis, CompliantContact
-from ..words import Event, EventKind, Mode
+from ..core.types import Event, EventKind, Mode
 from .closed_form import DIGITS, LinearMode, Number, exact, static_coefficient
 from .outcome import check
 

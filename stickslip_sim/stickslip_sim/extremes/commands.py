@@ -8,16 +8,16 @@ from collections.abc import Callable
 from functools import partial
 
 from ..axis import Axis, InitialState
-from ..commands import CommandSlot
-from ..courses import Course, ramp, steps, table
-from ..errors import InputError, StickslipError
+from ..core.errors import InputError, StickslipError
+from ..core.input_profile import Course, ramp, steps, table
+from ..core.types import Event, Instant
 from ..friction import KineticTable, StaticLaw, StaticLawKind
+from ..realtime.command_slot import CommandSlot
 from ..scene import load_scene
-from ..simulator import Simulator
+from ..simulation.simulator import Simulator
 from ..solvers import Solver
-from ..words import Event, Instant
 from .outcome import Finding, Setup, Tally, check
-from .runs import CONTACTS, RIGID, Contact, instant, make, paper_axis
+from .shared_axes import CONTACTS, RIGID, Contact, instant, make, paper_axis
 
 _BAD = (math.nan, math.inf, -math.inf)
 _PARAMETERS = (

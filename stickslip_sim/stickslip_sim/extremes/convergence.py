@@ -6,11 +6,11 @@ import math
 from collections.abc import Callable
 
 from ..axis import InitialState
-from ..simulator import Simulator
+from ..core.types import Mode
+from ..simulation.simulator import Simulator
 from ..solvers import Solver
-from ..words import Mode
 from .outcome import Finding, Setup, Tally, check
-from .runs import CONTACTS, RIGID, Contact, instant, make, paper_axis
+from .shared_axes import CONTACTS, RIGID, Contact, instant, make, paper_axis
 
 # as `solvers.fixed_step` declares it: inside a mode, and across events, which it sees at the end of a step
 DECLARED = {'euler': (1, 1), 'rk4': (4, 1)}

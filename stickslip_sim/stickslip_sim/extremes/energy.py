@@ -15,12 +15,12 @@ from itertools import pairwise
 import numpy as np
 
 from ..axis import Axis, CompliantContact
-from ..courses import Course, constant, ramp
-from ..simulator import Simulator
+from ..core.input_profile import Course, constant, ramp
+from ..core.types import Instant, Mode, Sample
+from ..simulation.simulator import Simulator
 from ..solvers import Solver
-from ..words import Instant, Mode, Sample
 from .outcome import Finding, Setup, Tally, check
-from .runs import COMPLIANT, CONTACTS, instant, make, paper_axis, random_axis
+from .shared_axes import COMPLIANT, CONTACTS, instant, make, paper_axis, random_axis
 
 _NODES, _WEIGHTS = (tuple(map(float, part)) for part in np.polynomial.legendre.leggauss(12))
 _PANEL = 1.2   # rad of the fastest motion

@@ -14,15 +14,15 @@ from fractions import Fraction
 from statistics import median
 from typing import NamedTuple
 
-from ..errors import InputError, SolverError
-from ..estimate import ErrorEstimate, error_estimate
-from ..offline import Trajectory, run_offline
+from ..core.errors import InputError, SolverError
+from ..core.types import Event, EventKind
 from ..reference import simulate
+from ..runs.error_estimate import ErrorEstimate, error_estimate
+from ..runs.offline import Trajectory, run_offline
 from ..scene import Scene, SolverSettings, load_scene, scene_names
-from ..words import Event, EventKind
 from .against import DIGITS
 from .outcome import Finding, Setup, Tally, check
-from .runs import random_axis, random_courses
+from .shared_axes import random_axis, random_courses
 
 _DURATION = 2.0   # s
 _TOLERANCES = (1e-3, 1e-6, 1e-9, 1e-12)

@@ -7,15 +7,15 @@ import random
 from dataclasses import replace
 
 from ..axis import Axis, CompliantContact, Friction, InitialState
-from ..courses import constant
+from ..core.input_profile import constant
+from ..core.types import EventKind
 from ..friction import KineticTable, StaticLaw, StaticLawKind
 from ..friction.kinetic import default_excess
 from ..reference import simulate
 from ..solvers import Solver
-from ..words import EventKind
 from .against import DIGITS, error_of_events
 from .outcome import Finding, Setup, Tally, check
-from .runs import RIGID, paper_axis, run
+from .shared_axes import RIGID, paper_axis, run
 
 _REST = InitialState()
 

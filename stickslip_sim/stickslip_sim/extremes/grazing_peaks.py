@@ -4,11 +4,11 @@
 
 import random
 
-from ..grazing import FREQUENCIES, PHASES, grazing_drive
+from ..core.types import EventKind
 from ..solvers import Solver
-from ..words import EventKind
+from .grazing_drive import FREQUENCIES, PHASES, grazing_drive
 from .outcome import Finding, Setup, Tally, check
-from .runs import CONTACTS, instant, make, paper_axis
+from .shared_axes import CONTACTS, instant, make, paper_axis
 
 _OVERSHOOTS = (1e-4, 1e-6, 1e-12, -1e-12, -1e-6)
 

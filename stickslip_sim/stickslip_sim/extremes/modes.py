@@ -9,12 +9,12 @@ from dataclasses import replace
 from mpmath import mpf, workdps
 
 from ..axis import Axis, CompliantContact, Friction, InitialState
+from ..core.types import EventKind, Instant, Mode, Sample
 from ..friction import KineticTable, StaticLaw, StaticLawKind
 from ..solvers import Solver
-from ..words import EventKind, Instant, Mode, Sample
 from .closed_form import DIGITS, LinearMode, exact
 from .outcome import Finding, Setup, Tally, check
-from .runs import RIGID, instant, make, paper_axis
+from .shared_axes import RIGID, instant, make, paper_axis
 
 _STEPS = (0.02, 0.01, 0.0048, 0.001, 1e-4, 1e-5)   # s
 _FREE = Friction(StaticLaw(StaticLawKind.CONSTANT, 0.0, 0.0), KineticTable((0.0,), (0.0,)), None)

@@ -7,14 +7,14 @@ import random
 from mpmath import mp, mpf, workdps
 
 from ..axis import Axis, InitialState
-from ..courses import Course
+from ..core.input_profile import Course
+from ..core.types import EventKind, Mode
 from ..friction import StaticLaw, StaticLawKind
-from ..simulator import Simulator
+from ..simulation.simulator import Simulator
 from ..solvers import Solver
-from ..words import EventKind, Mode
 from .closed_form import DIGITS, Jump, contact_force, exact, root_near, static_coefficient
 from .outcome import Finding, Setup, Tally, check
-from .runs import CONTACTS, RIGID, Contact, instant, make, paper_axis, run, with_static
+from .shared_axes import CONTACTS, RIGID, Contact, instant, make, paper_axis, run, with_static
 
 YEAR = 3.15576e7     # s, 365.25 days
 _RAMP = 100.0        # N/s, after the year

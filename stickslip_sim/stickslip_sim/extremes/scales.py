@@ -8,13 +8,13 @@ from itertools import pairwise
 from mpmath import mpf, workdps
 
 from ..axis import InitialState
-from ..courses import Course, constant
+from ..core.input_profile import Course, constant
+from ..core.types import Event, EventKind, Instant
 from ..solvers import Solver
-from ..words import Event, EventKind, Instant
 from .against import error_of_events
 from .closed_form import DIGITS, exact
 from .outcome import Finding, Setup, Tally, check
-from .runs import CONTACTS, RIGID, Contact, elapsed, make, paper_axis
+from .shared_axes import CONTACTS, RIGID, Contact, elapsed, make, paper_axis
 
 _LATE, _FAR = 1e9, 1e6   # s, m
 

@@ -9,11 +9,11 @@ mode comes next is decided by where the sines of that very instant move the forc
 import random
 
 from ..axis import InitialState
-from ..courses import Course, Wave, constant
+from ..core.input_profile import Course, Wave, constant
 from ..solvers import Solver
 from .against import error_of_run
 from .outcome import Finding, Setup, Tally
-from .runs import RIGID, paper_axis
+from .shared_axes import RIGID, paper_axis
 
 _DURATION = 3.0   # s
 _DOUBLED = Wave(900.0, 0.7, 0.3), Wave(850.0, 1.1, 2.0)   # whose break-aways were doubled once

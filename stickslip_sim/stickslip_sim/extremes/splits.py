@@ -8,14 +8,14 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from ..axis import Axis, CompliantContact, Friction, InitialState
-from ..courses import Course
-from ..errors import SolverError
+from ..core.errors import SolverError
+from ..core.input_profile import Course
+from ..core.types import Event, Instant, Mode
 from ..friction import KineticTable, StaticLaw, StaticLawKind
-from ..simulator import MAX_EVENTS_PER_ADVANCE, Simulator
+from ..simulation.simulator import MAX_EVENTS_PER_ADVANCE, Simulator
 from ..solvers import Solver
-from ..words import Event, Instant, Mode
 from .outcome import Finding, Setup, Tally, check
-from .runs import COMPLIANT, CONTACTS, RIGID, Contact, instant, make, paper_axis, random_axis, random_courses
+from .shared_axes import COMPLIANT, CONTACTS, RIGID, Contact, instant, make, paper_axis, random_axis, random_courses
 
 _PATIENCE = 20.0   # s for a tick full of events; a solver that spins takes for ever
 

@@ -7,13 +7,13 @@ import time
 from dataclasses import replace
 
 from ..axis import Axis, CompliantContact, InitialState
-from ..courses import constant
+from ..core.input_profile import constant
+from ..core.types import Event
 from ..solvers import Solver
-from ..words import Event
 from .against import error_of_run
 from .chain import error_of_chain
 from .outcome import Finding, Setup, Tally
-from .runs import instant, make, paper_axis
+from .shared_axes import instant, make, paper_axis
 
 _STIFFENED = (1.0, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9)
 _FEED = 0.004   # m/s

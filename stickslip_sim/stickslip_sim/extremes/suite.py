@@ -5,7 +5,7 @@
 import time
 from collections.abc import Collection, Iterator
 
-from ..errors import InputError
+from ..core.errors import InputError
 from .accounting import cost_of_the_account
 from .bits import mirrored_and_scaled, run_twice
 from .branches import coasting, ringing
@@ -23,8 +23,8 @@ from .scales import late_far_slow_fast
 from .shaken import shaken
 from .splits import events_inside_a_tick, splits
 from .stiffness import stiff_contacts
+from .study_verdicts import verdicts
 from .ties import guards_at_their_limit, meeting_events
-from .verdicts import verdicts
 
 EXTREMES = (
     Extreme('X1', 'grazing break-away: a slow sine whose force peak passes the limit by 1e-4, 1e-6, 1e-12, or fails to',

@@ -9,14 +9,14 @@ from dataclasses import replace
 from itertools import groupby, pairwise, permutations
 
 from ..axis import Axis, InitialState
-from ..courses import Course, constant, steps
+from ..core.input_profile import Course, constant, steps
+from ..core.types import Event, EventKind, Instant
 from ..friction import KineticTable
-from ..simulator import Simulator
+from ..simulation.simulator import Simulator
 from ..solvers import Solver
-from ..words import Event, EventKind, Instant
 from .against import error_of_run
 from .outcome import Finding, Setup, Tally, check
-from .runs import CONTACTS, Contact, instant, make, paper_axis, random_axis, run
+from .shared_axes import CONTACTS, Contact, instant, make, paper_axis, random_axis, run
 
 _AT_ONE_INSTANT = 3   # break-away, coast, accelerate: more of them at one instant is no progress
 

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from ..errors import InputError
+from ..core.errors import InputError
 from .smooth import SmoothExcess, SmoothKinetic
 
 MAX_KNOTS = 1000   # a table is walked at every break-away, within a step

@@ -14,7 +14,7 @@ The engine works on tables of them (`tables`); the laws are what the error of a 
 import math
 from dataclasses import dataclass
 
-from ..errors import InputError
+from ..core.errors import InputError
 from .shapes import MAX_EXPONENT, MIN_EXPONENT, Cosine, Decay, Hyperbola, Power, Shape
 
 _FALLEN = 0.01   # share of the falling part that is left at the limit velocity

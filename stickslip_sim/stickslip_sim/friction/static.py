@@ -15,8 +15,8 @@ import math
 from dataclasses import dataclass
 from enum import IntEnum
 
-from ..compiled import compiled, inlined
-from ..errors import InputError
+from ..core.errors import InputError
+from ..core.jit import compiled, inlined
 
 
 class StaticLawKind(IntEnum):

@@ -5,7 +5,7 @@
 import math
 from functools import lru_cache
 
-from ..errors import InputError
+from ..core.errors import InputError
 from .kinetic import MAX_KNOTS, ExcessTable, KineticTable
 from .refine import Knot, shape_table, table_error
 from .shapes import Shape

@@ -8,7 +8,7 @@ nothing divides by λ₁.
 
 import math
 
-from ..compiled import compiled
+from ..core.jit import compiled
 
 _TERMS = 60          # never reached: 25 terms are below rounding
 

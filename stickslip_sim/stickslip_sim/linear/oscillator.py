@@ -22,7 +22,7 @@ An oscillator is the tuple (γ, ω², ν, λ₁, λ₂): ν > 0 is the damped an
 
 import math
 
-from ..compiled import compiled, inlined
+from ..core.jit import compiled, inlined
 
 _SERIES_BELOW = 2.0   # (|γ| + |ν|) t up to which the power series is summed
 _SHORT_SERIES_BELOW = 0.4   # where G₃ is not asked for

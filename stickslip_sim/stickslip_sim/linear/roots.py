@@ -29,7 +29,7 @@ d. *Signs at the ends* are those of computed values, right but within some 1e-15
 
 import math
 
-from ..compiled import compiled, inlined
+from ..core.jit import compiled, inlined
 from .oscillator import integrals, short_integrals
 
 _EPSILON = 2.220446049250313e-16

@@ -21,7 +21,7 @@ that late times and high frequencies keep their phase.
 
 import math
 
-from ..compiled import compiled
+from ..core.jit import compiled
 
 TURN = 2.0 * math.pi
 _SERIES_BELOW = 2.0

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pictures.  The only room that imports matplotlib."""
 
-from .beside import plot_beside
 from .run import plot_run
 from .trade import Line, plot_trade
+from .what_if import plot_beside
 
 __all__ = ['Line', 'plot_beside', 'plot_run', 'plot_trade']

@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from .look import BLACK, BLUE, DOUBLE_COLUMN, GREEN, JOURNAL, MILLI, ORANGE, Numbers, legend_outside, letter, save
 from .scale import Scale
+from .style import BLACK, BLUE, DOUBLE_COLUMN, GREEN, JOURNAL, MILLI, ORANGE, Numbers, legend_outside, letter, save
 
 _DOT: dict[str, Any] = {'linestyle': '', 'marker': 'o', 'markersize': 1.6, 'markeredgewidth': 0.0}
 

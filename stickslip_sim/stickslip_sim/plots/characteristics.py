@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from .look import BLACK, BLUE, DOUBLE_COLUMN, GREY, JOURNAL, MILLI, ORANGE, PURPLE, RED, Numbers, letter, save
+from .style import BLACK, BLUE, DOUBLE_COLUMN, GREY, JOURNAL, MILLI, ORANGE, PURPLE, RED, Numbers, letter, save
 
 _BRANCHES = ((ORANGE, 'solid'), (RED, (0, (5.0, 1.5))))
 

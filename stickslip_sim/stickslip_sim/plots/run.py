@@ -12,9 +12,9 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import AutoMinorLocator
 
-from ..analysis import mode_spans
-from ..words import Event, EventKind, Mode
-from .look import BLACK, BLUE, GREEN, GREY, MILLI, MODE_COLOURS, RED, Numbers, save, thinned
+from ..core.types import Event, EventKind, Mode
+from ..simulation.cycles import mode_spans
+from .style import BLACK, BLUE, GREEN, GREY, MILLI, MODE_COLOURS, RED, Numbers, save, thinned
 
 _CROWD = 50          # break-aways that are marked smaller
 KILO_FROM = 1e4     # N: forces beyond are told in kN
@@ -23,7 +23,7 @@ KILO_FROM = 1e4     # N: forces beyond are told in kN
 def plot_run(samples: Mapping[str, Numbers], events: Sequence[Event], title: str, path: Path | str) -> None:
     """Draw position, velocity, forces and mode over time into `path` (.png or .svg).
 
-    `samples` are columns named as in `words.Sample`, and `time`; the first line of `title` is the heading.
+    `samples` are columns named as in `types.Sample`, and `time`; the first line of `title` is the heading.
     """
     layout = ConstrainedLayoutEngine(w_pad=0.1, h_pad=0.08)
     figure = Figure(figsize=(11.0, 8.5), dpi=150, layout=layout)

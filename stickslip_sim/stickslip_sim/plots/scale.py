@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .look import MILLI, Numbers
+from .style import MILLI, Numbers
 
 _SHOWN = {'m': (MILLI, 'mm'), 'm/s': (MILLI, 'mm/s'), 'N/m': (1e-6, 'N/µm')}
 

@@ -12,8 +12,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from .look import DOUBLE_COLUMN, JOURNAL, letter, save
-from .motion import Motion, forces, friction_loop, legend_below, part, velocity
+from .paper_panels import Motion, forces, friction_loop, legend_below, part, velocity
+from .style import DOUBLE_COLUMN, JOURNAL, letter, save
 
 MAX_ROWS = 8
 _ROW, _LEGEND = 1.9, 0.6   # in

@@ -20,9 +20,9 @@ from matplotlib.patheffects import Normal, Stroke
 from matplotlib.ticker import LogLocator
 from numpy.typing import NDArray
 
-from .look import BLACK, DOUBLE_COLUMN, GREY, JOURNAL, RED, SINGLE_COLUMN, Numbers, legend_outside, save
-from .motion import Motion, phase_plane
+from .paper_panels import Motion, phase_plane
 from .scale import Scale
+from .style import BLACK, DOUBLE_COLUMN, GREY, JOURNAL, RED, SINGLE_COLUMN, Numbers, legend_outside, save
 
 MOST_PICKS = 6
 PLAIN = ('smooth sliding', 'sliding that swings on', 'at rest', 'failed', 'undecided')

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.lines import Line2D
 
-from .look import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, legend_outside, save
+from .style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, legend_outside, save
 
 
 class Line(NamedTuple):

@@ -10,7 +10,7 @@ from typing import NoReturn
 from mcap.writer import CompressionType, Writer
 
 from .. import __version__
-from ..errors import RecordingError
+from ..core.errors import RecordingError
 from .blocks import to_yaml
 from .metadata import Tally, information, write_metadata
 from .schemas import schema

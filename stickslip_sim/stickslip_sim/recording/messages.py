@@ -5,7 +5,7 @@
 from operator import attrgetter
 
 from .. import __version__
-from ..words import Event, Sample
+from ..core.types import Event, Sample
 from .layout import Layout
 from .run import RunFacts
 from .schemas import flat_layout

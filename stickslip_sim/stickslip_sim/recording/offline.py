@@ -8,7 +8,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from ..words import Event, EventKind, Mode, Sample
+from ..core.types import Event, EventKind, Mode, Sample
 from . import messages, topics
 from .messages import Packer
 from .run import RunFacts, open_run, receipt_file

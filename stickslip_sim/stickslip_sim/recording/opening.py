@@ -7,7 +7,7 @@ from pathlib import Path
 
 from mcap.records import Attachment, Channel, Footer, McapRecord, Message, Metadata, Schema
 
-from ..errors import RecordingError, RecordingWarning
+from ..core.errors import RecordingError, RecordingWarning
 from .reader import OVERHEAD, Run
 from .records import records
 

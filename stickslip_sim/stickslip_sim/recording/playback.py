@@ -12,7 +12,7 @@ from mcap.records import Channel, ChunkIndex, Footer, Message, Schema
 from rosbags.rosbag2 import ReaderError
 from rosbags.rosbag2.metadata import parse_qos
 
-from ..errors import RecordingError
+from ..core.errors import RecordingError
 from .opening import file_of
 from .reader import RecordedMessage
 from .records import CUT_OFF, chunk_at, records, summary_of

@@ -15,9 +15,9 @@ from mcap.records import Channel, Message
 from numpy.typing import NDArray
 from rosbags.typesys.store import Typestore
 
-from ..errors import InputError, RecordingError
+from ..core.errors import InputError, RecordingError
+from ..core.types import Event
 from ..scene import Scene, parse_scene
-from ..words import Event
 from .layout import Layout, layout_of, numbers_of, texts_of
 from .records import records
 from .run import RECEIPT_FILE, SCENE_FILE

@@ -20,7 +20,7 @@ from mcap.stream_reader import CRCValidationError, StreamReader, breakup_chunk
 from mcap.summary import Summary
 from mcap.writer import MCAP0_MAGIC
 
-from ..errors import RecordingError
+from ..core.errors import RecordingError
 
 SIZE_LIMIT = 32 << 20   # bytes of a record, and of what a chunk unpacks to; rosbag2 makes chunks of 1 to 4 MiB
 COMPRESSIONS = ('', 'zstd', 'lz4')

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .. import __version__
-from ..receipt import plain
+from ..runs.receipt import plain
 from .bag import BagWriter
 from .metadata import ros_distro
 from .topics import recorded

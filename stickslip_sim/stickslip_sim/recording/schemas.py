@@ -17,7 +17,7 @@ from rosbags.interfaces import Nodetype
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from rosbags.typesys.store import Typestore
 
-from ..errors import RecordingError
+from ..core.errors import RecordingError
 from .layout import Layout, numbers_of
 
 LONGEST = 128 * 1024    # letters of a definition: a second or two of reading

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import RecordingError
-from ..words import Event, EventKind, Mode
+from ..core.errors import RecordingError
+from ..core.types import Event, EventKind, Mode
 from .topics import MODE_EVENT, Topic
 
 if TYPE_CHECKING:

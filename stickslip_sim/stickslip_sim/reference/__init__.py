@@ -13,8 +13,8 @@ Bernstein coefficients (Descartes' rule of signs), in mpmath's arithmetic of any
 from __future__ import annotations
 
 from ..axis import Axis, InitialState
-from ..courses import Course
-from ..errors import InputError
+from ..core.errors import InputError
+from ..core.input_profile import Course
 from .result import Final, ReferenceRun
 
 __all__ = ['Final', 'ReferenceRun', 'simulate']

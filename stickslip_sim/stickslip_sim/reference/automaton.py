@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 import mpmath
 from mpmath import mpf
 
-from .. import words
-from ..errors import SolverError
+from ..core import types
+from ..core.errors import SolverError
 from .flow import Flow, State, after
 from .inputs import Input, Signal
 from .modes import ACCELERATE, COAST, DECELERATE, Mode, Slip, Stick, word
@@ -36,7 +36,7 @@ class Event:
 
     time: mpf
     kind: str
-    mode: words.Mode
+    mode: types.Mode
     direction: int
     position: mpf
     velocity: mpf
@@ -52,7 +52,7 @@ class Sample:
     """State at a given time (after the transition when there is one at that time)."""
 
     time: mpf
-    mode: words.Mode
+    mode: types.Mode
     position: mpf
     velocity: mpf
     drive_position: mpf

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from mpmath import cos, inf, mpf, pi, sin
 
-from ..courses import Course
+from ..core.input_profile import Course
 from .series import Series
 
 

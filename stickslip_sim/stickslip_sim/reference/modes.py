@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from mpmath import mpf
 
-from .. import words
+from ..core import types
 
 ACCELERATE, COAST, DECELERATE = 'accelerate', 'coast', 'decelerate'
 
@@ -37,11 +37,11 @@ class Slip:
 
 
 Mode = Stick | Slip
-_WORDS = {ACCELERATE: words.Mode.ACCELERATING, COAST: words.Mode.COASTING, DECELERATE: words.Mode.DECELERATING}
+_WORDS = {ACCELERATE: types.Mode.ACCELERATING, COAST: types.Mode.COASTING, DECELERATE: types.Mode.DECELERATING}
 
 
-def word(mode: Mode) -> words.Mode:
+def word(mode: Mode) -> types.Mode:
     """Return the product's name of a mode."""
     if isinstance(mode, Stick):
-        return words.Mode.STICK
-    return words.Mode.ACCELERATING if mode.silent else _WORDS[mode.phase]
+        return types.Mode.STICK
+    return types.Mode.ACCELERATING if mode.silent else _WORDS[mode.phase]

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 from mpmath import mpf
 
-from .. import courses
 from ..axis import parameters as product
+from ..core import input_profile as profiles
 from ..friction import ExcessTable, KineticTable
 from .statics import StaticLaw
 
@@ -60,8 +60,8 @@ class Problem:
     static: StaticLaw
     kinetic: Table
     excess: Table | None
-    drive: courses.Course
-    force: courses.Course
+    drive: profiles.Course
+    force: profiles.Course
     position: mpf
     velocity: mpf
     rest_time: mpf
@@ -72,7 +72,7 @@ class Problem:
         return sorted(k for k in speeds if k > 0)
 
 
-def problem(axis: product.Axis, initial: product.InitialState, drive: courses.Course, force: courses.Course) -> Problem:
+def problem(axis: product.Axis, initial: product.InitialState, drive: profiles.Course, force: profiles.Course) -> Problem:
     """Return the problem in multiple precision; raises InputError when the start has no finite static friction."""
     product.check_start(axis, initial)
     contact = axis.contact if isinstance(axis.contact, product.CompliantContact) else None

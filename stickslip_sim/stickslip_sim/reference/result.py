@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from ..words import Event, Mode
+from ..core.types import Event, Mode
 
 if TYPE_CHECKING:
     from .automaton import Run

@@ -7,11 +7,11 @@ from __future__ import annotations
 import mpmath
 from mpmath import mpf
 
-from .. import words
+from ..core import types
 from . import automaton
 from .result import Final, ReferenceRun
 
-_KINDS = {kind.name.lower(): kind for kind in words.EventKind}
+_KINDS = {kind.name.lower(): kind for kind in types.EventKind}
 
 
 def rounded(run: automaton.Run) -> ReferenceRun:
@@ -20,9 +20,9 @@ def rounded(run: automaton.Run) -> ReferenceRun:
         return ReferenceRun([_event(event) for event in run], _final(run), run)
 
 
-def _event(event: automaton.Event) -> words.Event:
+def _event(event: automaton.Event) -> types.Event:
     second, fraction = split(event.time)
-    return words.Event(
+    return types.Event(
         second,
         fraction,
         _KINDS[event.kind],

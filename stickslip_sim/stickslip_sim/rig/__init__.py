@@ -8,7 +8,7 @@ before the same steps give the same numbers in real time, in lock-step, as fast 
 
 from .encoder import Measured
 from .faults import Fault
-from .product import Note, NoteKind, Product
 from .rig import FAILED, SILENT_BRIDGE, Rig
+from .step_result import Note, NoteKind, Product
 
 __all__ = ['FAILED', 'SILENT_BRIDGE', 'Fault', 'Measured', 'Note', 'NoteKind', 'Product', 'Rig']

@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ..courses import Course, constant, course_of, plain_of
-from ..words import Instant
+from ..core.input_profile import Course, constant, course_of, plain_of
+from ..core.types import Instant
 
 
 @dataclass(frozen=True, slots=True)

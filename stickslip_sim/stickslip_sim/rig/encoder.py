@@ -14,9 +14,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..words import Sample
+from ..core.types import Sample
 from .faults import Fault
-from .randomness import Stream, stream
+from .random_stream import Stream, stream
 
 _BLOCK = 1024   # random numbers drawn at a time
 

@@ -6,8 +6,8 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
-from ..errors import InputError
-from ..grid import Grid
+from ..core.errors import InputError
+from ..core.time_grid import Grid
 
 MAX_FAULTS = 1000      # planned or in force
 MAX_TIME = 1e9         # s

@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from ..axis import Axis
-from ..courses import Course, constant, course_of, plain_of
-from ..errors import InputError, SolverError
-from ..simulator import Simulator
+from ..core.errors import InputError, SolverError
+from ..core.input_profile import Course, constant, course_of, plain_of
+from ..simulation.simulator import Simulator
 from .drive import Drive
 from .faults import Faults
 from .friction import with_friction_scaled

@@ -7,19 +7,19 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ..axis import Axis, InitialState
-from ..courses import Course
-from ..errors import InputError
-from ..grid import Grid
-from ..simulator import Simulator, SolverOf
+from ..core.errors import InputError
+from ..core.input_profile import Course
+from ..core.time_grid import Grid
+from ..core.types import Event, Instant
+from ..simulation.simulator import Simulator, SolverOf
 from ..solvers import Solver
-from ..words import Event, Instant
+from .command_channel import Wire
 from .drive import Drive
 from .encoder import Encoder
 from .faults import Fault, Faults
 from .plant import Plant
-from .product import Counts, Note, NoteKind, Product
 from .settings import RigSettings
-from .wire import Wire
+from .step_result import Counts, Note, NoteKind, Product
 
 
 class Rig:

@@ -5,14 +5,14 @@
 import sys
 from collections.abc import Sequence
 
-from .sim_node import Signals
+from .process.signals import Signals
 
 
 def main(args: Sequence[str] | None = None) -> int:
     """Run until SIGINT or SIGTERM; return the exit code: 0 ended, 1 internal error, 2 refused start."""
     signals = Signals()
-    from .controller_program import controller_program
-    from .life import live
+    from .controllers.controller_program import controller_program
+    from .process.program import live
     program = controller_program('compensating_controller', compensates=True)
     return live(sys.argv[1:] if args is None else args, signals, program)
 

@@ -19,13 +19,13 @@ from rclpy.signals import SignalHandlerOptions
 
 from stickslip_msgs.msg import DriveVelocity, ExternalForce, SliderState
 
-from ..errors import RecordingError, StickslipError
-from ..pacing import utc_stamp
+from ..core.errors import RecordingError, StickslipError
+from ..core.types import Mode
+from ..realtime.pacing import utc_stamp
 from ..recording import topics as names
-from ..words import Mode
 from .demo_report import report
-from .recordings import first_free
-from .topics import publisher, subscription
+from .node.recordings import first_free
+from .node.topics import publisher, subscription
 
 SCENE = 'paper_fig8'
 _PATIENCE = 30.0    # s for the node to appear, and to end

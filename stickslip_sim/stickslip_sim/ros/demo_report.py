@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..analysis import Summary, summary
+from ..core.types import Mode
 from ..plots import plot_run
 from ..recording import Run, events_of, read_run
-from ..words import Mode
+from ..simulation.cycles import Summary, summary
 
 PICTURE = 'run.png'
 _FIGURES = (
@@ -33,7 +33,7 @@ def report(folder: Path) -> list[str]:
 
 
 def samples_of(run: Run) -> dict[str, NDArray[Any]]:
-    """Return the states of a run by the columns of `words.Sample`, and `time`."""
+    """Return the states of a run by the columns of `types.Sample`, and `time`."""
     states, friction = run.columns('/slider_state'), run.columns('/friction_force')
     force = np.zeros(len(states['step']))
     for message in run.messages(['/external_force']):

@@ -5,14 +5,14 @@
 import sys
 from collections.abc import Sequence
 
-from .sim_node import Signals
+from .process.signals import Signals
 
 
 def main(args: Sequence[str] | None = None) -> int:
     """Ask once; return the exit code: 0 well, 1 unwell or not there, 2 refused start."""
     signals = Signals()
-    from .health_program import PROGRAM
-    from .life import live
+    from .diagnostics.health_program import PROGRAM
+    from .process.program import live
     return live(sys.argv[1:] if args is None else args, signals, PROGRAM)
 
 

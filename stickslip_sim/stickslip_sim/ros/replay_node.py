@@ -5,14 +5,14 @@
 import sys
 from collections.abc import Sequence
 
-from .sim_node import Signals
+from .process.signals import Signals
 
 
 def main(args: Sequence[str] | None = None) -> int:
     """Run to the end of the recording, or until SIGINT or SIGTERM; return the exit code as sim_node does."""
     signals = Signals()
-    from .life import live
-    from .replay.program import PROGRAM
+    from .process.program import live
+    from .replay.replay_program import PROGRAM
     return live(sys.argv[1:] if args is None else args, signals, PROGRAM)
 
 

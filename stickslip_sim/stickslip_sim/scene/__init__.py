@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Scenes: everything that decides a run, as a ROS 2 parameter file that is read without ROS.  The only YAML door."""
 
+from ..config.parameter import Parameter, When
 from .load import changed, load_scene, parse_override, parse_scene, scene_from_values, scene_names
 from .model import CommandSettings, RecordSettings, Scene, TimeSettings
-from .parameter import Parameter, When
 from .schema import PARAMETERS
 from .solver import SolverSettings
 

@@ -9,8 +9,8 @@ from dataclasses import replace
 from typing import Any
 
 from ..axis import Axis, CompliantContact, Friction, InitialState, RigidContact, check_start
-from ..courses import Course, Wave, constant, ramp, steps, table, waves
-from ..errors import InputError
+from ..core.errors import InputError
+from ..core.input_profile import Course, Wave, constant, ramp, steps, table, waves
 from ..friction import (
     ExcessTable,
     KineticTable,

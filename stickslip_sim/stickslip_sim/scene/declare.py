@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Short ways to declare the parameters of a scene."""
 
-from .parameter import Parameter, When
+from ..config.parameter import Parameter, When
 
 
 def number(name: str, default: float | None, unit: str, description: str, *, low: float, high: float,

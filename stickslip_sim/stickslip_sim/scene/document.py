@@ -5,7 +5,7 @@
 import sys
 from itertools import groupby
 
-from .parameter import Parameter
+from ..config.parameter import Parameter
 from .schema import PARAMETERS
 from .text import yaml_value
 

@@ -8,10 +8,10 @@ import pathlib
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 
-from ..errors import InputError
+from ..config.ros_yaml import SIZE_LIMIT, read_yaml
+from ..core.errors import InputError
 from .build import build_scene
 from .model import Scene
-from .ros_yaml import SIZE_LIMIT, read_yaml
 from .sections import describes_an_axis, parameters_of, without_those_of_ros
 from .values import overridden
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 
 from ..axis import Axis, InitialState
-from ..courses import Course
-from ..grid import Grid
+from ..core.input_profile import Course
+from ..core.time_grid import Grid
 from ..rig.rig import Rig
 from ..rig.settings import RigSettings
 from .solver import SolverSettings

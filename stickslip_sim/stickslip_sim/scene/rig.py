@@ -6,8 +6,8 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from ..errors import InputError
-from ..grid import Grid
+from ..core.errors import InputError
+from ..core.time_grid import Grid
 from ..rig.drive import DriveLimits
 from ..rig.encoder import EncoderSettings
 from ..rig.faults import Fault, Faults

@@ -5,8 +5,8 @@
 import math
 
 from ..axis import Axis
-from ..errors import InputError
-from ..grid import Grid
+from ..core.errors import InputError
+from ..core.time_grid import Grid
 from ..rig.faults import Faults
 from ..rig.friction import with_friction_scaled
 from ..rig.settings import RigSettings

@@ -8,12 +8,12 @@ rigid contact, a drive that stands still, no force.  (A node without any file ru
 
 import math
 
+from ..config import bounds
+from ..config.parameter import Parameter, When
 from ..friction.shapes import MAX_EXPONENT, MIN_EXPONENT
 from ..rig.faults import MAX_TIME
-from . import bounds
-from .course_schema import course
 from .declare import choice, number, numbers, texts
-from .parameter import Parameter, When
+from .profile_schema import course
 
 _SOLVERS = ('exact', 'fixed_step', 'adaptive')
 _METHODS = ('euler', 'rk4', 'RK45', 'DOP853', 'Radau', 'BDF', 'LSODA')

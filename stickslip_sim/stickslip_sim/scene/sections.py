@@ -4,7 +4,7 @@
 
 from collections.abc import Iterator, Mapping
 
-from ..errors import InputError
+from ..core.errors import InputError
 
 NODE = 'feed_axis'
 _ALL_NODES = ('/**', '/*', '/**/' + NODE)

@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from ..axis import Axis
-from ..errors import InputError
+from ..core.errors import InputError
 from ..solvers import Solver, adaptive, exact, fixed_step
 
 _METHODS = {'exact': (), 'fixed_step': tuple(fixed_step.METHODS), 'adaptive': adaptive.METHODS}

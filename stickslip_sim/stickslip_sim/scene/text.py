@@ -7,7 +7,7 @@ import math
 import re
 from collections.abc import Mapping
 
-from .parameter import Parameter, yaml_word
+from ..config.parameter import Parameter, yaml_word
 from .schema import PARAMETERS
 
 

@@ -5,8 +5,8 @@
 import difflib
 from collections.abc import Mapping
 
-from ..errors import InputError
-from .parameter import Parameter, When, yaml_word
+from ..config.parameter import Parameter, When, yaml_word
+from ..core.errors import InputError
 from .schema import BY_NAME, PARAMETERS
 
 

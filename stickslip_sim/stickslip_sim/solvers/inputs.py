@@ -11,7 +11,7 @@ from ..axis.layout import (
     F, FRACTION, F_RATE, INPUT_F, INPUT_FRACTION, INPUT_F_RATE, INPUT_SECOND, INPUT_V, INPUT_V_RATE, INPUT_WAVES,
     SECOND, STATE_SIZE, V, V_RATE, WAVE_INPUTS,
 )
-from ..compiled import compiled
+from ..core.jit import compiled
 from ..linear.waves import TURN, phase_at
 
 

@@ -4,12 +4,12 @@
 
 from ..axis.layout import COMPLIANT, DEFLECTION, DIRECTION, DRIVE, MODE, NORMAL, ORIGIN, POSITION, REST
 from ..axis.motion import STICK
-from ..compiled import inlined
+from ..core.jit import inlined
 
 
 @inlined
 def write_sample(p, s, second, fraction, t, y, u, a, drive, v, pull, force, friction, out):
-    """Fill a row (`words.Sample` names the columns): t, travel y and drive travel since the state s, the rest at t."""
+    """Fill a row (`types.Sample` names the columns): t, travel y and drive travel since the state s, the rest at t."""
     stuck = s[MODE] == STICK
     out[0] = second
     out[1] = fraction

@@ -6,7 +6,7 @@ from ..axis.layout import (
     COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DEFLECTION, DIRECTION, MODE, ORIGIN, REST, STATE_SIZE, VELOCITY,
 )
 from ..axis.motion import DECELERATING, STICK
-from ..compiled import compiled
+from ..core.jit import compiled
 
 
 @compiled

@@ -9,7 +9,7 @@ A study is plain data and can be sent to other processes; `figures` of a stretch
 """
 
 from .distribution import Distribution
-from .figures import MOTIONS, Figures, Motion
+from .point_figures import MOTIONS, Figures, Motion
 from .sample import Grid, Saltelli, Sobol
 from .study import Study
 from .variation import Variation, variation

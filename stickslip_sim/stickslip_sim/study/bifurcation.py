@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..analysis import Cycle, cycle_figures
-from ..offline import run_offline
-from .figures import Figures, Motion
+from ..runs.offline import run_offline
+from ..simulation.cycles import Cycle, cycle_figures
+from .point_figures import Figures, Motion
 from .points import scene_at
 from .steady import sliding_slope
 from .study import Study

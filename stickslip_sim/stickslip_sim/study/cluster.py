@@ -14,12 +14,12 @@ from functools import partial
 from importlib.util import find_spec
 from typing import Any
 
-from ..errors import InputError
-from .crew import Crew, WorkerError
+from ..core.errors import InputError
 from .description import versions_of_a_study
 from .folder import KEPT
 from .study import Study
 from .table import lines
+from .workers import Crew, WorkerError
 
 _PATIENCE = 5.0   # s for the scheduler to answer
 

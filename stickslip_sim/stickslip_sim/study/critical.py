@@ -13,9 +13,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..errors import InputError
+from ..core.errors import InputError
 from ..scene import Scene
-from .figures import Motion, Numbers, figures_of
+from .point_figures import Motion, Numbers, figures_of
 from .points import runs_in_batches, scene_at, works_in_batches
 from .steady import sliding_slope
 from .transitions import FAILED, NO, OPEN, YES, Course, Verdicts, course

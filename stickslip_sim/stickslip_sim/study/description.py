@@ -8,10 +8,10 @@ from dataclasses import asdict
 from importlib import metadata
 from typing import Any
 
-from ..errors import InputError
-from ..receipt import versions
+from ..config.ros_yaml import read_yaml
+from ..core.errors import InputError
+from ..runs.receipt import versions
 from ..scene.load import scene_of_parameters
-from ..scene.ros_yaml import read_yaml
 from ..scene.sections import parameters_of
 from .distribution import Distribution
 from .sample import Grid, Saltelli, Sample, Sobol

@@ -14,10 +14,10 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
 
-from ..errors import InputError
+from ..core.errors import InputError
 from .description import FORM, description
 from .parquet import write_parquet
-from .room import check_room
+from .resources import check_room
 from .study import Study
 from .table import header, may_be_table, next_lines, numbers_of
 

@@ -7,14 +7,14 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import InputError
+from ..core.errors import InputError
 from ..plots.bifurcation import plot_bifurcation
 from ..plots.scale import Scale
 from ..plots.stability import Field, Lines, Pick, plot_stability
 from ..plots.uncertainty import Shares, Spread, plot_uncertainty
 from .bifurcation import bifurcation
 from .borders import FEED, borders
-from .figures import Motion
+from .point_figures import Motion
 from .sample import Grid, Saltelli
 from .study import Study
 from .table import figures_in

@@ -9,14 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from ..batch import figures_in, rounds_in
-from ..errors import InputError, SolverError
+from ..core.errors import InputError, SolverError
 from ..friction import StaticLawKind
-from ..offline import Trajectory, run_offline
+from ..runs.batch import figures_in, rounds_in
+from ..runs.offline import Trajectory, run_offline
 from ..scene import Scene, scene_from_values
 from ..scene.values import overridden
-from ..solvers.exact import cycles
-from .figures import Numbers, Runs, no_runs
+from ..solvers.exact import many_axes
+from .point_figures import Numbers, Runs, no_runs
 from .settling import DOUBLINGS, PATIENCE, run_settled, runs_of
 from .variation import changes_at
 
@@ -84,10 +84,10 @@ def _inputs(scene: Scene, names: Sequence[str], points: Numbers) -> dict[str, Nu
 
 def _of_a_run(run: Trajectory) -> Runs:
     """Return what is known of a run that is complete."""
-    out = np.empty((1, cycles.ROW_SIZE))
-    cycles.clear(out[0])
-    out[0][cycles.FINAL_MODE] = run.scene.make_rig().simulator.sample().mode
+    out = np.empty((1, many_axes.ROW_SIZE))
+    many_axes.clear(out[0])
+    out[0][many_axes.FINAL_MODE] = run.scene.make_rig().simulator.sample().mode
     for event in run.events:
-        cycles.book(out[0], np.array(event, dtype=float), 0.5 * run.duration)
-    out[0][cycles.COMPLETE] = 1.0
+        many_axes.book(out[0], np.array(event, dtype=float), 0.5 * run.duration)
+    out[0][many_axes.COMPLETE] = 1.0
     return runs_of(figures_in(out), rounds_in(out), run.duration)

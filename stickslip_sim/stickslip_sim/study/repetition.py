@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from .figures import LEAST_STICK, Flags, Numbers
+from .point_figures import LEAST_STICK, Flags, Numbers
 
 REPEATED = 1e-6      # of what each number is compared with
 _STILL = 1e-11       # of the period, for stick times, and of the same for the others

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ..errors import InputError
+from ..core.errors import InputError
 from .distribution import Distribution
 from .variation import Numbers, Variation
 

@@ -26,10 +26,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..axis import Axis, InitialState
-from ..batch import BatchFigures, Rounds, run_rounds
-from ..solvers.exact.cycles import ROUND_SIZE
-from ..words import Mode
-from .figures import RUN_FIELDS, Flags, Numbers, Runs, no_runs
+from ..core.types import Mode
+from ..runs.batch import BatchFigures, Rounds, run_rounds
+from ..solvers.exact.many_axes import ROUND_SIZE
+from .point_figures import RUN_FIELDS, Flags, Numbers, Runs, no_runs
 from .repetition import drifts, ends_alike, group_size
 from .steady import sliding_slope
 

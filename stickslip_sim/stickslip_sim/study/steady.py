@@ -11,7 +11,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from ..axis import Axis
-from .figures import Numbers
+from .point_figures import Numbers
 
 
 def sliding_slope(axis: Axis, inputs: Mapping[str, Numbers]) -> Numbers:

@@ -9,11 +9,11 @@ from functools import cached_property
 
 import numpy as np
 
-from ..errors import InputError
-from ..offline import check_times
+from ..core.errors import InputError
+from ..runs.offline import check_times
 from ..scene import Scene, scene_from_values
 from ..scene.load import named
-from .figures import Figures, Runs, figures_of
+from .point_figures import Figures, Runs, figures_of
 from .points import runs_alone, runs_in_batches, scene_at, works_in_batches
 from .sample import Sample
 from .variation import Numbers, Variation

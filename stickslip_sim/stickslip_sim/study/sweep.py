@@ -8,10 +8,10 @@ from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future
 from itertools import islice
 
-from .crew import Crew
 from .folder import Folder
 from .study import Study
 from .table import lines
+from .workers import Crew
 
 _AHEAD = 4   # chunks that wait for each worker
 

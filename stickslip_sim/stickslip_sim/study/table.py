@@ -10,8 +10,8 @@ from typing import BinaryIO
 
 import numpy as np
 
-from ..errors import InputError
-from .figures import FIGURES, MOTIONS, Figures, Motion
+from ..core.errors import InputError
+from .point_figures import FIGURES, MOTIONS, Figures, Motion
 from .study import Study
 from .variation import Numbers
 

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .figures import Numbers
+from .point_figures import Numbers
 
 NO, YES, OPEN, FAILED = 0, 1, -1, -2   # verdicts; OPEN: it cannot be told; FAILED: the run went wrong
 Verdicts = NDArray[np.int64]

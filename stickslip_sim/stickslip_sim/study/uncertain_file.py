@@ -12,11 +12,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-from ..errors import InputError
+from ..config.ros_yaml import read_yaml
+from ..config.strict import section
+from ..core.errors import InputError
 from ..scene import Parameter
 from ..scene.load import named, read_text
-from ..scene.ros_yaml import read_yaml
-from ..scene.strict import section
 from .distribution import LAWS, Distribution, Law
 from .study import MOST_VARIATIONS
 from .variation import parameter_of

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .figures import Motion
+from .point_figures import Motion
 from .sample import Saltelli
 from .variation import Numbers
 

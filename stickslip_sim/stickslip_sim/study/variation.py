@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import InputError
-from ..scene.parameter import Parameter
+from ..config.parameter import Parameter
+from ..core.errors import InputError
 from ..scene.schema import BY_NAME
 
 Numbers = NDArray[np.float64]

@@ -5,9 +5,9 @@
 import math
 import random
 
-from stickslip_sim.errors import SolverError
-from stickslip_sim.grazing import FREQUENCIES, PHASES, grazing_drive
-from stickslip_sim.words import Event, EventKind
+from stickslip_sim.core.errors import SolverError
+from stickslip_sim.core.types import Event, EventKind
+from stickslip_sim.extremes.grazing_drive import FREQUENCIES, PHASES, grazing_drive
 
 from ..case import Case, Values, all_events
 from . import degenerate, draw, machines

@@ -5,8 +5,8 @@
 import math
 import random
 
-from stickslip_sim.errors import SolverError
-from stickslip_sim.words import EventKind
+from stickslip_sim.core.errors import SolverError
+from stickslip_sim.core.types import EventKind
 
 from ..case import Case, Values, all_events
 from . import draw, machines

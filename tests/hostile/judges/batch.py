@@ -4,9 +4,9 @@
 
 import math
 
-from stickslip_sim.analysis import summary
-from stickslip_sim.batch import run_batch
-from stickslip_sim.words import EventKind, Mode
+from stickslip_sim.core.types import EventKind, Mode
+from stickslip_sim.runs.batch import run_batch
+from stickslip_sim.simulation.cycles import summary
 
 from ..case import Find, Run
 

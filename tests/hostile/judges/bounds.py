@@ -5,7 +5,7 @@
 import math
 
 from stickslip_sim.axis import Axis
-from stickslip_sim.courses import Course
+from stickslip_sim.core.input_profile import Course
 
 from ..case import Find, Run
 

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stickslip_sim.words import EventKind, Mode
+from stickslip_sim.core.types import EventKind, Mode
 
 from ..case import Run
 from .linear import Samples, samples

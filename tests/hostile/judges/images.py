@@ -8,10 +8,10 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 
 from stickslip_sim.axis import Axis, CompliantContact, InitialState
-from stickslip_sim.courses import FREQUENCIES, Course
-from stickslip_sim.errors import SolverError
+from stickslip_sim.core.errors import SolverError
+from stickslip_sim.core.input_profile import FREQUENCIES, Course
+from stickslip_sim.core.types import Event
 from stickslip_sim.friction import ExcessTable, KineticTable, StaticLaw
-from stickslip_sim.words import Event
 
 from ..case import Find, LastBits, Parts, Run, all_events
 

@@ -5,7 +5,7 @@
 import json
 import random
 
-from stickslip_sim.words import Event, Instant
+from stickslip_sim.core.types import Event, Instant
 
 from ..case import Find, Run, instant, simulator
 

@@ -5,12 +5,12 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from stickslip_sim.courses import Course
-from stickslip_sim.errors import SolverError
+from stickslip_sim.core.errors import SolverError
+from stickslip_sim.core.input_profile import Course
+from stickslip_sim.core.types import Event, EventKind
 from stickslip_sim.extremes.against import error_of_events
 from stickslip_sim.extremes.outcome import Missed
 from stickslip_sim.reference import simulate
-from stickslip_sim.words import Event, EventKind
 from tests.fuzz.bounds import within
 
 from ..case import Find, Parts, Run, Undecided, all_events

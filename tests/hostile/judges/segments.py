@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 
 from stickslip_sim.axis import Axis, CompliantContact
-from stickslip_sim.courses import Course
-from stickslip_sim.words import Event, EventKind, Instant, Mode, Sample
+from stickslip_sim.core.input_profile import Course
+from stickslip_sim.core.types import Event, EventKind, Instant, Mode, Sample
 
 from ..case import Parts, Run, borders
 from .friction import Table, static

@@ -11,7 +11,7 @@ import math
 from itertools import pairwise
 
 from stickslip_sim.axis import CompliantContact
-from stickslip_sim.words import EventKind
+from stickslip_sim.core.types import EventKind
 
 from ..case import Find, Run
 

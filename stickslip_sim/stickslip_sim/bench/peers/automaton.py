@@ -18,9 +18,9 @@ from ...axis.layout import (
     CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, END_SLOPE, KNOT_SIZE, KNOTS, MASS, NORMAL, STATIC_EXPONENT,
     STATIC_INITIAL, STATIC_LAW, STATIC_LIMIT, STATIC_TAU, STIFFNESS, TABLE,
 )
-from ...compiled import always_compiled
+from ...core.jit import always_compiled
 from ...friction.static import CONSTANT, EXPONENTIAL, HYPERBOLIC, KATO
-from ...words import Mode
+from ...core.types import Mode
 
 TIME, MODE, DIRECTION, PIECE, EXCESS = range(5)
 X, U, S, DEFLECTION, REST = range(5, 10)      # at the reset; S: drive position

@@ -11,8 +11,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ...compiled import always_compiled
-from ...errors import SolverError
+from ...core.jit import always_compiled
+from ...core.errors import SolverError
 from ..problem import Outcome, Problem
 from .automaton import GUARDS, MODE, SIZE, TIME, U, X, guard_scales, guards, motion_of, rates
 from .dop853_step import MISSING, MORE, STAGES, between, error_norm, fill_interpolant, step

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from ...compiled import always_compiled
+from ...core.jit import always_compiled
 from .automaton import rates
 
 _A = _B = _C = _E3 = _E5 = _D = np.zeros(0)

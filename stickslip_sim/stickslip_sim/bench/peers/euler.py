@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ...compiled import always_compiled
-from ...errors import SolverError
+from ...core.jit import always_compiled
+from ...core.errors import SolverError
 from ..problem import Outcome, Problem
 from .automaton import Q_MASS, Q_MODE, SIZE, STICK, TIME, U, X, applied, is_compliant, motion_of
 from .grid import act, begin, breaks, look, next_piece

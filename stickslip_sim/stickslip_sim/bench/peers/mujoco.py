@@ -12,7 +12,7 @@ from collections.abc import Callable
 import numpy as np
 
 from ...axis.layout import MASS
-from ...errors import SolverError
+from ...core.errors import SolverError
 from ..problem import Outcome, Problem
 from .automaton import SIZE, U, X, motion_of
 from .grid import act, begin, look, next_piece

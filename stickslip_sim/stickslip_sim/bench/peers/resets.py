@@ -8,8 +8,8 @@ from ...axis.layout import (
     BRANCHES, COMPLIANT, CONTACT_STIFFNESS, DAMPING, NORMAL, STATIC_EXPONENT, STATIC_INITIAL, STATIC_LAW, STATIC_LIMIT,
     STATIC_TAU, STIFFNESS, TABLE,
 )
-from ...compiled import always_compiled
-from ...words import EventKind
+from ...core.jit import always_compiled
+from ...core.types import EventKind
 from .automaton import (
     ACCELERATING, COASTING, DECELERATING, DEFLECTION, DIRECTION, EXCESS, F, F_RATE, MODE, PIECE, REST, ROUNDING, S,
     STICK, TIME, TURN, U, V, V_RATE, X, applied, contact, friction_lines, inputs, is_compliant, knot_at, motion_of,

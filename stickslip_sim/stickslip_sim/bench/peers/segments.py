@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import SolverError
+from ...core.errors import SolverError
 from ..problem import Outcome, Problem
 from .automaton import SIZE, TIME, U, X, motion_of
 from .resets import end_of_piece, enter_piece, move, note, reset

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from ...compiled import always_compiled
-from ...errors import SolverError
+from ...core.jit import always_compiled
+from ...core.errors import SolverError
 from ..problem import Outcome, Problem
 from .automaton import GUARDS, guards, rates
 from .peer import Peer, Setting, tolerances

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import SolverError
+from ...core.errors import SolverError
 from ..problem import Outcome, Problem
 from .automaton import GUARDS, Q_F_RATE, SIZE, TIME, U, X, guards, motion_of, rates
 from .peer import Peer, Setting, tolerances

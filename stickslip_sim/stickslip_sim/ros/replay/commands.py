@@ -7,7 +7,7 @@ from threading import Event
 
 from rclpy.node import Node
 
-from ...errors import InputError
+from ...core.errors import InputError
 from ...recording.playback import Recording
 from ...scene.sections import NODE
 from .axis import Axis

@@ -12,8 +12,8 @@ from functools import partial
 from rcl_interfaces.msg import Parameter
 from rclpy.node import Node
 
-from ...errors import InputError, RecordingError
-from ...grid import Grid
+from ...core.errors import InputError, RecordingError
+from ...core.time_grid import Grid
 from ...recording import RecordedMessage, Topic
 from ...recording.playback import Recording
 from ...recording.topics import DRIVE_VELOCITY, EXTERNAL_FORCE

@@ -5,13 +5,13 @@
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
-from ...errors import InputError, RecordingError
+from ...core.errors import InputError, RecordingError
 from ...recording import Topic
 from ...recording.playback import Recording
 from ...recording.topics import DRIVE_VELOCITY, EXTERNAL_FORCE, PARAMETER_EVENTS, RIG_EVENT, SLIDER_STATE
 from ...rig import NoteKind
 from ...scene.schema import BY_NAME
-from ..topics import deserialized
+from ..node.topics import deserialized
 
 COMMANDS = (DRIVE_VELOCITY, EXTERNAL_FORCE)
 _CLEAR = 'clear'    # what ~/inject_fault calls the end of a fault

@@ -6,7 +6,7 @@ import threading
 from collections.abc import Callable, Iterator
 from typing import NamedTuple, Protocol
 
-from ...pacing import wake_precisely
+from ...realtime.pacing import wake_precisely
 from .timeline import Timeline
 
 _IDLE = 0.05        # s between two looks at whether to stop

@@ -8,10 +8,10 @@ from threading import Event
 
 from rclpy.node import Node
 
-from ...errors import InputError
+from ...core.errors import InputError
 from ...recording import RecordedMessage, Topic
 from ...recording.playback import Recording
-from ..topics import publisher
+from ..node.topics import publisher
 from .axis import Axis
 from .orders import COMMANDS, refusal_in, request_of
 from .player import Act, nothing, wait_until

@@ -5,8 +5,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 
-from ...errors import InputError
-from ...scene.parameter import Parameter
+from ...config.parameter import Parameter
+from ...core.errors import InputError
 
 STATES, COMMANDS = 'states', 'commands'
 

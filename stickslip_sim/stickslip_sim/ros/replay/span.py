@@ -5,8 +5,8 @@
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from ...errors import InputError
-from ...pacing import NANOSECONDS
+from ...core.errors import InputError
+from ...realtime.pacing import NANOSECONDS
 from ...recording.playback import Recording
 from .settings import Settings
 

@@ -9,7 +9,7 @@ from rclpy.node import Node
 
 from ...recording.playback import Recording
 from .player import Act, nothing
-from .publishers import publisher_of
+from .recorded_topics import publisher_of
 from .span import Span
 
 

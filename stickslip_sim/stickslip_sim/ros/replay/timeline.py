@@ -5,7 +5,7 @@
 import math
 from threading import Lock
 
-from ...pacing import NANOSECONDS, Clock, SteadyClock
+from ...realtime.pacing import NANOSECONDS, Clock, SteadyClock
 
 
 class Timeline:

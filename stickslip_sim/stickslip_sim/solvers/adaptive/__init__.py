@@ -25,7 +25,7 @@ G. Wanner, Solving Ordinary Differential Equations I, II.5 and II.6.
 
 from typing import Any
 
-from ...errors import InputError
+from ...core.errors import InputError
 from .. import Solver
 from .engine import Engine
 

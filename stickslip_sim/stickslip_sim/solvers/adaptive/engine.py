@@ -21,7 +21,7 @@ from .. import DONE, FULL, NO_PROGRESS, OUT_OF_RANGE
 from ..inputs import hold_inputs, refresh_inputs, same_inputs
 from ..sampling import write_sample
 from ..state import begin_state, change_contact
-from .motion import Motion
+from .mode_problem import Motion
 
 _SAME_INSTANT = 64   # events without progress in time; a sound model needs three
 

@@ -6,7 +6,7 @@ Each sum carries what rounding has lost of it (Neumaier, ZAMM 54, 1974).
 """
 
 from ...axis.layout import CONTACT_EXCHANGE, PARAMETER_EXCHANGE, STORED_AT_START, SUMS, SUM_COUNT, THROUGHPUT
-from ...compiled import compiled, inlined
+from ...core.jit import compiled, inlined
 from .works import contact_energy, stored_energy, works
 
 

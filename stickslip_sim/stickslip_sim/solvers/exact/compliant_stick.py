@@ -30,7 +30,7 @@ from ...axis.layout import (
 )
 from ...axis.motion import TICK, oscillator_of, static_limit, travel, travel_at
 from ...axis.transitions import force_rounding
-from ...compiled import compiled, inlined
+from ...core.jit import compiled, inlined
 from ...linear.oscillator import amplitude, bound, impulse, short_integrals
 from ...linear.roots import first_crossing, safe_step
 from .static_guards import GAVE_UP, STEPS, concave_root, is_concave, law, steep_start

@@ -25,7 +25,7 @@ from ...axis.transitions import (
     leave_coast, release, turn,
 )
 from ...axis.waves import inputs_at, load_waves, same_waves
-from ...compiled import compiled, inlined
+from ...core.jit import compiled, inlined
 from .. import DONE, FULL, NO_PROGRESS, UNSOUND
 from ..sampling import write_sample
 from .account import book_contact, book_parameters, book_works, read_account
@@ -148,7 +148,7 @@ def set_parameters(p, new, s, second, fraction, events, row):
 
 @compiled
 def sample(p, s, second, fraction, out):
-    """Fill a row with the state at a time between the anchor and the next event (`words.Sample` names the columns)."""
+    """Fill a row with the state at a time between the anchor and the next event (`types.Sample` names the columns)."""
     t = (second - s[SECOND]) + (fraction - s[FRACTION])
     y, u, a = travel(p, s, t)
     drive = drive_travel(s, t)

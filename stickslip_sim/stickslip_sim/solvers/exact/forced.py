@@ -31,7 +31,7 @@ from ...axis.layout import (
 )
 from ...axis.motion import ACCELERATING, COASTING, STICK, friction_line, knot_speed, oscillator_of, static_limit
 from ...axis.transitions import ACCELERATE, ARREST, BREAKAWAY, COAST, DECELERATE, KNOT, band_of, force_rounding
-from ...compiled import compiled
+from ...core.jit import compiled
 from ...friction.static import CONSTANT
 from ...linear.roots import finite_horizon, first_crossing, safe_step
 from .signals import read_signal, signal_of

@@ -21,7 +21,7 @@ from ...axis.motion import (
 )
 from ...axis.transitions import ACCELERATE, COAST, band_of
 from ...axis.waves import inputs_at
-from ...compiled import compiled, inlined
+from ...core.jit import compiled, inlined
 from .account import balance
 
 ALLOWED = 1e-6   # of the throughput of energy; of the forces that add up; of the speeds that were passed

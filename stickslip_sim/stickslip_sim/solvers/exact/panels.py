@@ -7,7 +7,7 @@ import math
 from ...axis.layout import CONTACT_DAMPING, DAMPING, DIRECTION, FRACTION, MODE, NORMAL, SECOND, SPRING, STIFFNESS
 from ...axis.motion import STICK, drive_travel, slip_friction, travel
 from ...axis.waves import inputs_at
-from ...compiled import compiled
+from ...core.jit import compiled
 
 # eight nodes of Gauss and Legendre's rule
 _NODES = (-0.96028985649753623168, -0.79666647741362673959, -0.52553240991632898582, -0.18343464249564980494,

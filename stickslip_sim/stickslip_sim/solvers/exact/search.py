@@ -22,7 +22,7 @@ from ...axis.motion import (
     ACCELERATING, COASTING, STAMP, STICK, TICK, knot_speed, oscillator_of, tick_integrals, travel_at,
 )
 from ...axis.transitions import ACCELERATE, ARREST, BREAKAWAY, COAST, DECELERATE, KNOT, band_of, force_rate
-from ...compiled import inlined
+from ...core.jit import inlined
 from ...linear.roots import finite_horizon, first_crossing, first_passage, half_period
 from .compliant_stick import compliant_stick
 from .forced import forced_event

@@ -26,7 +26,7 @@ from ...axis.layout import (
 from ...axis.motion import ACCELERATING, COASTING, STICK
 from ...axis.transitions import applied_force
 from ...axis.waves import wave_force, wave_travel
-from ...compiled import compiled
+from ...core.jit import compiled
 from ...linear.oscillator import amplitude, integrals, short_integrals
 from ...linear.waves import TURN
 

@@ -17,7 +17,7 @@ from ...axis.layout import (
 )
 from ...axis.motion import static_limit
 from ...axis.transitions import applied_force, force_rate
-from ...compiled import compiled, inlined
+from ...core.jit import compiled, inlined
 from ...friction.static import CONSTANT, EXPONENTIAL, KATO, LOGARITHMIC, static_growth
 from ...linear.roots import first_crossing, householder, safe_step
 

@@ -20,7 +20,7 @@ from ...axis.layout import (
 )
 from ...axis.motion import COASTING, STICK, oscillator_of, slip_friction
 from ...axis.waves import fastest_wave
-from ...compiled import compiled
+from ...core.jit import compiled
 from ...linear.moments import moments
 from ...linear.wave_products import (
     cycle_within, mirrored, over, phase_products, ramped_integral, swept_integral, wave_integral, wave_moment,

@@ -13,7 +13,7 @@ from ...axis.layout import (
     NORMAL, SPRING, STIFFNESS, V, VELOCITY, V_RATE, WAVES,
 )
 from ...axis.motion import COASTING, STICK, drive_travel, is_rigid_stick, oscillator_of, slip_friction, travel
-from ...compiled import compiled, inlined
+from ...core.jit import compiled, inlined
 from ...linear.moments import moments
 from .wave_works import moving_works, still_works
 

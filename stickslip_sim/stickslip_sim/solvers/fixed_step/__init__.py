@@ -24,8 +24,8 @@ import math
 from fractions import Fraction
 from typing import Any
 
-from ...compiled import entry
-from ...errors import InputError
+from ...core.jit import entry
+from ...core.errors import InputError
 from .. import Solver
 from . import loop
 from .stability import check_step

@@ -19,7 +19,7 @@ from ...axis.motion import (
 from ...axis.transitions import (
     ACCELERATE, COAST, DECELERATE, applied_force, arrest, force_rounding, release, write_event,
 )
-from ...compiled import compiled
+from ...core.jit import compiled
 from .. import DONE, FULL, OUT_OF_RANGE
 from ..inputs import hold_inputs, inputs_at, inputs_vary, refresh_inputs, same_inputs
 from ..sampling import write_sample

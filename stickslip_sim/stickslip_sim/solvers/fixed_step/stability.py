@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from itertools import pairwise
 
 from ...axis import Axis, CompliantContact
-from ...errors import InputError
+from ...core.errors import InputError
 
 _REACH = 4.0      # RK4 is stable nowhere beyond |z| = 3
 _FOUND = 1e-6     # relative; how well the longest step of RK4 is found

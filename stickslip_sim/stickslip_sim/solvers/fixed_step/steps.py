@@ -12,7 +12,7 @@ from ...axis.layout import (
     DEFLECTION, DIRECTION, EXCESS, F, FRACTION, KNOTS, MASS, METHOD, MODE, NORMAL, PIECE, SECOND, SPRING, V, VELOCITY,
 )
 from ...axis.motion import STICK, contact_force, drive_force, friction_line, is_rigid_stick, knot_speed
-from ...compiled import compiled
+from ...core.jit import compiled
 from ..inputs import inputs_at
 
 EULER, RK4 = 0.0, 1.0

@@ -1,0 +1,168 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Runs of changed scenes beside the reference: what comes of them, and what they cost."""
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+from ..axis.layout import FRACTION, SECOND
+from ..bench.measure import Cost, measure
+from ..bench.own_solvers import own_solver
+from ..bench.peers.peer import EXACT
+from ..bench.problem import Outcome, Problem
+from ..core.errors import InputError, SolverError
+from ..core.types import Event, Instant, Sample
+from ..runs.offline import Trajectory, run_offline
+from ..scene import Scene, changed
+from ..simulation.simulator import Simulator
+from ..solvers import Solver
+from .figure_distance import Difference, Figures, difference, figures_of
+from .part import Changes
+
+BY_EXACT: Changes = {'solver.name': 'exact'}
+
+_SLOW = 0.05            # s: a run that takes longer is timed once
+_LONGEST = 320.0        # s of simulation that costs are measured over
+_MOMENT = 1e-3          # s of simulation
+_MOST = 10              # times as many events as the reference, and
+_MOST_AT_LEAST = 1000   # these: a solver that finds more chatters
+
+
+class Reference(NamedTuple):
+    """The exact run with everything on; `end` is its last sample."""
+
+    scene: Scene
+    run: Trajectory
+    end: Sample
+    figures: Figures
+
+    @property
+    def end_instant(self) -> Instant:
+        """When it ends."""
+        return Instant(self.end.second, self.end.fraction)
+
+
+class Trial(NamedTuple):
+    """A run of the scene with changes; without a difference `note` says why there is none.
+
+    `identical`: its events and its end are those of the reference to the last bit.  `how` says what the changes are
+    where the name does not.  `cost` is processor time for each simulated second, s.
+    """
+
+    name: str
+    how: str
+    changes: Changes
+    scene: Scene | None
+    difference: Difference | None
+    identical: bool = False
+    note: str = ''
+    cost: Cost | None = None
+
+
+def changes_between(base: Scene, other: Scene) -> Changes:
+    """Return the changes that make the other scene of the base; what a changed choice takes with it needs none."""
+    return {name: value for name, value in other.values.items() if base.values.get(name) != value}
+
+
+def reference_of(scene: Scene, duration: float) -> Reference:
+    """Run a scene with the exact solver, whichever it names."""
+    exact = changed(scene, BY_EXACT)
+    run = run_offline(exact, duration, duration)   # sampled at its start and its end
+    start, end = run.sample_rows()
+    return Reference(exact, run, end, figures_of(run.events, duration, start, end))
+
+
+def try_changes(reference: Reference, name: str, changes: Changes, how: str = '') -> Trial:
+    """Run the scene of the reference with changes; a scene that is refused and a solver that gives up are results."""
+    scene = None
+    try:
+        scene = _tabulated(changed(reference.scene, changes))
+        events, start, end = _run(scene, reference)
+    except (InputError, SolverError) as error:
+        return Trial(name, how, changes, scene, None, note=' '.join(str(error).split()))
+    figures = figures_of(events, reference.run.duration, start, end)
+    return Trial(name, how, changes, scene, difference(reference.figures, figures),
+                 identical=events == reference.run.events and end == reference.end)
+
+
+def costs(scenes: Sequence[Scene], duration: float, rounds: int) -> list[Cost | None]:
+    """Return the processor time of each scene per simulated second, interleaved; None where the solver gives up."""
+    duration = min(duration, _LONGEST)
+    for scene in scenes:
+        _cost_of_one(_prepared(scene, _MOMENT))   # compiles what is not
+    runs = [_prepared(scene, duration) for scene in scenes]
+    first = [_cost_of_one(run) for run in runs]
+    quick = [k for k, cost in enumerate(first) if cost is not None and cost.median < _SLOW]
+    # whoever comes first in a round finds the caches full of the last one's data: a run that does not count does
+    _, *measured = measure([runs[k] for k in (*quick[:1], *quick)], rounds) if quick else [None]
+    found = dict(zip(quick, measured))
+    return [_per_second(found.get(k, cost), duration) for k, cost in enumerate(first)]
+
+
+def with_costs(reference: Reference, trials: Sequence[Trial], rounds: int) -> tuple[Cost | None, list[Trial]]:
+    """Return what the reference costs, and the trials with their costs; those that came to nothing stay without."""
+    sound = [trial for trial in trials if trial.difference is not None]
+    whole, *others = costs([reference.scene, *(trial.scene or reference.scene for trial in sound)],
+                           reference.run.duration, rounds)
+    coming = iter(others)
+    return whole, [trial if trial.difference is None else trial._replace(cost=next(coming)) for trial in trials]
+
+
+def _run(scene: Scene, reference: Reference) -> tuple[list[Event], Sample, Sample]:
+    """Return the events of a run as long as the reference, and its first and last sample."""
+    duration = reference.run.duration
+    if scene.solver.name != 'adaptive':
+        run = run_offline(scene, duration, duration)
+        begin, end = run.sample_rows()
+        return run.events, begin, end
+    solver = _watched(scene.solver.make(scene.axis), max(_MOST_AT_LEAST, _MOST * len(reference.run.events)))
+    simulator = Simulator(scene.axis, scene.initial, scene.drive, scene.force, solver)
+    start = simulator.sample()
+    return simulator.advance(reference.end_instant), start, simulator.sample()
+
+
+def _watched(solver: Solver, most: int) -> Solver:
+    """Return a solver that gives up after too many events: chatter would go on for minutes."""
+    found = 0
+
+    def advance(*arguments: Any) -> tuple[int, int]:
+        nonlocal found
+        rows, end = solver.advance(*arguments)
+        found += rows
+        if found > most:
+            time = arguments[1][SECOND] + arguments[1][FRACTION]
+            raise SolverError(f'more than {most} events up to t = {time:.4g} s, far more than with the exact solver')
+        return rows, end
+
+    return solver._replace(advance=advance)
+
+
+def _tabulated(scene: Scene) -> Scene:
+    """Return a scene whose adaptive solver takes the table of mu_k as the others do: solvers are compared, not laws."""
+    if scene.solver.name != 'adaptive':
+        return scene
+    friction = scene.axis.friction
+    return replace(scene, axis=replace(scene.axis, friction=replace(friction, kinetic=replace(friction.kinetic,
+                                                                                            law=None))))
+
+
+def _prepared(scene: Scene, duration: float) -> Callable[[], Outcome]:
+    problem = Problem(scene.name, scene.summary, scene.axis, scene.initial, scene.drive, scene.force, duration)
+    solver = scene.solver.make(scene.axis)
+    return own_solver(scene.solver.name, (EXACT,), lambda setting: solver).prepare(problem, EXACT)
+
+
+def _cost_of_one(run: Callable[[], Outcome]) -> Cost | None:
+    begin = time.process_time()
+    try:
+        run()
+    except SolverError:
+        return None
+    seconds = time.process_time() - begin
+    return Cost(seconds, seconds, seconds, 1)
+
+
+def _per_second(cost: Cost | None, duration: float) -> Cost | None:
+    return cost and Cost(cost.median / duration, cost.low / duration, cost.high / duration, cost.samples)

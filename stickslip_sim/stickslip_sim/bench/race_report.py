@@ -1,0 +1,123 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The race as JSON values, and those as tables for people (plain text, Markdown)."""
+
+import os
+import pathlib
+import platform
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from ..runs.receipt import versions
+from .peers.peer import Setting
+from .race import DIGITS, CaseResult, Row
+from .ratios import Ratio
+
+_HEADS = ('solver', 'setting', 'µs per simulated s', '× exact', 'missed', 'invented', 'event time, s', 'position, m')
+_MARK_HEADS = ('figure', 'case', 'measured', 'mark', 'aim', 'mark met')
+
+Json = dict[str, Any]
+
+
+def as_json(results: Sequence[CaseResult], figures: Sequence[Ratio], rounds: int) -> Json:
+    """Return everything that was measured."""
+    return {'versions': {**versions(), **_rivals(results)}, 'machine': machine(), 'rounds': rounds,
+            'reference_digits': DIGITS, 'cases': [as_case(result) for result in results],
+            'ratios': [ratio._asdict() for ratio in figures]}
+
+
+def as_case(result: CaseResult) -> Json:
+    """Return a case as JSON values."""
+    problem = result.problem
+    return {'name': problem.name, 'summary': problem.summary, 'duration': problem.duration,
+            'reference_events': result.reference_events, 'rows': [_row(row) for row in result.rows]}
+
+
+def machine() -> str:
+    """Return what was measured on."""
+    info = pathlib.Path('/proc/cpuinfo')
+    lines = info.read_text().splitlines() if info.is_file() else []
+    model = next((line.split(':')[1].strip() for line in lines if line.startswith('model name')), platform.machine())
+    return f'{os.cpu_count()} × {model}, {platform.system()} {platform.release()}'
+
+
+def text_table(case: Json) -> str:
+    """Return a case for the terminal."""
+    return '\n'.join([_heading(case), *_aligned(_HEADS, _cells(case), texts=2), *_notes(case)])
+
+
+def marks_table(figures: Sequence[Json]) -> str:
+    """Return the figures beside their marks for the terminal."""
+    return '\n'.join(_aligned(_MARK_HEADS, _mark_cells(figures, 'NO'), texts=2))
+
+
+def markdown(data: Json) -> str:
+    """Return the page that `bench.md` holds, and docs/accuracy.md between its markers."""
+    known = '; '.join(f'{name} {version}' for name, version in data['versions'].items())
+    lines = [f'Measured on {data["machine"]} with {known}; medians of {data["rounds"]} interleaved rounds (fewer of'
+             ' what takes seconds), processor time.', '']
+    if data['ratios']:
+        lines += [*_markdown_table(_MARK_HEADS, _mark_cells(data['ratios'], '**no**')), '']
+    for case in data['cases']:
+        lines += [f'### {_heading(case)}', '', *_markdown_table(_HEADS, _cells(case)), '',
+                  *(f'* {note}' for note in _notes(case)), '']
+    return '\n'.join(lines).rstrip() + '\n'
+
+
+def _heading(case: Json) -> str:
+    return f'{case["name"]}: {case["summary"]} ({case["duration"]:g} s, {case["reference_events"]} events)'
+
+
+def _cells(case: Json) -> list[tuple[str, ...]]:
+    raced = [row for row in case['rows'] if row['errors']]
+    exact = next((_cost(row) for row in raced if row['solver'].startswith('exact')), None)
+    return [(row['solver'], row['label'], _short(_cost(row) * 1e6), _short(_cost(row) / exact) if exact else '',
+             f'{row["errors"]["missed"]} of {row["errors"]["reference_events"]}', str(row['errors']['invented']),
+             f'{row["errors"]["time"]:.1e}', f'{row["errors"]["position"]:.1e}') for row in raced]
+
+
+def _cost(row: Json) -> float:
+    return float(row['cost_per_simulated_second']['median'])
+
+
+def _mark_cells(figures: Sequence[Json], missed: str) -> list[tuple[str, ...]]:
+    return [(figure['what'], figure['case'], _short(figure['measured']), figure['mark'] or '–', figure['aim'] or '–',
+             {True: 'yes', False: missed, None: '–'}[figure['met']]) for figure in figures]
+
+
+def _notes(case: Json) -> list[str]:
+    return [' '.join(f'{row["solver"]} {row["label"]}: {row["note"]}'.split()) for row in case['rows'] if row['note']]
+
+
+def _row(row: Row) -> Json:
+    return {'solver': row.contestant, 'setting': _setting(row.setting), 'label': row.setting.label,
+            'version': row.version, 'note': row.note,
+            'errors': row.errors._asdict() if row.errors else None,
+            'cost_per_simulated_second': row.cost._asdict() if row.cost else None}
+
+
+def _setting(setting: Setting) -> Json:
+    return {setting.unit: setting.value} if setting.unit else {}
+
+
+def _rivals(results: Sequence[CaseResult]) -> dict[str, str]:
+    return {row.contestant: row.version for result in results for row in result.rows if row.version}
+
+
+def _aligned(heads: tuple[str, ...], cells: Sequence[tuple[str, ...]], texts: int) -> list[str]:
+    """Return lines whose first `texts` columns stand to the left, the others to the right."""
+    rows = [heads, *cells]
+    widths = [max(len(row[i]) for row in rows) for i in range(len(heads))]
+    return ['  '.join(cell.ljust(width) if i < texts else cell.rjust(width)
+                      for i, (cell, width) in enumerate(zip(row, widths))).rstrip() for row in rows]
+
+
+def _markdown_table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:
+    return [f'| {" | ".join(row)} |' for row in (heads, ['---'] * len(heads), *rows)]
+
+
+def _short(value: float) -> str:
+    """Return three digits."""
+    if 1e-3 <= value < 1e6:
+        return f'{value:.0f}' if value >= 100.0 else f'{value:.3g}'
+    return f'{value:.1e}'

@@ -1,0 +1,58 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The outcome as sentences and as JSON values; SI units."""
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from .judgement import Outcome
+from .kinds import TIMING
+from .sources import Evidence
+
+
+def verdict_line(outcomes: Sequence[Outcome]) -> str:
+    """Return passed or failed, of how many, and which failed."""
+    failed = failures(outcomes)
+    if failed:
+        return f'FAILED: {len(failed)} of {len(outcomes)}: {", ".join(failed)}'
+    return f'PASSED: {len(outcomes)} of {len(outcomes)}'
+
+
+def failures(outcomes: Sequence[Outcome]) -> list[str]:
+    """Return the names of the limits that were not kept."""
+    return [outcome.name for outcome in outcomes if not outcome.passed]
+
+
+def told(outcome: Outcome) -> str:
+    """Return what was measured, and the limit, in a sentence."""
+    if outcome.limit is None or outcome.value is None:
+        return outcome.remark
+    unit = f' {outcome.limit.kind.unit}'.rstrip()
+    text = f'{outcome.limit.kind.name} = {outcome.value!r}{unit}, limit {outcome.limit.maximum!r}{unit}'
+    return f'{text} ({outcome.remark})' if outcome.remark else text
+
+
+def as_json(evidence: Evidence, outcomes: Sequence[Outcome]) -> dict[str, Any]:
+    """Return everything that was found; an infinite figure is the text 'inf'."""
+    motion = evidence.motion
+    return {
+        'run': {'name': evidence.name, 'begin': motion.begin, 'end': motion.end, 'states': len(motion.time),
+                'events': len(motion.events), 'is_complete': evidence.is_complete, 'notes': list(evidence.notes)},
+        'passed': not failures(outcomes),
+        'limits': [_entry(outcome) for outcome in outcomes],
+    }
+
+
+def _entry(outcome: Outcome) -> Mapping[str, Any]:
+    limit = outcome.limit
+    found = {'name': outcome.name, 'passed': outcome.passed, 'remark': outcome.remark}
+    if limit is None:
+        return {**found, 'check': TIMING}
+    return {**found, 'check': limit.kind.name, 'unit': limit.kind.unit, 'measured': _number(outcome.value),
+            'max': limit.maximum, 'margin': _number(outcome.margin), 'window': limit.window._asdict(),
+            **limit.settings}
+
+
+def _number(value: float | None) -> float | str | None:
+    return value if value is None or math.isfinite(value) else str(value)

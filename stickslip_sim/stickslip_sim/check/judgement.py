@@ -1,0 +1,53 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The judgement: every limit of a file on one motion."""
+
+import math
+from typing import NamedTuple
+
+from ..core.errors import InputError
+from .kinds import TIMING
+from .limits import Limit, Limits, check_fit
+from .observed_motion import Motion
+from .sources import Evidence
+
+
+class Outcome(NamedTuple):
+    """What a limit came to; without a `value` there was nothing to measure, or there is no number (timing)."""
+
+    name: str
+    limit: Limit | None   # None: timing
+    passed: bool
+    value: float | None
+    remark: str
+
+    @property
+    def margin(self) -> float | None:
+        """What is left up to the limit; negative beyond it."""
+        return None if self.limit is None or self.value is None else self.limit.maximum - self.value
+
+
+def judge(limits: Limits, evidence: Evidence) -> list[Outcome]:
+    """Return the outcome of every limit, timing last; raises InputError when one does not fit the run.
+
+    A recording that was cut off is judged as far as it goes.
+    """
+    motion = evidence.motion.following(limits.reference) if limits.reference else evidence.motion
+    check_fit(limits, motion.begin, motion.end if evidence.is_complete else math.inf, evidence.timing is not None)
+    outcomes = [_outcome(limit, motion) for limit in limits.limits]
+    if limits.timing and evidence.timing:
+        outcomes.append(Outcome(TIMING, None, evidence.timing.valid, None, evidence.timing.verdict))
+    return outcomes
+
+
+def _outcome(limit: Limit, motion: Motion) -> Outcome:
+    begin, end = limit.window
+    begin = motion.begin if begin is None else begin
+    if begin >= motion.end:
+        return Outcome(limit.name, limit, False, None, f'the run has nothing from t = {begin:g} s on')
+    part = motion.cut(begin, motion.end if end is None else min(end, motion.end))
+    try:
+        value, remark = limit.kind.measure(part, **limit.settings)
+    except InputError as error:
+        raise InputError(f'{limit.name}.{error.name}', error.value, error.allowed, error.fix) from None
+    return Outcome(limit.name, limit, value <= limit.maximum, value, remark)

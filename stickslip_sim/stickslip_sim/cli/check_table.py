@@ -1,0 +1,34 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The outcome of a check as a table for people."""
+
+from collections.abc import Iterator, Sequence
+
+from ..check.judgement import Outcome
+from ..check.sources import Evidence
+from .format import quantity
+
+_HEADS = ('limit', 'measured', 'at most', 'margin', '', '')
+_NUMBERS = (1, 2, 3)   # columns to the right
+
+
+def table_lines(evidence: Evidence, outcomes: Sequence[Outcome]) -> Iterator[str]:
+    """Yield what was checked, what is missing of it, and a line for each limit."""
+    motion = evidence.motion
+    yield (f'{evidence.name}: {motion.begin:g} to {motion.end:g} s, {len(motion.time)} states, '
+           f'{len(motion.events)} transitions')
+    yield from (f'note: {note}' for note in evidence.notes)
+    rows = [_HEADS, *map(_cells, outcomes)]
+    widths = [max(map(len, column)) for column in zip(*rows)]
+    for row in rows:
+        yield '  '.join(cell.rjust(width) if i in _NUMBERS else cell.ljust(width)
+                        for i, (cell, width) in enumerate(zip(row, widths))).rstrip()
+
+
+def _cells(outcome: Outcome) -> tuple[str, ...]:
+    verdict = 'PASS' if outcome.passed else 'FAIL'
+    if outcome.limit is None or outcome.value is None or outcome.margin is None:
+        return outcome.name, '–', '–', '–', verdict, outcome.remark
+    numbers = (quantity(number, outcome.limit.kind.unit)
+               for number in (outcome.value, outcome.limit.maximum, outcome.margin))
+    return outcome.name, *numbers, verdict, outcome.remark

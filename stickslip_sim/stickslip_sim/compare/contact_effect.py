@@ -1,0 +1,53 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Statement: the contact changes the course of the motion not essentially."""
+
+from dataclasses import replace
+
+from ..axis import Axis, CompliantContact, RigidContact
+from ..simulation.cycles import Cycle
+from .history import History
+from .reruns import last_cycles, lasts, longest_period
+from .statement import Finding, Statement, found, not_applicable
+
+PAPER_CONTACT = CompliantContact(5.0e6, 15_000.0)   # N/m, N s/m
+_NOT_ESSENTIALLY = 0.1                              # relative, of every figure
+_FIGURES = {'period': 'period', 'stick time': 'stick_time', 'slip time': 'slip_time', 'jump': 'jump',
+            'peak speed': 'peak_speed', 'break-away force': 'break_away_force'}
+
+
+def judge(history: History) -> Finding:
+    """Compare the limit cycles of this axis with a rigid and with a compliant contact."""
+    axis, inputs = history.scene.axis, history.steady_inputs()
+    if axis.friction.excess is None:
+        return not_applicable('said of the acceleration-dependent characteristic only')
+    if inputs is None:
+        return not_applicable('drive or force are not constant')
+    if not lasts(history.cycles, history.end):
+        return not_applicable(f'stick-slip does not last: {len(history.cycles)} complete cycles')
+    rigid, compliant = (last_cycles(replace(axis, contact=contact), history.scene.initial, inputs,
+                                    longest_period(history.cycles)) for contact in (RigidContact(), _compliant(axis)))
+    if not rigid or not compliant:
+        return found(False, 'stick-slip lasts with one of the two contacts only')
+    changes = {name: _change(rigid[-1], compliant[-1], field) for name, field in _FIGURES.items()}
+    largest = max(abs(change) for change in changes.values())
+    added = axis.drive_stiffness / _compliant(axis).stiffness
+    text = f'the contact adds {100.0 * added:.3g} % to the compliance; limit cycle against that of a rigid contact: '
+    text += ', '.join(f'{name} {100.0 * change:+.3g} %' for name, change in changes.items())
+    return found(largest <= _NOT_ESSENTIALLY, text, largest_change=largest, added_compliance=added,
+                 **{_FIGURES[name]: change for name, change in changes.items()})
+
+
+def _compliant(axis: Axis) -> CompliantContact:
+    """Return the compliant contact of the axis, or the paper's."""
+    return axis.contact if isinstance(axis.contact, CompliantContact) else PAPER_CONTACT
+
+
+def _change(rigid: Cycle, compliant: Cycle, field: str) -> float:
+    before, after = getattr(rigid, field), getattr(compliant, field)
+    return float(after / before - 1.0) if before else 0.0
+
+
+CONTACT_EFFECT = Statement('the contact is not essential',
+                           'The contact changes the course of the motion not essentially: every figure of the limit '
+                           f'cycle by at most {100.0 * _NOT_ESSENTIALLY:g} %.', judge)

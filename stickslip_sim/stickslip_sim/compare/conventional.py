@@ -1,0 +1,39 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""An axis with the conventional characteristics (Fig. 3), beside its own (Fig. 4 of the paper)."""
+
+from contextlib import suppress
+
+from ..core.errors import InputError
+from ..scene import Scene, changed
+from .history import History
+
+_KINETIC = 'friction.kinetic'
+
+
+def scene_as_run(history: History) -> Scene | None:
+    """Return the scene with the inputs of the run; None for a recorded run whose inputs were not constant."""
+    if not history.is_recorded:
+        return history.scene
+    inputs = history.steady_inputs()
+    if inputs is None or history.is_changed:
+        return None
+    return changed(history.scene, {'drive.course': 'constant', 'drive.velocity': inputs.velocity,
+                                   'force.course': 'constant', 'force.constant': inputs.force})
+
+
+def characteristics_beside(scene: Scene) -> dict[str, Scene]:
+    """Return the scene with constant, with falling, and with acceleration-dependent kinetic friction, by these names.
+
+    What the scene cannot have is left out: one without a falling branch has no limit velocity for the others.
+    """
+    conventional = {'friction.acceleration_dependence': False}
+    kinetic = scene.axis.friction.kinetic
+    constant = {f'{_KINETIC}.law': 'table', f'{_KINETIC}.velocities': (0.0,),
+                f'{_KINETIC}.coefficients': (kinetic.coefficients[0],), f'{_KINETIC}.end_slope': 0.0}
+    found = {'constant kinetic friction': changed(scene, {**conventional, **constant})}
+    if len(set(kinetic.coefficients)) > 1:
+        found['falling kinetic friction'] = changed(scene, conventional)
+    with suppress(InputError):
+        found['acceleration-dependent friction'] = changed(scene, {'friction.acceleration_dependence': True})
+    return found

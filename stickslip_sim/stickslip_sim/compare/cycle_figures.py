@@ -1,0 +1,56 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The cycle figures of a run, its ring-down, and how it converges: what `report.json` holds."""
+
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from ..runs.receipt import plain
+from ..simulation.cycles import Cycle
+from .history import History, slips
+from .reruns import difference
+from .ring_down import closed_form, identified
+from .statement import Finding, Statement
+
+_ROUNDING = 1e-10   # relative: a smaller difference of two cycles says nothing of how they converge
+
+
+def peak_accelerations(history: History) -> list[float]:
+    """Return the largest |ẍ| in the slip of each cycle, m/s²."""
+    ends = {begin.time: end.time for begin, end in slips(history)}
+    parts = (history.within(cycle.begin, ends[cycle.begin]) for cycle in history.cycles)
+    return [float(np.abs(part['acceleration']).max()) for part in parts]
+
+
+def convergence(cycles: Sequence[Cycle]) -> list[float]:
+    """Return by how much each cycle differs from the one before, relative."""
+    return [difference(before, cycle) for before, cycle in pairwise(cycles)]
+
+
+def contraction(changes: Sequence[float]) -> float | None:
+    """Return the factor by which the difference from cycle to cycle shrinks; None while there are no two to compare."""
+    ratios = [after / before for before, after in pairwise(changes) if after > _ROUNDING]
+    return float(np.median(ratios)) if ratios else None
+
+
+def figures_of(history: History, findings: Sequence[tuple[Statement, Finding]]) -> dict[str, Any]:
+    """Return all figures of a run as JSON values, in SI; an infinite number is the text 'inf'."""
+    outline, form, ring = history.summary, closed_form(history.scene.axis), identified(history)
+    changes = convergence(history.cycles)
+    figures = {
+        'name': history.name, 'source': history.source, 'notes': list(history.notes),
+        'scene': history.scene.name, 'scene_hash': history.scene.hash,
+        'begin': history.begin, 'end': history.end, 'motion': outline.motion, 'settled': outline.settled,
+        'stick_share': outline.stick_share,
+        'cycles': [{**cycle._asdict(), 'peak_acceleration': peak}
+                   for cycle, peak in zip(history.cycles, peak_accelerations(history))],
+        'convergence': changes, 'contraction': contraction(changes),
+        'ring_down': {'identified': ring and ring._asdict(), 'closed_form': form and form._asdict()},
+        'statements': [{'name': statement.name, 'text': statement.text, 'outcome': finding.outcome.value,
+                        'finding': finding.text, 'figures': finding.figures} for statement, finding in findings],
+    }
+    result: dict[str, Any] = plain(figures)
+    return result

@@ -1,0 +1,86 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""A scene, simulated and sampled so densely that no sample rate shows: at every event, and finely in between."""
+
+import math
+from collections.abc import Iterator
+from itertools import pairwise
+
+import numpy as np
+
+from ..core.errors import InputError
+from ..core.input_profile import Course
+from ..core.types import Event, Instant, Sample
+from ..runs.offline import run_offline
+from ..scene import Scene
+from ..simulation.simulator import Simulator
+from .history import History
+from .ring_down import closed_form
+
+MAX_EVENTS = 50_000
+_IN_SPAN = 8, 200          # samples between two events, at least and at most
+_SPAN_BUDGET = 200_000     # samples of all spans
+_PERIODS, _IN_PERIOD = 8, 32   # of the ring-down after each slip
+_WAVE_BUDGET = 100_000     # samples for the sines of the inputs
+_BEFORE = 1e-9             # s: where an input jumps it is sampled that much before, too
+
+
+def simulate(scene: Scene, duration: float) -> History:
+    """Return the history of `duration` seconds of a scene; raises InputError on a time without a meaning."""
+    events = run_offline(scene, duration).events
+    if len(events) > MAX_EVENTS:
+        raise InputError('duration', duration, f'short enough for at most {MAX_EVENTS} events',
+                         f'there are {len(events)}: simulate a shorter time')
+    simulator = Simulator(scene.axis, scene.initial, scene.drive, scene.force, scene.solver.make(scene.axis))
+    instants = _instants(scene, duration, events)
+    rows = np.empty((len(instants), len(Sample._fields)))
+    for row, instant in zip(rows, instants):
+        simulator.advance(instant)
+        row[:] = simulator.sample()
+    columns = {name: rows[:, i] for i, name in enumerate(Sample._fields)}
+    columns['time'] = columns['second'] + columns['fraction']
+    source = f'simulated for {duration:g} s with the {scene.solver.name} solver'
+    return History(scene.name, source, scene, columns, events)
+
+
+def _instants(scene: Scene, duration: float, events: list[Event]) -> list[Instant]:
+    """Return when to sample: at the events, before and after the jumps of an input, and finely in between."""
+    jumps = sorted({*_borders(scene.drive, duration), *_borders(scene.force, duration)})
+    corners = sorted({0.0, duration, *jumps, *(event.time for event in events)})
+    count = min(max(_SPAN_BUDGET // len(corners), _IN_SPAN[0]), _IN_SPAN[1])
+    fine = [time for a, b in pairwise(corners) for time in np.linspace(a, b, count)[1:-1].tolist()]
+    fine += [0.0, duration, *jumps, *(max(time - _BEFORE, 0.0) for time in jumps)]
+    fine += [*_ring_downs(scene, corners), *_of_waves(scene, duration)]
+    return sorted({*map(_instant, fine), *(event.instant for event in events)})
+
+
+def _ring_downs(scene: Scene, corners: list[float]) -> Iterator[float]:
+    """Yield the times that show how a compliant contact rings after each event."""
+    ring = closed_form(scene.axis)
+    if ring is None:
+        return
+    offsets = np.arange(1, _PERIODS * _IN_PERIOD) / (_IN_PERIOD * ring.frequency)
+    for a, b in pairwise(corners[-(_SPAN_BUDGET // len(offsets)):]):
+        yield from (a + offsets[offsets < b - a]).tolist()
+
+
+def _of_waves(scene: Scene, duration: float) -> Iterator[float]:
+    """Yield the times that show the sines of the inputs."""
+    fastest = max((wave.frequency for wave in (*scene.drive.waves, *scene.force.waves)), default=0.0)
+    count = min(_IN_PERIOD * fastest * duration, _WAVE_BUDGET)
+    yield from np.linspace(0.0, duration, math.ceil(count) + 1).tolist()
+
+
+def _borders(course: Course, duration: float) -> Iterator[float]:
+    """Yield where a course goes on to its next piece, as many times as are worth a look."""
+    time = course.piece_at(0.0).end
+    for _ in range(MAX_EVENTS):
+        if not time < duration:
+            return
+        yield time
+        time = course.piece_at(time).end
+
+
+def _instant(seconds: float) -> Instant:
+    whole = math.floor(seconds)
+    return Instant(float(whole), seconds - whole)

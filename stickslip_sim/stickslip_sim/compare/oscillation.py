@@ -1,0 +1,88 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Statement: after a slip the slider oscillates a little, and soon no more, with the contact only."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..axis import CompliantContact
+from ..core.types import Event, EventKind
+from .history import History, Numbers, slips, sticks
+from .ring_down import RingDown, closed_form
+from .statement import Finding, Statement, found, not_applicable
+
+_SMALL = 0.1       # of the longest slip's travel
+_VANISHED = 0.05   # of the largest acceleration is left in the last quarter of a stick
+_LONG = 5.0        # time constants that a stick must last for the oscillation to have vanished
+_SAMPLES = 8       # in the first period
+_VISIBLE = 1e-3    # of the largest acceleration: what is smaller is no swing
+
+
+class _Ringing(NamedTuple):
+    """The motion in one stick, after a slip of `travel` m."""
+
+    travel: float
+    amplitude: float   # m, from where the slider stands to where it comes to rest
+    swings: int        # changes of the sign of the acceleration
+    rest: float        # share of the largest acceleration that is left in the last quarter
+
+
+def judge(history: History) -> Finding:
+    """Look at the motion in each stick after a complete slip."""
+    ring = closed_form(history.scene.axis)
+    if not isinstance(history.scene.axis.contact, CompliantContact) or ring is None:
+        return _without_contact(history)
+    if ring.damped_frequency == 0.0:
+        return not_applicable(f'the contact is overdamped: damping ratio {ring.damping_ratio:.4g}')
+    begins = {stop: begin for begin, stop in slips(history)}
+    rings = [_ringing(history, begins[stop], stop, end) for stop, end in sticks(history)
+             if stop in begins and _is_fit(history, ring, begins[stop], stop, end)]
+    if not rings:
+        return not_applicable('no slip and stick with constant inputs, long enough for the oscillation to vanish and '
+                              'sampled finely enough to show it')
+    share = max(each.amplitude for each in rings) / max(each.travel for each in rings)
+    rest, swings, last = max(each.rest for each in rings), min(each.swings for each in rings), rings[-1]
+    text = (f'{len(rings)} sticks, each with at least {swings} swings of at most {100.0 * share:.2g} % of a slip '
+            f'({last.amplitude * 1e3:.3g} mm in the last); at most {100.0 * rest:.1g} % left in the last quarter')
+    return found(swings >= 2 and share <= _SMALL and rest <= _VANISHED, text, sticks=len(rings), swings=swings,
+                 amplitude=last.amplitude, amplitude_ratio=share, remaining_ratio=rest)
+
+
+def _without_contact(history: History) -> Finding:
+    """Look for motion in the sticks of a rigid contact: there must be none."""
+    if not any(event.kind == EventKind.STICK for event in history.events):
+        return not_applicable('no slip ends in this run')
+    ends = sticks(history)
+    moving = max((float(np.abs(_part(history, begin, end, 'velocity')).max()) for begin, end in ends), default=0.0)
+    return found(moving == 0.0, f'rigid contact: none; the largest speed in {len(ends)} sticks is {moving:g} m/s',
+                 sticks=len(ends), largest_speed=moving)
+
+
+def _is_fit(history: History, ring: RingDown, begin: Event, stop: Event, end: Event) -> bool:
+    """Whether the stick lasts, under the inputs of the slip before, and is sampled finely enough to see it swing."""
+    times = history.samples['time']
+    first, last = np.searchsorted(times, (stop.time, stop.time + 1.0 / ring.damped_frequency))
+    return ((end.time - stop.time) * ring.decay >= _LONG and last - first >= _SAMPLES
+            and history.steady_inputs(begin.time, end.time) is not None)
+
+
+def _ringing(history: History, begin: Event, stop: Event, end: Event) -> _Ringing:
+    time, position, velocity, acceleration = (
+        _part(history, stop, end, name) for name in ('time', 'position', 'velocity', 'acceleration'))
+    settled = position - position[-1] - velocity[-1] * (time - time[-1])   # from the line that it creeps along
+    size = np.abs(acceleration)
+    signs = np.sign(acceleration[size > _VISIBLE * size.max()])
+    last_quarter = time > time[-1] - 0.25 * (time[-1] - time[0])
+    return _Ringing(abs(stop.position - begin.position), float(np.abs(settled).max()),
+                    int(np.count_nonzero(np.diff(signs))), float(size[last_quarter].max() / size.max()))
+
+
+def _part(history: History, begin: Event, end: Event, name: str) -> Numbers:
+    first, last = np.searchsorted(history.samples['time'], (begin.time, end.time))
+    return history.samples[name][first:last]
+
+
+OSCILLATION = Statement('oscillation after a slip',
+                        'After the end of a slip there is a small, vanishing oscillation, with the contact only.',
+                        judge)

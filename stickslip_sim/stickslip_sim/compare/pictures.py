@@ -1,0 +1,87 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The pictures of a comparison: what is drawn of each run, and of all side by side."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from ..axis import CompliantContact
+from ..plots.characteristics import plot_characteristics
+from ..plots.paper_panels import plot_motion
+from ..plots.side_by_side import plot_side_by_side
+from .characteristics import characteristics_of
+from .conventional import characteristics_beside, scene_as_run
+from .fresh import simulate
+from .history import History
+from .windows import motion_of
+
+KINDS = ('png', 'svg')
+_OF_MOTION = ('(a) drive and friction force, (b) velocity and acceleration as the motion begins; (c), (d) the same '
+              'over one slip; (e) friction force over velocity; (f) phase plane; grey: at most 30 cycles from the '
+              'start on, coloured: the last complete one.')
+_OF_FRICTION = ('Friction characteristics as in Fig. 6 of the paper: (a) kinetic friction of both branches over '
+                'velocity; (b) static friction over rest time, with the break-aways of this run.')
+_OF_ROWS = 'forces and velocity over time, friction force over velocity, as in Fig. 4 of the paper.'
+
+
+class Picture(NamedTuple):
+    """A picture that was drawn: the name of its files without the ending, the run it belongs to, a caption."""
+
+    name: str
+    run: str
+    caption: str
+
+
+def draw(histories: Sequence[History], folder: Path) -> list[Picture]:
+    """Draw all pictures into a folder, each as PNG and SVG."""
+    pictures = []
+    for history in histories:
+        pictures += [_motion(history, folder), _friction(history, folder)]
+    rows = dict(zip((history.name for history in histories), histories))
+    caption = f'The runs beside each other: {_OF_ROWS}'
+    if len(histories) == 1:
+        rows = _beside(histories[0])
+        caption = f'The same axis with the conventional characteristics and with acceleration dependence: {_OF_ROWS}'
+    if rows:
+        motions = {name: motion_of(history) for name, history in rows.items()}
+        pictures.append(_drawn(Picture('side_by_side', '', caption), folder,
+                               lambda path: plot_side_by_side(motions, path)))
+    return pictures
+
+
+def _motion(history: History, folder: Path) -> Picture:
+    motion = motion_of(history)
+    picture = Picture(f'{history.name}_motion', history.name, f'{_likeness(history)}: {_OF_MOTION}')
+    return _drawn(picture, folder, lambda path: plot_motion(motion, path))
+
+
+def _friction(history: History, folder: Path) -> Picture:
+    friction = characteristics_of(history)
+    picture = Picture(f'{history.name}_friction', history.name, _OF_FRICTION)
+    return _drawn(picture, folder, lambda path: plot_characteristics(friction, path))
+
+
+def _beside(history: History) -> dict[str, History]:
+    """Return runs of the same axis with other characteristics; none when the inputs of a recorded run are unknown."""
+    scene = scene_as_run(history)
+    if scene is None:
+        return {}
+    duration = history.end - history.begin
+    return {name: simulate(other, duration) for name, other in characteristics_beside(scene).items()}
+
+
+def _drawn(picture: Picture, folder: Path, draw_to: Callable[[Path], None]) -> Picture:
+    for kind in KINDS:
+        draw_to(folder / f'{picture.name}.{kind}')
+    return picture
+
+
+def _likeness(history: History) -> str:
+    """Return which figure of the paper has this kind of axis."""
+    axis = history.scene.axis
+    if axis.friction.excess is None:
+        return 'Conventional characteristics, in the manner of Fig. 7 of the paper'
+    if isinstance(axis.contact, CompliantContact):
+        return 'Compliant contact, as in Fig. 8 of the paper'
+    return 'Rigid contact, as in Fig. 7 of the paper'

@@ -1,0 +1,14 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Controllers of the drive: cascade, compensation of friction, and the moves that they follow.  Pure; knows no ROS."""
+
+from .cascade import Cascade
+from .drive_controller import AT_REST, Command, Controller, Memory
+from .following import Answer, Following, Progress
+from .friction_branches import BranchCompensation, Slide
+from .moves import Moves, Setpoint
+
+__all__ = [
+    'AT_REST', 'Answer', 'BranchCompensation', 'Cascade', 'Command', 'Controller', 'Following', 'Memory', 'Moves',
+    'Progress', 'Setpoint', 'Slide',
+]

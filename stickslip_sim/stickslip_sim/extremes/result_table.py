@@ -1,0 +1,58 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The table of the extremes as text for people, as Markdown and as JSON."""
+
+import json
+from collections.abc import Sequence
+
+from ..runs.receipt import versions
+from .outcome import Outcome
+
+_MARK = 52   # columns
+
+
+def headline() -> str:
+    """Return the head of the table."""
+    return f'{"":4} {"":6} {"mark":{_MARK}}  measured'
+
+
+def row(outcome: Outcome) -> list[str]:
+    """Return the lines of an extreme: what it is, its verdict, its mark and the measured figure, and what missed it."""
+    verdict = 'met' if outcome.passed else 'MISSED'
+    lines = [f'{outcome.number:4} {outcome.name}',
+             f'{"":4} {verdict:6} {outcome.mark:{_MARK}}  {outcome.finding.figure}  ({outcome.seconds:.1f} s)']
+    return lines + [f'{"":11} {example}' for example in outcome.finding.examples]
+
+
+def markdown_text(outcomes: Sequence[Outcome], quick: bool) -> str:
+    """Return the page `docs/extremes.md`."""
+    met = sum(outcome.passed for outcome in outcomes)
+    size = ' --quick' if quick else ''
+    told = ', '.join(f'{name} {version}' for name, version in versions().items())
+    lines = ['# The extremes', '',
+             'What breaks other simulators, what this one is asked for, and what was measured.  Written by',
+             f'`stickslip extremes{size} --out docs/extremes.md`; `make extremes` measures again and fails when a mark',
+             'is missed.',
+             '', f'{met} of {len(outcomes)} marks met; {told}.', '',
+             'The column "elsewhere" was measured on the paper\'s data with scipy 1.17, SUNDIALS CVODE (scikit-sundae',
+             '1.2), MuJoCo 4.0 and Drake 1.51, or is taken from their documentation and issues.  From X22 on it is',
+             'what stickslip 0.1.0 did: these came of an attack, [told here](accuracy.md#what-an-attack-found).', '',
+             '| # | extreme | elsewhere | mark | measured | met |', '|---|---|---|---|---|---|']
+    for outcome in outcomes:
+        cells = (outcome.number, outcome.name, outcome.elsewhere, outcome.mark, outcome.finding.figure,
+                 'yes' if outcome.passed else '**no**')
+        lines.append('| ' + ' | '.join(cell.replace('|', '\\|') for cell in cells) + ' |')
+    return '\n'.join(lines) + '\n'
+
+
+def json_text(outcomes: Sequence[Outcome], quick: bool) -> str:
+    """Return the table as JSON, with the versions it holds for."""
+    rows = [{'number': outcome.number, 'name': outcome.name, 'elsewhere': outcome.elsewhere, 'mark': outcome.mark,
+             'passed': outcome.passed, 'seconds': outcome.seconds, 'figure': outcome.finding.figure,
+             'cases': outcome.finding.cases, 'misses': outcome.finding.misses,
+             'worst': str(outcome.finding.worst) if outcome.finding.worst != outcome.finding.worst
+             else outcome.finding.worst,
+             'limit': outcome.finding.limit, 'examples': list(outcome.finding.examples)} for outcome in outcomes]
+    document = {'size': 'reduced' if quick else 'full', 'versions': versions(),
+                'passed': all(outcome.passed for outcome in outcomes), 'extremes': rows}
+    return json.dumps(document, indent=2, allow_nan=False, ensure_ascii=False) + '\n'

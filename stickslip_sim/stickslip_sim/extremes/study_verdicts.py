@@ -1,0 +1,100 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""X24: what the studies call stick-slip, and where they say it begins and ends, against long runs."""
+
+import random
+from collections.abc import Mapping
+from functools import cache
+
+import numpy as np
+
+from ..core.types import EventKind, Mode
+from ..scene import Scene, load_scene
+from ..solvers import Solver
+from ..study import Grid, Motion, Study, Variation
+from ..study.critical import critical
+from ..study.points import scene_at
+from ..study.transitions import Transition
+from .outcome import Finding, Setup, Tally, check
+from .shared_axes import instant, make, of_kind
+
+_LONG, _LATE = 1e4, 5e3    # s: a run, and its last part that sticks are counted in
+_AT_ONCE = 200             # parts of a run: the events of one fit in a call
+_ACCURACY = 1e-9
+_STEPS = (0.0, 1e-7, 1e-4, 1e-2)   # beyond what is told, of the value
+_HEAVY = 20000.0, 32000.0          # kg, on which a slip reverses before it sticks
+_CONVENTIONAL = {'contact.model': 'compliant', 'contact.stiffness': 5e6, 'contact.damping': 15000.0}
+_BORDERS: tuple[tuple[str, Mapping[str, object], str, float, float], ...] = (
+    ('paper_fig8', {}, 'axis.drive_damping', 1e3, 4e4),
+    ('paper_fig8', {'drive.velocity': 0.02}, 'axis.normal_force', 500.0, 5000.0),
+    ('paper_fig4_constant', {}, 'axis.mass', 5.0, 500.0),
+    ('paper_fig8', {'drive.velocity': 0.01}, 'axis.drive_damping', 1e3, 4e4),
+    ('paper_fig8', {}, 'axis.normal_force', 500.0, 5000.0),
+    ('paper_fig8', {}, 'drive.velocity', 1e-3, 0.1),
+    ('paper_fig7', {}, 'drive.velocity', 1e-3, 0.1),
+    ('paper_fig7', {}, 'axis.drive_damping', 1e3, 4e4),
+    ('paper_fig7', {'drive.velocity': 0.025}, 'axis.normal_force', 500.0, 5000.0),
+    ('paper_fig4_falling', {}, 'axis.drive_damping', 1e3, 4e4),
+    ('paper_fig4_falling', {}, 'axis.normal_force', 500.0, 5000.0),
+    ('paper_fig4_falling', {}, 'drive.velocity', 1e-3, 0.1),
+    ('paper_fig4_falling', _CONVENTIONAL, 'axis.drive_damping', 1e3, 4e4),
+    ('paper_fig4_constant', {}, 'drive.velocity', 1e-3, 0.1),
+    ('paper_fig4_constant', {'drive.velocity': 0.005}, 'axis.drive_damping', 100.0, 1e4),
+)
+
+
+def verdicts(setup: Setup) -> Finding:
+    """X24: sticks and reversals by turns, sticks after long pauses, cycles about to vanish; sweep and critical."""
+    tally = Tally(0.0)
+    for mass in np.linspace(*_HEAVY, setup.count(41, 5)).tolist():
+        tally.judge(_motion, setup.solver, 'paper_fig7', 0.02, mass)
+    for seed in range(setup.count(40, 3)):
+        rng = random.Random(seed)
+        tally.judge(_motion, setup.solver, rng.choice(('paper_fig7', 'paper_fig8', 'paper_fig4_falling')),
+                    10.0 ** rng.uniform(-3.0, -1.3), 10.0 ** rng.uniform(1.5, 4.5))
+    for k in range(setup.count(len(_BORDERS), 3)):
+        for side in (-1, 1):
+            for step in setup.choose(_STEPS, _STEPS[:1]):
+                tally.judge(_border, setup.solver, k, side, step)
+    return tally.finding('contradicted by a run of 10,000 s')
+
+
+def _motion(solver: Solver, name: str, feed: float, mass: float) -> float:
+    """Run a scene as a point of a sweep; what it is called is what goes on."""
+    scene = load_scene(name, {'drive.velocity': feed})
+    study = Study(scene.values, Grid((Variation('axis.mass', mass, 1.1 * mass, 2),)))
+    motion = study.figures(0, 1).motion[0]
+    count = _sticks(solver, scene_at(scene.values, ['axis.mass'], np.array([mass])))
+    check(motion in (Motion.STICK_SLIP, Motion.SMOOTH_SLIDING, Motion.UNDECIDED), f'a motion without a run: {motion}')
+    check(motion == Motion.UNDECIDED or (motion == Motion.STICK_SLIP) == (count > 0),
+          f'called {Motion(int(motion)).name}, with {count} sticks late')
+    return 0.0
+
+
+def _border(solver: Solver, k: int, side: int, step: float) -> float:
+    """Run a scene beside, or a share of the value beyond, an end of what `critical` tells."""
+    name, changes, parameter, low, high = _BORDERS[k]
+    transition = _transition(k)
+    value = transition.low * (1.0 - step) if side < 0 else transition.high * (1.0 + step)
+    check(low < value < high, 'beyond the range')
+    scene = load_scene(name, dict(changes))
+    count = _sticks(solver, scene_at(scene.values, [parameter], np.array([value])))
+    check((count > 0) == ((side > 0) == transition.rises), f'{count} sticks late at {value!r}')
+    return 0.0
+
+
+@cache
+def _transition(k: int) -> Transition:
+    name, changes, parameter, low, high = _BORDERS[k]
+    found = critical(load_scene(name, dict(changes)), Variation(parameter, low, high, log=True), _ACCURACY).from_rest
+    check(len(found.transitions) == 1, f'{len(found.transitions)} transitions')
+    return found.transitions[0]
+
+
+def _sticks(solver: Solver, scene: Scene) -> int:
+    """Return how many sticks begin in the last part of a long run."""
+    simulator = make(scene.axis, scene.drive, scene.force, scene.initial, solver)
+    ends = np.linspace(0.0, _LONG, _AT_ONCE + 1)[1:].tolist()
+    parts = (simulator.advance(instant(end)) for end in ends)
+    return sum(event.mode == Mode.STICK and event.time > _LONG - _LATE
+               for part in parts for event in of_kind(part, EventKind.STICK))

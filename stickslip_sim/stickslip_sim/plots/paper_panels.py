@@ -1,0 +1,182 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The motion as in Fig. 7 and 8 of the paper: six panels, in its units, for a journal's double column."""
+
+from collections.abc import Iterator, Mapping
+from itertools import pairwise
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
+
+from ..core.types import Mode
+from .style import (
+    BLACK,
+    BLUE,
+    DOUBLE_COLUMN,
+    JOURNAL,
+    MILLI,
+    MODE_COLOURS,
+    ORANGE,
+    RED,
+    Numbers,
+    legend_outside,
+    letter,
+    save,
+    thinned,
+)
+
+KILO = 1e-3   # N to kN
+_EARLIER = '#b0b0b0'
+_DASHES = {Mode.STICK: (0, (1.0, 1.2)), Mode.ACCELERATING: 'solid', Mode.COASTING: (0, (5.0, 1.5)),
+           Mode.DECELERATING: (0, (6.0, 1.5, 1.0, 1.5))}
+_MODE_NAMES = [mode.name.lower() for mode in Mode]
+_ABOVE: dict[str, Any] = {'loc': 'lower right', 'bbox_to_anchor': (1.0, 0.99), 'ncols': 2, 'borderaxespad': 0.0}
+_ARROWED = 0.15   # of the picture's extent: a shorter stretch gets no arrow
+
+Stretch = tuple[float, float]   # s, from and to
+
+
+class Motion(NamedTuple):
+    """What of a run is drawn: columns named as in `types.Sample`, and `time`, with the state before each event."""
+
+    columns: Mapping[str, Numbers]
+    opening: Stretch           # of panels a and b
+    slip: Stretch              # of panels c and d
+    break_away: float | None   # s, 0 of their time axis
+    orbit: Stretch             # that panels e and f show in grey
+    cycle: Stretch | None      # that they stress
+
+
+def plot_motion(motion: Motion, path: Path | str) -> None:
+    """Draw forces, speed and acceleration over time, and magnified; the friction loop; the phase plane."""
+    with rc_context(JOURNAL):
+        figure = Figure(figsize=(DOUBLE_COLUMN, 7.8), layout=ConstrainedLayoutEngine(w_pad=0.06, h_pad=0.06))
+        panels = list(figure.subplots(3, 2).flat)
+        opening, slip = part(motion.columns, *motion.opening), part(motion.columns, *motion.slip)
+        label = 'time / s'
+        if motion.break_away is not None:
+            slip['time'] = (slip['time'] - motion.break_away) * MILLI
+            label = 'time after the break-away / ms'
+        forces(panels[0], opening, 'time / s')
+        _speed_and_acceleration(panels[1], opening, 'time / s')
+        forces(panels[2], slip, label)
+        _speed_and_acceleration(panels[3], slip, label)
+        friction_loop(panels[4], motion)
+        phase_plane(panels[5], motion)
+        for panel, name in zip(panels, 'abcdef'):
+            letter(panel, name)
+        legend_below(figure, panels[4])
+        save(figure, path)
+
+
+def legend_below(figure: Figure, *panels: Axes) -> None:
+    """Explain the lines of panels below the whole picture, those of one name once."""
+    lines = {label: handle for panel in panels for handle, label in zip(*panel.get_legend_handles_labels())}
+    labels = sorted(lines, key=lambda label: _MODE_NAMES.index(label) if label in _MODE_NAMES else -1)
+    legend_outside(figure, 'lower center', [lines[label] for label in labels], labels, ncols=min(len(labels), 5),
+                   handlelength=3.6)
+
+
+def part(columns: Mapping[str, Numbers], begin: float, end: float) -> dict[str, Numbers]:
+    """Return the columns from `begin` to `end` (s)."""
+    first, last = np.searchsorted(columns['time'], begin), np.searchsorted(columns['time'], end, side='right')
+    return {name: column[first:last] for name, column in columns.items()}
+
+
+def forces(panel: Axes, columns: Mapping[str, Numbers], label: str) -> None:
+    """Draw the drive force and the friction force over time."""
+    for name, what, colour, style, width in (('friction_force', 'friction force', RED, 'solid', 1.3),
+                                             ('drive_force', 'drive force', BLACK, (0, (4.0, 1.6)), 1.0)):
+        panel.plot(*thinned(columns['time'], columns[name] * KILO), color=colour, linestyle=style, linewidth=width,
+                   label=what)
+    panel.set(xlabel=label, ylabel='force / kN')
+    panel.margins(x=0.0)
+    panel.legend(**_ABOVE)
+
+
+def velocity(panel: Axes, columns: Mapping[str, Numbers], label: str) -> None:
+    """Draw the velocity over time."""
+    panel.plot(*thinned(columns['time'], columns['velocity'] * MILLI), color=BLUE, label='velocity')
+    panel.set(xlabel=label, ylabel='velocity / (mm/s)')
+    panel.margins(x=0.0)
+
+
+def friction_loop(panel: Axes, motion: Motion) -> None:
+    """Draw the friction force over the velocity: all of it, and the stressed cycle by mode."""
+    _orbit(panel, motion, motion.columns['velocity'] * MILLI, motion.columns['friction_force'] * KILO)
+    panel.set(xlabel='velocity / (mm/s)', ylabel='friction force / kN')
+
+
+def _speed_and_acceleration(panel: Axes, columns: Mapping[str, Numbers], label: str) -> None:
+    """Draw velocity (left axis) and acceleration (right axis), with their zeros at one height."""
+    velocity(panel, columns, label)
+    twin = panel.twinx()
+    twin.plot(*thinned(columns['time'], columns['acceleration']), color=ORANGE, linestyle=(0, (3.0, 1.2)),
+              linewidth=0.9, label='acceleration')
+    twin.set_ylabel('acceleration / (m/s²)')
+    twin.grid(visible=False)
+    twin.spines['right'].set_visible(True)
+    twin.margins(x=0.0)
+    _align_zeros(panel, twin)
+    panel.legend(handles=[*panel.get_lines(), *twin.get_lines()], **_ABOVE)
+
+
+def phase_plane(panel: Axes, motion: Motion) -> None:
+    """Draw the velocity over the stretch of the drive spring, which closes where the position would run away."""
+    stretch = (motion.columns['drive_position'] - motion.columns['position']) * MILLI
+    _orbit(panel, motion, stretch, motion.columns['velocity'] * MILLI)
+    panel.set(xlabel='stretch of the drive spring s − x / mm', ylabel='velocity / (mm/s)')
+
+
+def _orbit(panel: Axes, motion: Motion, x: Numbers, y: Numbers) -> None:
+    shown = _rows(motion, *motion.orbit)
+    panel.plot(x[shown], y[shown], color=_EARLIER, linewidth=0.6, label='the run')
+    if motion.cycle is None:
+        return
+    whole = _rows(motion, *motion.cycle)
+    panel.plot(x[whole], y[whole], color='white', linewidth=2.2)   # so that the gaps of dashes are white
+    extent = np.array([np.ptp(x) or 1.0, np.ptp(y) or 1.0])
+    labels = dict(zip(Mode, _MODE_NAMES))
+    for mode, rows in _stretches(motion, *motion.cycle):
+        panel.plot(x[rows], y[rows], color=MODE_COLOURS[mode], linestyle=_DASHES[mode], linewidth=1.5,
+                   label=labels.pop(mode, None), solid_capstyle='butt')
+        _arrow(panel, np.stack([x[rows], y[rows]], axis=1), extent, MODE_COLOURS[mode])
+
+
+def _stretches(motion: Motion, begin: float, end: float) -> Iterator[tuple[Mode, slice]]:
+    """Yield the rows of each mode, from the last row of the mode before on, so that the line has no gap."""
+    modes, rows = motion.columns['mode'], _rows(motion, begin, end)
+    changes = rows.start + 1 + np.flatnonzero(np.diff(modes[rows]))
+    for a, b in pairwise([rows.start, *changes.tolist(), rows.stop]):
+        yield Mode(int(modes[a])), slice(max(a - 1, rows.start), b)
+
+
+def _rows(motion: Motion, begin: float, end: float) -> slice:
+    """Return the rows from just after `begin` to just before `end` (s)."""
+    time = motion.columns['time']
+    return slice(int(np.searchsorted(time, begin, side='right')) - 1, int(np.searchsorted(time, end)) + 1)
+
+
+def _arrow(panel: Axes, points: Numbers, extent: Numbers, colour: str) -> None:
+    """Show the sense of a stretch in its middle, if it is long enough."""
+    way = np.concatenate([[0.0], np.cumsum(np.hypot(*(np.diff(points, axis=0) / extent).T))])
+    if len(points) < 3 or way[-1] < _ARROWED:
+        return
+    at = int(np.clip(np.searchsorted(way, 0.5 * way[-1]), 1, len(points) - 1))
+    panel.annotate('', points[at], points[at - 1],
+                   arrowprops={'arrowstyle': '-|>', 'color': colour, 'linewidth': 0.0, 'mutation_scale': 9.0,
+                               'shrinkA': 0.0, 'shrinkB': 0.0})
+
+
+def _align_zeros(left: Axes, right: Axes) -> None:
+    """Widen both ranges so that 0 is at one height."""
+    ranges = [(min(low, 0.0), max(high, 0.0)) for low, high in (left.get_ylim(), right.get_ylim())]
+    share = max(-low / (high - low) for low, high in ranges)
+    for panel, (low, high) in zip((left, right), ranges) if share < 1.0 else ():
+        top = max(high, -low * (1.0 - share) / share) if share else high
+        panel.set_ylim(-share / (1.0 - share) * top, top)

@@ -1,0 +1,74 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""How all pictures look: colours, lines, files.  Without matplotlib's global state, so that no display is needed."""
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure, SubFigure
+from numpy.typing import NDArray
+
+from ..core.types import Mode
+
+Numbers = NDArray[np.float64]
+
+# Okabe and Ito's colours, which stay apart for colour-blind eyes
+BLACK, ORANGE, SKY, GREEN = '#222222', '#E69F00', '#56B4E9', '#009E73'
+BLUE, RED, PURPLE = '#0072B2', '#D55E00', '#CC79A7'
+GREY = '#666666'
+MODE_COLOURS = {Mode.STICK: SKY, Mode.ACCELERATING: ORANGE, Mode.COASTING: GREEN, Mode.DECELERATING: PURPLE}
+MILLI = 1e3          # m to mm
+_POINTS_PER_INCH = 72.0
+_POINTS = 8000       # per line: more than a picture can show
+JOURNAL: dict[str, Any] = {   # for pictures that are printed at the width of one or two columns
+    'font.size': 8.0, 'axes.labelsize': 8.0, 'legend.fontsize': 7.0, 'xtick.labelsize': 7.0, 'ytick.labelsize': 7.0,
+    'axes.linewidth': 0.6, 'lines.linewidth': 1.0, 'xtick.major.width': 0.6, 'ytick.major.width': 0.6,
+    'axes.spines.top': False, 'axes.spines.right': False, 'legend.frameon': False, 'legend.handlelength': 2.6,
+    'axes.grid': True, 'grid.color': '#dddddd', 'grid.linewidth': 0.5, 'axes.axisbelow': True, 'savefig.dpi': 300,
+}
+SINGLE_COLUMN, DOUBLE_COLUMN = 3.5, 7.1   # in
+
+
+def save(figure: Figure, path: Path | str) -> None:
+    """Write a picture; the ending of `path` (.png, .svg) says how."""
+    path = Path(path)
+    kind = path.suffix[1:].lower()
+    with rc_context({'svg.hashsalt': 'stickslip'}):   # the same picture is the same file
+        figure.savefig(path, format=kind, metadata={'Date': None} if kind == 'svg' else None)
+
+
+def thinned(time: Numbers, values: Numbers) -> tuple[Numbers, Numbers]:
+    """Keep the lowest and the highest point of each bundle, so that no peak is lost."""
+    size = len(values) // (_POINTS // 2)
+    if size < 3:
+        return time, values
+    whole = len(values) // size * size
+    bundles = values[:whole].reshape(-1, size)
+    first = np.arange(0, whole, size)
+    keep = np.concatenate([[0], first + bundles.argmin(axis=1), first + bundles.argmax(axis=1), [len(values) - 1]])
+    keep = np.unique(keep)
+    return time[keep], values[keep]
+
+
+def legend_outside(figure: Figure | SubFigure, place: str, handles: Iterable[Artist], labels: Iterable[str],
+                   **look: Any) -> None:
+    """Explain lines beside all panels, at a `place` as `upper left`, where the figure has no other title.
+
+    A blank title of the legend's height keeps room for it: `loc='outside ...'` came with matplotlib 3.7, and Ubuntu
+    24.04 has 3.6.
+    """
+    legend = figure.legend(list(handles), list(labels), loc=place, **look)
+    height = legend.get_window_extent().height / figure.dpi * _POINTS_PER_INCH
+    keep = figure.suptitle if place.startswith('upper') else figure.supxlabel
+    keep(' ', fontsize=height)
+
+
+def letter(panel: Axes, text: str) -> None:
+    """Name a panel in its upper left corner, outside."""
+    panel.annotate(f'({text})', (0.0, 1.0), xytext=(-26.0, 5.0), xycoords='axes fraction',
+                   textcoords='offset points', fontweight='bold', fontsize=8.5)

@@ -1,0 +1,34 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""A recorded run and what would have been, one over the other."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
+
+from .run import KILO_FROM, dress, head, line
+from .style import BLUE, MILLI, ORANGE, Numbers, save
+
+
+def plot_beside(recorded: Mapping[str, Numbers], other: Mapping[str, Numbers], title: str, path: Path | str) -> None:
+    """Draw position, velocity and friction force of both over time into `path` (.png or .svg).
+
+    Columns are named as in `types.Sample`, and `time`; the first line of `title` is the heading.
+    """
+    figure = Figure(figsize=(11.0, 8.0), dpi=150, layout=ConstrainedLayoutEngine(w_pad=0.1, h_pad=0.08))
+    panels = figure.subplots(3, 1, sharex=True)
+    largest = max(np.abs(side['friction_force']).max() for side in (recorded, other))
+    scale, unit = (1e-3, 'kN') if largest >= KILO_FROM else (1.0, 'N')
+    for panel, name, factor, label in zip(panels, ('position', 'velocity', 'friction_force'), (MILLI, MILLI, scale),
+                                          ('position / mm', 'velocity / (mm/s)', f'friction force / {unit}')):
+        line(panel, recorded, name, factor, 'recorded', color=BLUE, linewidth=2.2)
+        line(panel, other, name, factor, 'what if', color=ORANGE, linewidth=1.3, linestyle=(0, (4, 1.5)))
+        panel.set_ylabel(label)
+        dress(panel)
+    panels[-1].set_xlabel('time / s')
+    figure.align_ylabels(panels)
+    head(panels[0], title)
+    save(figure, path)

@@ -1,0 +1,185 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The only wall clock: which step is due when, on the steady clock.  Everywhere else time is an argument.
+
+Deadlines are absolute: step n is due at start + n / (rate · factor), computed from the integer n, so that nothing
+accumulates.  A late step is caught up at once; what is later than the allowed backlog is skipped and counted.
+"""
+
+import ctypes
+import math
+import time
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import Protocol
+
+from ..core.time_grid import Grid, decimal
+
+NANOSECONDS = 1_000_000_000
+_MAX_BACKLOG = NANOSECONDS // 2   # ns that a stalled loop catches up
+_PR_SET_TIMERSLACK = 29
+_SLICE = 0.05                     # s: how soon a waiting loop notices that it shall stop
+
+
+class Clock(Protocol):
+    """A clock that never jumps, ns from an arbitrary origin."""
+
+    def now(self) -> int:
+        """Return the time, ns."""
+
+    def sleep(self, seconds: float) -> None:
+        """Wait."""
+
+
+class SteadyClock:
+    """The machine's steady clock."""
+
+    now = staticmethod(time.monotonic_ns)
+    sleep = staticmethod(time.sleep)
+
+
+def utc_stamp() -> str:
+    """Return the time of day as a part of a folder name, to the second."""
+    return time.strftime('%Y%m%dT%H%M%SZ', time.gmtime())
+
+
+def wake_precisely() -> None:
+    """Let the kernel wake this thread when it is due; it may be 50 µs late by default (docs/loop.md has the effect)."""
+    with suppress(OSError, AttributeError):    # of Linux only
+        ctypes.CDLL(None).prctl(_PR_SET_TIMERSLACK, 1, 0, 0, 0)
+
+
+class StepClock(Protocol):
+    """What tells the step loop when to make a step; durations in ns."""
+
+    period: int
+    account: 'Account'
+
+    def restart(self, step: int) -> None:
+        """Let a step be due now, and those after it follow."""
+
+    def wait(self, step: int) -> bool:
+        """Wait until a step is due, at most a while; return whether it is."""
+
+    def begin(self, step: int) -> tuple[int, int]:
+        """Account for a step that begins; return the time now and how late it is."""
+
+    def now(self) -> int:
+        """Return the time on the steady clock."""
+
+    def watch_time(self, time: int) -> int:
+        """Return the time by which silence is measured: on the steady clock, or simulation `time`."""
+
+
+@dataclass(slots=True)
+class Account:
+    """How the steps kept their time; durations in ns."""
+
+    steps: int = 0
+    overruns: int = 0       # began more than a period late
+    caught_up: int = 0      # made without waiting
+    skips: int = 0          # times that wall time was given up
+    skipped: int = 0        # ns of wall time given up
+
+    def clear(self) -> None:
+        """Begin to count anew."""
+        self.steps = self.overruns = self.caught_up = self.skips = self.skipped = 0
+
+
+class Pacer:
+    """Says when each step is due on the steady clock, and accounts for lateness.
+
+    `factor` is simulation time per wall time.  Silence is measured on the steady clock, or in simulation time; on the
+    steady clock only while steps keep their time: commands may wait to be heard while this loop itself is behind.
+    """
+
+    def __init__(self, grid: Grid, factor: float = 1.0, clock: Clock | None = None,
+                 watches_steady: bool = True) -> None:
+        up, down = (decimal(grid.rate) * decimal(factor)).as_integer_ratio()
+        self._numerator, self._denominator = NANOSECONDS * down, up
+        self.period = self._numerator // self._denominator
+        self.account = Account()
+        self._watches_steady = watches_steady
+        self._backlog = max(_MAX_BACKLOG, 2 * self.period)
+        self._clock: Clock = clock or SteadyClock()
+        self._origin = self._latest = self._watched = 0
+        self._waited = False
+        self.restart(0)
+
+    def restart(self, step: int) -> None:
+        """Let a step be due now, and those after it follow."""
+        self._latest = self._clock.now()
+        self._origin = self._latest - self._offset(step)
+
+    def due(self, step: int) -> int:
+        """Return when a step is due, ns on the steady clock."""
+        return self._origin + self._offset(step)
+
+    def wait(self, step: int) -> bool:
+        """Wait until a step is due, at most a while; return whether it is."""
+        left = self.due(step) - self._clock.now()
+        if left <= 0:
+            return True
+        self._waited = True
+        self._clock.sleep(min(left / NANOSECONDS, _SLICE))
+        return self.due(step) <= self._clock.now()
+
+    def begin(self, step: int) -> tuple[int, int]:
+        """Account for a step that begins; return the time now and how late it is, ns."""
+        now = self._clock.now()
+        lateness = now - self.due(step)
+        account = self.account
+        account.steps += 1
+        account.caught_up += not self._waited
+        account.overruns += lateness > self.period
+        if lateness > self._backlog:
+            account.skips += 1
+            account.skipped += lateness
+            self._origin += lateness
+        self._waited = False
+        self._watched += now - self._latest if lateness <= self.period else 0
+        self._latest = now
+        return now, lateness
+
+    def now(self) -> int:
+        """Return the time, ns on the steady clock."""
+        return self._clock.now()
+
+    def watch_time(self, time: int) -> int:
+        """Return the time by which silence is measured."""
+        return self._watched if self._watches_steady else time
+
+    def _offset(self, step: int) -> int:
+        return step * self._numerator // self._denominator
+
+
+class Unpaced:
+    """Lets each step be due at once, for time that goes as fast as it can or as it is asked to."""
+
+    def __init__(self, grid: Grid) -> None:
+        self.period = round(NANOSECONDS / grid.rate)
+        self.account = Account()
+        self.now = SteadyClock.now
+
+    def restart(self, step: int) -> None:
+        """Do nothing: no step waits for another."""
+
+    def wait(self, step: int) -> bool:
+        """Return that a step is due."""
+        return True
+
+    def begin(self, step: int) -> tuple[int, int]:
+        """Account for a step that begins, never late."""
+        self.account.steps += 1
+        return self.now(), 0
+
+    def watch_time(self, time: int) -> int:
+        """Return simulation time."""
+        return time
+
+
+def step_clock(grid: Grid, mode: str, factor: float) -> StepClock:
+    """Return what paces a mode of time: realtime, lockstep or free_run."""
+    if mode == 'lockstep' or factor == math.inf:
+        return Unpaced(grid)
+    return Pacer(grid, factor, watches_steady=mode == 'realtime')

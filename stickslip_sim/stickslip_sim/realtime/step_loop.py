@@ -1,0 +1,174 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The step loop: a thread that brings the rig from step to step, as its clock says.  Knows no ROS.
+
+Step n reaches from (n − 1)/rate to n/rate (step 0 is the start).  In real time it is made when its end is due on the
+steady clock: first the latest commands are taken, which hold from its begin on, then its events and its state go out.
+So a controller that answers a state within a period acts on the very next step, as in lock-step.
+"""
+
+import threading
+from collections import deque
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+
+from ..core.errors import SolverError
+from ..rig import Product, Rig
+from .command_inputs import CommandInputs, CommandTotals
+from .command_slot import CommandSlot
+from .pacing import StepClock, wake_precisely
+from .timing_statistics import Ledger
+from .watchdog import Watchdog
+
+_IDLE = 0.05            # s between two looks at whether to stop while time stands still
+_PATIENCE = 5.0         # s that a request waits for its boundary
+
+Taker = Callable[[Product], None]
+
+
+class StepLoop:
+    """Runs the steps in a thread of its own; everything else asks for changes `at_boundary`.
+
+    `takers` get each product, in the loop's thread.  With `by_request` time moves with `run_steps` only.
+    """
+
+    def __init__(self, rig: Rig, clock: StepClock, slots: Sequence[CommandSlot], takers: Sequence[Taker],
+                 watchdog: Watchdog, by_request: bool = False) -> None:
+        self.rig = rig
+        self.paused = False
+        self.by_request = by_request
+        self.failure = ''                    # why the solver gave up; time stands still then
+        self.crash: BaseException | None = None
+        self.ledger, self.account = Ledger(), clock.account
+        self._clock, self._takers, self._watchdog = clock, takers, watchdog
+        self._inputs = CommandInputs(slots, (rig.command_velocity, rig.command_force))
+        self._requests: deque[Callable[[], None]] = deque()
+        self._is_over, self._wake = threading.Event(), threading.Event()
+        self._thread = threading.Thread(target=self._run, name='steps', daemon=True)
+
+    @property
+    def step(self) -> int:
+        """The last step made; -1 before the start."""
+        return self.rig.step
+
+    @property
+    def time_ns(self) -> int:
+        """Simulation time, ns."""
+        return self.rig.time_ns
+
+    @property
+    def slots(self) -> Sequence[CommandSlot]:
+        """Where commands arrive: drive velocity and force."""
+        return self._inputs.slots
+
+    @property
+    def held(self) -> list[float | None]:
+        """The commands in force, by input; None where the course of the scene is."""
+        return self._inputs.held
+
+    @property
+    def command_totals(self) -> CommandTotals:
+        """What befell the commands so far."""
+        return self._inputs.totals(self.rig.counts)
+
+    def start(self) -> None:
+        """Begin with step 0, now."""
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Let the step at hand be the last, and wait for it, but not for ever."""
+        self._is_over.set()
+        self._wake.set()
+        if self._thread.ident is not None:
+            self._thread.join(_PATIENCE)
+
+    def at_boundary(self, action: Callable[[], object], patience: float = _PATIENCE) -> bool:
+        """Have an action done between two steps by the loop's thread; wait for it and return whether it was done."""
+        done = threading.Event()
+
+        def do() -> None:
+            action()
+            done.set()
+
+        self._requests.append(do)
+        self._wake.set()
+        if not done.wait(patience):
+            with suppress(ValueError):    # it was begun after all
+                self._requests.remove(do)
+                return False
+        return done.wait(patience)
+
+    def pause(self, paused: bool) -> None:
+        """Let simulation time stand still, or go on from where it stands; at a boundary only."""
+        if self.paused and not paused:
+            self._clock.restart(self.step + 1)
+        self.paused = paused
+
+    def restart(self) -> None:
+        """Begin anew with step 0 and the initial state, without commands; at a boundary only."""
+        self._inputs.forget()
+        self.rig.reset()
+        self._watchdog.forget()
+        self.ledger.forget()
+        self.account.clear()
+        self.failure = ''
+        self._clock.restart(0)
+
+    def run_steps(self, count: int, velocity: float | None, force: float | None, stop: Callable[[], bool]
+                  ) -> list[Product]:
+        """Make steps now, under commands (None: those in force), until `stop`; at a boundary only.
+
+        Returns what came of them; when the solver gives up on the way, `failure` says why.
+        """
+        self._inputs.put((velocity, force), self._clock.now())
+        products: list[Product] = []
+        try:
+            while len(products) < count and not stop() and not self._is_over.is_set():
+                self._clock.account.steps += 1
+                products.append(self._make_step(self._clock.now(), 0))
+        except SolverError as error:
+            self.failure = str(error)
+        return products
+
+    def _run(self) -> None:
+        wake_precisely()
+        self._clock.restart(0)
+        try:
+            while not self._is_over.is_set():
+                self._turn()
+        except BaseException as error:
+            self.crash = error
+
+    def _turn(self) -> None:
+        self._wake.clear()
+        try:
+            while self._requests and (self.step >= 0 or self.failure):    # first of all a run has its start
+                self._requests.popleft()()
+            if self._stands_still:
+                self._wake.wait(_IDLE)
+            elif self._clock.wait(self.step + 1):
+                self._make_step(*self._clock.begin(self.step + 1))
+        except SolverError as error:
+            self.failure = str(error)
+
+    @property
+    def _stands_still(self) -> bool:
+        return bool(self.failure) or (self.step >= 0 and (self.paused or self.by_request))
+
+    def _make_step(self, begin: int, lateness: int) -> Product:
+        age, fresh = self._inputs.take(begin)
+        self._watch()
+        product = self.rig.make_step()
+        for take in self._takers:
+            take(product)
+        end = self._clock.now()
+        self.ledger.add(self.rig.time_ns, end - begin, lateness, age, end - fresh if fresh else None)
+        return product
+
+    def _watch(self) -> None:
+        """Look for a time-out."""
+        if not self._watchdog.is_on:
+            return
+        silence = self._watchdog.silence(self.rig.counts.heard, self._clock.watch_time(self.rig.time_ns))
+        if silence:
+            self.rig.time_out(silence)

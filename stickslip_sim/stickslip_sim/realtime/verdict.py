@@ -1,0 +1,50 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""One line on whether a run can be trusted in real time, and what befell its commands."""
+
+from typing import NamedTuple
+
+from ..scene.model import Scene, TimingSettings
+from .pacing import Account
+from .step_loop import StepLoop
+from .timing_statistics import Ledger
+
+
+class Verdict(NamedTuple):
+    """`valid` is None when there was no real-time clock to keep."""
+
+    valid: bool | None
+    text: str
+
+
+def verdict(scene: Scene, loop: StepLoop) -> Verdict:
+    """Return the verdict on the run so far, against the limits in the section `timing` of the scene."""
+    commands = _commands(loop)
+    if scene.time.mode != 'realtime':
+        return Verdict(None, f'not in real time (time.mode {scene.time.mode}); {commands}')
+    reasons = _reasons(scene.timing, loop.ledger, loop.account)
+    lateness = loop.ledger.worst('lateness')
+    worst = f'worst {lateness.value * 1e3:.2f} ms at t = {lateness.time:.4g} s'
+    why = f' ({"; ".join(reasons)})' if reasons else ''
+    return Verdict(not reasons, f'real-time valid: {"no" if reasons else "yes"}, {worst}{why}; {commands}')
+
+
+def _reasons(limits: TimingSettings, ledger: Ledger, account: Account) -> list[str]:
+    """Return what is beyond the limits."""
+    reasons = []
+    if account.skipped:
+        reasons.append(f'{account.skipped * 1e-9:.3f} s of wall time given up')
+    for name, limit in (('lateness', limits.max_lateness), ('latency', limits.max_latency)):
+        worst = ledger.worst(name)
+        if worst.value > limit:
+            reasons.append(f'{name} {worst.value * 1e3:.2f} ms at t = {worst.time:.4g} s is over {limit * 1e3:g} ms')
+    share = account.overruns / max(account.steps, 1)
+    if share > limits.max_overruns:
+        reasons.append(f'{share:.2%} of the steps more than a period late, over {limits.max_overruns:.2%}')
+    return reasons
+
+
+def _commands(loop: StepLoop) -> str:
+    totals = loop.command_totals
+    return (f'commands: {totals.received} received, {totals.refused} refused, {totals.lost} lost, {totals.limited}'
+            f' limited, {totals.timed_out} time-out{"" if totals.timed_out == 1 else "s"}')

@@ -1,0 +1,57 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The wire on which drive velocities come: it may lose them or keep them for a while when a fault says so."""
+
+from collections import deque
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from ..core.time_grid import Grid
+from .faults import Fault
+from .random_stream import Stream, restore, state_of, stream
+
+
+class Wire:
+    """Takes commands in and lets them out, before the same step without a fault."""
+
+    def __init__(self, grid: Grid, seed: int) -> None:
+        self._grid = grid
+        self._luck = stream(seed, Stream.LOSS)
+        self._under_way: deque[tuple[int, float]] = deque()
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether no command is under way."""
+        return not self._under_way
+
+    def put(self, velocity: float, step: int, faults: Mapping[str, Fault]) -> bool:
+        """Send a command before a step; return whether it gets through.  Those that it overtakes never arrive."""
+        arrival, kept = step, 1.0
+        for fault in faults.values():
+            if fault.kind == 'command_delay':
+                arrival += self._grid.steps(fault.value)
+            elif fault.kind == 'command_loss':
+                kept *= 1.0 - fault.value
+        if kept < 1.0 and self._luck.random_sample() >= kept:
+            return False
+        while self._under_way and self._under_way[-1][0] >= arrival:
+            self._under_way.pop()
+        self._under_way.append((arrival, velocity))
+        return True
+
+    def checkpoint(self) -> list[Any]:
+        """Return what is under way and the luck to come, as plain data."""
+        return [[list(command) for command in self._under_way], state_of(self._luck)]
+
+    def restore(self, saved: Sequence[Any]) -> None:
+        """Go on from a checkpoint."""
+        under_way, luck = saved
+        self._under_way = deque((int(step), float(velocity)) for step, velocity in under_way)
+        restore(self._luck, luck)
+
+    def take(self, step: int) -> float | None:
+        """Return the latest command that has arrived before a step, None without a new one."""
+        arrived = None
+        while self._under_way and self._under_way[0][0] <= step:
+            arrived = self._under_way.popleft()[1]
+        return arrived

@@ -1,0 +1,141 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The neighbours: who else publishes on the topics of this node, looked at once a second.
+
+ROS lets anyone publish anywhere: two nodes on one topic are no error to it, but seldom what was meant.
+"""
+
+from collections.abc import Callable, Sequence
+
+from rclpy.node import Node
+
+from ...realtime.command_slot import CommandSlot
+from ...realtime.step_loop import StepLoop
+from ...recording import topics as names
+from ...rig import SILENT_BRIDGE
+from ...scene.model import Scene
+
+_OUTPUTS = (names.SLIDER_STATE, names.FRICTION_FORCE, names.MODE_EVENT, names.RIG_EVENT, names.TIMING, names.RUN_INFO)
+_PATIENCE = 3            # looks at a bridge that sends nothing, or at a publisher whose node is not known
+_UNKNOWN = '_UNKNOWN_'   # in the name of such a node: ROS hears of it a moment after its topics, and never of plain DDS
+
+
+class Neighbours:
+    """Tells the log what changed since the look before, and returns what is not as it should be."""
+
+    def __init__(self, node: Node, scene: Scene, loop: StepLoop) -> None:
+        velocity, force = loop.slots
+        outputs, topics = [*_OUTPUTS], [names.DRIVE_VELOCITY]
+        self._watched: list[_Output | _Input | _Bridge] = []
+        if scene.time.makes_clock:
+            outputs.append(names.CLOCK)
+        if scene.rig.measures:
+            outputs.append(names.JOINT_STATES)
+            topics.append(names.JOINT_COMMANDS)
+            self._watched.append(_Bridge(node, velocity))
+        self._watched += [_Output(node, topic) for topic in outputs]
+        self._watched += [_Input(node, topics, velocity, lambda: loop.held[0]),
+                          _Input(node, [names.EXTERNAL_FORCE], force, lambda: loop.held[1])]
+
+    def look(self) -> list[str]:
+        """Look around; return the troubles, each in a line."""
+        return [trouble for watched in self._watched if (trouble := watched.look())]
+
+
+class _Publishers:
+    """Which nodes publish on some topics; their names cost ten times the count and are asked for when that changed."""
+
+    def __init__(self, node: Node, topics: Sequence[names.Topic]) -> None:
+        self._node = node
+        self._topics = [node.resolve_topic_name(topic.name) for topic in topics]
+        self._counts: list[int] = []
+        self._unnamed = 0    # looks
+        self.nodes: list[str] = []
+
+    def have_changed(self) -> bool:
+        """Look, and return whether the nodes are others than before."""
+        counts = [self._node.count_publishers(topic) for topic in self._topics]
+        if counts == self._counts:
+            return False
+        nodes = sorted(f'{info.node_namespace.rstrip("/")}/{info.node_name}' for topic in self._topics
+                       for info in self._node.get_publishers_info_by_topic(topic))
+        self._unnamed = self._unnamed + 1 if any(_UNKNOWN in node for node in nodes) else 0
+        if 0 < self._unnamed < _PATIENCE:
+            return False
+        before, self._counts, self.nodes = self.nodes, counts, nodes
+        return nodes != before
+
+
+class _Output:
+    """A topic that is this node's."""
+
+    def __init__(self, node: Node, topic: names.Topic) -> None:
+        self._log, self._own = node.get_logger(), node.get_fully_qualified_name()
+        self._topic = node.resolve_topic_name(topic.name)
+        self._publishers = _Publishers(node, [topic])
+        self._trouble = ''
+
+    def look(self) -> str:
+        if self._publishers.have_changed():
+            others = list(self._publishers.nodes)
+            if self._own in others:
+                others.remove(self._own)    # once: a stranger may bear its name
+            self._tell(f'{", ".join(others)} publishes on {self._topic} too' if others else '')
+        return self._trouble
+
+    def _tell(self, trouble: str) -> None:
+        if trouble:
+            self._log.warning(f'{trouble}: who listens there hears both')
+        elif self._trouble:
+            self._log.info(f'{self._topic} has one publisher again')
+        self._trouble = trouble
+
+
+class _Input:
+    """The topics of one kind of command, of which one controller at a time makes sense."""
+
+    def __init__(self, node: Node, topics: Sequence[names.Topic], slot: CommandSlot, held: Callable[[], float | None]
+                 ) -> None:
+        self._log = node.get_logger()
+        self._name, self._held = slot.name, held
+        self._topics = ', '.join(node.resolve_topic_name(topic.name) for topic in topics)
+        self._publishers = _Publishers(node, topics)
+        self._trouble = ''
+
+    def look(self) -> str:
+        if self._publishers.have_changed():
+            self._tell(self._publishers.nodes)
+        elif not self._publishers.nodes and self._held() is None:    # since a reset
+            self._trouble = ''
+        return self._trouble
+
+    def _tell(self, nodes: list[str]) -> None:
+        self._trouble = ''
+        if len(nodes) > 1:
+            self._trouble = f'{len(nodes)} controllers at once on {self._topics}: {", ".join(nodes)}'
+            self._log.warning(f'{self._trouble}; the latest {self._name} counts')
+        elif nodes:
+            self._log.info(f'{nodes[0]} alone commands the {self._name}')
+        elif (held := self._held()) is not None:
+            self._trouble = f'the controller of the {self._name} is gone, and its {held:g} stays in force'
+            self._log.warning(f'{self._trouble} (command.timeout ends that)')
+
+
+class _Bridge:
+    """A topic-based hardware interface that is there but sends nothing."""
+
+    def __init__(self, node: Node, slot: CommandSlot) -> None:
+        self._log, self._slot = node.get_logger(), slot
+        self._publishers = _Publishers(node, [names.JOINT_COMMANDS])
+        self._silent = 0     # looks
+
+    def look(self) -> str:
+        self._publishers.have_changed()
+        nodes = self._publishers.nodes
+        self._silent = self._silent + 1 if nodes and not self._slot.received else 0
+        if self._silent < _PATIENCE:
+            return ''
+        trouble = f'{", ".join(nodes)} sends nothing on {names.JOINT_COMMANDS.name}: {SILENT_BRIDGE}'
+        if self._silent == _PATIENCE:
+            self._log.warning(trouble)
+        return trouble

@@ -1,0 +1,77 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""What the node does once a second: it publishes its timing and its statuses, and logs what went wrong."""
+
+from collections.abc import Callable
+
+from rclpy.clock import Clock, ClockType
+
+from ...realtime.pacing import StepClock
+from ...realtime.step_loop import StepLoop
+from ...realtime.verdict import verdict
+from ...recording import topics as names
+from ...rig import Note, NoteKind
+from ..node.parameters import SceneNode
+from ..node.publishers import Outlet
+from ..node.topics import publisher
+from ..services.record_service import RecordService
+from . import reports
+from .graph_monitor import Neighbours
+from .rig_events import RigEvents
+
+_PERIOD = 1.0     # s
+
+
+class SecondReport:
+    """Looks at the loop, the bag and the neighbours; `stamp_ns` says what time the reports bear."""
+
+    def __init__(self, node: SceneNode, loop: StepLoop, clock: StepClock, outlet: Outlet, rig_events: RigEvents,
+                 record_service: RecordService, stamp_ns: Callable[[], int]) -> None:
+        self._node, self._loop, self._clock, self._stamp_ns = node, loop, clock, stamp_ns
+        self._outlet, self._rig_events, self._record_service = outlet, rig_events, record_service
+        self._reporter = reports.Reporter(loop)
+        self._neighbours = Neighbours(node, node.scene, loop)
+        self._told = ''          # the failure of the solver that was logged
+        self._timing_out = publisher(node, names.TIMING)
+        self._diagnostics_out = publisher(node, names.DIAGNOSTICS)
+        node.create_timer(_PERIOD, self.tell, clock=Clock(clock_type=ClockType.STEADY_TIME))
+
+    def begin(self) -> None:
+        """Let the first second begin."""
+        self._reporter.begin(self._clock.now())
+
+    def forget_counts(self) -> None:
+        """Begin anew, as the counters of the loop do."""
+        self._reporter.forget_counts()
+
+    def tell(self) -> None:
+        """Report on the second that ends now."""
+        stamp_ns = self._stamp_ns()
+        second = self._reporter.look(self._clock.now())
+        judged = verdict(self._node.scene, self._loop)
+        self._tell_troubles(second)
+        message = reports.timing_message(second, self._loop, self._clock.period * 1e-9, bool(judged.valid), stamp_ns)
+        self._timing_out.publish(message)
+        self._outlet.record_message(names.TIMING, message, self._loop.time_ns, max(self._loop.step, 0))
+        self._diagnostics_out.publish(reports.diagnostics(stamp_ns, self._node.get_fully_qualified_name(), [
+            reports.loop_status(self._loop, second, judged),
+            reports.command_status(self._loop, second),
+            reports.solver_status(self._loop, self._node.scene.solver.name, self._outlet.events.latest_time),
+            reports.recorder_status(self._record_service.recordings),
+            reports.neighbours_status(self._neighbours.look())]))
+
+    def _tell_troubles(self, second: reports.Second) -> None:
+        log = self._node.get_logger()
+        if second.skipped > 0.0:
+            text = f'{second.skipped:.3f} s behind the clock were given up; simulation time lags by that much'
+            log.warning(text)
+            self._note(Note(NoteKind.TIME_LOST, '', text, second.skipped))
+        for refusal in second.refusals:
+            self._note(Note(NoteKind.COMMAND_REFUSED, refusal.name, refusal.reason, number=refusal.number))
+        if self._loop.failure and self._loop.failure != self._told:
+            log.error(f'the axis stands still: {self._loop.failure}; ~/reset begins anew')
+        self._told = self._loop.failure
+        self._record_service.look()
+
+    def _note(self, note: Note) -> None:
+        self._rig_events.tell(self._loop.step + 1, self._loop.time_ns, note)

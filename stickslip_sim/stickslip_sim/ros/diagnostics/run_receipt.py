@@ -1,0 +1,40 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The receipt that ends a bag of the node: the figures of the run, its timing and its commands."""
+
+from dataclasses import asdict
+from typing import Any
+
+from ...realtime.step_loop import StepLoop
+from ...realtime.timing_statistics import Worst
+from ...realtime.verdict import verdict
+from ...runs.receipt import receipt_of
+from ...scene.model import Scene
+from ..node.publishers import Outlet
+
+
+def run_receipt(scene: Scene, loop: StepLoop, outlet: Outlet, dropped: int, cost: tuple[float, float]
+                ) -> dict[str, Any]:
+    """Return the receipt of the run up to now; `cost` is CPU and wall time, s.  Raises SolverError, see `judge`."""
+    simulator = loop.rig.simulator
+    simulator.judge()
+    period = 1.0 / scene.time.rate
+    duration = max(simulator.time.seconds, period)
+    figures = outlet.events.summary(duration)
+    receipt = receipt_of(scene, duration, period, figures, simulator.root_iterations, simulator.sample(),
+                         simulator.energy, *cost)
+    slots = {slot.name: {'received': slot.received, 'refused': slot.refused} for slot in loop.slots}
+    return {**receipt, 'timing': _timing(scene, loop), 'dropped_messages': dropped,
+            'commands': {**slots, **loop.command_totals._asdict()}}
+
+
+def _timing(scene: Scene, loop: StepLoop) -> dict[str, Any]:
+    judged = verdict(scene, loop)
+    worst = {f'worst_{name}': _plain(loop.ledger.worst(name)) for name in ('cost', 'lateness', 'latency')}
+    return {**asdict(loop.account), 'skipped': loop.account.skipped * 1e-9, **worst, 'valid': judged.valid,
+            'verdict': judged.text}
+
+
+def _plain(worst: Worst) -> dict[str, float] | None:
+    """Return a worst case for JSON, which knows no NaN."""
+    return worst._asdict() if worst.value == worst.value else None

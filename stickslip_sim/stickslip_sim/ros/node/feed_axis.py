@@ -1,0 +1,163 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The node `feed_axis`: wires topics, services and parameters to the step loop.  No physics in here."""
+
+import gc
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from rclpy.parameter import Parameter
+
+from ...core.errors import InputError, SolverError
+from ...core.time_grid import Grid
+from ...realtime.command_slot import CommandSlot
+from ...realtime.pacing import step_clock
+from ...realtime.step_loop import StepLoop, Taker
+from ...realtime.verdict import verdict
+from ...realtime.watchdog import Watchdog
+from ...recording import RECORDED, RunFacts, messages
+from ...recording import topics as names
+from ...runs.offline import warm_up
+from ...runs.receipt import CostMeter
+from ...scene.model import Scene
+from ...scene.sections import NODE
+from ..diagnostics.periodic_report import SecondReport
+from ..diagnostics.rig_events import RigEvents
+from ..diagnostics.run_receipt import run_receipt
+from ..services.fault_services import FaultServices
+from ..services.record_service import RecordService
+from ..services.standard_services import offer_standard_services
+from ..services.time_services import TimeServices
+from . import conversion
+from .clock import ClockOut
+from .joints import JointStates
+from .parameters import FileParameters, SceneNode
+from .publishers import Outlet
+from .subscribers import Inlet
+from .topics import publisher
+
+
+class FeedAxis(SceneNode):
+    """Publishes the motion of one axis; callbacks run in an executor, the steps in the loop's thread.
+
+    `is_stopping` is asked while many steps are made.  Raises InputError when the parameters are no scene, or one for
+    offline use only.
+    """
+
+    def __init__(self, files: FileParameters, is_stopping: Callable[[], bool]) -> None:
+        super().__init__(NODE, files)
+        scene = self.scene
+        if scene.solver.name == 'adaptive':
+            raise InputError('solver.name', 'adaptive', 'exact or fixed_step in the node',
+                             'the steps of adaptive take any time, and no real-time loop can wait for them')
+        warm_up(scene)
+        self._slots = (CommandSlot('velocity', 'm/s', scene.command.max_velocity),
+                       CommandSlot('force', 'N', scene.command.max_force))
+        self._outlet = Outlet(self)
+        self._rig_events = RigEvents(self, self._outlet)
+        grid = Grid(scene.time.rate)
+        self._step_clock = step_clock(grid, scene.time.mode, scene.time.factor)
+        self.loop = StepLoop(scene.make_rig(), self._step_clock, self._slots, self._takers(grid),
+                             Watchdog(scene.command.timeout), by_request=scene.time.mode == 'lockstep')
+        self._cost = CostMeter()
+        self._open_endpoints(is_stopping)
+
+    def begin(self) -> None:
+        """Start recording if the scene wants it, and the steps."""
+        self._record_service.recordings.prepare()
+        gc.collect()
+        gc.freeze()      # a full collection would take tens of ms out of the loop
+        self._begin_run()
+        if self.scene.record.enabled:
+            self._record_service.begin(lambda attach: attach())
+        else:
+            self._publish_run_info()
+        self._cost.begin()
+        self._report.begin()
+        self.loop.start()
+        self.get_logger().info(f'{self.scene.name}: {self.scene.time.rate:g} steps a second, {self.scene.time.mode}')
+
+    def end(self) -> None:
+        """Stop the steps and close the bag; raises RecordingError when it could not be written to its end."""
+        self.loop.stop()
+        if self._record_service.is_recording:
+            self._report.tell()    # the second that was cut short
+        if self.loop.step >= 0:
+            self.get_logger().info(verdict(self.scene, self.loop).text)
+        self._record_service.close()
+
+    def scene_changed(self, scene: Scene, changed: Sequence[Parameter]) -> None:
+        """Let changed parameters take effect together at the next boundary between two steps."""
+        self._slots[0].limit, self._slots[1].limit = scene.command.max_velocity, scene.command.max_force
+
+        def apply() -> None:
+            self.loop.rig.change_axis(scene.axis)
+            stamp_ns = self._outlet.start_ns + self.loop.time_ns
+            event = conversion.parameter_event(self.get_fully_qualified_name(), stamp_ns,
+                                               [parameter.to_parameter_msg() for parameter in changed])
+            data = self._record_service.recordings.parameter_event(conversion.fields_of(event))
+            self._outlet.record(RECORDED.index(names.PARAMETER_EVENTS), data, self.loop.time_ns, self.loop.step + 1)
+
+        if not self.loop.at_boundary(apply):
+            self.get_logger().error('the step loop is busy: the changed parameters did not take effect')
+
+    def _takers(self, grid: Grid) -> list[Taker]:
+        takers: list[Taker] = [self._rig_events.take, self._outlet.take]
+        if self.scene.rig.measures:
+            takers.append(JointStates(self, self._outlet).take)
+        if self.scene.time.makes_clock:
+            takers += [ClockOut(self, grid, self.scene.time.clock_rate).take, self._outlet.keep_pace]
+        return takers
+
+    def _open_endpoints(self, is_stopping: Callable[[], bool]) -> None:
+        self._run_info_out = publisher(self, names.RUN_INFO)
+        Inlet(self, *self._slots, self._step_clock.now, with_joints=self.scene.rig.measures)
+        self._record_service: RecordService = RecordService(self, self.loop, self._outlet, self._publish_run_info,
+                                                            self._receipt)
+        times = TimeServices(self, self.loop, self._outlet, self._restart,
+                             lambda: self._record_service.is_recording, is_stopping)
+        offer_standard_services(self, self.loop, times)
+        FaultServices(self, self.loop)
+        self._report = SecondReport(self, self.loop, self._step_clock, self._outlet, self._rig_events,
+                                    self._record_service, self._stamp_ns)
+
+    def _restart(self) -> bool:
+        def restart() -> None:
+            self.loop.restart()
+            self._begin_run()
+
+        done = self.loop.at_boundary(restart)
+        if done:
+            self._report.forget_counts()
+            self._cost.begin()
+        self._publish_run_info()
+        return done
+
+    def _begin_run(self) -> None:
+        """Let the outlet begin where the rig is before its first step."""
+        self._outlet.begin_run(self._start_ns(), self.loop.rig.simulator.sample().mode)
+
+    def _receipt(self) -> dict[str, Any]:
+        try:
+            dropped = self._record_service.recordings.total_dropped
+            return run_receipt(self.scene, self.loop, self._outlet, dropped, self._cost.so_far())
+        except SolverError as error:    # the state has left the range of numbers
+            return {'failure': str(error)}
+
+    def _publish_run_info(self) -> None:
+        message = conversion.run_info(messages.run_info(
+            RunFacts.of(self.scene), self._now_ns(), self._outlet.start_ns, self._record_service.recordings.folder))
+        self._run_info_out.publish(message)
+        self._outlet.record_message(names.RUN_INFO, message, self.loop.time_ns, max(self.loop.step, 0))
+
+    def _start_ns(self) -> int:
+        """Return the stamp of simulation time 0: 0 where simulation time is the time of the graph."""
+        return 0 if self.scene.time.makes_clock else self._now_ns()
+
+    def _stamp_ns(self) -> int:
+        """Return the time of the graph."""
+        return self._outlet.start_ns + self.loop.time_ns if self.scene.time.makes_clock else self._now_ns()
+
+    def _now_ns(self) -> int:
+        nanoseconds: int = self.get_clock().now().nanoseconds
+        return nanoseconds

@@ -1,0 +1,70 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""A node whose parameters are those of a list, checked as those of a scene are."""
+
+import difflib
+from collections.abc import Mapping, Sequence
+
+from rcl_interfaces.msg import SetParametersResult
+from rclpy.exceptions import ParameterException
+from rclpy.parameter import Parameter
+
+from ...config.parameter import Parameter as Entry
+from ...core.errors import InputError
+from ...scene.sections import without_those_of_ros
+from ..process.environment import refusing, variables
+from .bounded_node import BoundedNode
+from .parameters import declare, promoted
+
+
+class ListedNode(BoundedNode):
+    """A node with the parameters of a list; `values` are those in force.
+
+    Raises InputError when those given at the start are wrong.
+    """
+
+    def __init__(self, name: str, entries: Sequence[Entry]) -> None:
+        with refusing('ROS parameters or environment', variables(), ParameterException):
+            super().__init__(name)
+        self._entries = {entry.name: entry for entry in entries}
+        given = {name: parameter.value for name, parameter in self._parameter_overrides.items()}
+        self.values = values_at_start(self._entries, without_those_of_ros(given))
+        declare(self, entries, self.values)
+
+    def values_changed(self) -> None:
+        """Let changed values take effect; for the heir."""
+
+    def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
+        """Set all or none; refused with one line that says what, why and what to do."""
+        wanted = [promoted(parameter, self._entries.get(parameter.name)) for parameter in parameter_list]
+        ours = {parameter.name: parameter.value for parameter in wanted if parameter.name in self._entries}
+        try:
+            values = changed_values(self._entries, self.values, ours)
+        except InputError as error:
+            return SetParametersResult(successful=False, reason=str(error))
+        result = super().set_parameters_atomically(wanted)
+        if result.successful and ours:
+            self.values = values
+            self.values_changed()
+        return result
+
+
+def values_at_start(entries: Mapping[str, Entry], given: Mapping[str, object]) -> dict[str, object]:
+    """Return the value of every parameter, given or default; raises InputError."""
+    for name, value in given.items():
+        if name not in entries:
+            close = difflib.get_close_matches(name, entries, 1, cutoff=0.5)
+            raise InputError(name, value, 'one of ' + ', '.join(entries),
+                             f'did you mean {close[0]}?' if close else 'drop it')
+    return {name: entry.checked(given[name]) if name in given else entry.default for name, entry in entries.items()}
+
+
+def changed_values(entries: Mapping[str, Entry], values: Mapping[str, object],
+                   changes: Mapping[str, object]) -> dict[str, object]:
+    """Return values with changes; raises InputError on those that are wrong, or may not change while it runs."""
+    checked = {name: entries[name].checked(value) for name, value in changes.items()}
+    for name, value in checked.items():
+        if not entries[name].live and value != values[name]:
+            raise InputError(name, value, f'{values[name]!r} as at the start',
+                             'it cannot change while the node runs: start it anew')
+    return {**values, **checked}

@@ -1,0 +1,166 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The scene as ROS parameters: declared from the one schema, and checked together whenever any of them changes."""
+
+import math
+from collections.abc import Mapping, Sequence
+from contextlib import nullcontext
+from typing import Any, NamedTuple
+
+from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor, SetParametersResult
+from rclpy.exceptions import ParameterException
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+
+from ...config.parameter import Parameter as Entry
+from ...core.errors import InputError
+from ...scene.load import load_scene, named, read_parameters, scene_from_values, scene_names, scene_of_parameters
+from ...scene.model import Scene
+from ...scene.schema import BY_NAME, PARAMETERS
+from ...scene.sections import describes_an_axis, without_those_of_ros
+from ..process.environment import refusing, variables
+from .bounded_node import BoundedNode
+from .clock import check_sim_time
+
+_SIM_TIME = 'use_sim_time'
+DEFAULT_SCENE = 'paper_fig8'
+_TYPES = {
+    'double': Parameter.Type.DOUBLE, 'double_array': Parameter.Type.DOUBLE_ARRAY, 'string': Parameter.Type.STRING,
+    'bool': Parameter.Type.BOOL, 'integer': Parameter.Type.INTEGER, 'string_array': Parameter.Type.STRING_ARRAY,
+}
+
+
+class FileParameters(NamedTuple):
+    """What parameter files give of a scene, by dotted name; `source` names the files, and is empty without any."""
+
+    source: str
+    values: Mapping[str, object]
+
+    @classmethod
+    def read(cls, paths: Sequence[str]) -> 'FileParameters':
+        """Return what files give, read as the tool does; a later one wins.  Raises InputError."""
+        values: dict[str, object] = {}
+        for path in paths:
+            values |= without_those_of_ros(read_parameters(path))
+        return cls(' + '.join(paths), values)
+
+
+class SceneNode(BoundedNode):
+    """A node whose parameters are a scene; `scene` is the one in force.
+
+    Raises InputError when the parameters given at the start are no scene.
+    """
+
+    scene: Scene
+
+    def __init__(self, name: str, files: FileParameters) -> None:
+        with refusing('ROS parameters or environment', variables(), ParameterException):
+            super().__init__(name)
+        # rclpy has no public way to see what was given but never declared
+        given = without_those_of_ros({name: parameter.value for name, parameter in self._parameter_overrides.items()})
+        with named(files.source) if files.source else nullcontext():
+            self._check_addressed(files, given)
+            self.scene = scene_at_start(given, files.values)
+        if files.values and not describes_an_axis(given) and self.scene.name not in scene_names():
+            self.get_logger().warning('the parameters say nothing of an axis: it stands still, without friction')
+        declare(self, PARAMETERS, self.scene.values)
+        self._warn(check_sim_time(self.scene.time, self.get_parameter(_SIM_TIME).value))
+
+    def _check_addressed(self, files: FileParameters, given: Mapping[str, object]) -> None:
+        """Raise InputError when a section of the files is for a node by another name, which ROS passes over."""
+        for name, value in files.values.items():
+            if name not in given:
+                raise InputError(name, value, f'in a section of {self.get_fully_qualified_name()}',
+                                 'name the section /**, or as this node')
+
+    def scene_changed(self, scene: Scene, changed: Sequence[Parameter]) -> None:
+        """Let a change take effect; for the heir."""
+
+    def get_parameter(self, name: str) -> Parameter:
+        """Return a parameter; one without a value as such, where rclpy would refuse all that is asked for with it."""
+        if self.has_parameter(name):
+            return self.get_parameter_or(name)
+        parameter: Parameter = super().get_parameter(name)
+        return parameter
+
+    def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
+        """Set all or none; refused with one line that says what, why and what to do."""
+        wanted = [promoted(parameter, BY_NAME.get(parameter.name)) for parameter in parameter_list]
+        ours = {parameter.name: parameter.value for parameter in wanted
+                if parameter.name in BY_NAME or not self.has_parameter(parameter.name)}
+        try:
+            scene = changed_scene(self.scene, ours)
+            warnings = [check_sim_time(scene.time, parameter.value) for parameter in wanted
+                        if parameter.name == _SIM_TIME]
+        except InputError as error:
+            return SetParametersResult(successful=False, reason=str(error))
+        result = super().set_parameters_atomically(wanted)
+        if result.successful:
+            self._warn(*warnings)
+        if result.successful and ours:
+            self.scene = scene
+            self.scene_changed(scene, [parameter for parameter in wanted if parameter.name in ours])
+        return result
+
+    def _warn(self, *texts: str) -> None:
+        for text in filter(None, texts):
+            self.get_logger().warning(text)
+
+
+def scene_at_start(given: Mapping[str, object], in_files: Mapping[str, object]) -> Scene:
+    """Return the scene of the parameters given at the start, of which some are in files; raises InputError.
+
+    Files that describe an axis are a whole scene, as for the tool; `scene` is just its name.  Otherwise `scene` is a
+    shipped one or a file, and what else is given changes it.
+    """
+    changes = {name: value for name, value in given.items() if name not in in_files or value != in_files[name]}
+    if in_files and (describes_an_axis(in_files) or 'scene' not in changes):
+        return scene_of_parameters(in_files, changes)
+    rest = {name: value for name, value in given.items() if name != 'scene'}
+    return load_scene(str(given.get('scene', DEFAULT_SCENE)), rest)
+
+
+def changed_scene(scene: Scene, changes: Mapping[str, object]) -> Scene:
+    """Return the scene with other values; raises InputError on those that may not change while the axis runs."""
+    for name, value in changes.items():
+        if name in BY_NAME and not BY_NAME[name].live and value != scene.values.get(name):
+            raise InputError(name, value, f'{scene.values.get(name)!r} as at the start',
+                             'it cannot change while the node runs: start it with another parameter file')
+    return scene_from_values({**scene.values, **changes}) if changes else scene
+
+
+def declare(node: Node, entries: Sequence[Entry], values: Mapping[str, object]) -> None:
+    """Declare the parameters of a list with their descriptions; one without a value has its type only."""
+    for entry in entries:
+        value = _plain(values.get(entry.name))
+        node.declare_parameter(entry.name, _TYPES[entry.type] if value in (None, []) else value, describe(entry),
+                               ignore_override=True)
+
+
+def describe(entry: Entry) -> ParameterDescriptor:
+    """Return the ROS description of a parameter."""
+    descriptor = ParameterDescriptor(
+        description=entry.description + (f' [{entry.unit}]' if entry.unit else ''),
+        additional_constraints=entry.allowed + (f'; only with {entry.when}' if entry.when else ''),
+        read_only=not entry.live)
+    if entry.low is not None and entry.high is not None:
+        if entry.type == 'double':
+            high = math.inf if entry.infinite else entry.high
+            descriptor.floating_point_range = [FloatingPointRange(from_value=entry.low, to_value=high)]
+        if entry.type == 'integer':
+            descriptor.integer_range = [IntegerRange(from_value=int(entry.low), to_value=int(entry.high), step=1)]
+    return descriptor
+
+
+def promoted(parameter: Parameter, entry: Entry | None) -> Parameter:
+    """Return whole numbers as the doubles that they stand for, as in a scene file."""
+    value: Any = parameter.value
+    if entry is not None and entry.type == 'double' and parameter.type_ == Parameter.Type.INTEGER:
+        return Parameter(parameter.name, Parameter.Type.DOUBLE, float(value))
+    if entry is not None and entry.type == 'double_array' and parameter.type_ == Parameter.Type.INTEGER_ARRAY:
+        return Parameter(parameter.name, Parameter.Type.DOUBLE_ARRAY, [float(number) for number in value])
+    return parameter
+
+
+def _plain(value: object) -> object:
+    return list(value) if isinstance(value, (list, tuple)) else value

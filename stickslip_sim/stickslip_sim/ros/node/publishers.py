@@ -1,0 +1,117 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Where the products of the steps go: each message is packed once, and its bytes are published and recorded."""
+
+from typing import Any, Protocol
+
+from rclpy.node import Node
+from rclpy.serialization import deserialize_message, serialize_message
+
+from stickslip_msgs.msg import FrictionForce, ModeEvent, SliderState
+
+from ...core.types import Event, EventKind, Mode, Sample
+from ...recording import flat_layout
+from ...recording import topics as names
+from ...recording.messages import Packer
+from ...recording.topics import RECORDED, Topic
+from ...rig import Product
+from ...simulation.cycles import EventTally
+from .topics import publisher
+
+
+class Recorder(Protocol):
+    """What takes the messages of a bag; waits only when asked to."""
+
+    def put(self, topic_index: int, data: bytes, log_time_ns: int, publish_time_ns: int, sequence: int) -> None:
+        """Take a message."""
+
+    def wait_for_room(self) -> None:
+        """Wait while too many messages wait to be written."""
+
+
+class Outlet:
+    """Publishes what the step loop hands out, stamped `start_ns` (ROS time at simulation time 0) + simulation time."""
+
+    def __init__(self, node: Node) -> None:
+        self.start_ns = 0
+        self.recorder: Recorder | None = None
+        self.events = EventTally()    # of the run so far
+        self._state = _Port(node, names.SLIDER_STATE)
+        self._friction = _Port(node, names.FRICTION_FORCE)
+        self._event = _Port(node, names.MODE_EVENT)
+        self._time_ns = 0     # of the latest state
+        self._commands = [(RECORDED.index(topic), flat_layout(topic.type))
+                          for topic in (names.DRIVE_VELOCITY, names.EXTERNAL_FORCE)]
+
+    def begin_run(self, start_ns: int, mode: Mode) -> None:
+        """Let simulation time 0 be a ROS time, ns, at which the slider is in a mode; forget the events."""
+        self.start_ns = start_ns
+        self._time_ns = 0
+        self.events = EventTally(mode)
+
+    def take(self, product: Product) -> None:
+        """Record the commands of a step; publish and record its events, and the state at its end."""
+        for kind, value in enumerate((product.velocity, product.force)):
+            if value is not None and self.recorder is not None:
+                self.command(kind, product.step, self._time_ns, value)
+        for event in product.events:
+            self.event(max(product.step, 1), event)
+        self.sample(product.step, product.sample)
+
+    def keep_pace(self, _: Product) -> None:
+        """Let time that nothing else drives wait for the bag, so that nothing is missing from it."""
+        if (recorder := self.recorder) is not None:
+            recorder.wait_for_room()
+
+    def event(self, step: int, event: Event) -> None:
+        """Publish an event that fell into a step; knots of the friction table are nobody's business."""
+        self.events.add(event)
+        if event.kind == EventKind.KNOT:
+            return
+        self._send(self._event, event.instant.nanoseconds, step, event)
+
+    def sample(self, step: int, sample: Sample) -> None:
+        """Publish the state at the end of a step."""
+        time_ns = self._time_ns = sample.instant.nanoseconds
+        self._send(self._state, time_ns, step, sample)
+        self._send(self._friction, time_ns, step, sample)
+
+    def state_messages(self, step: int, sample: Sample) -> tuple[SliderState, FrictionForce]:
+        """Return the messages of a state."""
+        stamp_ns = self.start_ns + sample.instant.nanoseconds
+        return (deserialize_message(self._state.pack(stamp_ns, step, sample), SliderState),
+                deserialize_message(self._friction.pack(stamp_ns, step, sample), FrictionForce))
+
+    def event_message(self, step: int, event: Event) -> ModeEvent | None:
+        """Return the message of an event that is published."""
+        if event.kind == EventKind.KNOT:
+            return None
+        return deserialize_message(self._event.pack(self.start_ns + event.instant.nanoseconds, step, event), ModeEvent)
+
+    def command(self, kind: int, step: int, time_ns: int, value: float) -> None:
+        """Record a command that holds from the begin of a step on."""
+        index, layout = self._commands[kind]
+        self.record(index, layout.pack(self.start_ns + time_ns, value), time_ns, step)
+
+    def record(self, index: int, data: bytes, time_ns: int, step: int) -> None:
+        """Hand a message to the recorder, if there is one."""
+        if self.recorder is not None:
+            self.recorder.put(index, data, time_ns, self.start_ns + time_ns, step)
+
+    def record_message(self, topic: Topic, message: Any, time_ns: int, step: int) -> None:
+        """Hand a message that is published elsewhere to the recorder, if there is one."""
+        self.record(RECORDED.index(topic), serialize_message(message), time_ns, step)
+
+    def _send(self, port: '_Port', time_ns: int, step: int, word: Sample | Event) -> None:
+        data = port.pack(self.start_ns + time_ns, step, word)
+        port.publish(data)
+        self.record(port.index, data, time_ns, step)
+
+
+class _Port:
+    """A publisher, the packer of its messages and the place of its topic in a bag."""
+
+    def __init__(self, node: Node, topic: Topic) -> None:
+        self.index = RECORDED.index(topic)
+        self.pack = Packer(topic).pack
+        self.publish = publisher(node, topic).publish

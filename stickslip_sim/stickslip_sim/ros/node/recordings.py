@@ -1,0 +1,116 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Recordings of the node: begun, watched and ended while the axis runs."""
+
+import os
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from ...core.errors import RecordingError
+from ...realtime.pacing import utc_stamp
+from ...recording import (
+    RECORDED,
+    MessageCodec,
+    RecorderThread,
+    RunFacts,
+    checkpoint_file,
+    open_run,
+    receipt_file,
+    schema,
+)
+from ...recording.topics import PARAMETER_EVENTS
+from ...scene.model import Scene
+from ...scene.text import file_name
+
+_RUNS = 'runs'
+
+
+class Recordings:
+    """At most one recording at a time; a failure ends the recording and is kept to be told, never raised.
+
+    All lie below the folder of the one that the scene names at the start, or below runs/: whoever may set parameters
+    may not write anywhere.
+    """
+
+    def __init__(self, namespace: str, scene: Scene) -> None:
+        self.recorder: RecorderThread | None = None
+        self.folder = ''             # of the recording under way
+        self.failure = ''            # why the latest recording ended or did not begin
+        self.dropped = 0             # messages of earlier recordings
+        self._namespace = namespace
+        given = os.path.expanduser(scene.record.folder)
+        self._root = Path(os.path.realpath(Path(given).parent if given else _RUNS))
+        self._codec = MessageCodec([PARAMETER_EVENTS.type])
+
+    @property
+    def total_dropped(self) -> int:
+        """Messages that did not get into a bag, of all recordings."""
+        return self.dropped + (self.recorder.dropped if self.recorder else 0)
+
+    def prepare(self) -> None:
+        """Do now what would disturb the step loop later: read the message definitions."""
+        for topic in RECORDED:
+            schema(topic.type)
+
+    def begin(self, scene: Scene) -> None:
+        """Open a new run folder; raises RecordingError."""
+        try:
+            writer = open_run(self._folder_of(scene), RunFacts.of(scene), self._namespace)
+        except (RecordingError, OSError, RuntimeError, ValueError) as error:    # the last two: no such home, odd names
+            self.failure = f'record.folder = {scene.record.folder!r}: {error}'
+            raise RecordingError(self.failure) from None
+        self.recorder, self.folder, self.failure = RecorderThread(writer), str(writer.folder), ''
+
+    def continue_from(self, checkpoint: Mapping[str, object]) -> None:
+        """Let the recording that has just begun tell what the axis goes on from."""
+        if self.recorder is not None:
+            self.recorder.begin(checkpoint_file(checkpoint))
+
+    def end(self, receipt: Mapping[str, object]) -> None:
+        """Finish the bag; raises RecordingError when it could not be written to its end."""
+        recorder, self.recorder, self.folder = self.recorder, None, ''
+        if recorder is None:
+            return
+        ended_well = recorder.close(receipt_file(receipt))
+        self.dropped += recorder.dropped
+        if not ended_well:
+            self.failure = recorder.failure or 'the bag could not be finished'
+            raise RecordingError(self.failure)
+
+    def parameter_event(self, fields: Mapping[str, Any]) -> bytes:
+        """Return the CDR bytes of a ParameterEvent.
+
+        rclpy allots a few bytes too many to a message with empty lists, and strict readers of bags refuse those.
+        """
+        return self._codec.encode(PARAMETER_EVENTS.type, fields)
+
+    def check(self) -> str:
+        """Return why the recording under way has failed, once; empty while all is well."""
+        if self.recorder is None or self.recorder.failure is None:
+            return ''
+        self.failure = self.recorder.failure
+        self.dropped += self.recorder.dropped
+        self.recorder, self.folder = None, ''
+        return self.failure
+
+    def _folder_of(self, scene: Scene) -> Path:
+        """Return the folder of the scene, or a new one that is named after namespace, scene and time.
+
+        Raises RecordingError on one that lies elsewhere.
+        """
+        if not scene.record.folder:    # axes may start in the same second
+            name = '_'.join([*filter(None, self._namespace.split('/')), file_name(scene.name), utc_stamp()])
+            return first_free(lambda number: self._root / (f'{name}_{number}' if number > 1 else name))
+        folder = Path(scene.record.folder).expanduser()
+        if self._root not in Path(os.path.realpath(folder)).parents:
+            raise RecordingError(f'it must lie below {self._root}, as at the start of the node')
+        return folder
+
+
+def first_free(name: Callable[[int], Path]) -> Path:
+    """Return the first of the names for 1, 2, ... that is not in use."""
+    number = 1
+    while os.path.lexists(name(number)):
+        number += 1
+    return name(number)

@@ -1,0 +1,110 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""ROS endpoints made from the one list of topics in `recording.topics`."""
+
+from collections.abc import Callable
+from typing import Any
+
+from diagnostic_msgs.msg import DiagnosticArray
+from rcl_interfaces.msg import ParameterEvent
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.serialization import deserialize_message
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import JointState
+
+from stickslip_msgs.msg import (
+    DriveVelocity,
+    ExternalForce,
+    FrictionForce,
+    ModeEvent,
+    RigEvent,
+    RunInfo,
+    SliderState,
+    StepTiming,
+)
+
+from ...core.errors import InputError
+from ...recording import flat_layout
+from ...recording.topics import QosProfile, Topic
+
+_HEADER = 4           # bytes before the content of a serialised message
+COMMAND_SIZE = 4096   # bytes of a message that commands something; one of two joints takes some 200
+_TYPES = {
+    f'{kind.__module__.split(".")[0]}/msg/{kind.__name__}': kind
+    for kind in (DriveVelocity, ExternalForce, FrictionForce, ModeEvent, RigEvent, RunInfo, SliderState, StepTiming,
+                 Clock, JointState, ParameterEvent, DiagnosticArray)
+}
+
+
+def message_type(topic: Topic) -> Any:
+    """Return the message class of a topic."""
+    return _TYPES[topic.type]
+
+
+def qos(profile: QosProfile) -> QoSProfile:
+    """Return rclpy's form of a quality of service."""
+    return QoSProfile(
+        history=HistoryPolicy.KEEP_LAST, depth=profile.depth,
+        reliability=ReliabilityPolicy[profile.reliability.upper()],
+        durability=DurabilityPolicy[profile.durability.upper()])
+
+
+def publisher(node: Node, topic: Topic) -> Any:
+    """Create the publisher of a topic."""
+    return node.create_publisher(message_type(topic), topic.name, qos(topic.qos))
+
+
+def subscription(node: Node, topic: Topic, callback: Callable[[Any], None]) -> Any:
+    """Create a subscription of a topic."""
+    return node.create_subscription(message_type(topic), topic.name, callback, qos(topic.qos))
+
+
+def raw_subscription(node: Node, topic: Topic, callback: Callable[[bytes], None]) -> Any:
+    """Create a subscription whose callback gets the bytes of each message: whatever anyone sends."""
+    return node.create_subscription(message_type(topic), topic.name, callback, qos(topic.qos), raw=True)
+
+
+def message_of(topic: Topic, data: bytes) -> Any:
+    """Return the message that these bytes are; raises InputError when they are too many, or none."""
+    if len(data) > COMMAND_SIZE:
+        raise InputError(topic.name, f'{len(data)} bytes', f'at most {COMMAND_SIZE} bytes',
+                         'send commands of this axis')
+    try:
+        return deserialized(topic, data)
+    except ValueError:
+        raise InputError(topic.name, f'{len(data)} bytes', f'a {topic.type}', 'its sender is broken') from None
+
+
+def deserialized(topic: Topic, data: bytes) -> Any:
+    """Return the message of a topic that bytes from anyone are; raises ValueError when they are none."""
+    if not _holds_its_padding(data):
+        raise ValueError('shorter than its header says')
+    try:
+        return deserialize_message(data, message_type(topic))
+    except RuntimeError as error:    # the base of what the middleware raises
+        raise ValueError(str(error)) from None
+
+
+def _holds_its_padding(data: bytes) -> bool:
+    """Return whether behind the header of four bytes there are as many as its last two bits say (DDS-XTypes 7.6.3.1.2).
+
+    Fast CDR from 2.3 on (Kilted) takes them off unseen, and reads beyond its memory when there are fewer.
+    """
+    return len(data) >= _HEADER and len(data) - _HEADER >= data[_HEADER - 1] % 4
+
+
+def command_reader(topic: Topic) -> Callable[[bytes], float]:
+    """Return what reads the number of a command from its bytes and raises InputError when they are no such command.
+
+    Where it can, without an object of rclpy for each message.
+    """
+    layout = flat_layout(topic.type)
+    field, = layout.names
+
+    def read(data: bytes) -> float:
+        numbers = layout.numbers(data)
+        value: float = numbers[0] if numbers else getattr(message_of(topic, data), field)
+        return value
+
+    return read

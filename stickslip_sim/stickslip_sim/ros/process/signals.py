@@ -1,0 +1,21 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""SIGINT and SIGTERM, taken before anything that takes long is imported."""
+
+import os
+import signal
+
+
+class Signals:
+    """Takes SIGINT and SIGTERM: they cut the start short, and end the run at the next look at `stop`."""
+
+    def __init__(self) -> None:
+        self.stop = False
+        self.is_starting = True
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, self._take)
+
+    def _take(self, *_: object) -> None:
+        self.stop = True
+        if self.is_starting:    # nothing is open yet; compiling may take long, and swallows exceptions
+            os._exit(0)

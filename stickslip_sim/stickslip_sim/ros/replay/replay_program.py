@@ -1,0 +1,31 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The executable `replay_node` as a program."""
+
+from typing import TYPE_CHECKING
+
+from ..process.params_files import check_params_files
+from ..process.program import Program, spin
+
+if TYPE_CHECKING:
+    from ..process.signals import Signals
+
+_USAGE = """\
+usage: replay_node [--help] --ros-args -p bag:=RUN_FOLDER [-p NAME:=VALUE]... [-r TOPIC:=OTHER]...
+
+Plays a recorded run (node replay): all its topics for viewers, or with -p mode:=commands what the axis was told, into
+a live sim_node.  The other parameters are named as the flags of ros2 bag play: rate, loop, start_offset,
+playback_duration, clock, delay, start_paused, topics.
+"""
+
+
+def _run(_: None, signals: 'Signals') -> None:
+    from .replay_node import Replay
+
+    node = Replay()
+    spin(node, signals, lambda: node.player.is_over)
+    if node.player.crash is not None:
+        raise node.player.crash
+
+
+PROGRAM = Program('replay_node', _USAGE, check_params_files, _run)

@@ -1,0 +1,101 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Recordings of the node, begun and ended by the scene, by ~/record, or by a failure."""
+
+from collections.abc import Callable
+from typing import Any
+
+from std_srvs.srv import SetBool
+
+from ...core.errors import RecordingError
+from ...realtime.step_loop import StepLoop
+from ..node.parameters import SceneNode
+from ..node.publishers import Outlet
+from ..node.recordings import Recordings
+from .answers import BUSY, answer
+
+
+class RecordService:
+    """Attaches recordings to the outlet between two steps.
+
+    `tell` publishes what changed (run_info); `receipt` makes the receipt that ends a bag.
+    """
+
+    def __init__(self, node: SceneNode, loop: StepLoop, outlet: Outlet, tell: Callable[[], None],
+                 receipt: Callable[[], dict[str, Any]]) -> None:
+        self.recordings = Recordings(node.get_namespace(), node.scene)
+        self._node, self._loop, self._outlet = node, loop, outlet
+        self._tell, self._receipt = tell, receipt
+        node.create_service(SetBool, '~/record', self._set_recording)
+
+    @property
+    def is_recording(self) -> bool:
+        """Whether a bag is open."""
+        return self.recordings.recorder is not None
+
+    def begin(self, at_boundary: Callable[[Callable[[], None]], object]) -> str:
+        """Begin a recording; return why it failed, or an empty text."""
+        try:
+            self.recordings.begin(self._node.scene)
+        except RecordingError as error:
+            self._node.get_logger().error(f'no recording: {error}')
+            self._tell()
+            return str(error)
+        if at_boundary(self._attach) is False:
+            self.recordings.end({})
+            return BUSY
+        self._node.get_logger().info(f'recording into {self.recordings.folder}')
+        return ''
+
+    def end(self) -> str:
+        """End the recording; return why the bag could not be finished, or an empty text."""
+        receipts: list[dict[str, Any]] = []
+
+        def detach() -> None:
+            self._outlet.recorder = None
+            receipts.append(self._receipt())
+
+        self._loop.at_boundary(detach)
+        try:
+            self.recordings.end(receipts[0] if receipts else {})
+        except RecordingError as error:
+            self._node.get_logger().error(f'recording failed: {error}')
+            return str(error)
+        finally:
+            self._tell()
+        return ''
+
+    def close(self) -> None:
+        """End the recording of a loop that has stopped; raises RecordingError when the bag could not be finished."""
+        self._outlet.recorder = None
+        if self.is_recording:
+            folder = self.recordings.folder
+            self.recordings.end(self._receipt())
+            self._node.get_logger().info(f'recorded into {folder}')
+
+    def look(self) -> None:
+        """Give a recording up that has failed."""
+        failure = self.recordings.check()
+        if failure:
+            self._outlet.recorder = None
+            self._node.get_logger().error(f'recording failed, the axis goes on: {failure}')
+            self._tell()
+
+    def _attach(self) -> None:
+        if self._loop.step >= 0:
+            self.recordings.continue_from(self._loop.rig.checkpoint())
+        self._outlet.recorder = self.recordings.recorder
+        self._tell()
+        for kind, value in enumerate(self._loop.held):
+            if value is not None:
+                self._outlet.command(kind, self._loop.step, self._loop.time_ns, value)   # since then, or before
+
+    def _set_recording(self, request: Any, response: Any) -> Any:
+        folder = self.recordings.folder
+        if not request.data:
+            failure = self.end()
+            return answer(response, not failure, failure or (f'recorded into {folder}' if folder else 'not recording'))
+        if folder:
+            return answer(response, True, f'already recording into {folder}')
+        failure = self.begin(self._loop.at_boundary)
+        return answer(response, not failure, failure or f'recording into {self.recordings.folder}')

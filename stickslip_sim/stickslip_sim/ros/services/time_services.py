@@ -1,0 +1,90 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The services that move time: ~/reset, ~/set_paused, ~/step."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+from std_srvs.srv import SetBool, Trigger
+
+from stickslip_msgs.srv import Step
+
+from ...realtime.step_loop import StepLoop
+from ...rig import Product
+from ..node.parameters import SceneNode
+from ..node.publishers import Outlet
+from .answers import BUSY, answer
+
+_STEPPING = 3600.0   # s that many steps may take
+
+
+class TimeServices:
+    """`restart` begins a new run at a boundary; `is_recording` and `is_stopping` are asked when it matters."""
+
+    def __init__(self, node: SceneNode, loop: StepLoop, outlet: Outlet, restart: Callable[[], bool],
+                 is_recording: Callable[[], bool], is_stopping: Callable[[], bool]) -> None:
+        self._loop, self._outlet, self._restart = loop, outlet, restart
+        self._is_recording, self._is_stopping = is_recording, is_stopping
+        node.create_service(Trigger, '~/reset', self.reset)
+        node.create_service(SetBool, '~/set_paused', self.set_paused)
+        node.create_service(Step, '~/step', self.step)
+
+    def reset(self, _: Any, response: Any) -> Any:
+        """Begin anew at simulation time 0; a bag would then hold two runs, hence not while recording."""
+        if self._is_recording():
+            return answer(response, False, 'refused while recording: a bag holds one run; stop it with ~/record first')
+        done = self._restart()
+        return answer(response, done, 'simulation time and steps begin anew at 0' if done else BUSY)
+
+    def set_paused(self, request: Any, response: Any) -> Any:
+        """Let time stand still or go on."""
+        loop = self._loop
+        if loop.by_request:
+            return answer(response, False, 'refused with time.mode: lockstep: time moves with ~/step only')
+        if loop.failure and not request.data:
+            return answer(response, False, f'the solver gave up: {loop.failure}; call ~/reset first')
+        done = loop.at_boundary(lambda: loop.pause(request.data))
+        word = 'paused' if request.data else 'running'
+        return answer(response, done, f'{word} at simulation time {loop.time_ns * 1e-9:g} s' if done else BUSY)
+
+    def step(self, request: Any, response: Any) -> Any:
+        """Make steps while time does not move by itself."""
+        refusal = self._refusal(request)
+        if refusal:
+            return answer(response, False, refusal)
+        products: list[Product] = []
+        velocity, force = (None if math.isnan(value) else value for value in (request.velocity, request.force))
+
+        def run() -> None:
+            products.extend(self._loop.run_steps(request.steps, velocity, force, self._is_stopping))
+
+        done = self._loop.at_boundary(run, _STEPPING)
+        if products:
+            last = products[-1]
+            response.state, response.friction = self._outlet.state_messages(last.step, last.sample)
+            response.events = [message for product in products for event in product.events
+                               if (message := self._outlet.event_message(product.step, event))]
+        return answer(response, done and len(products) == request.steps, self._told(done, request.steps, len(products)))
+
+    def _refusal(self, request: Any) -> str:
+        """Return why steps are not made, or an empty text."""
+        loop = self._loop
+        if not 1 <= request.steps <= Step.Request.MAX_STEPS:
+            return f'steps = {request.steps} is refused: must be 1 to {Step.Request.MAX_STEPS}; call it again for more'
+        for slot, value in zip(loop.slots, (request.velocity, request.force)):
+            if not math.isnan(value) and (refusal := slot.refusal(value)):
+                return refusal + '; NaN leaves the one in force'
+        if loop.failure:
+            return f'the solver gave up: {loop.failure}; call ~/reset first'
+        if not (loop.by_request or loop.paused):
+            return 'refused while time runs by itself: use time.mode: lockstep, or ~/set_paused first'
+        return ''
+
+    def _told(self, done: bool, wanted: int, made: int) -> str:
+        time = f'at simulation time {self._loop.time_ns * 1e-9:g} s'
+        if self._loop.failure:
+            return f'{made} of {wanted} steps made, then the solver gave up: {self._loop.failure}'
+        if not done or made < wanted:
+            return f'{made} of {wanted} steps made: {"the node is stopping" if done else BUSY}'
+        return f'{made} step{"" if made == 1 else "s"} made, {time}'

@@ -1,0 +1,252 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Thousands of axes at once: arrays of parameters in, arrays of cycle figures out.
+
+    figures = run_batch(axis, 10.0, drive_velocity=np.geomspace(1e-4, 1e-2, 10_000))
+    figures.period[figures.cycles > 1]
+
+Every axis runs by itself from event to event, the same to the last bit as in a `Simulator`, whatever the number of
+threads.
+"""
+
+import os
+from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..axis import Axis, InitialState, check_start, pack
+from ..axis.layout import (
+    ACCOUNTING,
+    COMPLIANT,
+    CONTACT_DAMPING,
+    CONTACT_STIFFNESS,
+    DAMPING,
+    EVENT_SIZE,
+    MASS,
+    NORMAL,
+    STATE_SIZE,
+    STATIC_EXPONENT,
+    STATIC_INITIAL,
+    STATIC_LIMIT,
+    STATIC_TAU,
+    STIFFNESS,
+    TABLE,
+)
+from ..core.errors import InputError
+from ..scene import PARAMETERS
+from ..solvers import exact
+from ..solvers.exact import many_axes
+
+Numbers = NDArray[np.float64]
+
+_ROWS = 64          # of the event table
+_AT_A_TIME = 250    # axes that a thread takes
+
+
+class _Column(NamedTuple):
+    """A number that may differ from axis to axis: the parameter of a scene that it is, and where it stands."""
+
+    parameter: str
+    at: int
+
+
+COLUMNS: Mapping[str, _Column] = {
+    'mass': _Column('axis.mass', MASS),
+    'drive_stiffness': _Column('axis.drive_stiffness', STIFFNESS),
+    'drive_damping': _Column('axis.drive_damping', DAMPING),
+    'normal_force': _Column('axis.normal_force', NORMAL),
+    'contact_stiffness': _Column('contact.stiffness', CONTACT_STIFFNESS),
+    'contact_damping': _Column('contact.damping', CONTACT_DAMPING),
+    'static_initial': _Column('friction.static.initial', STATIC_INITIAL),
+    'static_limit': _Column('friction.static.limit', STATIC_LIMIT),
+    'static_time_constant': _Column('friction.static.time_constant', STATIC_TAU),
+    'static_exponent': _Column('friction.static.exponent', STATIC_EXPONENT),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class BatchFigures:
+    """Arrays with one entry an axis; units and meaning are those of `analysis.Cycle` and `analysis.Summary`.
+
+    Those from `direction` to `static_coefficient` are of the last complete cycle, NaN without one.
+    """
+
+    events: Numbers
+    cycles: Numbers              # complete ones
+    complete: NDArray[np.bool_]  # False: the solver gave up, or the run contradicts itself: no figures
+    final_mode: Numbers          # `types.Mode`
+    first_break_away: Numbers    # s
+    stick_share: Numbers
+    settled: NDArray[np.bool_]   # the last two periods differ by less than `analysis.SETTLED`
+    direction: Numbers
+    rest_time: Numbers           # s
+    slip_time: Numbers           # s
+    stick_time: Numbers          # s
+    period: Numbers              # s
+    slip_travel: Numbers         # m
+    jump: Numbers                # m
+    peak_speed: Numbers          # m/s
+    break_away_force: Numbers    # N
+    static_coefficient: Numbers
+    last_break_away: Numbers     # s, of the slip that goes on or was the last
+    settling_time: Numbers       # s, the break-away from which on the periods settle, see `settled`
+
+
+@dataclass(frozen=True, slots=True)
+class Rounds:
+    """Arrays with one entry an axis, of its rounds: from one break-away out of stick to the next.
+
+    Without a round the figures of the last one are NaN.
+    """
+
+    sticks: Numbers          # rounds that do more than touch rest
+    last_stick: Numbers      # s, end of the last of these sticks
+    longest_pause: Numbers   # s, between the ends of two of them, in the second half of the run
+    round_count: Numbers     # of all rounds
+    round_period: Numbers    # s
+    round_stick: Numbers     # s in stick, at its end
+    round_travel: Numbers    # m, of the longest of its slips
+    round_peak: Numbers      # m/s
+    round_force: Numbers     # N, friction at the break-away
+    round_settling: Numbers  # s, the break-away from which on each round takes as long as the one before, to SETTLED
+    least_speed: Numbers     # m/s, of the latest swing of the slip that goes on
+    lasts: NDArray[np.bool_]  # that slip never comes to rest again
+    last_velocity: Numbers   # m/s, at the last event
+    window: Numbers          # the latest rounds in turn, oldest first: (axes, rounds, 4); NaN before there were so many
+
+
+def run_batch(axis: Axis, duration: float, *, drive_velocity: ArrayLike, external_force: ArrayLike = 0.0,
+              initial: InitialState | None = None, threads: int | None = None, **changes: ArrayLike) -> BatchFigures:
+    """Run an axis for `duration` s under every `drive_velocity` (m/s) and `external_force` (N), with `changes` to it.
+
+    `changes` are arrays (or numbers) by the names in `COLUMNS`; all arrays have one length n, or 1.  `threads` is the
+    number of cores to use (default: all).  Raises InputError on unknown names, lengths that do not match, and values
+    without a meaning; nothing runs then.
+    """
+    return figures_in(_rows_of(axis, duration, 0, drive_velocity, external_force, initial, threads, changes))
+
+
+def run_rounds(axis: Axis, duration: float, window: int, *, drive_velocity: ArrayLike, external_force: ArrayLike = 0.0,
+               initial: InitialState | None = None, threads: int | None = None,
+               **changes: ArrayLike) -> tuple[BatchFigures, Rounds]:
+    """Run axes as `run_batch` does; return with the figures those of the rounds, and the last `window` of them."""
+    out = _rows_of(axis, duration, window, drive_velocity, external_force, initial, threads, changes)
+    return figures_in(out), rounds_in(out)
+
+
+def rounds_in(out: Numbers) -> Rounds:
+    """Return what rows of figures, filled by `solvers.exact.many_axes`, say of the rounds."""
+    columns: dict[str, Any] = {name: out[:, getattr(many_axes, name.upper())].copy() for name in Rounds.__slots__
+                               if name != 'window'}
+    columns['lasts'] = columns['lasts'] == 1.0
+    kept = (out.shape[1] - many_axes.ROW_SIZE) // many_axes.ROUND_SIZE
+    window = out[:, many_axes.ROW_SIZE:].reshape(len(out), kept, many_axes.ROUND_SIZE)
+    turns = (columns['round_count'][:, None].astype(int) + np.arange(kept)) % max(kept, 1)
+    return Rounds(**columns, window=np.take_along_axis(window, turns[:, :, None], axis=1))
+
+
+def _rows_of(axis: Axis, duration: float, window: int, drive_velocity: ArrayLike, external_force: ArrayLike,
+             initial: InitialState | None, threads: int | None, changes: Mapping[str, ArrayLike]) -> Numbers:
+    """Return a row of figures for each axis; raises InputError."""
+    initial = initial or InitialState()
+    check_start(axis, initial)
+    if threads is not None and not 1 <= threads <= 1024:
+        raise InputError('threads', threads, '1 to 1024', 'leave it out for all cores')
+    if not 0.0 < duration < np.inf:
+        raise InputError('duration', duration, 'finite and > 0 s', 'give the seconds to simulate')
+    velocity = _in_range('drive.velocity', 'drive_velocity', drive_velocity)
+    force = _in_range('force.constant', 'external_force', external_force)
+    arrays = {name: np.atleast_1d(np.asarray(values, dtype=np.float64)) for name, values in changes.items()}
+    count = _common_length({'drive_velocity': velocity, 'external_force': force, **arrays})
+    parameters = np.tile(np.array(pack(axis)), (count, 1))
+    for name, values in arrays.items():
+        column = _column(name, axis)
+        _check_range(column.parameter, name, values)
+        parameters[:, column.at] = values
+    _check_friction(parameters)
+    inputs = np.stack([np.broadcast_to(velocity, count), np.broadcast_to(force, count)], axis=1)
+    starts = np.tile([initial.position, initial.velocity, initial.rest_time], (count, 1))
+    return _run(parameters, inputs, starts, float(duration), window, threads or os.cpu_count() or 1)
+
+
+def _run(parameters: Numbers, inputs: Numbers, starts: Numbers, duration: float, window: int,
+         threads: int) -> Numbers:
+    count = len(parameters)
+    out = np.full((count, many_axes.ROW_SIZE + many_axes.ROUND_SIZE * window), np.nan)
+
+    def work(first: int) -> None:
+        state = np.zeros(STATE_SIZE)
+        state[ACCOUNTING] = 1.0
+        exact.run_axes(parameters, inputs, starts, duration, first, min(first + _AT_A_TIME, count), state,
+                       np.empty((_ROWS, EVENT_SIZE)), np.empty(0), out)
+
+    if threads == 1 or count <= _AT_A_TIME:   # starting a thread takes longer than many a run
+        for first in range(0, count, _AT_A_TIME):
+            work(first)
+        return out
+    with ThreadPoolExecutor(threads) as pool:
+        list(pool.map(work, range(0, count, _AT_A_TIME)))
+    return out
+
+
+def figures_in(out: Numbers) -> BatchFigures:
+    """Return the figures in rows that were filled by `solvers.exact.many_axes`."""
+    columns: dict[str, Any] = {name: out[:, getattr(many_axes, name.upper())].copy() for name in BatchFigures.__slots__
+                               if name != 'settled'}
+    before = out[:, many_axes.PERIOD_BEFORE]
+    columns['settled'] = np.abs(columns['period'] - before) < many_axes.SETTLED * columns['period']
+    columns['complete'] = columns['complete'] == 1.0
+    return BatchFigures(**columns)
+
+
+def _in_range(parameter: str, name: str, values: ArrayLike) -> Numbers:
+    numbers = np.atleast_1d(np.asarray(values, dtype=np.float64))
+    _check_range(parameter, name, numbers)
+    return numbers
+
+
+def _check_range(parameter: str, name: str, values: Numbers) -> None:
+    """Raise InputError, under a name of the batch, unless all values are such as a scene may have for a parameter."""
+    known = next(known for known in PARAMETERS if known.name == parameter)
+    low, high = -np.inf if known.low is None else known.low, np.inf if known.high is None else known.high
+    good = np.isfinite(values) & ((values > low) if known.low_open else (values >= low)) & (values <= high)
+    if not good.all():
+        index = int(np.flatnonzero(~good.reshape(-1))[0])
+        raise InputError(name, float(values.reshape(-1)[index]), f'finite and {known.range} {known.unit}'.rstrip(),
+                         f'look at index {index} of the array')
+
+
+def _common_length(arrays: Mapping[str, Numbers]) -> int:
+    for name, values in arrays.items():
+        if values.ndim != 1 or len(values) == 0:
+            raise InputError(name, f'shape {values.shape}', 'a number or an array of one dimension', 'flatten it')
+    count = max(map(len, arrays.values()))
+    for name, values in arrays.items():
+        if len(values) not in (1, count):
+            raise InputError(name, f'{len(values)} values', f'1 or {count}, as many as the longest array',
+                             'arrays belong together index by index')
+    return count
+
+
+def _column(name: str, axis: Axis) -> _Column:
+    if name not in COLUMNS:
+        raise InputError(name, 'given', 'one of drive_velocity, external_force, ' + ', '.join(COLUMNS),
+                         'rename it, or leave it out')
+    if name.startswith('contact_') and not pack(axis)[COMPLIANT]:
+        raise InputError(name, 'given', 'left out with a rigid contact', 'give the axis a compliant contact')
+    return COLUMNS[name]
+
+
+def _check_friction(parameters: Numbers) -> None:
+    initial, limit = parameters[:, STATIC_INITIAL], parameters[:, STATIC_LIMIT]
+    at_rest = parameters[:, TABLE + 1]
+    for bad, name, allowed in ((at_rest > initial, 'static_initial', '>= the kinetic coefficient at rest'),
+                               (limit < initial, 'static_limit', '>= static_initial')):
+        if bad.any():
+            index = int(np.flatnonzero(bad)[0])
+            value = float((initial if name == 'static_initial' else limit)[index])
+            raise InputError(name, value, allowed, f'look at index {index} of the array')

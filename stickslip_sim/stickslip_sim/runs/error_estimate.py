@@ -1,0 +1,221 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""How far a run may be off: an estimate, with how it was obtained.
+
+The exact solver makes rounding errors only.  It runs again with every number of the scene off by one rounding unit,
+which also gives every operation of the run another rounding; how far the events move apart is what rounding does to
+this very run.  What the sums of time and position lose in every run alike is added, and so is what rounding of the
+speed does to a slip that ends with hardly any deceleration: its time is a double root, which symmetric data keep.
+
+Other solvers are compared with the exact one on the same scene, and its own estimate is added.  A repeat with half the
+step or a tenth of the tolerances tells nothing: an event is noticed up to a step late, so that two runs may be late
+alike; and where the calls bound the steps, both tolerances take the same ones.
+"""
+
+import dataclasses
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from ..core.errors import InputError, SolverError
+from ..core.types import Event, EventKind
+from ..friction import KineticTable, kinetic_table
+from ..scene import Scene, SolverSettings
+from .offline import Trajectory, run_offline
+from .perturbation import perturbed
+
+REPEATS = 3
+_SAFETY = 4.0   # of the largest shift among so few repeats
+_OF_SPEEDS = 2.0 ** -50   # what rounding leaves of a speed, as a part of the fastest of its slip
+_HALF_ULP = 2.0 ** -54   # of a number below 1: the most that storing it can lose
+_MOMENT = 1e-6   # s; a coast this short after a break-away hangs on the last remains of a contact's ring-down
+_KNOTS = 800   # of the table that stands for a smooth law; many, and below the most that there can be
+_COARSER = 10.0   # the error of another such table, which is compared with it
+_OF_A_CYCLE = (EventKind.BREAKAWAY, EventKind.STICK, EventKind.REVERSE)
+
+
+class ErrorEstimate(NamedTuple):
+    """How far the events of a run may be off, up to the time `until_s`; behind it nothing is known.
+
+    Two runs whose events differ in kind or direction have nothing to compare from there on: a chaotic run, one that
+    grazes a limit to within rounding, or a solver that missed or invented an event.
+    """
+
+    event_time_s: float
+    position_m: float   # of an event
+    until_s: float
+    how: str
+
+
+class _Shift(NamedTuple):
+    time: float
+    position: float
+    until: float
+
+
+def error_estimate(run: Trajectory) -> ErrorEstimate:
+    """Return the estimate for a run; it costs three more runs, or four to six of the exact solver."""
+    return _of_rounding(run) if run.scene.solver.name == 'exact' else _of_steps(run)
+
+
+def _of_rounding(run: Trajectory) -> ErrorEstimate:
+    """Return the estimate for a run of the exact solver, from repeats with every number moved."""
+    others = _perturbed_scenes(run.scene)
+    shifts = [_repeat(run, other) for other in others]
+    until = min((shift.until for shift in shifts), default=0.0)
+    # times and positions are sums over the events; equal steps round alike, so that a repeat does not show what is lost
+    lost = _HALF_ULP * (1 + len(run.events))
+    size = 2.0 * max((abs(event.position) for event in run.events), default=0.0)
+    estimate = ErrorEstimate(
+        lost * min(run.duration, 1.0) + _of_soft_stops(run) + _SAFETY * max(
+            (shift.time for shift in shifts), default=0.0),
+        lost * size + _SAFETY * max((shift.position for shift in shifts), default=0.0), until,
+        f'{_SAFETY:g} times the largest shift of an event in {len(others)} repeats with every number of the scene '
+        'moved by 2^-52 of itself')
+    if until >= run.duration:
+        return estimate
+    return estimate._replace(how=f'{estimate.how}; the events differ from t = {until:.6g} s: unknown from there')
+
+
+def _of_soft_stops(run: Trajectory) -> float:
+    """Return how far rounding of the speed may move the softest arrest, s: δ/|ẍ|, or √(2δ/|x⃛|) without deceleration."""
+    axis, drive, force = run.scene.axis, run.scene.drive, run.scene.force
+    worst = fastest = 0.0
+    for event in run.events:
+        fastest = max(fastest, abs(event.velocity))
+        if event.kind == EventKind.BREAKAWAY:
+            fastest = abs(event.velocity)
+        elif event.kind == EventKind.STICK and fastest > 0.0:
+            left = abs(event.drive_force + force.value_at(event.time) - event.friction_force)
+            jerk = axis.drive_stiffness * abs(drive.value_at(event.time))
+            off = _OF_SPEEDS * fastest * axis.mass
+            moved = min(off / left if left > 0.0 else math.inf, math.sqrt(2.0 * off / jerk) if jerk > 0.0 else math.inf)
+            worst = max(worst, min(moved, run.duration))
+    return worst
+
+
+def _perturbed_scenes(scene: Scene) -> list[Scene]:
+    scenes = []
+    for repeat in range(REPEATS):
+        try:
+            scenes.append(perturbed(scene, f'{scene.seed}/{repeat}'))
+        except InputError:   # knots so close that they change places
+            continue
+    return scenes
+
+
+def _repeat(run: Trajectory, scene: Scene) -> _Shift:
+    try:
+        return _compare(run.events, run_offline(scene, run.duration).events, run.duration)
+    except (InputError, SolverError):
+        return _Shift(0.0, 0.0, 0.0)
+
+
+def _of_steps(run: Trajectory) -> ErrorEstimate:
+    """Return the estimate for a run of another solver: its distance to the exact one, and how far that may be off."""
+    scene = dataclasses.replace(run.scene, solver=SolverSettings('exact'))
+    law = _integrates_the_law(run.scene)
+    try:
+        judge = run_offline(_with_table(scene, 1.0) if law else scene, run.duration)
+        own = _of_rounding(judge)
+        if law:
+            own = _plus(own, _shift(run_offline(_with_table(scene, _COARSER), run.duration), judge, own.until_s),
+                        'what a table of mu_k ten times as coarse moves them by')
+    except SolverError as reason:
+        return ErrorEstimate(0.0, 0.0, 0.0, f'the exact solver gives up: unknown ({reason})')
+    shift = _shift(run, judge, own.until_s)
+    estimate = _plus(own, shift, 'the largest difference of an event from one of the exact solver on the same scene '
+                                 f'(coasts of less than {_MOMENT:g} s after a break-away left out)')
+    if shift.until >= own.until_s:
+        return estimate
+    return estimate._replace(how=f'{estimate.how}; from t = {shift.until:.6g} s the events are others than those of '
+                                 'the exact solver: one is missed, invented, or falls behind the end of the run')
+
+
+def _integrates_the_law(scene: Scene) -> bool:
+    """Whether a run takes the smooth law of mu_k itself, where all others take its table."""
+    return scene.solver.name == 'adaptive' and scene.axis.friction.kinetic.law is not None
+
+
+def _with_table(scene: Scene, coarser: float) -> Scene:
+    """Return the scene with another table for its smooth law: one as fine as can be had, or `coarser` than that."""
+    friction = scene.axis.friction
+    kinetic = dataclasses.replace(friction, kinetic=_table(friction.kinetic, coarser))
+    return dataclasses.replace(scene, axis=dataclasses.replace(scene.axis, friction=kinetic))
+
+
+def _table(table: KineticTable, coarser: float) -> KineticTable:
+    if table.law is None or table.error == 0.0:
+        return table
+    share = min((len(table.velocities) / _KNOTS) ** 2, 1.0)   # knots go with 1/sqrt(tolerance)
+    try:
+        return kinetic_table(table.law, coarser * share * table.error)
+    except InputError:   # rounding alone is more
+        return kinetic_table(table.law, coarser * table.error)
+
+
+def _shift(run: Trajectory, judge: Trajectory, until: float) -> _Shift:
+    """Return how far the events of two runs are apart before a time; knots count where both solvers note them."""
+    knots = run.scene.solver.name != 'fixed_step' and run.scene.axis.friction.kinetic.law is None
+
+    def compared(events: Sequence[Event]) -> list[Event]:
+        return [event for event in _lasting(events) if event.time <= until and (knots or event.kind != EventKind.KNOT)]
+
+    return _compare(compared(run.events), compared(judge.events), until)
+
+
+def _lasting(events: Sequence[Event]) -> list[Event]:
+    """Return the events without those that tell the end of a coast of a moment, which rounding may decide."""
+    kept: list[Event] = []
+    away = -math.inf
+    for event in events:
+        if event.kind == EventKind.BREAKAWAY:
+            away = event.time
+        elif event.time - away <= _MOMENT:
+            continue
+        kept.append(event)
+    return kept
+
+
+def _plus(own: ErrorEstimate, shift: _Shift, what: str) -> ErrorEstimate:
+    return ErrorEstimate(own.event_time_s + shift.time, own.position_m + shift.position, shift.until,
+                         f'{what}, plus {own.how}')
+
+
+def _compare(events: Sequence[Event], others: Sequence[Event], duration: float) -> _Shift:
+    """Return how far two runs are apart up to the last time at which both have had the same events."""
+    count = _same(events, others)
+    rest = [event.time for run in (events, others) for event in run[count:count + 1]]
+    until = min(rest, default=duration)
+    while count and max(events[count - 1].time, others[count - 1].time) > until:   # one run has it, the other not yet
+        count -= 1
+        until = min(events[count].time, others[count].time)
+    pairs = list(zip(events[:count], others))
+    return _Shift(max((_apart(a, b) for a, b in pairs), default=0.0),
+                  max((abs(a.position - b.position) for a, b in pairs), default=0.0), until)
+
+
+def _same(events: Sequence[Event], others: Sequence[Event]) -> int:
+    """Return how many events, in their order, are the same ones in two runs."""
+    for i, (a, b, after_a, after_b) in enumerate(zip(events, others, _next_of_a_kind(events), _next_of_a_kind(others))):
+        # a cycle that one run alone has leaves the kinds as they are; what follows is nearer to the event after
+        if ((a.kind, a.direction) != (b.kind, b.direction)
+                or min(abs(after_a - b.time), abs(after_b - a.time)) < _apart(a, b)):
+            return i
+    return min(len(events), len(others))
+
+
+def _apart(event: Event, other: Event) -> float:
+    return abs((event.second - other.second) + (event.fraction - other.fraction))
+
+
+def _next_of_a_kind(events: Sequence[Event]) -> list[float]:
+    """Return for each break-away, stop or reversal when the next of its kind and direction comes; else infinity."""
+    times: list[float] = []
+    coming: dict[tuple[EventKind, int], float] = {}
+    for event in reversed(events):
+        name = event.kind, event.direction
+        times.append(coming.get(name, math.inf))
+        if event.kind in _OF_A_CYCLE:
+            coming[name] = event.time
+    return times[::-1]

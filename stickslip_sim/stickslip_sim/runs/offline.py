@@ -1,0 +1,154 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Run a scene as fast as the machine can, and keep what happened: events, samples, receipt."""
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.errors import InputError
+from ..core.time_grid import decimal
+from ..core.types import Event, Instant, Mode, Sample
+from ..rig import Rig
+from ..scene import Scene
+from ..simulation.cycles import Summary, summary
+from .receipt import CostMeter, receipt_of
+
+Columns = dict[str, NDArray[np.float64]]
+
+MAX_DURATION = 1e9         # s
+MAX_SAMPLES = 10_000_000   # 1.2 GB
+MAX_EVENTS = 5_000_000     # about as much
+_PARTS = 200               # of a run: progress is told, and Ctrl-C heard, this often
+
+
+@dataclass(frozen=True, slots=True)
+class Trajectory:
+    """A run: events in the order of time, `samples` by column (fields of `types.Sample`, and `time`), receipt."""
+
+    scene: Scene
+    duration: float
+    sample_period: Fraction | None   # s
+    events: list[Event]
+    samples: Columns
+    summary: Summary
+    receipt: dict[str, Any]
+
+    def sample_rows(self) -> Iterator[Sample]:
+        """Yield the samples one by one."""
+        for second, fraction, mode, direction, *rest in zip(*(self.samples[name] for name in Sample._fields)):
+            yield Sample(float(second), float(fraction), Mode(int(mode)), int(direction), *map(float, rest))
+
+
+def run_offline(scene: Scene, duration: float, sample_period: float | Fraction | None = None,
+                progress: Callable[[float], None] | None = None) -> Trajectory:
+    """Simulate `duration` seconds of a scene, with a sample every `sample_period` seconds from 0 on if given.
+
+    `progress` is called with the share that is done.  Raises InputError on times without a meaning and on a run too
+    long to hold, SolverError when the solver gives up.
+    """
+    check_times(duration, sample_period)
+    rig = _loaded_rig(scene)
+    simulator = rig.simulator
+    start = simulator.sample().mode
+    cost = CostMeter()
+    events, rows = _run(rig, duration, sample_period, _PARTS, progress)
+    spent = cost.so_far()
+    simulator.judge()
+    figures = summary(events, duration, start)
+    receipt = receipt_of(scene, duration, float(sample_period) if sample_period else None, figures,
+                         simulator.root_iterations, simulator.sample(), simulator.energy, *spent)
+    period = _decimal(sample_period) if sample_period else None
+    return Trajectory(scene, duration, period, events, _columns(rows, period or Fraction(0)), figures, receipt)
+
+
+def _run(rig: Rig, duration: float, sample_period: float | Fraction | None, parts: int,
+         progress: Callable[[float], None] | None) -> tuple[list[Event], NDArray[np.float64]]:
+    """Return the events, and a row for each sample."""
+    events: list[Event] = []
+    rows = np.empty((_sample_count(duration, sample_period), len(Sample._fields)))
+    done = 0
+    for part in range(1, parts + 1):
+        end = _decimal(duration) * part / parts
+        taken = int(end / _decimal(sample_period)) + 1 if sample_period else 0
+        for k, instant in zip(range(done, taken), _sample_instants(sample_period, done)):
+            events += rig.advance(instant)
+            rows[k] = rig.simulator.sample()
+        events += rig.advance(_instant(end))
+        done = taken
+        _check_count(events, duration)
+        if progress:
+            progress(part / parts)
+    return events, rows
+
+
+def check_times(duration: float, sample_period: float | Fraction | None) -> None:
+    """Raise InputError unless a run of `duration` s with a sample every `sample_period` s can be held."""
+    if not 0.0 < duration <= MAX_DURATION:
+        raise InputError('duration', duration, f'> 0 and <= {MAX_DURATION:.0e} s', 'give the seconds to simulate')
+    if sample_period is None:
+        return
+    if not 0.0 < sample_period < math.inf:
+        raise InputError('sample period', float(sample_period), 'finite and > 0 s',
+                         'give the seconds between two samples')
+    count = _sample_count(duration, sample_period)
+    if count > MAX_SAMPLES:
+        raise InputError('sample period', float(sample_period), f'long enough for at most {MAX_SAMPLES} rows',
+                         f'this would be {count} rows: sample less often or simulate a shorter time')
+
+
+def warm_up(scene: Scene) -> None:
+    """Call every function of the hot path once, so that it is compiled into the cache, or loaded from there."""
+    _loaded_rig(scene).simulator.change_axis(scene.axis)
+
+
+def _loaded_rig(scene: Scene) -> Rig:
+    """Return a rig at time 0 whose code was loaded, so that this does not count as the cost of a run."""
+    rig = scene.make_rig()
+    simulator = rig.simulator
+    simulator.advance(Instant(0.0, 0.0))
+    simulator.command_drive(simulator.sample().drive_velocity)
+    _ = simulator.energy
+    rig.reset()
+    return rig
+
+
+def _sample_count(duration: float, sample_period: float | Fraction | None) -> int:
+    return int(_decimal(duration) / _decimal(sample_period)) + 1 if sample_period else 0
+
+
+def _decimal(number: float | Fraction) -> Fraction:
+    """Return a time as it was written, so that 10 s hold 10000 periods of 0.001 s exactly."""
+    return number if isinstance(number, Fraction) else decimal(float(number))
+
+
+def _instant(time: Fraction) -> Instant:
+    second, rest = divmod(time.numerator, time.denominator)
+    return Instant(float(second), rest / time.denominator)
+
+
+def _sample_instants(sample_period: float | Fraction | None, first: int) -> Iterator[Instant]:
+    """Yield k · period for k from `first` on, each rounded once."""
+    period = _decimal(sample_period or 0)
+    count, size = period.numerator, period.denominator
+    position = first * count
+    while True:
+        second, rest = divmod(position, size)
+        yield Instant(float(second), rest / size)
+        position += count
+
+
+def _check_count(events: list[Event], duration: float) -> None:
+    if len(events) > MAX_EVENTS:
+        raise InputError('duration', duration, f'short enough for at most {MAX_EVENTS} events',
+                         f'they were reached at t = {events[-1].time:.6g} s: simulate a shorter time')
+
+
+def _columns(rows: NDArray[np.float64], period: Fraction) -> Columns:
+    times = [k * period.numerator / period.denominator for k in range(len(rows))]
+    return {'time': np.array(times, dtype=np.float64), **{name: rows[:, i] for i, name in enumerate(Sample._fields)}}

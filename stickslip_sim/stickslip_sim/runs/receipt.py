@@ -1,0 +1,80 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The receipt of an offline run: what ran, with which versions, what came out, what it cost.  JSON values only."""
+
+import math
+import platform
+import time
+from collections.abc import Mapping
+from enum import Enum
+from typing import Any
+
+import numpy
+
+from .. import __version__
+from ..core.energy import EnergyBalance
+from ..core.jit import hot_path
+from ..core.types import Mode, Sample
+from ..scene import Scene
+from ..simulation.cycles import Summary
+
+
+class CostMeter:
+    """What a run costs, from `begin` on; it begins at once."""
+
+    def __init__(self) -> None:
+        self.begin()
+
+    def begin(self) -> None:
+        """Begin to count anew."""
+        self._cpu, self._wall = time.process_time(), time.perf_counter()
+
+    def so_far(self) -> tuple[float, float]:
+        """Return the CPU and the wall time, s."""
+        return time.process_time() - self._cpu, time.perf_counter() - self._wall
+
+
+def receipt_of(scene: Scene, duration: float, sample_period: float | None, figures: Summary, root_iterations: int,
+               final: Sample, energy: EnergyBalance | None, cpu_time: float, wall_time: float) -> dict[str, Any]:
+    """Return the receipt of a run of `duration` s that took `cpu_time` and `wall_time` s.
+
+    `results` and `energy` (J; None when the solver keeps no account) are the same on every machine; `versions` and
+    `cost` are not.  An infinite number is the text 'inf'.
+    """
+    receipt = {
+        'scene': scene.name,
+        'scene_hash': scene.hash,
+        'solver': scene.solver.name,
+        'solver_settings': scene.solver.settings,
+        'duration': duration,
+        'sample_period': sample_period,
+        'versions': versions(),
+        'results': {**figures._asdict(), 'root_iterations': root_iterations, 'final_state': final},
+        'energy': energy and {**energy._asdict(), 'residual': energy.residual,
+                              'relative_residual': energy.relative_residual},
+        'cost': {'cpu_time_s': cpu_time, 'cpu_time_per_simulated_second': cpu_time / duration,
+                 'wall_time_s': wall_time},
+    }
+    result: dict[str, Any] = plain(receipt)
+    return result
+
+
+def versions() -> dict[str, str]:
+    """Return the versions of everything that the numbers depend on."""
+    return {'stickslip': __version__, 'python': platform.python_version(), 'numpy': numpy.__version__,
+            'hot_path': hot_path()}
+
+
+def plain(value: Any) -> Any:
+    """Turn named tuples into mappings, words and infinities into text."""
+    if isinstance(value, Enum):
+        return value.name if isinstance(value, Mode) else value.name.lower()
+    if isinstance(value, tuple) and hasattr(value, '_asdict'):
+        value = value._asdict()
+    if isinstance(value, Mapping):
+        return {plain(key): plain(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [plain(item) for item in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return str(value)
+    return value

@@ -1,0 +1,244 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""One axis through time: advance, sample, command.  Deterministic; knows no clock, no file and no ROS."""
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+from ..axis import Axis, InitialState, check_start, pack
+from ..axis.layout import (
+    ACCOUNTING,
+    ENERGY_SIZE,
+    EVENT_SIZE,
+    FRACTION,
+    ITERATIONS,
+    MODE,
+    SAMPLE_SIZE,
+    SECOND,
+    STATE_SIZE,
+    WAVE_SIZE,
+)
+from ..core.energy import EnergyBalance
+from ..core.errors import InputError, SolverError, UnsoundError
+from ..core.input_profile import Course
+from ..core.jit import IS_COMPILED
+from ..core.types import Event, EventKind, Instant, Mode, Sample
+from ..solvers import DONE, FULL, OUT_OF_RANGE, UNSOUND, Solver, exact
+from .checkpoint import event_of, state_of
+from .inputs import Inputs
+
+SolverOf = Callable[[Axis], Solver]
+
+_KINDS, _MODES = tuple(EventKind), tuple(Mode)
+_ROWS = 64                       # of the event table; it is emptied as often as it fills
+MAX_EVENTS_PER_ADVANCE = 100_000
+
+
+class Simulator:
+    """The state of one axis, brought from time to time.
+
+    `drive` (m/s) and `force` (N) are courses over simulation time; a command replaces a course by a constant from the
+    present time on.  Events come back from the call in which they fall, in the order of time.  `solver` is one for any
+    axis, or makes the one for an axis, as those must that take its smooth law.  With `accounting` the solver keeps the
+    account of energy, if it can; the motion is the same to the last bit.
+    """
+
+    def __init__(self, axis: Axis, initial: InitialState, drive: Course, force: Course,
+                 solver: Solver | SolverOf = exact.SOLVER, accounting: bool = False) -> None:
+        check_start(axis, initial)
+        self._inputs = Inputs(drive, force)
+        self._solver_of: SolverOf = (lambda _: solver) if isinstance(solver, Solver) else solver
+        self._initial = initial
+        self._take_axis(axis)
+        self._state = _numbers([0.0] * (STATE_SIZE + WAVE_SIZE * self._inputs.most_waves))
+        self._state[ACCOUNTING] = float(accounting and self._solver.energy is not None)
+        self._row = _numbers([0.0] * SAMPLE_SIZE)
+        self._energies = _numbers([0.0] * ENERGY_SIZE)
+        self._table = _table(_ROWS, EVENT_SIZE)
+        self.reset()
+
+    def reset(self) -> list[Event]:
+        """Begin anew at time 0 with the initial state and the original courses; return the events at time 0."""
+        self._inputs.reset()
+        self._waves = _numbers(self._inputs.waves())
+        self._time = Instant(0.0, 0.0)
+        v, f = self._inputs.enter(0.0)
+        start = self._initial
+        rows = self._solver.start(self._parameters, self._state, start.position, start.velocity, start.rest_time,
+                                  v.value, v.rate, f.value, f.rate, self._waves, self._table, 0)
+        self._waiting = list(self._rows(rows))
+        self._counts = dict.fromkeys(EventKind, 0)
+        return self._waiting
+
+    @property
+    def time(self) -> Instant:
+        """The time that the state was advanced to."""
+        return self._time
+
+    @property
+    def axis(self) -> Axis:
+        """The axis as it is now."""
+        return self._axis
+
+    @property
+    def root_iterations(self) -> int:
+        """Iterations of all searches for event times so far."""
+        return int(self._state[ITERATIONS])
+
+    @property
+    def event_counts(self) -> dict[EventKind, int]:
+        """Events so far, by kind."""
+        return dict(self._counts)
+
+    @property
+    def energy(self) -> EnergyBalance | None:
+        """The energies from the start up to the present time; None without an account."""
+        if self._solver.energy is None or not self._state[ACCOUNTING]:
+            return None
+        self._solver.energy(self._parameters, self._state, *self._time, self._energies)
+        return EnergyBalance(*map(float, self._energies))
+
+    def judge(self) -> None:
+        """Raise UnsoundError when the state contradicts its own mode or balance of energy; needs an account.
+
+        Each event is judged as the run goes on; this is for its end, or any time that its figures are looked at.
+        """
+        if self._solver.is_sound is not None and self._state[ACCOUNTING] and not self._solver.is_sound(
+                self._parameters, self._state, *self._time):
+            raise self._unsound()
+
+    def _unsound(self) -> UnsoundError:
+        mode = _MODES[int(self._state[MODE])].name
+        return UnsoundError(f'the run contradicts its own motion or balance of energy at t = {self._time.seconds!r} s, '
+                            f'in mode {mode}: none of its figures can be trusted; the solver is at fault, not the '
+                            'scene: please report both')
+
+    def advance(self, to: Instant) -> list[Event]:
+        """Bring the state to a time that is not before the present one; return the events up to then.
+
+        Raises InputError when it is before or no time, SolverError when the events do not let time go on; the state is
+        then that of the last event.
+        """
+        if not (self._time <= to and math.isfinite(to.second) and 0.0 <= to.fraction < 1.0):
+            raise InputError('time', tuple(to), f'finite and not before {self._time.seconds!r} s',
+                             'time does not go back: reset to begin anew')
+        self._obey()
+        events, self._waiting = self._waiting, []
+        while (until := self._inputs.until) <= to.seconds:
+            self._advance(Instant(math.floor(until), until - math.floor(until)), events)
+            self._enter_pieces(events)
+        self._advance(to, events)
+        for event in events:
+            self._counts[event.kind] += 1
+        return events
+
+    def command_drive(self, velocity: float | Course) -> None:
+        """Let the drive move at a constant velocity (m/s), or after a course over simulation time, from now on.
+
+        Events that this causes come with `advance`.  Raises InputError; a course must have no more waves than that of
+        the start.
+        """
+        self._inputs.command_drive(velocity)
+
+    def command_force(self, force: float | Course) -> None:
+        """Let a constant external force (N), or a course over simulation time, act from now on, as `command_drive`."""
+        self._inputs.command_force(force)
+
+    def change_axis(self, axis: Axis) -> None:
+        """Go on with other parameters from now on; position, velocity and the spring stay continuous."""
+        self._obey()
+        old = self._parameters
+        self._take_axis(axis)
+        rows = self._solver.set_parameters(old, self._parameters, self._state, *self._time, self._table, 0)
+        self._waiting.extend(self._rows(rows))
+
+    def sample(self) -> Sample:
+        """Return the state at the present time; raises SolverError when it is not finite."""
+        self._obey()
+        row = self._row
+        self._solver.sample(self._parameters, self._state, *self._time, row)
+        second, fraction, mode, direction, *rest = row.tolist() if IS_COMPILED else row
+        if not all(map(math.isfinite, rest[:8])):
+            raise SolverError(f'the state leaves the range of numbers at t = {second + fraction!r} s; '
+                              f'{self._solver.advice}')
+        return Sample(second, fraction, _MODES[int(mode)], int(direction), *rest)
+
+    def checkpoint(self) -> dict[str, Any]:
+        """Return the state as plain data, from which a simulator of the same scene goes on to the last bit."""
+        self._obey()
+        return {'time': list(self._time), 'until': self._inputs.until,
+                'state': [float(number) for number in self._state],
+                'waiting': [[*map(float, event)] for event in self._waiting]}
+
+    def restore(self, saved: Mapping[str, Any], axis: Axis, drive: Course, force: Course) -> None:
+        """Go on from a checkpoint that was taken with this axis and these courses in force.
+
+        Raises InputError on impossible courses; KeyError, TypeError or ValueError when it is no checkpoint.
+        """
+        self._inputs.command_drive(drive)
+        self._inputs.command_force(force)
+        self._take_axis(axis)
+        state = state_of(saved['state'], len(self._state), self._parameters)
+        second, fraction = map(float, saved['time'])
+        until, self._waiting = float(saved['until']), [event_of(event) for event in saved['waiting']]
+        self._state = _numbers(state)
+        self._inputs.go_on(until)
+        self._waves = _numbers(self._inputs.waves())
+        self._time = Instant(second, fraction)
+
+    def _take_axis(self, axis: Axis) -> None:
+        self._axis, self._parameters, self._solver = axis, _numbers(pack(axis)), self._solver_of(axis)
+
+    def _obey(self) -> None:
+        """Let the commands of this instant take effect, all at once: their order does not matter."""
+        if self._inputs.are_commanded:
+            self._waves = _numbers(self._inputs.waves())
+            self._enter_pieces(self._waiting)
+
+    def _advance(self, to: Instant, events: list[Event]) -> None:
+        taken = 0
+        while True:
+            rows, end = self._solver.advance(self._parameters, self._state, *to, self._table, 0)
+            events.extend(self._rows(rows))
+            taken += rows
+            if end == DONE:
+                self._time = to
+                return
+            self._time = max(self._time, Instant(float(self._state[SECOND]), float(self._state[FRACTION])))
+            if end == OUT_OF_RANGE:
+                raise SolverError(f'the state leaves the range of numbers after t = {self._time.seconds!r} s; '
+                                  f'{self._solver.advice}')
+            if end == UNSOUND:
+                raise self._unsound()
+            if end != FULL or taken > MAX_EVENTS_PER_ADVANCE:
+                raise SolverError(f'{taken} events up to t = {self._time.seconds!r} s and time hardly goes on; '
+                                  'friction or inputs are too extreme for this axis: check the scene')
+
+    def _enter_pieces(self, events: list[Event]) -> None:
+        time = self._time.seconds
+        v, f = self._inputs.enter(time)
+        rows = self._solver.set_inputs(self._parameters, self._state, *self._time,
+                                       v.value + v.rate * (time - v.start), v.rate,
+                                       f.value + f.rate * (time - f.start), f.rate, self._waves, self._table, 0)
+        events.extend(self._rows(rows))
+
+    def _rows(self, count: int) -> Iterator[Event]:
+        for i in range(count):
+            row = self._table[i]
+            second, fraction, kind, mode, direction, *rest = row.tolist() if IS_COMPILED else row
+            yield Event(second, fraction, _KINDS[int(kind)], _MODES[int(mode)], int(direction), *rest)
+
+
+def _numbers(values: Any) -> Any:
+    if not IS_COMPILED:
+        return list(values)
+    import numpy as np
+    return np.array(values, dtype=np.float64)
+
+
+def _table(rows: int, columns: int) -> Any:
+    if not IS_COMPILED:
+        return [[0.0] * columns for _ in range(rows)]
+    import numpy as np
+    return np.zeros((rows, columns))

@@ -1,0 +1,186 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""What becomes of each point of a study, in numbers: the motion it ends in and the last round of that.
+
+A round of stick-slip goes from one break-away out of stick to the next; a slip that reverses at once is part of it.
+
+| figure | unit | meaning |
+|---|---|---|
+| motion | | what the point ends in: one of `MOTIONS` |
+| stick_slip | | 1 or 0 |
+| amplitude | m | travel of one slip, from break-away to standstill, the longest of a round; 0 without stick-slip |
+| period | s | from break-away to break-away, both out of stick |
+| stick_share | | of the last period; 0 for smooth sliding, 1 at rest |
+| peak_speed | m/s | of a slip |
+| break_away_force | N | friction at the break-away |
+| settling_time | s | time to the limit cycle: the break-away from which on each period is the one before, to 1e-6; of \
+smooth sliding the last break-away |
+| cycles | | complete ones |
+| settled | | 1: the motion is as it stays, 0: it still changed when its time was over |
+| duration | s | simulated |
+
+Without stick-slip, period, speed and force are NaN; with rounds that repeat in groups, the settling time is.  Of an
+undecided point cycles, settled and duration alone are numbers, of a failed one nothing.
+"""
+
+from dataclasses import dataclass, fields
+from enum import IntEnum
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.types import Mode
+from ..solvers.exact.many_axes import LEAST_STICK
+
+__all__ = ['FIGURES', 'LEAST_STICK', 'MOTIONS', 'RUN_FIELDS', 'Figures', 'Flags', 'Motion', 'Numbers', 'Runs',
+           'figures_of', 'no_runs']
+
+Numbers = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+class Motion(IntEnum):
+    """What a point ends in."""
+
+    AT_REST = 0
+    SMOOTH_SLIDING = 1
+    STICK_SLIP = 2
+    FAILED = 3
+    UNDECIDED = 4
+
+
+MOTIONS = {Motion.AT_REST: 'at rest', Motion.SMOOTH_SLIDING: 'smooth sliding', Motion.STICK_SLIP: 'stick-slip',
+           Motion.FAILED: 'failed', Motion.UNDECIDED: 'undecided'}
+
+
+@dataclass(frozen=True)
+class Runs:
+    """What is known of the run of each point, one entry each; named as in `batch.BatchFigures` and `batch.Rounds`.
+
+    `settled`: the motion is as it stays.  `undecided`: it cannot be told whether it goes on to stick and slip.  `late`:
+    it slides after sticks that went on for long, as by chance.
+    """
+
+    duration: Numbers
+    complete: Flags
+    events: Numbers
+    cycles: Numbers
+    final_mode: Numbers
+    last_break_away: Numbers
+    settled: Flags
+    stick_share: Numbers
+    sticks: Numbers
+    last_stick: Numbers
+    longest_pause: Numbers
+    round_count: Numbers
+    round_period: Numbers
+    round_stick: Numbers
+    round_travel: Numbers
+    round_peak: Numbers
+    round_force: Numbers
+    round_settling: Numbers
+    least_speed: Numbers
+    lasts: Flags
+    last_velocity: Numbers
+    undecided: Flags
+    late: Flags
+
+    @property
+    def slides_on(self) -> Flags:
+        """Whether the last slip goes on and took more than half of the run."""
+        slides: Flags = (self.final_mode != Mode.STICK) & self._is_calm
+        return slides
+
+    @property
+    def rests_on(self) -> Flags:
+        """Whether the slider stands still at the end, and no slip began in the second half of the run."""
+        rests: Flags = (self.final_mode == Mode.STICK) & self._is_calm
+        return rests
+
+    @property
+    def _is_calm(self) -> Flags:
+        return self.duration - np.nan_to_num(self.last_break_away) >= 0.5 * self.duration
+
+    @property
+    def sticks_on(self) -> Flags:
+        """Whether a round came to its end in which the slider stood still, in the second half of the run.
+
+        Neither does one count that only touches rest, nor one that is followed by such.
+        """
+        late = (self.last_stick >= 0.5 * self.duration) | (self.final_mode == Mode.STICK)
+        stood: Flags = (self.round_stick > LEAST_STICK * self.round_period) & late
+        return stood
+
+    def put(self, at: Any, others: 'Runs') -> None:
+        """Take other runs for the points `at`."""
+        for name in RUN_FIELDS:
+            getattr(self, name)[at] = getattr(others, name)
+
+
+RUN_FIELDS = tuple(field.name for field in fields(Runs))
+
+
+def no_runs(count: int) -> Runs:
+    """Return a place for so many runs."""
+    return Runs(**{field.name: np.zeros(count, bool if field.type == Flags else float) for field in fields(Runs)})
+
+
+@dataclass(frozen=True)
+class Figures:
+    """The figures of the module's table, arrays of one entry for each point; `motion` holds numbers of `Motion`."""
+
+    motion: Numbers
+    stick_slip: Numbers
+    amplitude: Numbers
+    period: Numbers
+    stick_share: Numbers
+    peak_speed: Numbers
+    break_away_force: Numbers
+    settling_time: Numbers
+    cycles: Numbers
+    settled: Numbers
+    duration: Numbers
+
+
+FIGURES = tuple(field.name for field in fields(Figures))
+
+
+_OF_A_ROUND = {'amplitude': 'round_travel', 'period': 'round_period', 'peak_speed': 'round_peak',
+               'break_away_force': 'round_force'}
+
+
+def figures_of(runs: Runs) -> Figures:
+    """Return the figures of runs."""
+    motion = _motions(runs)
+    slips, slides = motion == Motion.STICK_SLIP, motion == Motion.SMOOTH_SLIDING
+    failed, unknown = motion == Motion.FAILED, (motion == Motion.FAILED) | (motion == Motion.UNDECIDED)
+    with np.errstate(divide='ignore', invalid='ignore'):
+        share = np.where(slips, runs.round_stick / runs.round_period, np.where(slides, 0.0, 1.0))
+    settling = np.where(slips, runs.round_settling, np.where(slides, np.nan_to_num(runs.last_break_away), np.nan))
+    of_a_round = {figure: np.where(slips, getattr(runs, name), np.nan) for figure, name in _OF_A_ROUND.items()}
+    of_a_round['amplitude'] = np.where(slips, runs.round_travel, np.where(unknown, np.nan, 0.0))
+    return Figures(
+        motion=motion.astype(float), stick_slip=np.where(unknown, np.nan, slips.astype(float)), **of_a_round,
+        stick_share=np.where(unknown, np.nan, share),
+        settling_time=np.where(runs.settled & ~unknown, settling, np.nan), cycles=np.where(failed, np.nan, runs.cycles),
+        settled=np.where(failed, np.nan, runs.settled & ~unknown), duration=np.where(failed, np.nan, runs.duration))
+
+
+def _motions(runs: Runs) -> NDArray[np.int64]:
+    """Return the motion of each run.
+
+    It may have stuck for a while and slide now: what it ends in counts.  A slip that just began is one of a cycle.
+    """
+    moves = (runs.final_mode != Mode.STICK) | (runs.cycles > 0)
+    found = np.where(runs.sticks_on, Motion.STICK_SLIP, np.where(moves, Motion.SMOOTH_SLIDING, Motion.AT_REST))
+    found = np.where(runs.slides_on | runs.lasts, Motion.SMOOTH_SLIDING, np.where(runs.rests_on, Motion.AT_REST, found))
+    found = np.where(runs.undecided, Motion.UNDECIDED, found)
+    return np.where(runs.complete & _is_finite(runs), found, Motion.FAILED)
+
+
+def _is_finite(runs: Runs) -> Flags:
+    """Return whether all is a number that has to be."""
+    finite = np.isfinite(runs.stick_share) & np.isfinite(runs.duration)
+    of_a_round = np.isfinite([getattr(runs, name) for name in (*_OF_A_ROUND.values(), 'round_stick')]).all(axis=0)
+    found: Flags = finite & (of_a_round | (runs.round_count == 0.0))
+    return found

@@ -1,0 +1,53 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Who works on the chunks of a study beside this process: other processes of this machine."""
+
+import os
+import threading
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from multiprocessing import get_context, parent_process
+from typing import NamedTuple, NoReturn
+
+from ..core.errors import StickslipError
+from .folder import KEPT
+from .study import Study
+from .table import lines
+
+
+class WorkerError(StickslipError):
+    """A worker is gone, or cannot work."""
+
+
+class Crew(NamedTuple):
+    """So many workers behind a `pool`, and the function that gives them the lines of a stretch of points."""
+
+    pool: Executor
+    size: int
+    work: Callable[[Study, int, int], bytes] = lines
+
+
+@contextmanager
+def processes(count: int) -> Iterator[Crew]:
+    """Yield processes; on any error what waits for them is dropped and what they are at is waited for."""
+    pool = ProcessPoolExecutor(count, get_context('spawn'), _watch_the_parent)
+    try:
+        yield Crew(pool, count)
+    except BrokenProcessPool:
+        raise WorkerError(f'a worker process was killed; {KEPT}') from None
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+def _watch_the_parent() -> None:
+    """Have a worker go when its parent is gone, however it went: nothing else would end it."""
+    threading.Thread(target=_go_with_the_parent, daemon=True).start()
+
+
+def _go_with_the_parent() -> NoReturn:
+    parent = parent_process()
+    if parent is not None:
+        parent.join()
+    os._exit(1)

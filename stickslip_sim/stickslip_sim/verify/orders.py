@@ -1,0 +1,66 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""What was ordered in a recorded run, done again to a rig."""
+
+from collections.abc import Collection
+from typing import Any
+
+from ..core.errors import InputError, RecordingError
+from ..recording import RecordedMessage, Run
+from ..recording.topics import DRIVE_VELOCITY, EXTERNAL_FORCE, PARAMETER_EVENTS, RIG_EVENT
+from ..rig import Fault, NoteKind, Rig
+from ..scene import Scene, scene_from_values
+
+_ORDERS = NoteKind.COMMAND_TIMEOUT, NoteKind.FAULT_INJECTED, NoteKind.FAULT_CLEARED
+_VALUES = {1: 'bool_value', 2: 'integer_value', 3: 'double_value', 4: 'string_value', 5: 'byte_array_value',
+           6: 'bool_array_value', 7: 'integer_array_value', 8: 'double_array_value', 9: 'string_array_value'}
+
+
+def is_order(run: Run, message: RecordedMessage) -> bool:
+    """Return whether a rig event was ordered from outside; the others follow by themselves."""
+    return run.decode(message).kind in _ORDERS
+
+
+class Orders:
+    """Orders to a rig of a scene; `fixed` parameters stay as they are, whatever was changed while the axis ran."""
+
+    def __init__(self, run: Run, scene: Scene, rig: Rig, fixed: Collection[str]) -> None:
+        self._run, self._rig, self._fixed = run, rig, fixed
+        self._values = scene.values
+        self._doers = {DRIVE_VELOCITY.type: self._velocity, EXTERNAL_FORCE.type: self._force,
+                       RIG_EVENT.type: self._event, PARAMETER_EVENTS.type: self._change}
+
+    def give(self, message: RecordedMessage) -> None:
+        """Order what a message says; raises RecordingError when the rig refuses."""
+        try:
+            self._doers[message.type](self._run.decode(message))
+        except InputError as error:
+            raise RecordingError(f'{self._run.path}: the order before step {message.sequence} is refused: {error}'
+                                 ) from None
+
+    def _velocity(self, message: Any) -> None:
+        self._rig.command_velocity(message.velocity)
+
+    def _force(self, message: Any) -> None:
+        self._rig.command_force(message.force)
+
+    def _event(self, message: Any) -> None:
+        if message.kind == NoteKind.COMMAND_TIMEOUT:
+            self._rig.time_out(message.value)
+        elif message.kind == NoteKind.FAULT_INJECTED:
+            self._rig.inject(Fault(message.id, message.fault, message.start, message.duration, message.value))
+        elif message.id:
+            self._rig.clear_fault(message.id)
+        else:
+            self._rig.clear_faults()
+
+    def _change(self, message: Any) -> None:
+        self._values = self._values | {parameter.name: _value(parameter.value)
+                                       for parameter in message.changed_parameters if parameter.name not in self._fixed}
+        self._rig.change_axis(scene_from_values(self._values).axis)
+
+
+def _value(value: Any) -> object:
+    """Return the value of a parameter; None when it has none."""
+    found: Any = getattr(value, _VALUES[value.type]) if value.type in _VALUES else None
+    return found.tolist() if hasattr(found, 'tolist') else found

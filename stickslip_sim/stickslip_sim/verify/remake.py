@@ -1,0 +1,111 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Steps made again: as a node made them, or as an offline run did."""
+
+from collections import deque
+from collections.abc import Callable, Collection, Iterator, Sequence
+from typing import NamedTuple, Protocol
+
+from ..core.errors import InputError, RecordingError
+from ..core.types import Event, EventKind, Sample
+from ..recording.run import CHECKPOINT_FILE
+from ..recording.topics import RIG_EVENT
+from ..rig import Rig
+from ..runs.offline import run_offline
+from ..scene import Scene
+from .orders import Orders
+from .original import Offline, Original
+from .steps import Step
+
+Progress = Callable[[float], None] | None
+
+
+class Made(NamedTuple):
+    """A step made again: its events without those of knots, and the state at its end."""
+
+    number: int
+    events: list[Event]
+    sample: Sample
+
+
+class Maker(Protocol):
+    """Makes steps one after the other; `start` is the last one that was made before."""
+
+    start: int
+
+    def make(self, step: Step) -> Iterator[Made]:
+        """Yield all steps up to a recorded one, which begins with what was ordered before it; raises SolverError."""
+
+
+def maker_of(original: Original, scene: Scene, fixed: Collection[str] = (), progress: Progress = None) -> Maker:
+    """Return what makes a run again from its scene, or from another whose `fixed` parameters nothing changes.
+
+    A run that begins with a checkpoint takes the axis of the scene alone.  Raises RecordingError and InputError.
+    """
+    if original.offline:
+        return _OfflineMaker(original, scene, original.offline, progress)
+    return _NodeMaker(original, scene, fixed)
+
+
+class _NodeMaker:
+    """Follows the orders of the recording."""
+
+    def __init__(self, original: Original, scene: Scene, fixed: Collection[str]) -> None:
+        self._rig, self._known = _rig(original, scene)
+        self._orders = Orders(original.run, scene, self._rig, fixed)
+        self.start = self._rig.step
+
+    def make(self, step: Step) -> Iterator[Made]:
+        while self._rig.step + 1 < step.number:
+            yield self._made()
+        events = [order for order in step.orders if order.type == RIG_EVENT.type][:self._known]
+        self._known = 0
+        for order in step.orders:
+            if order not in events:
+                self._orders.give(order)
+        yield self._made()
+
+    def _made(self) -> Made:
+        product = self._rig.make_step()
+        return Made(product.step, _without_knots(product.events), product.sample)
+
+
+def _rig(original: Original, scene: Scene) -> tuple[Rig, int]:
+    """Return the rig as the recording began, and how many of the first events it has behind it."""
+    if original.checkpoint is None:
+        return scene.make_rig(), 0
+    rig = original.scene.make_rig()
+    try:
+        rig.restore(original.checkpoint)
+        known = int(original.checkpoint['notes'])
+    except (InputError, LookupError, TypeError, ValueError, OverflowError) as error:
+        raise RecordingError(f'{original.run.path}: its {CHECKPOINT_FILE} is damaged or of another version: {error}'
+                             ) from None
+    rig.change_axis(scene.axis)
+    return rig, known
+
+
+class _OfflineMaker:
+    """Follows the courses of the scene."""
+
+    start = -1
+
+    def __init__(self, original: Original, scene: Scene, offline: Offline, progress: Progress) -> None:
+        self._path = original.run.path
+        run = run_offline(scene, offline.duration, offline.sample_period, progress)
+        self._samples = enumerate(run.sample_rows())
+        self._events = deque(_without_knots(run.events))
+
+    def make(self, step: Step) -> Iterator[Made]:
+        for number, sample in self._samples:
+            events = []
+            while self._events and self._events[0].instant <= sample.instant:
+                events.append(self._events.popleft())
+            yield Made(number, events, sample)
+            if number == step.number:
+                return
+        raise RecordingError(f'{self._path}: step {step.number} is beyond the duration that it tells')
+
+
+def _without_knots(events: Sequence[Event]) -> list[Event]:
+    return [event for event in events if event.kind != EventKind.KNOT]

@@ -1,0 +1,68 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Whether a recorded run comes out the same when it is run again."""
+
+from collections import deque
+from typing import NamedTuple
+
+from ..core.errors import RecordingError
+from ..recording.topics import MODE_EVENT, SLIDER_STATE
+from .difference import Comparison, Difference
+from .original import Original
+from .remake import Maker, Progress, maker_of
+from .steps import Step, steps_of
+
+_TOLD_EVERY = 1000   # steps
+
+
+class Verdict(NamedTuple):
+    """What was the same: steps with their states, up to `end` (s), and transitions; then the first difference."""
+
+    steps: int
+    events: int
+    missing: int          # steps before the last of those, without a recorded state
+    end: float
+    difference: Difference | None
+
+
+def verify(original: Original, progress: Progress = None) -> Verdict:
+    """Run a recording again up to its end or to the first difference.
+
+    Raises RecordingError when there is nothing in it to compare, SolverError when the solver gives up.
+    """
+    maker = maker_of(original, original.scene, progress=progress)
+    look = _Look(original, maker, None if original.offline else progress)
+    for step in steps_of(original, maker.start):
+        look.at(step)
+        if look.difference:
+            break
+    if not (look.steps or look.difference):
+        raise RecordingError(f'{original.run.path}: no step with its state in it; nothing can be verified')
+    return Verdict(look.steps, look.events, look.missing, look.end, look.difference)
+
+
+class _Look:
+    """Makes and compares one recorded step after the other."""
+
+    def __init__(self, original: Original, maker: Maker, progress: Progress) -> None:
+        self.steps = self.events = self.missing = 0
+        self.end = 0.0
+        self.difference: Difference | None = None
+        self._first = maker.start + 1
+        self._maker, self._progress = maker, progress
+        self._comparison = Comparison(original.run)
+        self._total = sum(original.run.counts[topic] for topic, kind in original.run.topics.items()
+                          if kind == SLIDER_STATE.type)
+
+    def at(self, step: Step) -> None:
+        made = deque(self._maker.make(step), 1).pop()    # those before it were not recorded
+        self.difference = self._comparison.first_difference(step, made)
+        if self.difference:
+            return
+        self.events += len(step.words[MODE_EVENT])
+        if step.is_whole:
+            self.steps += 1
+            self.missing = made.number + 1 - self._first - self.steps
+            self.end = made.sample.time
+            if self._progress and self.steps % _TOLD_EVERY == 0:
+                self._progress(self.steps / self._total)
