@@ -11,7 +11,7 @@ from typing import NamedTuple
 from scipy.optimize import brentq
 
 from stickslip_sim.axis import Axis, Friction, InitialState, RigidContact
-from stickslip_sim.core.input_profile import Course, Wave, constant
+from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant
 from stickslip_sim.core.types import Event, EventKind, Sample
 from stickslip_sim.extremes.shared_axes import instant, make, of_kind, run
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind, kinetic_table
@@ -164,12 +164,12 @@ def forced_axis(friction: float) -> Axis:
     return coulomb_axis(UNIT, friction, friction)
 
 
-def shaken(ratio: float, phase: float, mean: float = 0.0) -> Course:
+def shaken(ratio: float, phase: float, mean: float = 0.0) -> InputProfile:
     """Return the force mean + cos(ratio t + phase)."""
-    return replace(constant(mean), waves=(Wave(1.0, ratio / (2.0 * math.pi), phase + 0.5 * math.pi),))
+    return replace(constant(mean), sinusoids=(Sinusoid(1.0, ratio / (2.0 * math.pi), phase + 0.5 * math.pi),))
 
 
-def turning_points(axis: Axis, force: Course, duration: float) -> list[Event]:
+def turning_points(axis: Axis, force: InputProfile, duration: float) -> list[Event]:
     """Return where the slider stops or turns back, its drive standing still."""
     return [event for event in run(axis, 0.0, duration, force) if event.kind in (EventKind.REVERSE, EventKind.STICK)]
 

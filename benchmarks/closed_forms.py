@@ -38,8 +38,8 @@ def slip_speed(oscillator: Oscillator, drop: float, feed: float, time: float) ->
     zeta = oscillator.damping_ratio
     s, a = math.sqrt(1.0 - zeta * zeta), drop / (feed * oscillator.impedance)
     phase = s * oscillator.frequency * time
-    wave = math.cos(phase) - (a - zeta) / s * math.sin(phase)
-    return feed * (1.0 - math.exp(-zeta * oscillator.frequency * time) * wave)
+    sinusoid = math.cos(phase) - (a - zeta) / s * math.sin(phase)
+    return feed * (1.0 - math.exp(-zeta * oscillator.frequency * time) * sinusoid)
 
 
 def light_damping_feed(oscillator: Oscillator, drop: float) -> float:

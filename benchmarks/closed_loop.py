@@ -55,16 +55,16 @@ def close_loop(axis: Axis, controller: Controller, moves: Moves, duration: float
     run = Run(moves, [], [], [], [])
     waiting = deque([0.0] * delay)
     for step in range(round(duration * RATE)):
-        product = rig.make_step()
-        assert product.measured is not None
-        answer = following.answer(progress, grid.nanoseconds(step), product.measured)
+        result = rig.make_step()
+        assert result.measured is not None
+        answer = following.answer(progress, grid.nanoseconds(step), result.measured)
         progress = answer.progress
         waiting.append(answer.command.velocity)
         rig.command_velocity(waiting.popleft())
         run.setpoints.append(answer.setpoint)
-        run.samples.append(product.sample)
+        run.samples.append(result.sample)
         run.commands.append(answer.command.velocity)
-        run.events.extend(product.events)
+        run.events.extend(result.events)
     return run
 
 

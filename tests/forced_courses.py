@@ -7,14 +7,14 @@ import random
 from dataclasses import replace
 
 from stickslip_sim.axis import Axis
-from stickslip_sim.core.input_profile import Course, Wave, constant, ramp, steps, table
+from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant, ramp, steps, table
 
 
-def with_waves(course: Course, *waves: tuple[float, float, float]) -> Course:
-    return replace(course, waves=tuple(Wave(*wave) for wave in waves))
+def with_waves(profile: InputProfile, *sinusoids: tuple[float, float, float]) -> InputProfile:
+    return replace(profile, sinusoids=tuple(Sinusoid(*sinusoid) for sinusoid in sinusoids))
 
 
-def random_courses(rng: random.Random, axis: Axis) -> tuple[Course, Course]:
+def random_profiles(rng: random.Random, axis: Axis) -> tuple[InputProfile, InputProfile]:
     """Return courses of all kinds with one to three waves; some are in resonance with the slip."""
     speed = rng.choice((-1, 1)) * 10 ** rng.uniform(-3, -1.3)
     omega = math.sqrt(axis.drive_stiffness / axis.mass)

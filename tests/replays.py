@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from stickslip_sim.recording import Run
-from stickslip_sim.rig import Fault, NoteKind, Product
+from stickslip_sim.rig import Fault, RigEventKind, StepResult
 from stickslip_sim.scene import Scene, scene_from_values
 from tests.rigs import Order, Script, run
 
@@ -32,17 +32,17 @@ def orders_of(recorded: Run, scene: Scene) -> Script:
     return orders
 
 
-def made_again(recorded: Run, scene: Scene) -> list[Product]:
+def made_again(recorded: Run, scene: Scene) -> list[StepResult]:
     """Return what a rig makes of the orders of a bag, over as many steps."""
     return run(scene.make_rig(), recorded.counts['/slider_state'], orders_of(recorded, scene))
 
 
-def assert_same_states(recorded: Run, products: list[Product]) -> None:
+def assert_same_states(recorded: Run, products: list[StepResult]) -> None:
     """Compare the states of a bag with those of a rig, bit by bit."""
     states = recorded.columns('/slider_state')
-    assert list(states['step']) == [product.step for product in products]
+    assert list(states['step']) == [result.step for result in products]
     for name in FIELDS:
-        ours = np.array([getattr(product.sample, name) for product in products])
+        ours = np.array([getattr(result.sample, name) for result in products])
         np.testing.assert_array_equal(states[name], ours, err_msg=name)
 
 
@@ -57,10 +57,10 @@ def _change(scene: Scene) -> Order:
 
 
 def _of_event(event: Any) -> list[Order]:
-    if event.kind == NoteKind.FAULT_INJECTED:
+    if event.kind == RigEventKind.FAULT_INJECTED:
         return [lambda rig: rig.inject(Fault(event.id, event.fault, event.start, event.duration, event.value))]
-    if event.kind == NoteKind.FAULT_CLEARED:
+    if event.kind == RigEventKind.FAULT_CLEARED:
         return [lambda rig: rig.clear_fault(event.id)]
-    if event.kind == NoteKind.COMMAND_TIMEOUT:
+    if event.kind == RigEventKind.COMMAND_TIMEOUT:
         return [lambda rig: rig.time_out(event.value)]
     return []

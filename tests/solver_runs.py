@@ -5,7 +5,7 @@
 import math
 
 from stickslip_sim.axis import Axis, InitialState
-from stickslip_sim.core.input_profile import Course, constant
+from stickslip_sim.core.input_profile import InputProfile, constant
 from stickslip_sim.core.types import Event, EventKind, Sample
 from stickslip_sim.scene import Scene
 from stickslip_sim.simulation.simulator import Simulator
@@ -15,7 +15,8 @@ from tests.axes import instant
 _A_MOMENT = 1e-6   # s; a coast this short after a break-away is decided by rounding (docs/model.md)
 
 
-def simulate(solver: Solver, axis: Axis, drive: float | Course, duration: float, force: float | Course = 0.0,
+def simulate(solver: Solver, axis: Axis, drive: float | InputProfile, duration: float,
+             force: float | InputProfile = 0.0,
              initial: InitialState | None = None) -> tuple[list[Event], Sample]:
     """Return the events but knots, and the state at the end."""
     simulator = make(solver, axis, drive, force, initial)
@@ -23,10 +24,10 @@ def simulate(solver: Solver, axis: Axis, drive: float | Course, duration: float,
     return [event for event in events if event.kind != EventKind.KNOT], simulator.sample()
 
 
-def make(solver: Solver, axis: Axis, drive: float | Course, force: float | Course = 0.0,
+def make(solver: Solver, axis: Axis, drive: float | InputProfile, force: float | InputProfile = 0.0,
          initial: InitialState | None = None) -> Simulator:
-    return Simulator(axis, initial or InitialState(), drive if isinstance(drive, Course) else constant(drive),
-                     force if isinstance(force, Course) else constant(force), solver)
+    return Simulator(axis, initial or InitialState(), drive if isinstance(drive, InputProfile) else constant(drive),
+                     force if isinstance(force, InputProfile) else constant(force), solver)
 
 
 def of_scene(solver: Solver, scene: Scene, duration: float) -> tuple[list[Event], Sample]:

@@ -11,7 +11,7 @@ import pytest
 
 from stickslip_sim.axis import CompliantContact, Friction, InitialState
 from stickslip_sim.core.errors import InputError, SolverError
-from stickslip_sim.core.input_profile import Course, Wave, steps, table
+from stickslip_sim.core.input_profile import InputProfile, Sinusoid, steps, table
 from stickslip_sim.core.types import Event, EventKind, Mode
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
 from stickslip_sim.friction.kinetic import default_excess
@@ -39,7 +39,7 @@ class TestAgainstTheExactEngine:
                                       'positioning', 'cutting_force'])
     def test_shipped_scenes(self, name: str) -> None:
         scene = load_scene(name)
-        if scene.drive.waves or scene.force.waves:
+        if scene.drive.sinusoids or scene.force.sinusoids:
             pytest.skip('exact needs waves for that')
         expected, found = of_scene(EXACT, scene, 3.0), of_scene(TIGHT, scene, 3.0)
         assert_near(found[0], expected[0], 2e-8)
@@ -152,8 +152,9 @@ class TestWaves:
     def test_a_mass_alone_follows_the_integral(self) -> None:
         """No spring, damper or friction: the motion is known, and so is the drive's."""
         free = replace(paper_axis(RIGID, branches=False), normal_force=0.0, drive_stiffness=0.0, drive_damping=0.0)
-        force = Course((0.0,), (3.5,), (0.0,), waves=(Wave(700.0, 2.0, 0.4),))
-        drive = Course((0.0,), (0.1,), (0.0,), waves=(Wave(0.3, 1.5, -0.2), Wave(0.1, 1e-9, 0.5 * math.pi)))
+        force = InputProfile((0.0,), (3.5,), (0.0,), sinusoids=(Sinusoid(700.0, 2.0, 0.4),))
+        drive = InputProfile((0.0,), (0.1,), (0.0,), sinusoids=(Sinusoid(0.3, 1.5, -0.2), Sinusoid(0.1, 1e-9,
+                                                                                                   0.5 * math.pi)))
         final = simulate(TIGHT, free, drive, 1.3, force, InitialState(velocity=5.0))[1]
         omega = 4.0 * math.pi
         assert final.velocity == pytest.approx(
@@ -164,7 +165,7 @@ class TestWaves:
 
     def test_no_wave_of_a_stuck_axis_is_passed_over(self) -> None:
         """At rest nothing bounds the step but the wave itself; its first crest beyond the limit breaks the contact."""
-        force = Course((0.0,), (0.0,), (0.0,), waves=(Wave(900.0, 0.5, 0.0),))
+        force = InputProfile((0.0,), (0.0,), (0.0,), sinusoids=(Sinusoid(900.0, 0.5, 0.0),))
         event = simulate(TIGHT, paper_axis(RIGID), 0.0, 3.0, force)[0][0]
         assert event.time == pytest.approx(math.asin(0.24 * 350 * 9.80665 / 900.0) / math.pi, rel=1e-12)
 

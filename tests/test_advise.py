@@ -15,7 +15,7 @@ from stickslip_sim.advise.advice import Advice
 from stickslip_sim.advise.advice_report import as_json, is_needed, text_lines
 from stickslip_sim.advise.duration import default_duration
 from stickslip_sim.advise.figure_distance import Difference, difference, event_difference
-from stickslip_sim.advise.parts import parts_of, without_idle_waves
+from stickslip_sim.advise.parts import parts_of, without_idle_sinusoids
 from stickslip_sim.advise.recommendation import best_trial, least_scene
 from stickslip_sim.advise.settings import solver_settings
 from stickslip_sim.advise.trial_runs import Reference, Trial, costs, reference_of, try_changes
@@ -37,7 +37,7 @@ def scene(name: str = 'paper_fig7', **sections: dict[str, object]) -> Scene:
 
 @pytest.fixture(scope='module')
 def advised() -> Advice:
-    return work.advise(scene(waves=TWO_WAVES, knots=KNOTTED), 1e-3, DURATION, rounds=1)
+    return work.advise(scene(sinusoids=TWO_WAVES, knots=KNOTTED), 1e-3, DURATION, rounds=1)
 
 
 def test_parts_are_those_of_the_scene() -> None:
@@ -64,8 +64,8 @@ def test_all_parts_can_be_left_out_one_after_the_other(name: str, values: dict[s
         if changes := part.variants[0].changes(left.values):
             left = changed(left, changes)
     assert [part.name for part in parts_of(left)] == []
-    assert not any('amplitudes' in key for key in without_idle_waves(left.values))
-    assert scene_from_values(without_idle_waves(left.values)).axis == left.axis
+    assert not any('amplitudes' in key for key in without_idle_sinusoids(left.values))
+    assert scene_from_values(without_idle_sinusoids(left.values)).axis == left.axis
 
 
 def test_what_a_scene_leaves_out_is_tried_at_its_neutral_value() -> None:
@@ -144,16 +144,16 @@ def test_a_part_that_changes_nothing_is_left_out_and_the_others_stay(advised: Ad
 
 def test_what_is_left_out_together_stays_within_the_tolerance() -> None:
     """Either wave may go, for which the tolerance is just enough; both may not."""
-    reference = reference_of(scene(waves=TWO_WAVES), DURATION)
+    reference = reference_of(scene(sinusoids=TWO_WAVES), DURATION)
     trials = [best_trial(reference, part) for part in parts_of(reference.scene)]
-    waves = [found for found in trials if found.part.name.startswith('sine')]
-    one, other = (found.trial.difference.largest for found in waves if found.trial.difference is not None)
+    sinusoids = [found for found in trials if found.part.name.startswith('sine')]
+    one, other = (found.trial.difference.largest for found in sinusoids if found.trial.difference is not None)
     assert one == other > 0.0
     both = try_changes(reference, 'both', {'force.amplitudes': (0.0, 0.0)}).difference
     assert both is not None
     assert both.largest > 1.5 * one
-    assert len(least_scene(reference, waves, [exact_trial(reference, 1.0)], 1.2 * one).parts) == 1
-    assert len(least_scene(reference, waves, [exact_trial(reference, 1.0)], 1.01 * both.largest).parts) == 2
+    assert len(least_scene(reference, sinusoids, [exact_trial(reference, 1.0)], 1.2 * one).parts) == 1
+    assert len(least_scene(reference, sinusoids, [exact_trial(reference, 1.0)], 1.01 * both.largest).parts) == 2
 
 
 def test_the_cheapest_solver_within_the_tolerance_is_advised() -> None:
@@ -223,7 +223,7 @@ def test_the_tool_prints_overrides_that_give_the_least_scene(tmp_path: Path, cap
     assert run(['simulate', 'paper_fig8', '--duration', '1', *shlex.split(line)]) == 0
     written = load_scene(str(least))
     assert written.values['contact.model'] == 'rigid'
-    assert written.force.waves == ()
+    assert written.force.sinusoids == ()
     assert json.loads(out.read_text())['least']['changes']['contact.model'] == 'rigid'
 
 

@@ -95,8 +95,8 @@ def test_rest_and_single_slip_are_told_apart() -> None:
 
 
 def test_directions_are_told() -> None:
-    course = table('drive', (0.0, 3.0, 3.01), (0.002, 0.002, -0.002))
-    cycles = cycle_figures(run(paper_axis(RIGID), course, 12.0))
+    profile = table('drive', (0.0, 3.0, 3.01), (0.002, 0.002, -0.002))
+    cycles = cycle_figures(run(paper_axis(RIGID), profile, 12.0))
     assert {cycle.direction for cycle in cycles} == {-1, 1}
     assert all(cycle.slip_travel > 0.0 and cycle.peak_speed > 0.0 for cycle in cycles)
 

@@ -53,7 +53,7 @@ def test_a_fault_scales_the_law_as_it_scales_the_table(solver: str, law: str, to
 
 
 def driven(rig: Rig, steps: int) -> list[Event]:
-    return [event for product in run(rig, steps) for event in product.events]
+    return [event for result in run(rig, steps) for event in result.events]
 
 
 SLOW = {'time.rate': 50.0, 'friction.kinetic.tolerance': 1e-6}

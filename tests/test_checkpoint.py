@@ -10,7 +10,7 @@ import pytest
 
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.recording import checkpoint_file
-from stickslip_sim.rig import Fault, Product, Rig
+from stickslip_sim.rig import Fault, Rig, StepResult
 from stickslip_sim.scene import Scene, changed, load_scene
 
 LIMITS = {'command.acceleration_limit': 0.5, 'command.on_timeout': 'ramp_to_zero'}
@@ -20,24 +20,24 @@ SCENES = [('paper_fig8', LIMITS), ('paper_fig7', SINES), ('cutting_force', {}),
           ('paper_fig8', {'solver.name': 'fixed_step', 'solver.step': 1e-4})]
 
 
-def go(rig: Rig, scene: Scene, first: int, count: int) -> list[Product]:
+def go(rig: Rig, scene: Scene, first: int, count: int) -> list[StepResult]:
     """Make steps with orders of every kind, chosen by the number of the step."""
-    products = []
+    results = []
     for n in range(first, first + count):
-        luck = Random(n)
+        stream = Random(n)
         if n % 7 == 0:
-            rig.command_velocity(luck.uniform(-0.01, 0.01))
+            rig.command_velocity(stream.uniform(-0.01, 0.01))
         if n % 97 == 0:
-            rig.command_force(luck.uniform(-900.0, 900.0))
+            rig.command_force(stream.uniform(-900.0, 900.0))
         if n % 100 == 50:
-            kind = luck.choice(['friction_scale', 'force_pulse', 'command_loss', 'command_delay', 'drive_freeze'])
-            rig.inject(Fault('', kind, 0.01, 0.1, 0.0 if kind == 'drive_freeze' else luck.random()))
+            kind = stream.choice(['friction_scale', 'force_pulse', 'command_loss', 'command_delay', 'drive_freeze'])
+            rig.inject(Fault('', kind, 0.01, 0.1, 0.0 if kind == 'drive_freeze' else stream.random()))
         if n % 444 == 3:
             rig.time_out(0.2)
         if n % 333 == 3:
-            rig.change_axis(changed(scene, {'axis.mass': luck.uniform(200.0, 400.0)}).axis)
-        products.append(rig.make_step())
-    return products
+            rig.change_axis(changed(scene, {'axis.mass': stream.uniform(200.0, 400.0)}).axis)
+        results.append(rig.make_step())
+    return results
 
 
 def continued(scene: Scene, rig: Rig) -> Rig:
@@ -57,9 +57,9 @@ def test_to_the_last_bit(name: str, overrides: dict[str, object], steps: int) ->
     rig.change_axis(scene.axis)
     again = continued(scene, rig)
     expected, found = go(rig, scene, steps, 1500), go(again, scene, steps, 1500)
-    assert [product.sample for product in found] == [product.sample for product in expected]
-    assert [product.events for product in found] == [product.events for product in expected]
-    assert sum(len(product.events) for product in expected) > 5
+    assert [result.sample for result in found] == [result.sample for result in expected]
+    assert [result.events for result in found] == [result.events for result in expected]
+    assert sum(len(result.events) for result in expected) > 5
 
 
 def test_the_order_of_faults_and_parameters_between_two_steps_does_not_matter() -> None:
@@ -75,7 +75,7 @@ def test_the_order_of_faults_and_parameters_between_two_steps_does_not_matter() 
         rig.change_axis(heavier)
         if not is_cleared_first:
             rig.clear_fault('slippery')
-        found.append([product.sample for product in go(rig, scene, 700, 500)])
+        found.append([result.sample for result in go(rig, scene, 700, 500)])
     assert found[0] == found[1]
 
 

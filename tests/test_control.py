@@ -41,10 +41,10 @@ class Step(Moves):
 
 class TestMoves:
     def test_at_full_feed_are_those_of_the_scene(self) -> None:
-        moves, course = Moves(travel=0.01, feed=0.01), load_scene('positioning').drive
-        assert moves.period == course.period
+        moves, profile = Moves(travel=0.01, feed=0.01), load_scene('positioning').drive
+        assert moves.period == profile.period
         for time in (0.009 * k for k in range(1001)):
-            assert moves.at(time).velocity == pytest.approx(course.value_at(time), abs=1e-14)
+            assert moves.at(time).velocity == pytest.approx(profile.value_at(time), abs=1e-14)
 
     @pytest.mark.parametrize('moves', [Moves(), Moves(0.01, 0.01), Moves(1e-4, 0.05), Moves(0.1, 0.2, 2.0, 0.0)])
     def test_position_is_the_integral_of_the_velocity(self, moves: Moves) -> None:

@@ -8,17 +8,17 @@ import random
 import pytest
 
 from stickslip_sim.core.errors import InputError
-from stickslip_sim.core.input_profile import Course, Wave, constant, ramp, steps, table
+from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant, ramp, steps, table
 
 
 def test_pieces_of_a_periodic_course_follow_each_other_for_any_period() -> None:
     rng = random.Random(1)
     for _ in range(100):
         period = rng.uniform(1e-3, 3.0)
-        course = table('force', [0.0, 0.1 * period, 0.5 * period, 0.6 * period], [0.0, -1.0, -1.0, 0.0], period)
+        profile = table('force', [0.0, 0.1 * period, 0.5 * period, 0.6 * period], [0.0, -1.0, -1.0, 0.0], period)
         time = 0.0
         for _ in range(1000):
-            piece = course.piece_at(time)
+            piece = profile.piece_at(time)
             assert piece.start == time < piece.end
             time = piece.end
 
@@ -42,10 +42,10 @@ def test_bad_knots_are_refused(times: list[float], values: list[float], period: 
 
 
 @pytest.mark.parametrize(('wave', 'word'), [
-    (Wave(math.nan, 1.0, 0.0), 'finite'), (Wave(1.0, 0.0, 0.0), 'Hz'), (Wave(1.0, 1e7, 0.0), 'Hz'),
-    (Wave(1.0, 1.0, math.inf), 'finite')])
-def test_bad_waves_are_refused(wave: Wave, word: str) -> None:
+    (Sinusoid(math.nan, 1.0, 0.0), 'finite'), (Sinusoid(1.0, 0.0, 0.0), 'Hz'), (Sinusoid(1.0, 1e7, 0.0), 'Hz'),
+    (Sinusoid(1.0, 1.0, math.inf), 'finite')])
+def test_bad_waves_are_refused(sinusoid: Sinusoid, word: str) -> None:
     with pytest.raises(InputError, match=word):
-        Course((0.0,), (0.0,), (0.0,), waves=(wave,))
+        InputProfile((0.0,), (0.0,), (0.0,), sinusoids=(sinusoid,))
     with pytest.raises(InputError, match='at most 100'):
-        Course((0.0,), (0.0,), (0.0,), waves=(Wave(1.0, 1.0, 0.0),) * 101)
+        InputProfile((0.0,), (0.0,), (0.0,), sinusoids=(Sinusoid(1.0, 1.0, 0.0),) * 101)

@@ -18,7 +18,7 @@ from stickslip_sim.study import Variation
 from stickslip_sim.study.critical import Critical, critical, default_range
 from stickslip_sim.study.points import scene_at
 from stickslip_sim.study.theory import critical_drop, critical_feed, feed_of_theory, healing_critical_feed
-from stickslip_sim.study.transitions import FAILED, NO, OPEN, YES, Course, Doubt, Verdicts, course
+from stickslip_sim.study.transitions import FAILED, NO, OPEN, YES, Doubt, Findings, Verdicts, find_transitions
 from stickslip_sim.study.variation import Numbers
 from tests.axes import instant
 from tests.tool import Capture
@@ -47,7 +47,7 @@ def test_constant_friction_has_the_critical_feed_of_the_closed_form(zeta: float,
     assert transition.value == pytest.approx(expected, rel=ACCURACY)
     assert transition.low <= expected * (1.0 + 1e-12)
     assert transition.high >= expected * (1.0 - 1e-12)
-    assert found.from_sliding == Course(NO, ())
+    assert found.from_sliding == Findings(NO, ())
     assert found.both == [(1e-3, transition.value)]
 
 
@@ -66,7 +66,7 @@ def test_growth_at_rest_has_its_critical_feed_within_what_is_told(law: str, accu
 def test_katos_law_below_one_has_no_critical_feed() -> None:
     scene = load_scene('paper_fig4_constant', {**GROWING, 'friction.static.law': 'kato',
                                                'friction.static.exponent': 0.5})
-    assert of_the_feed(scene, 1e-3, 0.1).from_rest == Course(YES, ())
+    assert of_the_feed(scene, 1e-3, 0.1).from_rest == Findings(YES, ())
 
 
 def test_sliding_on_the_papers_slope_is_lost_from_2000_newtons_on_and_both_motions_are_told() -> None:
@@ -105,7 +105,7 @@ def test_sticks_between_reversals_last_however_heavy_the_slider_is() -> None:
     """Forward slip, reversal, stick and again: the last complete cycle may be the one without a stick."""
     scene = load_scene('paper_fig7', {'drive.velocity': 0.02})
     found = critical(scene, Variation('axis.mass', 20000.0, 32000.0, log=True), 1e-6)
-    assert found.from_rest == Course(YES, ())
+    assert found.from_rest == Findings(YES, ())
 
 
 @pytest.mark.parametrize(('changes', 'name', 'low', 'high'), [
@@ -130,7 +130,7 @@ def test_a_cycle_about_to_vanish_is_not_taken_for_one_that_stays() -> None:
 
 
 def test_several_changes_are_all_found() -> None:
-    found = course(lambda values: (np.sin(values) > 0.0).astype(np.int64), 1.0, 10.0, False, 1e-12)
+    found = find_transitions(lambda values: (np.sin(values) > 0.0).astype(np.int64), 1.0, 10.0, False, 1e-12)
     assert found.first == YES
     assert [one.value for one in found.transitions] == pytest.approx([math.pi, 2.0 * math.pi, 3.0 * math.pi], rel=1e-12)
     assert [one.rises for one in found.transitions] == [False, True, False]
@@ -141,13 +141,13 @@ def test_what_cannot_be_told_stays_open() -> None:
     def judge(values: Numbers) -> Verdicts:
         return np.where(abs(values - 2.0) < 1e-3, OPEN, values > 2.0).astype(np.int64)
 
-    (one,) = course(judge, 1.0, 3.5, False, 1e-9).transitions
+    (one,) = find_transitions(judge, 1.0, 3.5, False, 1e-9).transitions
     assert not one.resolved
     assert one.low == pytest.approx(1.999, abs=3e-4)
     assert one.high == pytest.approx(2.001, abs=3e-4)
     for verdict in (OPEN, FAILED):
-        found = course(lambda values: np.full(len(values), verdict), 1.0, 2.0, False, 1e-9)  # noqa: B023
-        assert found == Course(verdict, (), (Doubt(1.0, 2.0, verdict == FAILED),))
+        found = find_transitions(lambda values: np.full(len(values), verdict), 1.0, 2.0, False, 1e-9)  # noqa: B023
+        assert found == Findings(verdict, (), (Doubt(1.0, 2.0, verdict == FAILED),))
 
 
 def test_what_cannot_be_told_between_two_equal_verdicts_or_at_an_end_is_told() -> None:
@@ -155,7 +155,7 @@ def test_what_cannot_be_told_between_two_equal_verdicts_or_at_an_end_is_told() -
         found = np.where((values > 2.0) & (values < 3.0), OPEN, YES)
         return np.where(values > 8.0, FAILED, found).astype(np.int64)
 
-    found = course(judge, 1.0, 9.0, False, 1e-9)
+    found = find_transitions(judge, 1.0, 9.0, False, 1e-9)
     assert (found.first, found.transitions) == (YES, ())
     assert [(one.low, one.high, one.failed) for one in found.doubts] == [(2.0, 3.0, False), (8.0, 9.0, True)]
     assert [found.at(value) for value in (1.5, 2.5, 5.0, 8.5)] == [YES, OPEN, YES, OPEN]
@@ -165,7 +165,7 @@ def test_a_failed_run_between_two_verdicts_is_told() -> None:
     def judge(values: Numbers) -> Verdicts:
         return np.where(abs(values - 2.0) < 1e-3, FAILED, values > 2.0).astype(np.int64)
 
-    (one,) = course(judge, 1.0, 3.5, False, 1e-9).transitions
+    (one,) = find_transitions(judge, 1.0, 3.5, False, 1e-9).transitions
     assert (one.resolved, one.failed) == (False, True)
 
 
@@ -175,7 +175,7 @@ def test_verdicts_that_come_by_turns_are_no_figure() -> None:
         by_chance = np.mod(1e9 * np.sin(12345.0 * values), 1.0) > 0.5
         return np.where(abs(values - 2.0) < 3e-3, by_chance, values > 2.0).astype(np.int64)
 
-    (one,) = course(judge, 1.0, 3.5, False, 1e-9).transitions
+    (one,) = find_transitions(judge, 1.0, 3.5, False, 1e-9).transitions
     assert not one.resolved
     assert one.rises
     assert 1.99 < one.low <= 1.997 + 1e-4
@@ -192,7 +192,7 @@ def test_both_ends_of_what_is_told_have_the_verdict_that_is_told(seed: int) -> N
         found = np.where(abs(values - 2.0) < width, by_chance, values > 2.0)
         return np.where(abs(values - 2.0) < 0.1 * width, OPEN, found).astype(np.int64)
 
-    for one in course(judge, 1.0, 3.5, False, 1e-9).transitions:
+    for one in find_transitions(judge, 1.0, 3.5, False, 1e-9).transitions:
         assert judge(np.array([one.low, one.high])).tolist() == [int(not one.rises), int(one.rises)]
 
 
@@ -200,13 +200,13 @@ def test_three_clear_changes_between_two_values_of_the_scan_are_three() -> None:
     def judge(values: Numbers) -> Verdicts:
         return (((values > 2.03) & (values < 2.05)) | (values > 2.07)).astype(np.int64)
 
-    found = course(judge, 1.0, 6.0, False, 1e-12).transitions
+    found = find_transitions(judge, 1.0, 6.0, False, 1e-12).transitions
     assert [one.value for one in found] == pytest.approx([2.03, 2.05, 2.07], rel=1e-11)
     assert [(one.rises, one.resolved) for one in found] == [(True, True), (False, True), (True, True)]
 
 
 def test_the_finest_accuracy_ends() -> None:
-    (one,) = course(lambda values: (values > math.pi).astype(np.int64), 1.0, 10.0, False, 1e-15).transitions
+    (one,) = find_transitions(lambda values: (values > math.pi).astype(np.int64), 1.0, 10.0, False, 1e-15).transitions
     assert one.resolved
     assert one.low <= math.pi < one.high
     assert one.high - one.low <= 2.0 * math.ulp(math.pi)

@@ -90,13 +90,13 @@ def played(path: Path) -> list[RecordedMessage]:
 def test_no_bit_of_the_index_changes_what_is_read(how: Callable[[Path], list[RecordedMessage]], fig8_bag: Path,
                                                   tmp_path: Path) -> None:
     """It is refused, or the index is not used."""
-    data, path, luck = data_of(fig8_bag), tmp_path / 'run.mcap', Random(5)
+    data, path, stream = data_of(fig8_bag), tmp_path / 'run.mcap', Random(5)
     path.write_bytes(data)
     whole = how(path)
     (begin,) = struct.unpack_from('<Q', data, len(data) - 28)    # the footer tells
     outcomes = []
     for _ in range(40):
-        path.write_bytes(flipped(data, luck.randrange(begin, len(data)), luck.randrange(8)))
+        path.write_bytes(flipped(data, stream.randrange(begin, len(data)), stream.randrange(8)))
         outcomes.append(outcome(how, path))
         assert outcomes[-1] in (whole, f'{path}: {TOLD}')
     assert whole in outcomes

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.types import Mode, Sample
-from stickslip_sim.rig import Measured, Product
+from stickslip_sim.rig import Measured, StepResult
 from stickslip_sim.rig.encoder import Encoder, EncoderSettings
 from stickslip_sim.scene import load_scene
 from tests.rigs import RATE, Script, inject, make, run
@@ -25,13 +25,13 @@ def sample(position: float, velocity: float = 0.0) -> Sample:
 
 
 def measured(steps: int = 900, script: Script | None = None, delay_steps: int = 0, seed: int = 0, **encoder: Any
-             ) -> tuple[list[Product], list[Measured]]:
+             ) -> tuple[list[StepResult], list[Measured]]:
     """Return a run of the paper's axis, and its measurements, none of which may be missing."""
-    products = run(make(seed=seed, measures=True, encoder=EncoderSettings(**encoder),
+    results = run(make(seed=seed, measures=True, encoder=EncoderSettings(**encoder),
                         encoder_delay_steps=delay_steps), steps, script)
-    readings = [product.measured for product in products if product.measured]
-    assert len(readings) == len(products)
-    return products, readings
+    readings = [result.measured for result in results if result.measured]
+    assert len(readings) == len(results)
+    return results, readings
 
 
 class TestPosition:
@@ -51,14 +51,14 @@ class TestPosition:
         assert reading.slider_position == 0.25 * count
 
     def test_offset_alone(self) -> None:
-        products, readings = measured(100, offset=1e-3)
+        results, readings = measured(100, offset=1e-3)
         assert [reading.slider_position for reading in readings] == [
-            product.sample.position + 1e-3 for product in products]
+            result.sample.position + 1e-3 for result in results]
 
     def test_delay_in_steps(self) -> None:
-        products, readings = measured(delay_steps=7, delay=0.007)
+        results, readings = measured(delay_steps=7, delay=0.007)
         for n, reading in enumerate(readings):
-            then = products[max(n - 7, 0)].sample
+            then = results[max(n - 7, 0)].sample
             assert (reading.slider_position, reading.drive_position) == (then.position, then.drive_position)
 
 
@@ -78,9 +78,9 @@ class TestVelocity:
         assert statistics.fmean(counts) == pytest.approx(2.0, abs=2e-3)     # 2 mm/s
 
     def test_is_the_true_one_of_an_ideal_encoder(self) -> None:
-        products, readings = measured(velocity_steps=5)
-        for product, reading in zip(products, readings):
-            truth = product.sample
+        results, readings = measured(velocity_steps=5)
+        for result, reading in zip(results, readings):
+            truth = result.sample
             assert reading == (truth.position, truth.velocity, truth.drive_position, truth.drive_velocity)
 
 
@@ -117,18 +117,18 @@ class TestNoise:
 class TestFaults:
     @pytest.mark.parametrize('settings', [{}, {'resolution': MICRON}])
     def test_freeze(self, settings: dict[str, Any]) -> None:
-        products, readings = measured(900, {800: [inject('encoder_freeze', duration=0.05)]}, **settings)
+        results, readings = measured(900, {800: [inject('encoder_freeze', duration=0.05)]}, **settings)
         assert {reading.slider_position for reading in readings[799:850]} == {readings[799].slider_position}
         assert {reading.slider_velocity for reading in readings[801:850]} == {0.0}
-        assert readings[850].slider_position == pytest.approx(products[850].sample.position, abs=MICRON / 2)
-        assert readings[849].drive_position == pytest.approx(products[849].sample.drive_position, abs=MICRON / 2)
+        assert readings[850].slider_position == pytest.approx(results[850].sample.position, abs=MICRON / 2)
+        assert readings[849].drive_position == pytest.approx(results[849].sample.drive_position, abs=MICRON / 2)
 
     @pytest.mark.parametrize('settings', [{}, {'resolution': MICRON}])
     def test_step(self, settings: dict[str, Any]) -> None:
         script = {300: [inject('encoder_step', value=1e-3)], 320: [inject('encoder_step', value=5e-4)]}
-        products, readings = measured(400, script, **settings)
+        results, readings = measured(400, script, **settings)
         for (step, shift) in ((299, 0.0), (300, 1e-3), (319, 1e-3), (320, 1.5e-3), (350, 5e-4), (370, 0.0)):
-            assert readings[step].slider_position - products[step].sample.position == pytest.approx(shift, abs=MICRON)
+            assert readings[step].slider_position - results[step].sample.position == pytest.approx(shift, abs=MICRON)
 
     def test_step_is_a_jump_of_the_velocity_where_it_is_computed(self) -> None:
         _, readings = measured(400, {300: [inject('encoder_step', value=1e-3)]}, resolution=MICRON)
@@ -136,27 +136,27 @@ class TestFaults:
 
     def test_dropout_leaves_out_a_share(self) -> None:
         count = 4000
-        products = run(make(measures=True, seed=3), count + 1,
+        results = run(make(measures=True, seed=3), count + 1,
                        {1: [inject('encoder_dropout', value=0.3, duration=math.inf)]})
-        missing = [product.step for product in products if product.measured is None]
+        missing = [result.step for result in results if result.measured is None]
         assert len(missing) / count == pytest.approx(0.3, abs=4 * math.sqrt(0.21 / count))
 
     def test_dropouts_that_overlap_leave_out_more(self) -> None:
         count = 4000
-        products = run(make(measures=True), count + 1,
+        results = run(make(measures=True), count + 1,
                        {1: [inject('encoder_dropout', value=0.5, duration=math.inf)] * 2})
-        missing = sum(product.measured is None for product in products)
+        missing = sum(result.measured is None for result in results)
         assert missing / count == pytest.approx(0.75, abs=4 * math.sqrt(0.19 / count))
 
     def test_dropout_of_all(self) -> None:
-        products = run(make(measures=True), 100, {10: [inject('encoder_dropout', value=1.0, duration=0.02)]})
-        assert [product.step for product in products if product.measured is None] == [*range(10, 30)]
+        results = run(make(measures=True), 100, {10: [inject('encoder_dropout', value=1.0, duration=0.02)]})
+        assert [result.step for result in results if result.measured is None] == [*range(10, 30)]
 
     def test_after_a_dropout_readings_are_as_if_none_had_been(self) -> None:
         encoder = EncoderSettings(MICRON, noise=MICRON, velocity_steps=3)
         script = {10: [inject('encoder_dropout', value=0.5, duration=0.02)]}
         with_it, without = (run(make(measures=True, encoder=encoder), 100, orders) for orders in (script, None))
-        assert [product.measured for product in with_it[30:]] == [product.measured for product in without[30:]]
+        assert [result.measured for result in with_it[30:]] == [result.measured for result in without[30:]]
 
 
 class TestScene:

@@ -11,7 +11,7 @@ import pytest
 
 from stickslip_sim.axis import Axis, CompliantContact, Friction, InitialState
 from stickslip_sim.core.energy import EnergyBalance
-from stickslip_sim.core.input_profile import Course, Wave, constant, ramp, steps
+from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant, ramp, steps
 from stickslip_sim.core.types import EventKind, Instant, Mode
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
 from stickslip_sim.scene import load_scene
@@ -24,7 +24,8 @@ SCENES = ('paper_fig4_constant', 'paper_fig4_falling', 'paper_fig7', 'paper_fig8
 UNDAMPED = CompliantContact(5e6, 0.0)
 
 
-def accounted(axis: Axis, drive: Course, force: Course | None = None, initial: InitialState | None = None) -> Simulator:
+def accounted(axis: Axis, drive: InputProfile, force: InputProfile | None = None,
+              initial: InitialState | None = None) -> Simulator:
     return Simulator(axis, initial or InitialState(), drive, force or constant(0.0), accounting=True)
 
 
@@ -242,8 +243,8 @@ print(simulator.advance(Instant(4.0, 0.0)), simulator.sample(), simulator.energy
 @pytest.mark.parametrize('contact', [RIGID, COMPLIANT, UNDAMPED])
 @pytest.mark.parametrize('base', [0.002, 0.0])
 def test_the_balance_closes_under_sines(contact: CompliantContact, base: float) -> None:
-    drive = Course((0.0,), (base,), (0.0,), waves=(Wave(0.5 * base + 1e-4, 3.0, 0.3),))
-    force = Course((0.0,), (0.0,), (0.0,), waves=(Wave(60.0, 20.0, 0.0),))
+    drive = InputProfile((0.0,), (base,), (0.0,), sinusoids=(Sinusoid(0.5 * base + 1e-4, 3.0, 0.3),))
+    force = InputProfile((0.0,), (0.0,), (0.0,), sinusoids=(Sinusoid(60.0, 20.0, 0.0),))
     simulator = accounted(paper_axis(contact), drive, force)
     simulator.advance(Instant(60.0, 0.0))
     energy = energy_of(simulator)
@@ -253,7 +254,7 @@ def test_the_balance_closes_under_sines(contact: CompliantContact, base: float) 
 
 @pytest.mark.parametrize('contact', [RIGID, COMPLIANT, UNDAMPED])
 def test_a_long_hold_under_a_vibration_does_not_depend_on_its_splits(contact: CompliantContact) -> None:
-    force = Course((0.0,), (0.0,), (0.0,), waves=(Wave(100.0, 50.0, 0.1),))
+    force = InputProfile((0.0,), (0.0,), (0.0,), sinusoids=(Sinusoid(100.0, 50.0, 0.1),))
     at_once, in_parts = (accounted(paper_axis(contact), constant(0.0), force) for _ in range(2))
     for k in range(1, 2001):
         in_parts.advance(Instant(*divmod(0.03 * k, 1.0)))
@@ -275,8 +276,8 @@ NEAR = math.sqrt(5.6e6 / 350.0) / (2.0 * math.pi)   # Hz, the paper's contact wi
 def test_a_hold_of_a_thousand_seconds_closes_at_any_frequency(contact: CompliantContact, frequency: float) -> None:
     for drive, force in (((1e-7 * frequency, frequency, 0.3), (100.0, 0.7 * frequency, 0.1)),
                          ((0.0, 1.0, 0.0), (100.0, frequency, 0.1))):
-        simulator = accounted(paper_axis(contact), Course((0.0,), (0.0,), (0.0,), waves=(Wave(*drive),)),
-                              Course((0.0,), (0.0,), (0.0,), waves=(Wave(*force),)))
+        simulator = accounted(paper_axis(contact), InputProfile((0.0,), (0.0,), (0.0,), sinusoids=(Sinusoid(*drive),)),
+                              InputProfile((0.0,), (0.0,), (0.0,), sinusoids=(Sinusoid(*force),)))
         assert simulator.advance(Instant(1000.0, 0.0)) == []
         assert energy_of(simulator).relative_residual <= 1e-12
 
@@ -285,7 +286,7 @@ def test_a_hold_of_a_thousand_seconds_closes_at_any_frequency(contact: Compliant
 @pytest.mark.parametrize('detuned', [0.0, 1e-12, 1e-9, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2])
 def test_near_resonance_the_balance_closes(damping: float, detuned: float) -> None:
     axis = dataclasses.replace(paper_axis(UNDAMPED), drive_damping=damping)
-    force = Course((0.0,), (0.0,), (0.0,), waves=(Wave(0.1, NEAR * (1.0 + detuned), 0.1),))
+    force = InputProfile((0.0,), (0.0,), (0.0,), sinusoids=(Sinusoid(0.1, NEAR * (1.0 + detuned), 0.1),))
     simulator = accounted(axis, constant(0.0), force)
     for time in (0.01, 0.1, 1.0, 10.0, 30.0):
         simulator.advance(instant(time))
@@ -294,8 +295,8 @@ def test_near_resonance_the_balance_closes(damping: float, detuned: float) -> No
 
 @pytest.mark.parametrize('damping', [0.0, 1.5e4, 1e6, 1e8, 1e9])
 def test_slow_and_fast_waves_together_over_stick_and_slip(damping: float) -> None:
-    drive = Course((0.0,), (0.002,), (1e-5,), waves=(Wave(1e-3, 3.0, 0.1), Wave(1e-4, 0.01, 0.7)))
-    force = Course((0.0,), (0.0,), (0.0,), waves=(Wave(10.0, 400.0, 0.0), Wave(10.0, NEAR, 0.0)))
+    drive = InputProfile((0.0,), (0.002,), (1e-5,), sinusoids=(Sinusoid(1e-3, 3.0, 0.1), Sinusoid(1e-4, 0.01, 0.7)))
+    force = InputProfile((0.0,), (0.0,), (0.0,), sinusoids=(Sinusoid(10.0, 400.0, 0.0), Sinusoid(10.0, NEAR, 0.0)))
     simulator = accounted(paper_axis(CompliantContact(5e6, damping)), drive, force)
     assert len(simulator.advance(Instant(10.0, 0.0))) > 20
     assert energy_of(simulator).relative_residual <= 1e-13
@@ -314,7 +315,7 @@ def test_near_critical_damping_the_balance_closes(critical: float) -> None:
 COUNTED = """
 import sys
 from stickslip_sim.axis import CompliantContact, InitialState
-from stickslip_sim.core.input_profile import Course, Wave
+from stickslip_sim.core.input_profile import InputProfile, Sinusoid
 from stickslip_sim.simulation.simulator import Simulator
 from stickslip_sim.core.types import Instant
 from tests.axes import RIGID, paper_axis
@@ -327,8 +328,8 @@ def count(frame, event, argument):
         raise SystemExit('no end')
 def counted(contact, frequency, duration, accounting):
     global calls
-    waves = Course((0.0,), (0.0,), (0.0,), waves=(Wave(1e-7, frequency, 0.1),)), Course(
-        (0.0,), (0.0,), (0.0,), waves=(Wave(50.0, frequency, 0.2),))
+    waves = InputProfile((0.0,), (0.0,), (0.0,), waves=(Sinusoid(1e-7, frequency, 0.1),)), InputProfile(
+        (0.0,), (0.0,), (0.0,), waves=(Sinusoid(50.0, frequency, 0.2),))
     simulator = Simulator(paper_axis(contact), InitialState(), *waves, accounting=accounting)
     calls = 0
     sys.setprofile(count)

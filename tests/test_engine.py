@@ -11,7 +11,7 @@ import pytest
 
 from stickslip_sim.axis import CompliantContact, InitialState
 from stickslip_sim.core.errors import SolverError
-from stickslip_sim.core.input_profile import Course, ramp, steps, table
+from stickslip_sim.core.input_profile import InputProfile, ramp, steps, table
 from stickslip_sim.core.types import Event, EventKind, Instant, Mode
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
 from tests.axes import COMPLIANT, RIGID, Contact, instant, make, of_kind, paper_axis, run
@@ -98,7 +98,7 @@ def test_grazing_the_limit_is_neither_missed_nor_invented() -> None:
             t = -(v + h * rate / c) / rate
             peak = c * (v + 0.5 * rate * t) * t + h * (v + rate * t)
             held = replace(axis, normal_force=peak / 0.24 / (1.0 + margin))
-            drive = Course((0.0, delay), (0.0, v), (0.0, rate))
+            drive = InputProfile((0.0, delay), (0.0, v), (0.0, rate))
             events = run(held, drive, delay + 1.9 * t)
             broke = bool(events) and events[0].time < delay + 1.1 * t
             assert broke == (margin > 0.0), (margin, v, rate)

@@ -21,13 +21,13 @@ from stickslip_sim.runs.error_estimate import error_estimate
 from stickslip_sim.runs.offline import run_offline
 from stickslip_sim.runs.perturbation import ROUNDING_UNIT, perturbed
 from stickslip_sim.scene import Scene, SolverSettings, load_scene
-from tests.reference.objects import axis_of, course_of
+from tests.reference.objects import axis_of, profile_of
 from tests.test_against_reference import RUNS
 
 
 def scene_of(values: dict[str, Any]) -> Scene:
-    return dataclasses.replace(load_scene('paper_fig7'), axis=axis_of(values), drive=course_of(values['drive']),
-                               force=course_of(values['force']), initial=InitialState(**values['initial']))
+    return dataclasses.replace(load_scene('paper_fig7'), axis=axis_of(values), drive=profile_of(values['drive']),
+                               force=profile_of(values['force']), initial=InitialState(**values['initial']))
 
 
 def test_the_true_error_is_within_the_estimate_and_not_far_below() -> None:

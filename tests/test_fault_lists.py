@@ -9,7 +9,7 @@ import pytest
 
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.time_grid import Grid
-from stickslip_sim.rig import Fault, NoteKind
+from stickslip_sim.rig import Fault, RigEventKind
 from stickslip_sim.rig.faults import MAX_FAULTS, RULES
 from stickslip_sim.scene import load_scene
 from tests.rigs import bits, inject, make, run, told
@@ -48,10 +48,10 @@ class TestIds:
 
     def test_a_planned_one_is_cleared_before_it_begins(self) -> None:
         rig = make()
-        products = run(rig, 100, {10: [inject('force_pulse', 0.05, 0.02, 1.0, 'a'), inject('drive_freeze', 0.05)],
+        results = run(rig, 100, {10: [inject('force_pulse', 0.05, 0.02, 1.0, 'a'), inject('drive_freeze', 0.05)],
                                   20: [lambda rig: rig.clear_fault('a')]})
-        assert not any(product.sample.external_force for product in products)
-        assert products[60].sample.drive_velocity == 0.0
+        assert not any(result.sample.external_force for result in results)
+        assert results[60].sample.drive_velocity == 0.0
 
     def test_the_most_there_can_be(self) -> None:
         rig = make()
@@ -60,7 +60,7 @@ class TestIds:
         error = refusal(lambda: rig.inject(Fault('', 'force_pulse', 0.001, 0.001, 1.0)))
         assert f'at most {MAX_FAULTS} at a time' in str(error)
         assert len(str(refusal(lambda: rig.clear_fault('x')))) < 500
-        assert [product.sample.external_force for product in run(rig, 4)] == [0.0, 0.0, MAX_FAULTS, 0.0]
+        assert [result.sample.external_force for result in run(rig, 4)] == [0.0, 0.0, MAX_FAULTS, 0.0]
         assert list(rig.fault_ids) == []
 
 
@@ -110,8 +110,9 @@ class TestScene:
         rig = load_scene('paper_fig8').make_rig()
         injected = run(rig, 1500, {0: [inject('force_pulse', 0.5, 0.5, 300.0, 'a'),
                                        inject('drive_freeze', 1.0, math.inf, 0.0, 'b')]})
-        assert bits(product.sample for product in of_scene) == bits(product.sample for product in injected)
-        assert told(of_scene) == [(501, NoteKind.FAULT_BEGIN), (1001, NoteKind.FAULT_END), (1001, NoteKind.FAULT_BEGIN)]
+        assert bits(result.sample for result in of_scene) == bits(result.sample for result in injected)
+        assert told(of_scene) == [(501, RigEventKind.FAULT_BEGIN), (1001, RigEventKind.FAULT_END),
+                                  (1001, RigEventKind.FAULT_BEGIN)]
 
     @pytest.mark.parametrize(('change', 'told'), [
         ({'faults.ids': ['a', 'a']}, "faults (a): id = 'a'"),

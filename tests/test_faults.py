@@ -14,7 +14,7 @@ from stickslip_sim.axis import Axis, InitialState
 from stickslip_sim.core.input_profile import constant, steps
 from stickslip_sim.core.time_grid import Grid
 from stickslip_sim.core.types import Instant
-from stickslip_sim.rig import Fault, NoteKind
+from stickslip_sim.rig import Fault, RigEventKind
 from stickslip_sim.rig.faults import Faults
 from stickslip_sim.scene import load_scene
 from stickslip_sim.simulation.simulator import Simulator
@@ -34,13 +34,13 @@ def scaled(axis: Axis, factor: float) -> Axis:
 class TestFrictionScale:
     @pytest.mark.parametrize('axis', [AXIS, STUCK])
     def test_is_an_axis_with_other_coefficients(self, axis: Axis) -> None:
-        products = run(make(axis), 3000, {1000: [inject('friction_scale', duration=1.0, value=1.7)]})
+        results = run(make(axis), 3000, {1000: [inject('friction_scale', duration=1.0, value=1.7)]})
         other = Simulator(axis, InitialState(), constant(0.002), constant(0.0))
-        for product in products:
-            if product.step in (1000, 2000):
-                other.change_axis(scaled(axis, 1.7) if product.step == 1000 else axis)
-            assert bits(product.events) == bits(other.advance(GRID.instant(product.step)))
-            assert repr(product.sample) == repr(other.sample())
+        for result in results:
+            if result.step in (1000, 2000):
+                other.change_axis(scaled(axis, 1.7) if result.step == 1000 else axis)
+            assert bits(result.events) == bits(other.advance(GRID.instant(result.step)))
+            assert repr(result.sample) == repr(other.sample())
 
     def test_two_that_overlap_multiply(self) -> None:
         rig = make()
@@ -53,8 +53,8 @@ class TestFrictionScale:
         assert rig.simulator.axis == scaled(AXIS, 0.5)
 
     def test_no_friction_at_all(self) -> None:
-        products = run(make(STUCK), 2000, {1: [inject('friction_scale', duration=math.inf, value=0.0)]})
-        force = [product.sample.friction_force for product in products[2:]]
+        results = run(make(STUCK), 2000, {1: [inject('friction_scale', duration=math.inf, value=0.0)]})
+        force = [result.sample.friction_force for result in results[2:]]
         assert max(map(abs, force)) == 0.0
 
     @pytest.mark.parametrize('scene', ['stribeck', 'paper_fig4_falling', 'cutting_force'])
@@ -73,21 +73,21 @@ class TestFrictionScale:
 class TestForcePulse:
     @pytest.mark.parametrize('base', [0.0, 120.0])
     def test_is_a_course_with_that_pulse(self, base: float) -> None:
-        products = run(make(force=base), 1500, {701: [inject('force_pulse', duration=0.1, value=400.0)]})
-        course = steps('force', [0.0, 0.7, 0.8], [base, base + 400.0, base])
-        other = Simulator(AXIS, InitialState(), constant(0.002), course)
+        results = run(make(force=base), 1500, {701: [inject('force_pulse', duration=0.1, value=400.0)]})
+        profile = steps('force', [0.0, 0.7, 0.8], [base, base + 400.0, base])
+        other = Simulator(AXIS, InitialState(), constant(0.002), profile)
         events = []
-        for product in products:
-            events += other.advance(GRID.instant(product.step))
-            if product.step not in (700, 800):     # a border: here a step ends, there the next piece begins
-                assert repr(product.sample) == repr(other.sample())
-        assert bits(event for product in products for event in product.events) == bits(events)
+        for result in results:
+            events += other.advance(GRID.instant(result.step))
+            if result.step not in (700, 800):     # a border: here a step ends, there the next piece begins
+                assert repr(result.sample) == repr(other.sample())
+        assert bits(event for result in results for event in result.events) == bits(events)
 
     def test_those_that_overlap_add_to_each_other_and_to_commands(self) -> None:
         script: Script = {10: [inject('force_pulse', duration=0.02, value=100.0)],
                           20: [inject('force_pulse', duration=0.02, value=-30.0)],
                           25: [lambda rig: rig.command_force(7.0)]}
-        forces = [product.sample.external_force for product in run(make(), 50, script)]
+        forces = [result.sample.external_force for result in run(make(), 50, script)]
         assert [forces[step] for step in (9, 10, 20, 25, 30, 40)] == [0.0, 100.0, 70.0, 77.0, -23.0, 7.0]
 
     def test_on_top_of_a_sine(self) -> None:
@@ -122,20 +122,21 @@ class TestTimes:
         assert faults.ids == []
 
     def test_are_told_with_their_step(self) -> None:
-        products = run(make(), 60, {10: [inject('force_pulse', 0.02, 0.01, 5.0, 'knock')]})
-        assert told(products) == [(10, NoteKind.FAULT_INJECTED), (30, NoteKind.FAULT_BEGIN), (40, NoteKind.FAULT_END)]
-        assert {(note.id, note.value, note.fault) for product in products for note in product.notes} == {
+        results = run(make(), 60, {10: [inject('force_pulse', 0.02, 0.01, 5.0, 'knock')]})
+        assert told(results) == [(10, RigEventKind.FAULT_INJECTED), (30, RigEventKind.FAULT_BEGIN),
+                                 (40, RigEventKind.FAULT_END)]
+        assert {(note.id, note.value, note.fault) for result in results for note in result.notes} == {
             ('knock', 5.0, Fault('knock', 'force_pulse', 0.02, 0.01, 5.0))}
 
     def test_inf_lasts_until_it_is_cleared(self) -> None:
-        products = run(make(), 500, {10: [inject('force_pulse', 0.0, math.inf, 5.0, 'a')],
+        results = run(make(), 500, {10: [inject('force_pulse', 0.0, math.inf, 5.0, 'a')],
                                      400: [lambda rig: rig.clear_fault('a')]})
-        assert [product.step for product in products if product.sample.external_force] == [*range(10, 400)]
-        assert told(products)[-1] == (400, NoteKind.FAULT_CLEARED)
+        assert [result.step for result in results if result.sample.external_force] == [*range(10, 400)]
+        assert told(results)[-1] == (400, RigEventKind.FAULT_CLEARED)
 
     def test_one_begins_as_another_ends(self) -> None:
         script = {10: [inject('force_pulse', 0.0, 0.01, 5.0), inject('force_pulse', 0.01, 0.01, 7.0)]}
-        forces = [product.sample.external_force for product in run(make(), 40, script)]
+        forces = [result.sample.external_force for result in run(make(), 40, script)]
         assert forces[10:30] == [5.0] * 10 + [7.0] * 10
 
 
@@ -154,8 +155,8 @@ def test_offline_runs_go_through_the_same_faults() -> None:
     faults = (Fault('p', 'force_pulse', 0.3, 0.2, 300.0), Fault('s', 'friction_scale', 0.4, 0.5, 0.5),
               Fault('f', 'drive_freeze', 0.6, 0.1, 0.0))
     stepped, free = make(faults=faults), make(faults=faults)
-    products = run(stepped, 1501)
+    results = run(stepped, 1501)
     events = free.advance(Instant(1.5, 0.0))
-    ours = [event for product in products for event in product.events]
+    ours = [event for result in results for event in result.events]
     assert [event.kind for event in events] == [event.kind for event in ours]
     assert [event.time for event in events] == pytest.approx([event.time for event in ours], abs=1e-12)

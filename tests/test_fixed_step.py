@@ -10,7 +10,7 @@ import pytest
 
 from stickslip_sim.axis import Axis, Friction, InitialState
 from stickslip_sim.core.errors import InputError, SolverError
-from stickslip_sim.core.input_profile import Course, Wave, steps, table
+from stickslip_sim.core.input_profile import InputProfile, Sinusoid, steps, table
 from stickslip_sim.core.types import EventKind, Mode
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
 from stickslip_sim.scene import load_scene
@@ -52,8 +52,8 @@ class TestOrder:
     @pytest.mark.parametrize('method', METHODS)
     def test_under_waves(self, method: str) -> None:
         """Waves at the stages of a step; the adaptive solver, at a tight tolerance, is the judge."""
-        drive = Course((0.0,), (0.05,), (0.0,), waves=(Wave(0.005, 3.0, 0.3),))
-        force = Course((0.0,), (0.0,), (0.0,), waves=(Wave(100.0, 5.0, 0.0), Wave(50.0, 2.0, 1.0)))
+        drive = InputProfile((0.0,), (0.05,), (0.0,), sinusoids=(Sinusoid(0.005, 3.0, 0.3),))
+        force = InputProfile((0.0,), (0.0,), (0.0,), sinusoids=(Sinusoid(100.0, 5.0, 0.0), Sinusoid(50.0, 2.0, 1.0)))
         judge = adaptive.solver('DOP853', 1e-13, 1e-15)
         expected = simulate(judge, smooth_axis(), drive, 0.4, force, SLIDING)[1]
         self._check(method, smooth_axis(), drive, expected.position, expected.velocity, force)
@@ -74,8 +74,8 @@ class TestOrder:
         assert 0.7 < order(lengths, errors) < 1.3
 
     @staticmethod
-    def _check(method: str, axis: Axis, drive: Course, position: float, velocity: float,
-               force: float | Course = 30.0) -> None:
+    def _check(method: str, axis: Axis, drive: InputProfile, position: float, velocity: float,
+               force: float | InputProfile = 30.0) -> None:
         ends = [simulate(fixed_step.solver(method, step), axis, drive, 0.4, force, SLIDING)[1] for step in STEPS]
         for errors in ([abs(s.position - position) for s in ends], [abs(s.velocity - velocity) for s in ends]):
             assert order(STEPS, errors) == pytest.approx(ORDER[method], rel=0.12)

@@ -17,7 +17,7 @@ import pytest
 
 from stickslip_sim.config.ros_yaml import plain_value
 from stickslip_sim.recording import read_run
-from stickslip_sim.rig import NoteKind
+from stickslip_sim.rig import RigEventKind
 from stickslip_sim.scene import Scene, load_scene
 from tests.replays import assert_same_states, made_again
 from tests.ros_nodes import client, node_and_client, recording_into, running
@@ -101,7 +101,7 @@ class TestController:
                 assert axis.status('command')[0].message.startswith('timed out: no drive velocity comes')
         recorded = read_run(tmp_path / 'run')
         kinds = [event.kind for event in map(recorded.decode, recorded.messages(['/rig_event']))]
-        assert kinds == [NoteKind.COMMAND_TIMEOUT, NoteKind.COMMAND_RESUMED, NoteKind.COMMAND_TIMEOUT]
+        assert kinds == [RigEventKind.COMMAND_TIMEOUT, RigEventKind.COMMAND_RESUMED, RigEventKind.COMMAND_TIMEOUT]
         assert '2 time-outs' in recorded.receipt['timing']['verdict']
         assert_same_states(recorded, made_again(recorded, scene_with(wanted)))
 

@@ -10,14 +10,14 @@ from typing import Any
 import pytest
 
 from stickslip_sim.axis import CompliantContact, InitialState
-from stickslip_sim.core.input_profile import Course, constant, steps
+from stickslip_sim.core.input_profile import InputProfile, constant, steps
 from stickslip_sim.core.types import Event, EventKind, Instant, Mode
 from stickslip_sim.extremes.grazing_drive import FREQUENCIES, PHASES, grazing_drive
 from stickslip_sim.friction import StaticLaw, StaticLawKind
 from stickslip_sim.reference import simulate
 from tests.axes import COMPLIANT, RIGID, instant, make, paper_axis, random_axis, run
 from tests.conftest import Program
-from tests.forced_courses import random_courses, with_waves
+from tests.forced_courses import random_profiles, with_waves
 
 LIMIT = 0.24 * 350 * 9.80665
 
@@ -65,14 +65,14 @@ def test_a_short_wave_on_a_slow_one_is_found_where_their_peaks_meet() -> None:
     """Incommensurate waves that pass the limit together only: the first time is that of a fine scan."""
     rng = random.Random(8)
     for _ in range(20):
-        course = with_waves(constant(0.0), (LIMIT * 0.49, rng.uniform(0.2, 1.0), rng.uniform(-1, 1)),
+        profile = with_waves(constant(0.0), (LIMIT * 0.49, rng.uniform(0.2, 1.0), rng.uniform(-1, 1)),
                             (LIMIT * 0.525, rng.uniform(5, 9), rng.uniform(-0.2, 0.2)))
-        scan = next((k / 2000 for k in range(40000) if abs(course.value_at(k / 2000)) > LIMIT), math.inf)
-        events = run(paper_axis(RIGID), 0.0, 20.0, course)
+        scan = next((k / 2000 for k in range(40000) if abs(profile.value_at(k / 2000)) > LIMIT), math.inf)
+        events = run(paper_axis(RIGID), 0.0, 20.0, profile)
         first = events[0].time if events else math.inf
         assert scan - 1.0 / 2000 <= first <= scan or (scan == math.inf and first > 0.0)
         if events:
-            assert abs(course.value_at(first)) == pytest.approx(LIMIT, rel=1e-12)
+            assert abs(profile.value_at(first)) == pytest.approx(LIMIT, rel=1e-12)
 
 
 @pytest.mark.parametrize('contact', [RIGID, COMPLIANT])
@@ -104,7 +104,7 @@ def test_a_force_whose_peak_is_the_limit_holds() -> None:
 def test_one_call_or_many_give_the_same_bits(seed: int) -> None:
     rng = random.Random(seed)
     axis = random_axis(rng)
-    drive, force = random_courses(rng, axis)
+    drive, force = random_profiles(rng, axis)
     whole = make(axis, drive, force)
     expected = whole.advance(instant(2.0))
     for ticks in (True, False):
@@ -121,7 +121,7 @@ def test_one_call_or_many_give_the_same_bits(seed: int) -> None:
 def test_mirror_and_units_of_a_power_of_two_are_bit_identical(seed: int) -> None:
     rng = random.Random(seed)
     axis = random_axis(rng)
-    drive, force = random_courses(rng, axis)
+    drive, force = random_profiles(rng, axis)
     events = run(axis, drive, 2.0, force)
     mirrored = run(axis, _scaled(drive, -1.0), 2.0, _scaled(force, -1.0))
     for e, image in zip(events, mirrored, strict=True):
@@ -151,9 +151,10 @@ def _mirrored(event: Event) -> Event:
                           friction_force=-event.friction_force)
 
 
-def _scaled(course: Course, factor: float) -> Course:
-    return Course(course.starts, tuple(factor * x for x in course.values), tuple(factor * x for x in course.rates),
-                  course.period, tuple(wave._replace(amplitude=factor * wave.amplitude) for wave in course.waves))
+def _scaled(profile: InputProfile, factor: float) -> InputProfile:
+    return InputProfile(profile.starts, tuple(factor * x for x in profile.values),
+                        tuple(factor * x for x in profile.rates),
+                  profile.period, tuple(one._replace(amplitude=factor * one.amplitude) for one in profile.sinusoids))
 
 
 def test_waves_without_amplitude_change_no_bit() -> None:

@@ -12,16 +12,16 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from stickslip_sim.axis import Axis, CompliantContact
-from stickslip_sim.core.input_profile import Course, constant
+from stickslip_sim.core.input_profile import InputProfile, constant
 from stickslip_sim.core.types import Event, EventKind, Mode
 from tests.axes import COMPLIANT, RIGID, make, paper_axis, random_axis
-from tests.forced_courses import random_courses, with_waves
+from tests.forced_courses import random_profiles, with_waves
 
 
 class Piece:
     """The motion from one event to the next as the model states it."""
 
-    def __init__(self, axis: Axis, drive: Course, force: Course, event: Event, excess: float,
+    def __init__(self, axis: Axis, drive: InputProfile, force: InputProfile, event: Event, excess: float,
                  deflection: float) -> None:
         self.axis, self.drive, self.force, self.event, self.excess = axis, drive, force, event, excess
         self.deflection = deflection
@@ -60,8 +60,8 @@ class Piece:
             t = float(t)   # scipy hands over its own numbers
             return [y[1], self.acceleration(t, *map(float, y)), self.drive.value_at(t)]
         start = self.event.time
-        breaks = [c + k * (course.period if course.period < math.inf else 0.0)
-                  for course in (self.drive, self.force) for c in course.starts for k in range(4)]
+        breaks = [c + k * (profile.period if profile.period < math.inf else 0.0)
+                  for profile in (self.drive, self.force) for c in profile.starts for k in range(4)]
         y, parts = [0.0, u0, s0], []
         for a, b in pairwise(sorted({start, end, *(t for t in breaks if start < t < end)})):
             part = solve_ivp(rates, (a, np.nextafter(b, 0.0)), y, method='DOP853', rtol=1e-12, atol=1e-15,
@@ -89,7 +89,7 @@ class Piece:
             assert sense * direction * self.axis.mass * self.acceleration(t, x, u, s) >= -slack
 
 
-def follow(axis: Axis, drive: Course, force: Course, duration: float) -> int:
+def follow(axis: Axis, drive: InputProfile, force: InputProfile, duration: float) -> int:
     """Check every piece of a run; return how many there were."""
     simulator = make(axis, drive, force)
     events = simulator.advance(simulator.time._replace(second=math.floor(duration), fraction=duration % 1.0))
@@ -129,7 +129,7 @@ def follow(axis: Axis, drive: Course, force: Course, duration: float) -> int:
 def test_random_axes_under_random_waves_follow_the_model(seed: int) -> None:
     rng = random.Random(seed)
     axis = random_axis(rng)
-    drive, force = random_courses(rng, axis)
+    drive, force = random_profiles(rng, axis)
     follow(axis, drive, force, 1.6)
 
 

@@ -14,7 +14,7 @@ from rclpy.serialization import serialize_message
 from stickslip_sim.core.errors import RecordingError
 from stickslip_sim.recording import Topic
 from stickslip_sim.recording.topics import PARAMETER_EVENTS, RIG_EVENT
-from stickslip_sim.rig import NoteKind
+from stickslip_sim.rig import RigEventKind
 from stickslip_sim.ros.replay.orders import Request, is_timeout, request_of
 from tests.fuzz.readers import accepts_or_refuses
 
@@ -28,7 +28,7 @@ MASS = Parameter(name='axis.mass', value=ParameterValue(type=ParameterType.PARAM
 
 @pytest.fixture(scope='module')
 def orders() -> list[tuple[Topic, bytes]]:
-    fault = RigEvent(kind=int(NoteKind.FAULT_INJECTED), id='dry', fault='friction_scale')
+    fault = RigEvent(kind=int(RigEventKind.FAULT_INJECTED), id='dry', fault='friction_scale')
     change = ParameterEvent(node='/feed_axis', changed_parameters=[MASS])
     return [(RIG_EVENT, serialize_message(fault)), (PARAMETER_EVENTS, serialize_message(change))]
 

@@ -27,7 +27,7 @@ from stickslip_sim.axis.layout import (
 )
 from stickslip_sim.cli.main import run as tool
 from stickslip_sim.core.errors import UnsoundError
-from stickslip_sim.core.input_profile import Course, Wave, constant
+from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant
 from stickslip_sim.core.types import EventKind, Mode
 from stickslip_sim.extremes.shared_axes import COMPLIANT, RIGID, Contact, instant, paper_axis
 from stickslip_sim.scene import load_scene
@@ -139,7 +139,7 @@ def test_an_axis_of_a_batch_beyond_the_range_of_numbers_is_not_complete() -> Non
 @pytest.mark.parametrize('contact', [RIGID, COMPLIANT])
 def test_a_load_that_comes_and_goes_within_one_stick_is_sound(contact: Contact) -> None:
     """Nothing went through in the end: rounding is all that the balance leaves, and all that it could be held to."""
-    drive = Course((0.0, 0.1, 0.2), (0.0, 0.001, 0.0), (0.01, -0.01, 0.0), waves=(Wave(1e-4, 5.0, 0.0),))
+    drive = InputProfile((0.0, 0.1, 0.2), (0.0, 0.001, 0.0), (0.01, -0.01, 0.0), sinusoids=(Sinusoid(1e-4, 5.0, 0.0),))
     simulator = Simulator(paper_axis(contact), InitialState(), drive, constant(0.0), accounting=True)
     for tick in range(1, 1001):
         simulator.advance(instant(tick / 1000))

@@ -32,14 +32,14 @@ def _exact(gamma: float, omega2: float, x: float, rate: float, k0: float, k1: fl
     begin = mp.matrix([x, rate, k0, k1, 0, 0, 0])
     end = mp.expm(matrix * mp.mpf(t), method='taylor') * begin
     pairs = [(a, b) for a in range(4) for b in range(a, 4)]
-    products = mp.matrix(11)
+    results = mp.matrix(11)
     for i, (a, b) in enumerate(pairs):
         for j in range(4):
-            products[i, pairs.index((min(j, b), max(j, b)))] += matrix[a, j]
-            products[i, pairs.index((min(a, j), max(a, j)))] += matrix[b, j]
-    products[10, 0] = 1
+            results[i, pairs.index((min(j, b), max(j, b)))] += matrix[a, j]
+            results[i, pairs.index((min(a, j), max(a, j)))] += matrix[b, j]
+    results[10, 0] = 1
     start = mp.matrix([begin[a] * begin[b] for a, b in pairs] + [0])
-    total = (mp.expm(products * mp.mpf(t), method='taylor') * start)[10]
+    total = (mp.expm(results * mp.mpf(t), method='taylor') * start)[10]
     return [end[0], end[1], end[4], end[5], end[6], total]
 
 
@@ -97,16 +97,16 @@ def test_the_integrals_of_waves(span: float) -> None:
         cycle, cycle_other = cycle_within(frequency, t), cycle_within(other, t)
         w, w_other = TURN * frequency, TURN * other
         zero, zero_other = wave_integral(frequency, cycle, t), wave_integral(other, cycle_other, t)
-        wave = cmath.exp(1j * TURN * cycle)
+        sinusoid = cmath.exp(1j * TURN * cycle)
         same, sum_ = wave_products(frequency, cycle, other, cycle_other, t)
         with mp.workdps(50):
             a, b = 2j * mp.pi * mp.mpf(frequency), 2j * mp.pi * mp.mpf(other)
             expected = {'zero': _wave(a, t), 'same': _wave(a - b, t), 'sum': _wave(a + b, t),
                         'one': (t * mp.exp(a * t) - _wave(a, t)) / a,
                         'swept': (_wave(a, t) - t) / a, 'ramped': (_wave(a + b, t) - _wave(a, t)) / b}
-        found = {'zero': zero, 'same': same, 'sum': sum_, 'one': wave_moment(w, wave, zero, t),
-                 'swept': swept_integral(w, 1.0, 0.0, zero, wave_moment(w, wave, zero, t), t),
-                 'ramped': ramped_integral(w, wave, zero, w_other, zero_other, sum_, t)}
+        found = {'zero': zero, 'same': same, 'sum': sum_, 'one': wave_moment(w, sinusoid, zero, t),
+                 'swept': swept_integral(w, 1.0, 0.0, zero, wave_moment(w, sinusoid, zero, t), t),
+                 'ramped': ramped_integral(w, sinusoid, zero, w_other, zero_other, sum_, t)}
         for name, value in found.items():
             scale = max(abs(complex(expected[name])), {'one': t / w, 'swept': t / w}.get(name, 1.0 / w)
                         if w * t > 1.0 else 0.0)

@@ -17,7 +17,7 @@ def test_a_run_from_event_to_event_is_that_of_the_steps(name: str) -> None:
     scene = load_scene(name, {**FAULTS, 'time.rate': 200.0})
     run = run_offline(scene, 2.0, 0.005)
     rig = scene.make_rig()
-    products = [rig.make_step() for _ in range(401)]
-    assert run.events == [event for product in products for event in product.events]
-    assert list(run.sample_rows()) == [product.sample for product in products]
+    results = [rig.make_step() for _ in range(401)]
+    assert run.events == [event for result in results for event in result.events]
+    assert list(run.sample_rows()) == [result.sample for result in results]
     assert run.events != run_offline(load_scene(name, {'time.rate': 200.0}), 2.0).events

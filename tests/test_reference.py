@@ -64,8 +64,8 @@ def test_damped_slip_with_constant_friction() -> None:
         zeta = mpf(4000) / (2 * mpmath.sqrt(mpf(6e5) * 350))
         s, a = mpmath.sqrt(1 - zeta**2), mpf(412) / (v * mpmath.sqrt(mpf(6e5) * 350))
         for tau in (mpf('0.001'), mpf('0.02'), mpf('0.05')):
-            wave = mpmath.cos(s * omega * tau) - (a - zeta) / s * mpmath.sin(s * omega * tau)
-            exact = v * (1 - mpmath.exp(-zeta * omega * tau) * wave)
+            sinusoid = mpmath.cos(s * omega * tau) - (a - zeta) / s * mpmath.sin(s * omega * tau)
+            exact = v * (1 - mpmath.exp(-zeta * omega * tau) * sinusoid)
             assert abs(run.state_at([run[0].time + tau])[0].velocity - exact) < mpf(10) ** -38
 
 

@@ -14,7 +14,7 @@ from scipy.integrate import solve_ivp
 
 from stickslip_sim.axis import Axis, Friction, InitialState, RigidContact
 from stickslip_sim.core.errors import InputError, StickslipError
-from stickslip_sim.core.input_profile import Course, Wave, constant, steps, table
+from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant, steps, table
 from stickslip_sim.core.types import EventKind, Mode
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
 from stickslip_sim.reference import simulate
@@ -29,8 +29,8 @@ from tests.reference.objects import exact_run  # noqa: E402
 from tests.reference.scenes import Parameters, paper  # noqa: E402
 
 NEVER = math.inf
-FEED = Course((0.0,), (0.002,), (0.0,), NEVER, (Wave(0.01, 3.0, 0.3),))
-SHAKE = Course((0.0,), (0.0,), (0.0,), NEVER, (Wave(100.0, 20.0, 0.0), Wave(30.0, 7.0, 1.0)))
+FEED = InputProfile((0.0,), (0.002,), (0.0,), NEVER, (Sinusoid(0.01, 3.0, 0.3),))
+SHAKE = InputProfile((0.0,), (0.0,), (0.0,), NEVER, (Sinusoid(100.0, 20.0, 0.0), Sinusoid(30.0, 7.0, 1.0)))
 
 
 def coulomb_axis(kinetic: KineticTable, stiffness: float, damping: float) -> Axis:
@@ -46,25 +46,25 @@ def coulomb_axis(kinetic: KineticTable, stiffness: float, damping: float) -> Axi
 def test_sliding_under_a_sine_is_the_closed_form(stiffness: float, damping: float, frequency: float) -> None:
     """Always ẋ > 0, so friction is constant: x = particular solution, plus a free oscillation from the start."""
     axis = coulomb_axis(KineticTable((0.0,), (0.25,)), stiffness, damping)
-    wave = Wave(0.02, frequency, 0.7)
-    drive = Course((0.0,), (0.5,), (0.0,), NEVER, (wave,))
-    force = Course((0.0,), (4.0,), (0.0,), NEVER, (Wave(0.3, 11.0, -1.0),))
+    sinusoid = Sinusoid(0.02, frequency, 0.7)
+    drive = InputProfile((0.0,), (0.5,), (0.0,), NEVER, (sinusoid,))
+    force = InputProfile((0.0,), (4.0,), (0.0,), NEVER, (Sinusoid(0.3, 11.0, -1.0),))
     run = simulate(axis, InitialState(velocity=0.5), drive, force, 1.5)
     assert not of_kind(run.events, EventKind.STICK)
     with mpmath.workdps(40):
         for t in (mpf('0.1'), mpf('0.77'), mpf('1.5')):
             got = run.exact.state_at([t])[0]
-            want = sliding(stiffness, damping, wave, t)
+            want = sliding(stiffness, damping, sinusoid, t)
             assert abs(got.velocity - want) < mpf(10) ** -29
 
 
-def sliding(stiffness: float, damping: float, wave: Wave, t: mpf) -> mpf:
+def sliding(stiffness: float, damping: float, sinusoid: Sinusoid, t: mpf) -> mpf:
     """Solve 2 u'' + h u' + c u = c v + h v' + F' for u by superposition; u(0) = 0.5, 2 u'(0) = h (v(0) - 0.5) + F(0).
 
     With the mean forces in balance (F_e = N mu_k) only the sines act.
     """
     m, c, h = mpf(2), mpf(stiffness), mpf(damping)
-    parts = [(mpf(wave.amplitude), mpf(wave.frequency), mpf(wave.phase), True),
+    parts = [(mpf(sinusoid.amplitude), mpf(sinusoid.frequency), mpf(sinusoid.phase), True),
              (mpf(0.3), mpf(11), mpf(-1), False)]
     steady, rate, push = mpf(0.5), mpf(0), mpf(0)
     now = steady
@@ -161,7 +161,7 @@ def test_a_grazing_sine_breaks_away_where_it_passes_the_limit(contact: Any, exce
         gain = contact_gain(axis, omega)
         amplitude = float(limit / abs(gain) * (1 + mpf(excess)))
         assert (amplitude * abs(gain) > limit) == (excess > 0)
-        force = Course((0.0,), (0.0,), (0.0,), NEVER, (Wave(amplitude, frequency, phase),))
+        force = InputProfile((0.0,), (0.0,), (0.0,), NEVER, (Sinusoid(amplitude, frequency, phase),))
         run = simulate(axis, InitialState(), constant(0.0), force, 8.0)
         assert [e.kind for e in run.events[:1]] == ([EventKind.BREAKAWAY] if excess > 0 else [])
         if run.events:

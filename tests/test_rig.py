@@ -12,13 +12,13 @@ import pytest
 
 from stickslip_sim.axis import InitialState
 from stickslip_sim.core.errors import InputError, SolverError
-from stickslip_sim.core.input_profile import Course, Wave, constant
+from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant
 from stickslip_sim.core.time_grid import Grid
 from stickslip_sim.core.types import EventKind
 from stickslip_sim.realtime.pacing import Unpaced
 from stickslip_sim.realtime.step_loop import StepLoop
 from stickslip_sim.realtime.watchdog import Watchdog
-from stickslip_sim.rig import Fault, Product, Rig
+from stickslip_sim.rig import Fault, Rig, StepResult
 from stickslip_sim.rig.drive import DriveLimits
 from stickslip_sim.rig.encoder import EncoderSettings
 from stickslip_sim.rig.settings import RigSettings
@@ -41,7 +41,7 @@ class TestDeterminism:
         script = random_script(seed, STEPS)
         first, second = (run(make(**FULL), STEPS, script) for _ in range(2))
         assert bits(first) == bits(second)
-        assert len({product.sample.velocity for product in first}) > STEPS // 10
+        assert len({result.sample.velocity for result in first}) > STEPS // 10
 
     @pytest.mark.parametrize('seed', range(4))
     def test_reset_gives_the_same_run_again(self, seed: int) -> None:
@@ -80,7 +80,7 @@ class TestDeterminism:
 
     def test_noise_is_in_the_measurement_alone(self) -> None:
         one, other = (run(make(seed=seed, measures=True, encoder=EncoderSettings(noise=1e-6)), 300) for seed in (1, 2))
-        assert bits(product.sample for product in one) == bits(product.sample for product in other)
+        assert bits(result.sample for result in one) == bits(result.sample for result in other)
         assert all(a.measured != b.measured for a, b in zip(one, other))
 
     def test_seeds_matter_to_the_motion_when_commands_are_lost(self) -> None:
@@ -94,20 +94,20 @@ class TestDeterminism:
         script: Script = {step: [change_velocity(step)] for step in range(300)}
         loss = Fault('l', 'command_loss', 0.0, math.inf, 0.5)
         without, with_noise = (run(make(faults=(loss,), **settings), 300, script) for settings in ({}, noisy))
-        assert bits(product.sample for product in without) == bits(product.sample for product in with_noise)
+        assert bits(result.sample for result in without) == bits(result.sample for result in with_noise)
 
 
 def change_velocity(step: int) -> Order:
     return lambda rig: rig.command_velocity(step * 1e-5)
 
 
-def in_groups(rig: Rig, groups: Sequence[int], script: Script) -> list[Product]:
+def in_groups(rig: Rig, groups: Sequence[int], script: Script) -> list[StepResult]:
     """Make step 0 and then steps group by group, in the thread of a loop; orders are given as steps come."""
-    products: list[Product] = []
+    results: list[StepResult] = []
 
-    def take(product: Product) -> None:
-        products.append(product)
-        for order in script.get(product.step + 1, ()):
+    def take(result: StepResult) -> None:
+        results.append(result)
+        for order in script.get(result.step + 1, ()):
             order(rig)
 
     for order in script.get(0, ()):
@@ -118,7 +118,7 @@ def in_groups(rig: Rig, groups: Sequence[int], script: Script) -> list[Product]:
         assert loop.at_boundary(partial(loop.run_steps, count, None, None, lambda: False))
     loop.stop()
     assert loop.crash is None
-    return products
+    return results
 
 
 class TestNeutral:
@@ -139,12 +139,12 @@ class TestNeutral:
             if force is not None:
                 rig.command_force(force)
                 bare.command_force(force)
-            product = rig.make_step()
-            assert bits(product.events) == bits(bare.advance(grid.instant(step)))
-            assert repr(product.sample) == repr(bare.sample())
-            if product.measured:
-                assert product.measured == (product.sample.position, product.sample.velocity,
-                                            product.sample.drive_position, product.sample.drive_velocity)
+            result = rig.make_step()
+            assert bits(result.events) == bits(bare.advance(grid.instant(step)))
+            assert repr(result.sample) == repr(bare.sample())
+            if result.measured:
+                assert result.measured == (result.sample.position, result.sample.velocity,
+                                            result.sample.drive_position, result.sample.drive_velocity)
 
     def test_what_is_not_measured_is_not_there(self) -> None:
         assert run(make(encoder=EncoderSettings(1e-6)), 3)[-1].measured is None
@@ -153,13 +153,13 @@ class TestNeutral:
 class TestOrders:
     def test_of_several_before_a_step_the_last_counts(self) -> None:
         rig = make()
-        product = run(rig, 11, {10: [change_velocity(5), change_velocity(1000)]})[-1]
-        assert (product.velocity, product.sample.drive_velocity, rig.counts.heard) == (0.01, 0.01, 1)
+        result = run(rig, 11, {10: [change_velocity(5), change_velocity(1000)]})[-1]
+        assert (result.velocity, result.sample.drive_velocity, rig.counts.heard) == (0.01, 0.01, 1)
 
     @pytest.mark.parametrize('step', [0, 1])
     def test_a_fault_ordered_before_the_start_counts_from_it(self, step: int) -> None:
-        products = run(make(), 20, {step: [inject('force_pulse', 0.005, 0.003, 50.0)]})
-        assert [product.step for product in products if product.sample.external_force] == [6, 7, 8]
+        results = run(make(), 20, {step: [inject('force_pulse', 0.005, 0.003, 50.0)]})
+        assert [result.step for result in results if result.sample.external_force] == [6, 7, 8]
 
     @pytest.mark.parametrize('value', [math.nan, math.inf, -math.inf])
     def test_what_is_no_number_is_refused(self, value: float) -> None:
@@ -178,28 +178,28 @@ class TestAtOnce:
     @pytest.mark.parametrize('kinds', [('force_pulse', 'friction_scale'), ('friction_scale', 'force_pulse')])
     def test_faults_that_begin_and_end_together(self, kinds: tuple[str, str]) -> None:
         values = {'force_pulse': self.HELD, 'friction_scale': 2.0}
-        products = run(make(STUCK, 0.0), 200, {10: [inject(kind, value=values[kind]) for kind in kinds]})
-        assert [product.step for product in products if product.sample.external_force] == [*range(10, 60)]
-        assert [event for product in products for event in product.events] == []
+        results = run(make(STUCK, 0.0), 200, {10: [inject(kind, value=values[kind]) for kind in kinds]})
+        assert [result.step for result in results if result.sample.external_force] == [*range(10, 60)]
+        assert [event for result in results for event in result.events] == []
 
     def test_a_pulse_that_ends_as_friction_comes_back(self) -> None:
-        products = run(make(STUCK, 0.0), 200, {10: [inject('friction_scale', value=2.0)],
+        results = run(make(STUCK, 0.0), 200, {10: [inject('friction_scale', value=2.0)],
                                                20: [lambda rig: rig.command_force(self.HELD)],
                                                60: [lambda rig: rig.command_force(0.0)]})
-        assert [event for product in products for event in product.events] == []
+        assert [event for result in results for event in result.events] == []
 
     def test_a_pulse_that_begins_as_friction_falls_breaks_away_once(self) -> None:
-        products = run(make(STUCK, 0.0), 40, {10: [inject('force_pulse', value=500.0),
+        results = run(make(STUCK, 0.0), 40, {10: [inject('force_pulse', value=500.0),
                                                    inject('friction_scale', value=0.5)]})
-        first = next(event for product in products for event in product.events)
+        first = next(event for result in results for event in result.events)
         assert (first.kind, first.time) == (EventKind.BREAKAWAY, 0.009)
 
     def test_faults_that_are_cleared_together(self) -> None:
-        products = run(make(STUCK, 0.0), 200, {
+        results = run(make(STUCK, 0.0), 200, {
             10: [inject('friction_scale', value=10.0, duration=1.0), inject('friction_scale', value=0.1, duration=1.0),
                  lambda rig: rig.command_force(500.0)],
             60: [lambda rig: rig.clear_faults()]})
-        assert [event for product in products for event in product.events] == []
+        assert [event for result in results for event in result.events] == []
 
     def test_a_change_of_parameters_keeps_the_scaled_friction(self) -> None:
         heavy = replace(STUCK, mass=700.0)
@@ -209,7 +209,7 @@ class TestAtOnce:
         for of_one, of_other in zip(one, other):
             assert [event.kind for event in of_one.events] == [event.kind for event in of_other.events]
             assert of_one.sample.position == pytest.approx(of_other.sample.position, rel=1e-9, abs=1e-12)
-        first = next(event for product in one for event in product.events)
+        first = next(event for result in one for event in result.events)
         assert first.friction_force == pytest.approx(2.0 * 823.7586, rel=1e-12)
 
 
@@ -226,7 +226,7 @@ class TestFailure:
         assert bits(run(rig, 50)) == bits(first)
 
     def test_reset_after_the_state_left_the_range_of_numbers(self) -> None:
-        rig = make(drive=Course((0.0,), (0.0,), (0.0,), waves=(Wave(1e-3, 5.0, 0.0),)))
+        rig = make(drive=InputProfile((0.0,), (0.0,), (0.0,), sinusoids=(Sinusoid(1e-3, 5.0, 0.0),)))
         first = run(rig, 100)
         rig.command_velocity(1.7e308)
         with pytest.raises(SolverError):

@@ -22,7 +22,7 @@ knots = st.lists(st.floats(1e-9, 1e6), max_size=4, unique=True).map(lambda speed
 def overrides(draw: st.DrawFn) -> dict[str, object]:
     speeds = draw(knots)
     times = draw(knots)
-    courses: list[dict[str, object]] = [
+    profiles: list[dict[str, object]] = [
         {'drive.course': 'constant', 'drive.velocity': draw(signed)},
         {'drive.course': 'ramp', 'drive.acceleration': draw(st.floats(-1e9, 1e9).filter(lambda x: abs(x) > 1e-9))},
         {'drive.course': 'steps', 'drive.times': times, 'drive.velocities': [0.1] * len(times), 'drive.period': 1e10},
@@ -35,7 +35,7 @@ def overrides(draw: st.DrawFn) -> dict[str, object]:
         'friction.acceleration_dependence': len(speeds) > 1, 'initial.position': draw(signed),
         'initial.rest_time': draw(st.one_of(positive, st.just(math.inf))), 'record.folder': draw(words),
         'record.enabled': draw(st.booleans()), 'seed': draw(st.integers(0, 2**63 - 1)),
-        **draw(st.sampled_from(courses)),
+        **draw(st.sampled_from(profiles)),
     }
 
 

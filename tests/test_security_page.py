@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from stickslip_sim.config import parameter, ros_yaml
-from stickslip_sim.core.input_profile import MAX_WAVES
+from stickslip_sim.core.input_profile import MAX_SINUSOIDS
 from stickslip_sim.friction.kinetic import MAX_KNOTS
 from stickslip_sim.recording import opening, reader, records, schemas
 from stickslip_sim.rig.faults import MAX_FAULTS
@@ -21,7 +21,7 @@ ROWS = [line for line in (Path(__file__).parents[1] / 'docs/security.md').read_t
 @pytest.mark.parametrize(('what', 'limits'), [
     ('a scene, limits or other', (ros_yaml.SIZE_LIMIT, ros_yaml.MOST_NODES, ros_yaml.MOST_LEVELS)),
     ('a text in a scene', (parameter.TEXT_LIMIT,)),
-    ('knots of a friction table', (MAX_KNOTS, MAX_WAVES, MAX_FAULTS)),
+    ('knots of a friction table', (MAX_KNOTS, MAX_SINUSOIDS, MAX_FAULTS)),
     ('a record of a bag', (records.SIZE_LIMIT >> 20,)),
     ('schemas, attachments', (opening.MOST_TOLD >> 20,)),
     ('a definition', (schemas.LONGEST, schemas.MOST_ELEMENTS)),

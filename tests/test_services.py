@@ -32,7 +32,7 @@ class Storm:
     """Calls in any order, each with an answer that is known beforehand."""
 
     def __init__(self, axis: Client, mode: str, seed: int) -> None:
-        self.axis, self.luck = axis, random.Random(seed)
+        self.axis, self.stream = axis, random.Random(seed)
         self.is_stepped, self.is_paused, self.is_recording = mode == 'lockstep', False, False
         self.values = dict(load_scene('paper_fig8', {'time.mode': mode}).values)
         self.rig = scene_from_values(self.values).make_rig()     # in lock-step it is driven as the node is
@@ -40,7 +40,7 @@ class Storm:
 
     def call(self) -> None:
         """Make one call."""
-        self.luck.choices([self.step, self.inject, self.clear, self.reset, self.pause, self.record, self.parameter],
+        self.stream.choices([self.step, self.inject, self.clear, self.reset, self.pause, self.record, self.parameter],
                           [6, 4, 1, 1, 2, 1, 2])[0]()
 
     def expect(self, answer: Any, success: bool, *told: str) -> None:
@@ -51,7 +51,7 @@ class Storm:
             assert words in answer.message
 
     def step(self) -> None:
-        count, velocity, force = self.luck.choice(COUNTS), self.luck.choice(SPEEDS), self.luck.choice(FORCES)
+        count, velocity, force = self.stream.choice(COUNTS), self.stream.choice(SPEEDS), self.stream.choice(FORCES)
         answer = self.axis.call(Step, 'step', steps=count, velocity=velocity, force=force)
         if not 1 <= count <= 100_000:
             self.expect(answer, False, f'steps = {count} is refused: must be 1 to 100000')
@@ -72,20 +72,20 @@ class Storm:
             self.rig.command_velocity(velocity)
         if not math.isnan(force):
             self.rig.command_force(force)
-        products = [self.rig.make_step() for _ in range(count)]
-        assert answer.state.step == products[-1].step
+        results = [self.rig.make_step() for _ in range(count)]
+        assert answer.state.step == results[-1].step
         assert {name: getattr(answer.state, name) for name in FIELDS} == {
-            name: getattr(products[-1].sample, name) for name in FIELDS}
-        assert answer.friction.force == products[-1].sample.friction_force
+            name: getattr(results[-1].sample, name) for name in FIELDS}
+        assert answer.friction.force == results[-1].sample.friction_force
         assert [(event.step, event.time, event.kind) for event in answer.events] == [
-            (product.step, event.time, event.kind) for product in products for event in product.events
+            (result.step, event.time, event.kind) for result in results for event in result.events
             if event.kind <= 5]
 
     def inject(self) -> None:
-        kind = self.luck.choice([*RULES, 'clear', 'gremlin'])
-        value = self.luck.choice([0.0, 0.5, 2.0, 200.0, math.nan, -1.0])
-        asked = Fault(self.luck.choice(['', 'a', 'b', 'x\n', 'y' * 99]), kind, self.luck.choice([0.0, 0.004, -1.0]),
-                      self.luck.choice([0.01, 0.05, math.inf, 0.0]), value)
+        kind = self.stream.choice([*RULES, 'clear', 'gremlin'])
+        value = self.stream.choice([0.0, 0.5, 2.0, 200.0, math.nan, -1.0])
+        asked = Fault(self.stream.choice(['', 'a', 'b', 'x\n', 'y' * 99]), kind, self.stream.choice([0.0, 0.004, -1.0]),
+                      self.stream.choice([0.01, 0.05, math.inf, 0.0]), value)
         answer = self.axis.call(InjectFault, 'inject_fault', id=asked.id, kind=kind, start=asked.start,
                                 duration=asked.duration, value=value)
         try:
@@ -117,7 +117,7 @@ class Storm:
         self.rig.make_step()
 
     def pause(self) -> None:
-        wanted = self.luck.random() < 0.5
+        wanted = self.stream.random() < 0.5
         answer = self.axis.switch('set_paused', wanted)
         if self.is_stepped:
             self.expect(answer, False, 'time.mode: lockstep', '~/step')
@@ -126,13 +126,13 @@ class Storm:
         self.is_paused = wanted
 
     def record(self) -> None:
-        wanted = self.luck.random() < 0.6
+        wanted = self.stream.random() < 0.6
         answer = self.axis.switch('record', wanted)
         self.expect(answer, True, 'record')
         self.is_recording = wanted
 
     def parameter(self) -> None:
-        mass = self.luck.choice(MASSES)
+        mass = self.stream.choice(MASSES)
         answer = self.axis.set_parameters(axis__mass=mass)
         if not mass > 0.0:
             assert (answer.successful, 'axis.mass = ' in answer.reason) == (False, True)
@@ -151,15 +151,15 @@ class LiveStorm(Storm):
 
     def call(self) -> None:
         super().call()
-        self.axis.send_velocity(self.luck.uniform(-0.005, 0.005))
-        self.axis.send_force(self.luck.choice([0.0, 150.0, math.nan]))
+        self.axis.send_velocity(self.stream.uniform(-0.005, 0.005))
+        self.axis.send_force(self.stream.choice([0.0, 150.0, math.nan]))
 
     def inject(self) -> None:
-        kind, value = self.luck.choice([('friction_scale', 1.5), ('force_pulse', 200.0), ('drive_freeze', 0.0),
+        kind, value = self.stream.choice([('friction_scale', 1.5), ('force_pulse', 200.0), ('drive_freeze', 0.0),
                                         ('command_delay', 0.01), ('command_loss', 0.5), ('encoder_dropout', 0.5)])
-        is_good = self.luck.random() < 0.7
-        answer = self.axis.call(InjectFault, 'inject_fault', kind=kind, start=self.luck.choice([0.0, 0.01]),
-                                duration=self.luck.choice([0.01, 0.1]), value=value if is_good else -1e10)
+        is_good = self.stream.random() < 0.7
+        answer = self.axis.call(InjectFault, 'inject_fault', kind=kind, start=self.stream.choice([0.0, 0.01]),
+                                duration=self.stream.choice([0.01, 0.1]), value=value if is_good else -1e10)
         self.expect(answer, is_good, answer.id if is_good else 'value = -10000000000.0 is refused')
 
     def clear(self) -> None:

@@ -15,7 +15,7 @@ from stickslip_sim.realtime.command_slot import CommandSlot
 from stickslip_sim.realtime.pacing import Pacer, Unpaced
 from stickslip_sim.realtime.step_loop import StepLoop
 from stickslip_sim.realtime.watchdog import Watchdog
-from stickslip_sim.rig import Product, Rig
+from stickslip_sim.rig import Rig, StepResult
 from stickslip_sim.rig.settings import RigSettings
 from stickslip_sim.solvers import Solver, exact
 from tests.axes import COMPLIANT, make, paper_axis
@@ -31,10 +31,10 @@ class Bench:
 
     def __init__(self, solver: Solver = exact.SOLVER, by_request: bool = False) -> None:
         self.slots = (CommandSlot('velocity', 'm/s', 1.0), CommandSlot('force', 'N', 1e5))
-        self.products: list[Product] = []
+        self.results: list[StepResult] = []
         grid = Grid(RATE)
         rig = Rig(paper_axis(COMPLIANT), InitialState(), constant(0.002), constant(0.0), solver, grid, RigSettings())
-        self.loop = StepLoop(rig, Pacer(grid, 20.0), self.slots, [self.products.append], Watchdog(0.0), by_request)
+        self.loop = StepLoop(rig, Pacer(grid, 20.0), self.slots, [self.results.append], Watchdog(0.0), by_request)
 
     def reach(self, step: int) -> None:
         wait_for(lambda: self.loop.step >= step, f'step {step}')
@@ -52,12 +52,12 @@ def test_steps_and_events_are_those_of_the_simulator(bench: Bench) -> None:
     bench.loop.start()
     bench.reach(2000)
     bench.loop.stop()
-    assert [product.step for product in bench.products] == list(range(bench.loop.step + 1))
+    assert [result.step for result in bench.results] == list(range(bench.loop.step + 1))
     other = make(paper_axis(COMPLIANT), 0.002)
     events = other.advance(Instant(2.0, 0.0))
-    assert [event for product in bench.products for event in product.events][:len(events)] == events
-    assert all(product.step == math.ceil(event.time * RATE) for product in bench.products for event in product.events)
-    assert bench.products[2000].sample == other.sample()
+    assert [event for result in bench.results for event in result.events][:len(events)] == events
+    assert all(result.step == math.ceil(event.time * RATE) for result in bench.results for event in result.events)
+    assert bench.results[2000].sample == other.sample()
 
 
 def test_a_command_holds_over_the_step_that_is_made_next(bench: Bench) -> None:
@@ -66,8 +66,8 @@ def test_a_command_holds_over_the_step_that_is_made_next(bench: Bench) -> None:
     assert bench.slots[0].offer(0.004, 1) == ''
     bench.reach(bench.loop.step + 50)
     bench.loop.stop()
-    (step,) = (product.step for product in bench.products if product.velocity == 0.004)
-    velocities = [product.sample.drive_velocity for product in bench.products]
+    (step,) = (result.step for result in bench.results if result.velocity == 0.004)
+    velocities = [result.sample.drive_velocity for result in bench.results]
     assert velocities[step - 1:step + 1] == [0.002, 0.004]
 
 
@@ -79,16 +79,16 @@ def test_a_run_can_be_repeated_from_its_commands(bench: Bench) -> None:
         bench.slots[1].offer(force, 1)
     bench.reach(bench.loop.step + 211)
     bench.loop.stop()
-    commands = [value for product in bench.products for value in (product.velocity, product.force)]
+    commands = [value for result in bench.results for value in (result.velocity, result.force)]
     assert len([value for value in commands if value is not None]) == 6
     again, grid = make(paper_axis(COMPLIANT), 0.002), Grid(RATE)
-    for product in bench.products:
-        if product.velocity is not None:
-            again.command_drive(product.velocity)
-        if product.force is not None:
-            again.command_force(product.force)
-        again.advance(grid.instant(product.step))
-        assert again.sample() == product.sample
+    for result in bench.results:
+        if result.velocity is not None:
+            again.command_drive(result.velocity)
+        if result.force is not None:
+            again.command_force(result.force)
+        again.advance(grid.instant(result.step))
+        assert again.sample() == result.sample
 
 
 def test_pause_and_restart(bench: Bench) -> None:
@@ -100,12 +100,12 @@ def test_pause_and_restart(bench: Bench) -> None:
     assert bench.loop.step == step
     assert bench.loop.at_boundary(lambda: bench.loop.pause(False))
     bench.reach(step + 50)
-    count = len(bench.products)
+    count = len(bench.results)
     assert bench.loop.at_boundary(bench.loop.restart)
     bench.reach(20)
     bench.loop.stop()
-    second = next(i for i in range(step, count + 5) if bench.products[i].step == 0)
-    assert bench.products[second:second + 20] == bench.products[:20]
+    second = next(i for i in range(step, count + 5) if bench.results[i].step == 0)
+    assert bench.results[second:second + 20] == bench.results[:20]
 
 
 def test_steps_on_request() -> None:
@@ -113,10 +113,10 @@ def test_steps_on_request() -> None:
     bench.loop.start()
     bench.reach(0)
     assert bench.loop.at_boundary(lambda: bench.loop.run_steps(7, 0.004, None, lambda: False))
-    assert (bench.loop.step, bench.products[-1].sample.drive_velocity) == (7, 0.004)
+    assert (bench.loop.step, bench.results[-1].sample.drive_velocity) == (7, 0.004)
     assert bench.loop.at_boundary(lambda: bench.loop.run_steps(3, None, None, lambda: bench.loop.step == 9))
     bench.loop.stop()
-    assert [product.step for product in bench.products] == list(range(10))
+    assert [result.step for result in bench.results] == list(range(10))
 
 
 def test_a_solver_that_gives_up_stops_time_not_the_thread() -> None:
@@ -126,7 +126,7 @@ def test_a_solver_that_gives_up_stops_time_not_the_thread() -> None:
     assert bench.loop.step == 50
     assert 'time hardly goes on' in bench.loop.failure
     assert bench.loop.at_boundary(bench.loop.restart)
-    wait_for(lambda: len(bench.products) > 80, 'steps after the restart')
+    wait_for(lambda: len(bench.results) > 80, 'steps after the restart')
     bench.loop.stop()
 
 
@@ -141,8 +141,8 @@ def test_a_bad_command_leaves_the_one_before(value: float) -> None:
 
 
 def test_the_loop_makes_step_0_before_it_hears_requests() -> None:
-    products: list[Product] = []
-    loop = StepLoop(make_rig(), Unpaced(Grid(1000.0)), (), [products.append], Watchdog(0.0), by_request=True)
+    results: list[StepResult] = []
+    loop = StepLoop(make_rig(), Unpaced(Grid(1000.0)), (), [results.append], Watchdog(0.0), by_request=True)
     loop.start()
     counts: list[int] = []
 
@@ -158,12 +158,12 @@ def test_the_loop_makes_step_0_before_it_hears_requests() -> None:
         assert loop.at_boundary(lambda: None)
     loop.stop()
     assert counts == [2] * 20
-    assert [product.step for product in products][-3:] == [0, 1, 2]
+    assert [result.step for result in results][-3:] == [0, 1, 2]
 
 
 def test_a_paused_loop_that_is_reset_has_its_start() -> None:
-    products: list[Product] = []
-    loop = StepLoop(make_rig(), Unpaced(Grid(1000.0)), (), [products.append], Watchdog(0.0))
+    results: list[StepResult] = []
+    loop = StepLoop(make_rig(), Unpaced(Grid(1000.0)), (), [results.append], Watchdog(0.0))
     loop.paused = True
     loop.start()
     wait_for(lambda: loop.step == 0, 'the start')
@@ -171,4 +171,4 @@ def test_a_paused_loop_that_is_reset_has_its_start() -> None:
     assert loop.at_boundary(loop.restart)
     wait_for(lambda: loop.step == 0, 'the start again')
     loop.stop()
-    assert [product.step for product in products] == [*range(11), 0]
+    assert [result.step for result in results] == [*range(11), 0]

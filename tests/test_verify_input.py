@@ -59,11 +59,11 @@ class TestCutAndDamaged:
     def test_no_damage_goes_unnoticed_or_is_an_internal_error(self, bag: Path, tmp_path: Path) -> None:
         """One bit, in the part of the file that holds the run: refused, never "identical"."""
         data = data_of(bag)
-        luck = Random(7)
+        stream = Random(7)
         end = data.rindex(b'receipt.json')   # its index; what follows only helps to find things
         for trial in range(40):
             damaged = bytearray(data)
-            damaged[luck.randrange(8, int(0.9 * end))] ^= 1 << luck.randrange(8)
+            damaged[stream.randrange(8, int(0.9 * end))] ^= 1 << stream.randrange(8)
             with pytest.raises(StickslipError, match='damaged: it was finished'):
                 open_original(written(tmp_path / str(trial), bytes(damaged)))
 

@@ -10,7 +10,7 @@ import pytest
 
 from stickslip_sim.cli.main import run as tool
 from stickslip_sim.recording import read_run
-from stickslip_sim.rig import NoteKind
+from stickslip_sim.rig import RigEventKind
 from stickslip_sim.verify.original import open_original
 from stickslip_sim.verify.verification import Verdict, verify
 from tests.rewritten_bags import rewritten
@@ -84,7 +84,7 @@ def test_from_the_start_then_in_mid_run_then_killed(tmp_path: Path, capsys: pyte
         process.wait()
     first = verify(open_original(whole))
     assert is_identical(first), first
-    assert {NoteKind.COMMAND_TIMEOUT, NoteKind.FAULT_CLEARED, NoteKind.COMMAND_LOST} <= kinds(whole)
+    assert {RigEventKind.COMMAND_TIMEOUT, RigEventKind.FAULT_CLEARED, RigEventKind.COMMAND_LOST} <= kinds(whole)
     recording = open_original(middle)
     assert recording.checkpoint is not None
     assert recording.checkpoint['step'] >= first.steps - 1
@@ -101,7 +101,7 @@ def every_order_counts(bag: Path, tmp_path: Path) -> None:
     run = read_run(bag)
     for topic in ('/cell/drive_velocity', '/cell/external_force', '/cell/rig_event', '/parameter_events'):
         last = [message.sequence for message in run.messages([topic]) if '/rig_event' not in topic
-                or run.decode(message).kind == NoteKind.COMMAND_TIMEOUT][-1]
+                or run.decode(message).kind == RigEventKind.COMMAND_TIMEOUT][-1]
         difference = verify(open_original(without(bag, topic, last, tmp_path))).difference
         assert difference is not None, topic
         assert difference.step >= last

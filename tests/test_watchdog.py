@@ -13,7 +13,7 @@ from stickslip_sim.realtime.command_slot import CommandSlot
 from stickslip_sim.realtime.pacing import Pacer, StepClock, Unpaced
 from stickslip_sim.realtime.step_loop import StepLoop
 from stickslip_sim.realtime.watchdog import Watchdog
-from stickslip_sim.rig import NoteKind, Product
+from stickslip_sim.rig import RigEventKind, StepResult
 from stickslip_sim.scene import load_scene
 from tests.rigs import make, told
 from tests.test_pacing import FakeClock
@@ -34,7 +34,7 @@ class Bench:
         step_clock: StepClock = Unpaced(grid) if mode == 'lockstep' else paced
         self.slot = CommandSlot('velocity', 'm/s', 1.0)
         self.rig = make(rate=rate)
-        self.products: list[Product] = []
+        self.results: list[StepResult] = []
         self.loop = StepLoop(self.rig, step_clock, (self.slot,), [self._take], Watchdog(timeout), mode == 'lockstep')
 
     def command(self) -> None:
@@ -54,13 +54,13 @@ class Bench:
         wait_for(lambda: self.loop.step >= steps or self.loop.crash, 'the steps')
         self.loop.stop()
         assert self.loop.crash is None
-        return [step for step, kind in told(self.products) if kind == NoteKind.COMMAND_TIMEOUT]
+        return [step for step, kind in told(self.results) if kind == RigEventKind.COMMAND_TIMEOUT]
 
-    def _take(self, product: Product) -> None:
-        self.products.append(product)
-        if product.step in self._acts:
-            self._acts[product.step](self)
-        if product.step == self._last:
+    def _take(self, result: StepResult) -> None:
+        self.results.append(result)
+        if result.step in self._acts:
+            self._acts[result.step](self)
+        if result.step == self._last:
             self.loop.paused = True
 
 
@@ -80,7 +80,7 @@ class TestSilence:
     def test_is_told_at_the_first_step_that_begins_too_late(self, mode: str) -> None:
         bench = Bench(mode)
         assert bench.run(400, {9: command}) == [111]      # step 10 begins at 9 ms, step 111 at 110 ms
-        note = next(note for product in bench.products for note in product.notes)
+        note = next(note for result in bench.results for note in result.notes)
         assert note.value == pytest.approx(0.101, abs=1e-12)
         assert 'no drive velocity for 0.101 s: the latest is held' in note.text
         assert bench.rig.counts.timed_out == 1
@@ -103,8 +103,8 @@ class TestSilence:
     def test_is_told_again_only_after_a_command(self, mode: str) -> None:
         bench = Bench(mode)
         assert bench.run(900, {9: command, 599: command}) == [111, 701]
-        assert [kind for _, kind in told(bench.products)] == [
-            NoteKind.COMMAND_TIMEOUT, NoteKind.COMMAND_RESUMED, NoteKind.COMMAND_TIMEOUT]
+        assert [kind for _, kind in told(bench.results)] == [
+            RigEventKind.COMMAND_TIMEOUT, RigEventKind.COMMAND_RESUMED, RigEventKind.COMMAND_TIMEOUT]
 
     @pytest.mark.parametrize('mode', MODES)
     def test_off(self, mode: str) -> None:
@@ -160,7 +160,7 @@ class TestPause:
     def test_steps_on_request_in_a_pause_are_none_either(self) -> None:
         bench = Bench()
         bench.run(50, {9: command})
-        other = StepLoop(bench.rig, Pacer(Grid(1000.0), clock=bench.clock), (bench.slot,), [bench.products.append],
+        other = StepLoop(bench.rig, Pacer(Grid(1000.0), clock=bench.clock), (bench.slot,), [bench.results.append],
                          Watchdog(TIMEOUT))
         other.paused = True
         other.start()
@@ -169,19 +169,19 @@ class TestPause:
             assert other.at_boundary(lambda: other.run_steps(200, None, None, lambda: False))
         other.stop()
         assert other.step == 650
-        assert told(bench.products) == []
+        assert told(bench.results) == []
 
 
 def test_a_reset_forgets_the_commands() -> None:
     bench = Bench('lockstep')
-    again = StepLoop(bench.rig, Unpaced(Grid(1000.0)), (bench.slot,), [bench.products.append], Watchdog(TIMEOUT), True)
+    again = StepLoop(bench.rig, Unpaced(Grid(1000.0)), (bench.slot,), [bench.results.append], Watchdog(TIMEOUT), True)
     again.start()
     assert again.at_boundary(lambda: again.run_steps(50, 0.01, None, lambda: False))
     assert again.at_boundary(again.restart)
     assert again.at_boundary(lambda: again.run_steps(300, None, None, lambda: False))
     again.stop()
     assert again.step == 300
-    assert told(bench.products) == []
+    assert told(bench.results) == []
 
 
 @pytest.mark.parametrize(('timeout', 'is_refused'), [(0.0, False), (0.001, False), (0.0009, True), (1e-12, True),

@@ -25,7 +25,7 @@ from rclpy.signals import SignalHandlerOptions
 from stickslip_msgs.msg import DriveVelocity, ExternalForce, FrictionForce, SliderState
 from stickslip_sim.core.time_grid import Grid
 from stickslip_sim.realtime.pacing import Pacer, wake_precisely
-from stickslip_sim.realtime.timing_statistics import Ledger
+from stickslip_sim.realtime.timing_statistics import TimingStatistics
 from stickslip_sim.recording import RECORDED, RecorderThread, RunFacts, open_run
 from stickslip_sim.recording import topics as names
 from stickslip_sim.ros.node.conversion import set_stamp
@@ -41,7 +41,7 @@ class BareNode(Node):  # type: ignore[misc]
 
     def __init__(self, rate: float, recorder: RecorderThread | None) -> None:
         super().__init__('bare')
-        self.ledger, self.pacer = Ledger(), Pacer(Grid(rate))
+        self.timing_statistics, self.pacer = TimingStatistics(), Pacer(Grid(rate))
         self._grid, self._recorder = Grid(rate), recorder
         self._velocity = self._force = 0.0
         self._state, self._friction = SliderState(), FrictionForce()
@@ -70,7 +70,7 @@ class BareNode(Node):  # type: ignore[misc]
             begin, lateness = self.pacer.begin(step)
             time_ns = self._grid.nanoseconds(step)
             self._step(step, time_ns)
-            self.ledger.add(time_ns, self.pacer.now() - begin, lateness, None, None)
+            self.timing_statistics.add(time_ns, self.pacer.now() - begin, lateness, None, None)
 
     def _step(self, step: int, time_ns: int) -> None:
         self._fill(step, time_ns)
@@ -112,7 +112,7 @@ def main() -> None:
     spin(node, stop)
     if recorder:
         recorder.close()
-    lateness = node.ledger.take().lateness
+    lateness = node.timing_statistics.take().lateness
     print(json.dumps({'lateness_p50': lateness.p50, 'lateness_p99': lateness.p99, 'lateness_max': lateness.max,
                       'overruns': node.pacer.account.overruns / node.pacer.account.steps}))
     rclpy.try_shutdown()

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from hypothesis.strategies import DrawFn, SearchStrategy
 
 from stickslip_sim.axis import Axis, CompliantContact, Friction, InitialState, RigidContact
-from stickslip_sim.core.input_profile import Course, Wave, constant, ramp, steps, table
+from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant, ramp, steps, table
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
 from stickslip_sim.friction.kinetic import default_excess
 
@@ -23,8 +23,8 @@ class Case(NamedTuple):
 
     axis: Axis
     initial: InitialState
-    drive: Course
-    force: Course
+    drive: InputProfile
+    force: InputProfile
     duration: float
 
 
@@ -55,8 +55,8 @@ def shaken(draw: DrawFn) -> Case:
                    friction=replace(axis.friction, kinetic=kinetic, excess=default_excess(kinetic)))
     omega = math.sqrt(axis.drive_stiffness / axis.mass)
     load = axis.normal_force * axis.friction.static.initial
-    force = draw(_waves(load * draw(st.floats(0.3, 3.0)), omega, 1))
-    return case._replace(axis=axis, force=replace(case.force, waves=force))
+    force = draw(_sinusoids(load * draw(st.floats(0.3, 3.0)), omega, 1))
+    return case._replace(axis=axis, force=replace(case.force, sinusoids=force))
 
 
 def _powers(low: float, high: float) -> SearchStrategy[float]:
@@ -98,23 +98,23 @@ def _starts(speed: float) -> SearchStrategy[InitialState]:
 
 
 @st.composite
-def _courses(draw: DrawFn, size: float, omega: float, duration: float) -> Course:
+def _courses(draw: DrawFn, size: float, omega: float, duration: float) -> InputProfile:
     size *= draw(_SIGNS)
     values = [size * draw(st.sampled_from((1.0, -1.0, 0.0, 0.3))) for _ in range(3)]
     times = [0.0, duration * draw(st.floats(0.01, 0.4)), duration * draw(st.floats(0.5, 0.8))]
-    course = draw(st.sampled_from((
+    profile = draw(st.sampled_from((
         constant(0.0), constant(size), ramp(0.0, size / duration, math.inf),
         ramp(size, -2.0 * size / duration, times[2]),
         steps('course', times, values), table('course', times, values), table('course', times, values, duration),
         steps('course', [t / 4.0 for t in times], values, 0.3 * duration))))
-    return replace(course, waves=draw(_waves(size, omega, 0)))
+    return replace(profile, sinusoids=draw(_sinusoids(size, omega, 0)))
 
 
 @st.composite
-def _waves(draw: DrawFn, size: float, omega: float, fewest: int) -> tuple[Wave, ...]:
+def _sinusoids(draw: DrawFn, size: float, omega: float, fewest: int) -> tuple[Sinusoid, ...]:
     """Return sines, some of them in resonance, some with the same frequency."""
     frequency = omega / (2.0 * math.pi)
-    return tuple(Wave(size * draw(st.floats(0.01, 1.0)),
+    return tuple(Sinusoid(size * draw(st.floats(0.01, 1.0)),
                       min(max(frequency * draw(st.just(1.0) | _powers(-1.5, 1)), 1e-9), 1e6),
                       draw(st.sampled_from((0.0, 0.5 * math.pi)) | st.floats(-7.0, 7.0)))
                  for _ in range(draw(st.integers(fewest, 3))))

@@ -12,7 +12,7 @@ from stickslip_sim.core.types import EventKind
 from stickslip_sim.recording import MessageCodec, RunFacts, checkpoint_file, open_run, receipt_file, topics, write_bag
 from stickslip_sim.recording.bag import BagWriter
 from stickslip_sim.recording.messages import Packer, header, time_message
-from stickslip_sim.rig import Fault, Note, Rig
+from stickslip_sim.rig import Fault, Rig, RigEvent
 from stickslip_sim.runs.offline import run_offline
 from stickslip_sim.scene import Scene, changed, load_scene
 
@@ -72,19 +72,19 @@ class _Tape:
     def step(self, rig: Rig) -> None:
         """Make a step and write what came of it."""
         before = rig.time_ns
-        product = rig.make_step()
-        self._notes(product.notes, before, product.step)
-        for event in product.events:
+        result = rig.make_step()
+        self._notes(result.notes, before, result.step)
+        for event in result.events:
             if event.kind == EventKind.KNOT:    # a node does not tell of them
                 continue
             at = event.instant.nanoseconds
-            self._write(topics.MODE_EVENT, self._packers[topics.MODE_EVENT].pack(at, product.step, event), at,
-                        product.step)
+            self._write(topics.MODE_EVENT, self._packers[topics.MODE_EVENT].pack(at, result.step, event), at,
+                        result.step)
         for topic in (topics.SLIDER_STATE, topics.FRICTION_FORCE):
-            at = product.sample.instant.nanoseconds
-            self._write(topic, self._packers[topic].pack(at, product.step, product.sample), at, product.step)
+            at = result.sample.instant.nanoseconds
+            self._write(topic, self._packers[topic].pack(at, result.step, result.sample), at, result.step)
 
-    def _notes(self, notes: Iterable[Note], at: int, step: int) -> None:
+    def _notes(self, notes: Iterable[RigEvent], at: int, step: int) -> None:
         for note in notes:
             fault = note.fault or Fault('', '', 0.0, 0.0, 0.0)
             self._encoded(topics.RIG_EVENT, {

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from stickslip_sim.axis import Axis, InitialState
 from stickslip_sim.core.energy import EnergyBalance
-from stickslip_sim.core.input_profile import Course
+from stickslip_sim.core.input_profile import InputProfile
 from stickslip_sim.core.types import Event, Instant, Sample
 from stickslip_sim.scene import Scene, scene_from_values
 from stickslip_sim.simulation.simulator import Simulator
@@ -36,8 +36,8 @@ class Parts(NamedTuple):
 
     axis: Axis
     initial: InitialState
-    drive: Course
-    force: Course
+    drive: InputProfile
+    force: InputProfile
     duration: float
 
 

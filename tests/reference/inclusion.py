@@ -139,9 +139,9 @@ def static_coefficient(law: Mapping[str, Any], age: mpf) -> mpf:
     return first + (mpf(law['limit']) - first) * share
 
 
-def _rows(course: Any, until: mpf) -> list[tuple[mpf, mpf, mpf]]:
+def _rows(profile: Any, until: mpf) -> list[tuple[mpf, mpf, mpf]]:
     """Return the pieces (start, value, slope) of a course up to a time, periods written out."""
-    given = course if isinstance(course, Mapping) else {'segments': course}
+    given = profile if isinstance(profile, Mapping) else {'segments': profile}
     rows = [(mpf(a), mpf(b), mpf(c)) for a, b, c in given['segments']]
     if 'period' not in given:
         return rows
@@ -149,25 +149,25 @@ def _rows(course: Any, until: mpf) -> list[tuple[mpf, mpf, mpf]]:
     return [(n * period + a, b, c) for n in range(int(until / period) + 1) for a, b, c in rows]
 
 
-def _waves(course: Any) -> Sequence[Sequence[float]]:
-    return course.get('waves', ()) if isinstance(course, Mapping) else ()
+def _sinusoids(profile: Any) -> Sequence[Sequence[float]]:
+    return profile.get('waves', ()) if isinstance(profile, Mapping) else ()
 
 
-def _input(course: Any, t: mpf) -> mpf:
-    start, first, slope = [row for row in _rows(course, t) if row[0] <= t][-1]
-    waves = sum(mpf(a) * mpmath.sin(2 * mpmath.pi * mpf(f) * t + mpf(phase)) for a, f, phase in _waves(course))
-    return first + slope * (t - start) + waves
+def _input(profile: Any, t: mpf) -> mpf:
+    start, first, slope = [row for row in _rows(profile, t) if row[0] <= t][-1]
+    sinusoids = sum(mpf(a) * mpmath.sin(2 * mpmath.pi * mpf(f) * t + mpf(phase)) for a, f, phase in _sinusoids(profile))
+    return first + slope * (t - start) + sinusoids
 
 
-def _feed(course: Any, t: mpf) -> mpf:
+def _feed(profile: Any, t: mpf) -> mpf:
     """Return ∫ v dt from 0 to t."""
     total = mpf(0)
-    rows = _rows(course, t)
+    rows = _rows(profile, t)
     for (start, first, slope), end in zip(rows, [*(row[0] for row in rows[1:]), mpmath.inf]):
         span = min(t, end) - start
         if span > 0:
             total += first * span + slope * span * span / 2
-    for a, f, phase in _waves(course):
+    for a, f, phase in _sinusoids(profile):
         omega = 2 * mpmath.pi * mpf(f)
         total += mpf(a) * (mpmath.cos(mpf(phase)) - mpmath.cos(omega * t + mpf(phase))) / omega
     return total

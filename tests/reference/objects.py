@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from stickslip_sim.axis import Axis, CompliantContact, Friction, InitialState, RigidContact
-from stickslip_sim.core.input_profile import Course, Wave
+from stickslip_sim.core.input_profile import InputProfile, Sinusoid
 from stickslip_sim.friction import ExcessTable, KineticTable, StaticLaw, StaticLawKind
 from stickslip_sim.friction.kinetic import default_excess
 from stickslip_sim.reference import ReferenceRun, simulate
@@ -43,16 +43,16 @@ def _friction(values: Parameters) -> Friction:
     return Friction(law, kinetic, excess)
 
 
-def course_of(given: Sequence[Sequence[float]] | Parameters) -> Course:
+def profile_of(given: Sequence[Sequence[float]] | Parameters) -> InputProfile:
     """A list of [start, value, slope], or a dictionary with that as `segments`, a `period` and `waves`."""
     if not isinstance(given, Mapping):
         given = {'segments': given}
     starts, values, rates = zip(*given['segments'], strict=True)
-    waves = tuple(Wave(*wave) for wave in given.get('waves', ()))
-    return Course(starts, values, rates, given.get('period', float('inf')), waves)
+    sinusoids = tuple(Sinusoid(*sinusoid) for sinusoid in given.get('waves', ()))
+    return InputProfile(starts, values, rates, given.get('period', float('inf')), sinusoids)
 
 
-def parameters_of(axis: Axis, initial: InitialState, drive: Course, force: Course) -> dict[str, Any]:
+def parameters_of(axis: Axis, initial: InitialState, drive: InputProfile, force: InputProfile) -> dict[str, Any]:
     """Return the dictionary of the objects of a simulator."""
     numbers = ('mass', 'drive_stiffness', 'drive_damping', 'normal_force')
     contact: dict[str, Any] = {'model': 'rigid'}
@@ -77,18 +77,18 @@ def parameters_of(axis: Axis, initial: InitialState, drive: Course, force: Cours
     }
 
 
-def _segments(course: Course) -> dict[str, Any]:
+def _segments(profile: InputProfile) -> dict[str, Any]:
     return {
-        'segments': list(zip(course.starts, course.values, course.rates)),
-        'period': course.period,
-        'waves': course.waves,
+        'segments': list(zip(profile.starts, profile.values, profile.rates)),
+        'period': profile.period,
+        'waves': profile.sinusoids,
     }
 
 
-def inputs_of(values: Parameters) -> tuple[Axis, InitialState, Course, Course]:
+def inputs_of(values: Parameters) -> tuple[Axis, InitialState, InputProfile, InputProfile]:
     """Return what a simulator takes."""
     start = InitialState(**values['initial'])
-    return axis_of(values), start, course_of(values['drive']), course_of(values['force'])
+    return axis_of(values), start, profile_of(values['drive']), profile_of(values['force'])
 
 
 def reference_run(values: Parameters, duration: float, digits: int = 40) -> ReferenceRun:

@@ -27,11 +27,11 @@ def _possible_parts(scene: Scene) -> Iterator[Part]:
         if values[f'{section}.course'] == 'sine':
             yield switch(f'sine of {values[f"{section}.frequency"]:g} {where}', f'{section}.course', 'sine', 'constant')
         for k, frequency in enumerate(values.get(f'{section}.frequencies', ())):
-            yield Part(f'sine of {frequency:g} {where}', (Variant(_without_wave(section, k)),))
+            yield Part(f'sine of {frequency:g} {where}', (Variant(_without_sinusoid(section, k)),))
     yield Part('external force', (Variant(_without_force),))
 
 
-def _without_wave(section: str, k: int) -> Change:
+def _without_sinusoid(section: str, k: int) -> Change:
     """Return the change of the amplitude of a wave to 0, which is as good as none, and which `--set` can do."""
     name = f'{section}.amplitudes'
 
@@ -52,7 +52,7 @@ def _without_force(values: Values) -> Changes:
     return {**changes, 'force.amplitudes': (0.0,) * len(amplitudes)} if any(amplitudes) else changes
 
 
-def without_idle_waves(values: Values) -> dict[str, object]:
+def without_idle_sinusoids(values: Values) -> dict[str, object]:
     """Return the values of a scene without sines of amplitude 0, for a file that people read."""
     kept = dict(values)
     for section, _ in _INPUTS:

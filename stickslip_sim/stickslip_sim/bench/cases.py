@@ -6,7 +6,7 @@ import math
 
 from ..axis import Axis, CompliantContact, Friction, InitialState, RigidContact
 from ..core.errors import InputError
-from ..core.input_profile import Course, constant
+from ..core.input_profile import InputProfile, constant
 from ..friction import KineticTable, StaticLaw, StaticLawKind
 from ..friction.kinetic import default_excess
 from ..scene import load_scene, scene_names
@@ -48,9 +48,10 @@ def _letter(name: str, duration: float | None) -> Problem:
         return _constant('C', 'conventional characteristics, rigid, 10 mm/s', _axis(rigid, branches=False), 0.01,
                          duration)
     starts = tuple(k / _TICK for k in range(round(duration * _TICK)))
-    drive = Course(starts, tuple(0.005 * (1.0 + 0.5 * math.sin(2.0 * math.pi * 3.0 * t)) for t in starts),
+    drive = InputProfile(starts, tuple(0.005 * (1.0 + 0.5 * math.sin(2.0 * math.pi * 3.0 * t)) for t in starts),
                    (0.0,) * len(starts))
-    force = Course(starts, tuple(100.0 * math.sin(2.0 * math.pi * 20.0 * t) for t in starts), (0.0,) * len(starts))
+    force = InputProfile(starts, tuple(100.0 * math.sin(2.0 * math.pi * 20.0 * t) for t in starts),
+                         (0.0,) * len(starts))
     return Problem('D', 'compliant contact, new feed and force 1000 times a second', _axis(compliant), InitialState(),
                    drive, force, duration)
 

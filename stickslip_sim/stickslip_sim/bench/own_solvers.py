@@ -66,7 +66,7 @@ def exact_solver() -> Peer:
 
 def state_for(problem: Problem) -> Numbers:
     """Return an empty state with room for the waves of a problem."""
-    return np.zeros(STATE_SIZE + WAVE_SIZE * (len(problem.waves) // WAVE_INPUTS))
+    return np.zeros(STATE_SIZE + WAVE_SIZE * (len(problem.sinusoids) // WAVE_INPUTS))
 
 
 def _prepare(problem: Problem, solver: Solver) -> Callable[[], Outcome]:
@@ -74,13 +74,13 @@ def _prepare(problem: Problem, solver: Solver) -> Callable[[], Outcome]:
     begin, duration = problem.start.tolist(), problem.duration
     count = len(problem.event_rows())
     arrays: tuple[Any, ...] = (
-        problem.parameters, problem.pieces, problem.waves, np.zeros((count, EVENT_SIZE)), state_for(problem),
+        problem.parameters, problem.pieces, problem.sinusoids, np.zeros((count, EVENT_SIZE)), state_for(problem),
         np.zeros(SAMPLE_SIZE))
-    p, pieces, waves, events, state, sample = arrays if IS_COMPILED else tuple(a.tolist() for a in arrays)
+    p, pieces, sinusoids, events, state, sample = arrays if IS_COMPILED else tuple(a.tolist() for a in arrays)
 
     def simulate() -> Outcome:
-        rows = solver.start(p, state, *begin, *pieces[0][1:], waves, events, 0)
-        rows, end = run(p, state, pieces, waves, duration, events, rows, sample)
+        rows = solver.start(p, state, *begin, *pieces[0][1:], sinusoids, events, 0)
+        rows, end = run(p, state, pieces, sinusoids, duration, events, rows, sample)
         if end != DONE:
             raise SolverError(f'{solver.name} gave up after {rows} events')
         return Outcome(events[:rows], float(sample[_POSITION]), _event_columns)
@@ -99,13 +99,14 @@ def _driver(advance: Callable[..., Any], set_inputs: Callable[..., Any],
             sample_at: Callable[..., Any]) -> Callable[..., Any]:
     """Return a loop over the pieces of the inputs, compiled if the solver is."""
 
-    def run(p: Any, s: Any, pieces: Any, waves: Any, duration: Any, events: Any, rows: Any, sample: Any) -> Any:
+    def run(p: Any, s: Any, pieces: Any, sinusoids: Any, duration: Any, events: Any, rows: Any, sample: Any) -> Any:
         state = DONE
         for k in range(len(pieces)):
             piece = pieces[k]
             if k > 0:
                 whole = math.floor(piece[0])
-                rows = set_inputs(p, s, float(whole), piece[0] - whole, piece[1], piece[2], piece[3], piece[4], waves,
+                rows = set_inputs(p, s, float(whole), piece[0] - whole, piece[1], piece[2], piece[3], piece[4],
+                                  sinusoids,
                                   events, rows)
             end = pieces[k + 1][0] if k + 1 < len(pieces) else duration
             whole = math.floor(end)

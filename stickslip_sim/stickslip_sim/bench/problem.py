@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..axis import Axis, InitialState, pack
-from ..core.input_profile import Course
+from ..core.input_profile import InputProfile
 
 Numbers = NDArray[np.float64]
 
@@ -47,8 +47,8 @@ class Problem:
     summary: str
     axis: Axis
     initial: InitialState
-    drive: Course   # m/s
-    force: Course   # N
+    drive: InputProfile   # m/s
+    force: InputProfile   # N
     duration: float
 
     @cached_property
@@ -73,17 +73,17 @@ class Problem:
         return np.array(rows)
 
     @cached_property
-    def waves(self) -> Numbers:
+    def sinusoids(self) -> Numbers:
         """Four numbers for each wave that is not 0, see `solvers.Solver`: frequency Hz, phase in turns, m/s, N."""
         rows: list[tuple[float, ...]] = [(w.frequency, 0.5 * w.phase / np.pi, w.amplitude, 0.0)
-                                         for w in self.drive.waves]
-        rows += [(w.frequency, 0.5 * w.phase / np.pi, 0.0, w.amplitude) for w in self.force.waves]
+                                         for w in self.drive.sinusoids]
+        rows += [(w.frequency, 0.5 * w.phase / np.pi, 0.0, w.amplitude) for w in self.force.sinusoids]
         return np.array([row for row in rows if row[2] != 0.0 or row[3] != 0.0]).reshape(-1)
 
     @cached_property
     def longest_step(self) -> float:
         """A quarter of the shortest wave, so that no adaptive step jumps over one, s."""
-        return min((0.25 / frequency for frequency in self.waves[::4]), default=np.inf)
+        return min((0.25 / frequency for frequency in self.sinusoids[::4]), default=np.inf)
 
     def event_rows(self) -> Any:
         """Return an empty table that holds far more events than a sound solver finds."""

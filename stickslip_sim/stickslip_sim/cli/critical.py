@@ -10,7 +10,7 @@ import click
 if TYPE_CHECKING:
     from ..scene import Scene
     from ..study.critical import Critical
-    from ..study.transitions import Course, Transition
+    from ..study.transitions import Findings, Transition
     from ..study.variation import Variation
 
 _ACCURACY = 1e-9
@@ -60,18 +60,18 @@ def _lines(scene: 'Scene', found: 'Critical') -> list[str]:
     return lines if theory is None else [*lines, f'{"closed form":14} {theory:.{digits + 2}g}{unit}, from rest']
 
 
-def _told(start: str, course: 'Course', unit: str, digits: int, yes: str, no: str) -> list[str]:
-    """Return a line for each transition of a course, or one that there is none, and for each stretch in doubt."""
+def _told(start: str, findings: 'Findings', unit: str, digits: int, yes: str, no: str) -> list[str]:
+    """Return a line for each transition of the findings, or one that there is none, and for each stretch in doubt."""
     from ..study.transitions import NO, YES
 
     found = [(one.low, f'{_value(one, unit, digits)}: '
               + (f'{no} below, {yes} above' if one.rises else f'{yes} below, {no} above'))
-             for one in course.transitions]
-    if not found and course.first >= NO:
-        where = 'elsewhere in' if course.doubts else 'all over'
-        found = [(-math.inf, f'no transition: {yes if course.first == YES else no} {where} the range')]
+             for one in findings.transitions]
+    if not found and findings.first >= NO:
+        where = 'elsewhere in' if findings.doubts else 'all over'
+        found = [(-math.inf, f'no transition: {yes if findings.first == YES else no} {where} the range')]
     found += [(one.low, f'{_stretch("from {} to {}", one.low, one.high, unit)}: {_why(one.failed)}')
-              for one in course.doubts]
+              for one in findings.doubts]
     return [f'{start:14} {text}' for _, text in sorted(found)]
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from .sweeping import carry_out, crew_of, study_options, tell_failed
+from .sweeping import carry_out, study_options, tell_failed, workers_of
 
 if TYPE_CHECKING:
     from ..study import Study
@@ -25,7 +25,7 @@ def sweep(scene: str, ranges: tuple[str, ...], sobol: int | None, out: str, dura
 
     Ctrl-C keeps what is done.  `stickslip map FOLDER` draws it.
     """
-    crew = crew_of(workers, scheduler)
+    crew = workers_of(workers, scheduler)
     study = _study(scene, ranges, sobol, duration, changes)
     _tell(study, *carry_out(study, out, crew, resume))
 

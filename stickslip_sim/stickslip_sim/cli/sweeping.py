@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from ..study import Study
     from ..study.folder import Folder
     from ..study.pictures import Columns
-    from ..study.workers import Crew
+    from ..study.workers import Workers
 
 _MOST_WORKERS = 1024
 _OPTIONS = (
@@ -36,7 +36,7 @@ def study_options(command: Command) -> Command:
     return command
 
 
-def crew_of(workers: str | None, scheduler: str | None) -> AbstractContextManager['Crew | None']:
+def workers_of(workers: str | None, scheduler: str | None) -> AbstractContextManager['Workers | None']:
     """Return who works on a study: nobody else, processes, or a cluster; raises InputError and UsageError."""
     from ..study.cluster import cluster
     from ..study.workers import processes
@@ -49,7 +49,7 @@ def crew_of(workers: str | None, scheduler: str | None) -> AbstractContextManage
     return processes(count) if count > 1 else nullcontext()
 
 
-def carry_out(study: 'Study', out: str, crew: AbstractContextManager['Crew | None'],
+def carry_out(study: 'Study', out: str, crew: AbstractContextManager['Workers | None'],
               resume: bool) -> tuple['Folder', int]:
     """Run a study into its folder, new or resumed; return that and how many points had to be run."""
     from ..study import sweep as work
@@ -81,7 +81,7 @@ def tell_failed(study: 'Study', columns: 'Columns') -> None:
 
 def _processes(workers: str) -> int:
     from ..core.errors import InputError
-    from ..study.resources import check_room_for_workers
+    from ..study.resources import check_memory_for_workers
 
     if workers == 'all':
         count = len(os.sched_getaffinity(0))
@@ -90,5 +90,5 @@ def _processes(workers: str) -> int:
     else:
         raise InputError('--workers', workers, f'a whole number from 1 to {_MOST_WORKERS}, or all',
                          'leave it out for 1')
-    check_room_for_workers(count)
+    check_memory_for_workers(count)
     return count

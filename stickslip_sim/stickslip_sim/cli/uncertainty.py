@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .files import check_picture, whole, write_text
-from .sweeping import carry_out, crew_of, study_options, tell_failed
+from .sweeping import carry_out, study_options, tell_failed, workers_of
 
 if TYPE_CHECKING:
     from ..study import Saltelli
@@ -33,7 +33,7 @@ def uncertainty(scene: str, file: str, samples: int, plot: str | None, out: str,
     """
     if plot is not None:
         check_picture('--plot', plot)
-    crew = crew_of(workers, scheduler)
+    crew = workers_of(workers, scheduler)
     from ..scene import load_scene, parse_override
     from ..study import Saltelli, Study
     from ..study.folder import TABLE

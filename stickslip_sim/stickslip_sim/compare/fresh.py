@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from ..core.errors import InputError
-from ..core.input_profile import Course
+from ..core.input_profile import InputProfile
 from ..core.types import Event, Instant, Sample
 from ..runs.offline import run_offline
 from ..scene import Scene
@@ -50,7 +50,7 @@ def _instants(scene: Scene, duration: float, events: list[Event]) -> list[Instan
     count = min(max(_SPAN_BUDGET // len(corners), _IN_SPAN[0]), _IN_SPAN[1])
     fine = [time for a, b in pairwise(corners) for time in np.linspace(a, b, count)[1:-1].tolist()]
     fine += [0.0, duration, *jumps, *(max(time - _BEFORE, 0.0) for time in jumps)]
-    fine += [*_ring_downs(scene, corners), *_of_waves(scene, duration)]
+    fine += [*_ring_downs(scene, corners), *_of_sinusoids(scene, duration)]
     return sorted({*map(_instant, fine), *(event.instant for event in events)})
 
 
@@ -64,21 +64,21 @@ def _ring_downs(scene: Scene, corners: list[float]) -> Iterator[float]:
         yield from (a + offsets[offsets < b - a]).tolist()
 
 
-def _of_waves(scene: Scene, duration: float) -> Iterator[float]:
+def _of_sinusoids(scene: Scene, duration: float) -> Iterator[float]:
     """Yield the times that show the sines of the inputs."""
-    fastest = max((wave.frequency for wave in (*scene.drive.waves, *scene.force.waves)), default=0.0)
+    fastest = max((sinusoid.frequency for sinusoid in (*scene.drive.sinusoids, *scene.force.sinusoids)), default=0.0)
     count = min(_IN_PERIOD * fastest * duration, _WAVE_BUDGET)
     yield from np.linspace(0.0, duration, math.ceil(count) + 1).tolist()
 
 
-def _borders(course: Course, duration: float) -> Iterator[float]:
+def _borders(profile: InputProfile, duration: float) -> Iterator[float]:
     """Yield where a course goes on to its next piece, as many times as are worth a look."""
-    time = course.piece_at(0.0).end
+    time = profile.piece_at(0.0).end
     for _ in range(MAX_EVENTS):
         if not time < duration:
             return
         yield time
-        time = course.piece_at(time).end
+        time = profile.piece_at(time).end
 
 
 def _instant(seconds: float) -> Instant:

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 from .errors import InputError
 
-MAX_WAVES = 100
+MAX_SINUSOIDS = 100
 FREQUENCIES = 1e-9, 1e6   # Hz
 
 
@@ -24,7 +24,7 @@ class Piece(NamedTuple):
     rate: float
 
 
-class Wave(NamedTuple):
+class Sinusoid(NamedTuple):
     """amplitude · sin(2π frequency t + phase), t being simulation time."""
 
     amplitude: float
@@ -37,7 +37,7 @@ class Wave(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Course:
+class InputProfile:
     """A course as pieces: `starts` (s, the first is 0), `values` there, `rates` (per s) from there; and `waves` on top.
 
     With a finite `period` the pieces start anew every `period` seconds; the waves go on.  Raises InputError on waves
@@ -48,16 +48,18 @@ class Course:
     values: tuple[float, ...]
     rates: tuple[float, ...]
     period: float = math.inf
-    waves: tuple[Wave, ...] = ()
+    sinusoids: tuple[Sinusoid, ...] = ()
 
     def __post_init__(self) -> None:
-        if len(self.waves) > MAX_WAVES:
-            raise InputError('waves', len(self.waves), f'at most {MAX_WAVES} in a course', 'leave the weakest out')
-        for wave in self.waves:
-            if not all(map(math.isfinite, wave)):
-                raise InputError('waves', wave, 'of finite amplitude, frequency and phase', 'give numbers')
-            if not FREQUENCIES[0] <= wave.frequency <= FREQUENCIES[1]:
-                raise InputError('waves', wave, 'of {:g} to {:g} Hz'.format(*FREQUENCIES), 'use pieces for a constant')
+        if len(self.sinusoids) > MAX_SINUSOIDS:
+            raise InputError('sinusoids', len(self.sinusoids), f'at most {MAX_SINUSOIDS} in a course',
+                             'leave the weakest out')
+        for sinusoid in self.sinusoids:
+            if not all(map(math.isfinite, sinusoid)):
+                raise InputError('sinusoids', sinusoid, 'of finite amplitude, frequency and phase', 'give numbers')
+            if not FREQUENCIES[0] <= sinusoid.frequency <= FREQUENCIES[1]:
+                raise InputError('sinusoids', sinusoid, 'of {:g} to {:g} Hz'.format(*FREQUENCIES),
+                                 'use pieces for a constant')
 
     def check(self, name: str) -> None:
         """Raise InputError when a number of the course called `name` is not finite."""
@@ -77,50 +79,50 @@ class Course:
         end = turn + self.starts[i + 1] if i + 1 < len(self.starts) else (turns + 1.0) * self.period
         return Piece(turn + self.starts[i], end, self.values[i], self.rates[i])
 
-    def plus(self, value: float) -> 'Course':
+    def plus(self, value: float) -> 'InputProfile':
         """Return the course with a constant added."""
         return replace(self, values=tuple(own + value for own in self.values))
 
     def value_at(self, time: float) -> float:
         """Return the value at `time` >= 0 s."""
         piece = self.piece_at(time)
-        return piece.value + piece.rate * (time - piece.start) + sum(wave.at(time) for wave in self.waves)
+        return piece.value + piece.rate * (time - piece.start) + sum(sinusoid.at(time) for sinusoid in self.sinusoids)
 
 
-def plain_of(course: Course) -> list[Any]:
+def plain_of(profile: InputProfile) -> list[Any]:
     """Return a course as numbers in lists, for `course_of`."""
-    return [list(course.starts), list(course.values), list(course.rates), course.period,
-            [list(wave) for wave in course.waves]]
+    return [list(profile.starts), list(profile.values), list(profile.rates), profile.period,
+            [list(sinusoid) for sinusoid in profile.sinusoids]]
 
 
-def course_of(plain: Sequence[Any]) -> Course:
+def profile_of(plain: Sequence[Any]) -> InputProfile:
     """Return the course that `plain_of` made these of; raises TypeError or ValueError on anything else."""
-    starts, values, rates, period, waves = plain
+    starts, values, rates, period, sinusoids = plain
     if not starts or not len(starts) == len(values) == len(rates):
         raise ValueError('a course needs as many values and rates as times')
-    return Course(_floats(starts), _floats(values), _floats(rates), float(period),
-                  tuple(Wave(*map(float, wave)) for wave in waves))
+    return InputProfile(_floats(starts), _floats(values), _floats(rates), float(period),
+                  tuple(Sinusoid(*map(float, sinusoid)) for sinusoid in sinusoids))
 
 
-def constant(value: float) -> Course:
+def constant(value: float) -> InputProfile:
     """Return a course that never changes."""
-    return Course((0.0,), (value,), (0.0,))
+    return InputProfile((0.0,), (value,), (0.0,))
 
 
-def ramp(start: float, rate: float, duration: float) -> Course:
+def ramp(start: float, rate: float, duration: float) -> InputProfile:
     """Return a course that changes by `rate` per second for `duration` seconds, then holds."""
     if duration == math.inf:
-        return Course((0.0,), (start,), (rate,))
-    return Course((0.0, duration), (start, start + rate * duration), (rate, 0.0))
+        return InputProfile((0.0,), (start,), (rate,))
+    return InputProfile((0.0, duration), (start, start + rate * duration), (rate, 0.0))
 
 
-def steps(name: str, times: Sequence[float], values: Sequence[float], period: float = math.inf) -> Course:
+def steps(name: str, times: Sequence[float], values: Sequence[float], period: float = math.inf) -> InputProfile:
     """Return a course that jumps to values[i] at times[i]; raises InputError unless the times start at 0 and rise."""
     _check_times(name, times, values, period)
-    return Course(tuple(times), tuple(values), (0.0,) * len(values), period)
+    return InputProfile(tuple(times), tuple(values), (0.0,) * len(values), period)
 
 
-def table(name: str, times: Sequence[float], values: Sequence[float], period: float = math.inf) -> Course:
+def table(name: str, times: Sequence[float], values: Sequence[float], period: float = math.inf) -> InputProfile:
     """Return a course that is linear between (times[i], values[i]) and holds the last value.
 
     With a period it is linear from the last knot back to the first.  Raises InputError like `steps`.
@@ -128,11 +130,11 @@ def table(name: str, times: Sequence[float], values: Sequence[float], period: fl
     _check_times(name, times, values, period)
     rates = [(b - a) / (t1 - t0) for (t0, t1), (a, b) in zip(pairwise(times), pairwise(values), strict=True)]
     rates.append((values[0] - values[-1]) / (period - times[-1]) if period < math.inf else 0.0)
-    return Course(tuple(times), tuple(values), tuple(rates), period)
+    return InputProfile(tuple(times), tuple(values), tuple(rates), period)
 
 
-def waves(name: str, amplitudes: Sequence[float], frequencies: Sequence[float],
-          phases: Sequence[float] | None = None) -> tuple[Wave, ...]:
+def sinusoids(name: str, amplitudes: Sequence[float], frequencies: Sequence[float],
+          phases: Sequence[float] | None = None) -> tuple[Sinusoid, ...]:
     """Return amplitudes[i] sin(2π frequencies[i] t + phases[i]), phases 0 when left out.
 
     Raises InputError on lengths that differ and on too many.
@@ -142,9 +144,10 @@ def waves(name: str, amplitudes: Sequence[float], frequencies: Sequence[float],
         if len(given) != len(amplitudes):
             raise InputError(f'{name}.{what}', list(given), f'as many as there are amplitudes ({len(amplitudes)})',
                              'give one for every wave')
-    if len(amplitudes) > MAX_WAVES:
-        raise InputError(f'{name}.amplitudes', len(amplitudes), f'at most {MAX_WAVES} waves', 'leave the weakest out')
-    return tuple(map(Wave, amplitudes, frequencies, phases))
+    if len(amplitudes) > MAX_SINUSOIDS:
+        raise InputError(f'{name}.amplitudes', len(amplitudes), f'at most {MAX_SINUSOIDS} waves',
+                         'leave the weakest out')
+    return tuple(map(Sinusoid, amplitudes, frequencies, phases))
 
 
 def _floats(numbers: Sequence[Any]) -> tuple[float, ...]:

@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from ..axis import Axis, CompliantContact, InitialState
-from ..core.input_profile import Course, Wave, constant, steps
+from ..core.input_profile import InputProfile, Sinusoid, constant, steps
 from ..core.types import Instant
 from ..scene import load_scene
 from ..simulation.simulator import Simulator
@@ -27,8 +27,8 @@ _RESONANT = math.sqrt(5.6e6 / 350.0) / (2.0 * math.pi)   # Hz, the paper's conta
 class _Case(NamedTuple):
     name: str
     axis: Axis
-    drive: Course
-    force: Course
+    drive: InputProfile
+    force: InputProfile
     duration: float   # s
     velocity: float = 0.0
 
@@ -54,32 +54,32 @@ def _cases(setup: Setup) -> list[_Case]:
     cases += [_Case('critically damped', critical, constant(0.002), still, 60.0),
               _Case('rings for a year', undamped, steps('v', (0.0, 0.93), (0.002, 0.0)), still, 3.2e7)]
     for frequency in setup.choose((1.0, 50.0, 1e3, 1e6), (1e6,)):
-        shaken = _waves(0.0, 1e-9 * min(1e5, 1e3 * frequency), frequency)
-        pushed = _waves(0.0, 100.0, frequency)
+        shaken = _sinusoids(0.0, 1e-9 * min(1e5, 1e3 * frequency), frequency)
+        pushed = _sinusoids(0.0, 100.0, frequency)
         for contact in (RIGID, COMPLIANT):
             cases += [_Case(f'hold {frequency:g} Hz', paper_axis(contact), still, pushed, 1000.0),
                       _Case(f'shaken hold {frequency:g} Hz', paper_axis(contact), shaken, still, 1000.0)]
-        cases.append(_Case(f'slide {frequency:g} Hz', rigid, constant(0.1), _waves(0.0, 20.0, frequency),
+        cases.append(_Case(f'slide {frequency:g} Hz', rigid, constant(0.1), _sinusoids(0.0, 20.0, frequency),
                            min(100.0, 2e3 / frequency), 0.1))
     for frequency in setup.choose((1.0, 50.0, 1e3), (1.0,)):
         for contact in (RIGID, COMPLIANT):
             cases.append(_Case(f'shaken stick-slip {frequency:g} Hz', paper_axis(contact),
-                               _waves(0.002, 1e-4, frequency), still, 20.0))
+                               _sinusoids(0.002, 1e-4, frequency), still, 20.0))
     for damping in setup.choose((0.0, 1.5e4, 1e6, 1e8, 1e10), (1e8,)):
         axis = paper_axis(CompliantContact(5e6, damping))
-        cases += [_Case(f'h_c {damping:g}, shaken', axis, _waves(0.0, 1e-3, 3.0), still, 60.0),
-                  _Case(f'h_c {damping:g}, driven', axis, _waves(0.002, 1e-3, 3.0), still, 60.0)]
+        cases += [_Case(f'h_c {damping:g}, shaken', axis, _sinusoids(0.0, 1e-3, 3.0), still, 60.0),
+                  _Case(f'h_c {damping:g}, driven', axis, _sinusoids(0.002, 1e-3, 3.0), still, 60.0)]
     for detuned in setup.choose((0.0, 1e-9, 1e-4, 1e-2), (1e-9,)):
         cases.append(_Case(f'off resonance by {detuned:g}', undamped, still,
-                           _waves(0.0, 0.1, _RESONANT * (1.0 + detuned)), 100.0))
+                           _sinusoids(0.0, 0.1, _RESONANT * (1.0 + detuned)), 100.0))
     for stiffer in setup.choose((1e3, 1e6, 1e9), (1e9,)):
         cases.append(_Case(f'c_c x {stiffer:g}', paper_axis(CompliantContact(5e6 * stiffer, 15000.0)), constant(0.002),
                            still, 20.0))
     return cases
 
 
-def _waves(base: float, amplitude: float, frequency: float) -> Course:
-    return Course((0.0,), (base,), (0.0,), waves=(Wave(amplitude, frequency, 0.1),))
+def _sinusoids(base: float, amplitude: float, frequency: float) -> InputProfile:
+    return InputProfile((0.0,), (base,), (0.0,), sinusoids=(Sinusoid(amplitude, frequency, 0.1),))
 
 
 def _made(solver: Solver, case: _Case, accounting: bool) -> Simulator:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from ..axis import Axis, InitialState
-from ..core.input_profile import Course
+from ..core.input_profile import InputProfile
 from ..core.types import Event
 from ..reference import simulate
 from ..solvers import Solver
@@ -16,7 +16,7 @@ from .shared_axes import instant, make
 DIGITS = 40
 
 
-def error_of_run(axis: Axis, initial: InitialState, drive: Course, force: Course, duration: float,
+def error_of_run(axis: Axis, initial: InitialState, drive: InputProfile, force: InputProfile, duration: float,
                  solver: Solver) -> float:
     """Return the largest error of the events of a run, in units of its length and its travel.
 

@@ -11,13 +11,13 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from ..axis import Axis, CompliantContact
-from ..core.input_profile import Course
+from ..core.input_profile import InputProfile
 from ..core.types import Event, Sample
 from ..friction import ExcessTable, KineticTable, StaticLaw
 from ..simulation.simulator import Simulator
 from ..solvers import Solver, exact
 from .outcome import Finding, Setup, Tally, check
-from .shared_axes import instant, make, random_axis, random_courses, run, scaled
+from .shared_axes import instant, make, random_axis, random_profiles, run, scaled
 
 
 def mirrored_and_scaled(setup: Setup) -> Finding:
@@ -32,7 +32,7 @@ def mirrored_and_scaled(setup: Setup) -> Finding:
 
 def _mirrored(solver: Solver, seed: int) -> float:
     rng = random.Random(seed)
-    axis, (drive, force) = random_axis(rng), random_courses(rng)
+    axis, (drive, force) = random_axis(rng), random_profiles(rng)
     events = run(axis, drive, 3.0, force, solver=solver)
     images = run(axis, scaled(drive, -1.0), 3.0, scaled(force, -1.0), solver=solver)
     _check_equal(images, (e._replace(
@@ -51,7 +51,7 @@ def _check_equal(events: list[Event], wanted: Iterable[Event]) -> None:
 def _mass_unit(solver: Solver, seed: int) -> float:
     """All forces, stiffnesses, dampers and the mass are multiplied."""
     rng = random.Random(seed)
-    axis, (drive, force) = random_axis(rng), random_courses(rng)
+    axis, (drive, force) = random_axis(rng), random_profiles(rng)
     k = math.ldexp(1.0, rng.choice((-40, -7, 1, 13, 60)))
     other = replace(_times(axis, k, k), mass=k * axis.mass, normal_force=k * axis.normal_force)
     _check_equal(run(other, drive, 3.0, scaled(force, k), solver=solver), (
@@ -82,7 +82,7 @@ def _faster(axis: Axis, k: float) -> Axis:
 def _length_unit(solver: Solver, seed: int) -> float:
     """All lengths, speeds and forces are multiplied; mass, stiffnesses and dampers stay."""
     rng = random.Random(seed)
-    axis, (drive, force) = random_axis(rng), random_courses(rng)
+    axis, (drive, force) = random_axis(rng), random_profiles(rng)
     k = math.ldexp(1.0, rng.choice((-40, -7, 1, 13, 60)))
     other = replace(_faster(axis, k), normal_force=k * axis.normal_force)
     events = run(axis, drive, 3.0, force, solver=solver)
@@ -95,7 +95,7 @@ def _length_unit(solver: Solver, seed: int) -> float:
 def _time_unit(solver: Solver, seed: int) -> float:
     """All times are multiplied by k < 1, within the first second, where a time is one number: c/k², h/k, v/k, F/k²."""
     rng = random.Random(seed)
-    axis, (drive, force) = random_axis(rng), random_courses(rng)
+    axis, (drive, force) = random_axis(rng), random_profiles(rng)
     k = math.ldexp(1.0, rng.choice((-1, -3, -10, -20)))
     law = axis.friction.static
     other = _faster(_times(axis, 1.0 / (k * k), 1.0 / k), 1.0 / k)
@@ -110,9 +110,9 @@ def _time_unit(solver: Solver, seed: int) -> float:
     return 0.0
 
 
-def _in_time(course: Course, k: float, factor: float) -> Course:
-    return Course(tuple(k * t for t in course.starts), tuple(factor * x for x in course.values),
-                  tuple(factor * x / k for x in course.rates), k * course.period)
+def _in_time(profile: InputProfile, k: float, factor: float) -> InputProfile:
+    return InputProfile(tuple(k * t for t in profile.starts), tuple(factor * x for x in profile.values),
+                  tuple(factor * x / k for x in profile.rates), k * profile.period)
 
 
 def run_twice(setup: Setup) -> Finding:
@@ -129,7 +129,7 @@ def run_twice(setup: Setup) -> Finding:
 def _recorded_commands(solver: Solver, seed: int) -> float:
     """Commands at random ticks are recorded as applied, and run again from the record alone, in other calls."""
     rng = random.Random(seed)
-    axis, (drive, force) = random_axis(rng), random_courses(rng)
+    axis, (drive, force) = random_axis(rng), random_profiles(rng)
     record: list[tuple[int, float, float]] = []
     first = make(axis, drive, force, solver=solver)
     seen, states = list[Event](), list[Sample]()
@@ -166,7 +166,7 @@ def digest(seeds: int) -> str:
     total = hashlib.sha256()
     for seed in range(seeds):
         rng = random.Random(seed)
-        axis, (drive, force) = random_axis(rng), random_courses(rng)
+        axis, (drive, force) = random_axis(rng), random_profiles(rng)
         for event in run(axis, drive, 3.0, force):
             total.update(' '.join(float(number).hex() for number in event).encode())
     return total.hexdigest()

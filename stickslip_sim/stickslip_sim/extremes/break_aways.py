@@ -9,7 +9,7 @@ from dataclasses import replace
 from mpmath import mpf, workdps
 
 from ..axis import Axis, CompliantContact, InitialState
-from ..core.input_profile import Course, ramp, steps
+from ..core.input_profile import InputProfile, ramp, steps
 from ..core.types import Event, EventKind
 from ..friction import StaticLaw, StaticLawKind
 from ..solvers import Solver
@@ -105,7 +105,7 @@ def _held_at_the_limit(solver: Solver, contact: Contact, side: float) -> float:
         limit *= 1.0 + axis.drive_stiffness / contact.stiffness   # the drive spring takes its part
         reach = 1e7
         for share, holds in ((1.0 - 1e-9, True), (1.0 + 1e-9, False)):
-            slow = Course((0.0, reach), (0.0, share * limit), (share * limit / reach, 0.0))
+            slow = InputProfile((0.0, reach), (0.0, share * limit), (share * limit / reach, 0.0))
             check((run(axis, 0.0, 2e7, slow, solver=solver) == []) == holds, f'wrong at {share!r} of the limit')
         return 0.0
     for force, holds in ((limit * (1.0 - 1e-15), True), (limit, True), (limit * (1.0 + 1e-12), False)):

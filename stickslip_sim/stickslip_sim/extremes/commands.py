@@ -9,7 +9,7 @@ from functools import partial
 
 from ..axis import Axis, InitialState
 from ..core.errors import InputError, StickslipError
-from ..core.input_profile import Course, ramp, steps, table
+from ..core.input_profile import InputProfile, ramp, steps, table
 from ..core.types import Event, Instant
 from ..friction import KineticTable, StaticLaw, StaticLawKind
 from ..realtime.command_slot import CommandSlot
@@ -43,7 +43,7 @@ def bad_commands(setup: Setup) -> Finding:
         for name in _PARAMETERS:
             tally.judge(_refused_by_the_scene, name, bad)
         tally.judge(_refused_by_the_slot, bad)
-        tally.judge(_refused_courses, bad)
+        tally.judge(_refused_profiles, bad)
     return tally.finding('accepted, or not by name, or with a changed state')
 
 
@@ -143,11 +143,11 @@ def _refused_by_the_slot(bad: float) -> float:
     return 0.0
 
 
-def _simulator_on(make_course: Callable[[], Course]) -> Simulator:
+def _simulator_on(make_course: Callable[[], InputProfile]) -> Simulator:
     return Simulator(paper_axis(RIGID), InitialState(), make_course(), make_course())
 
 
-def _refused_courses(bad: float) -> float:
+def _refused_profiles(bad: float) -> float:
     """See that a course or an axis made in Python is as strict as a scene."""
     for make_course in (lambda: steps('drive', [0.0, bad], [0.0, 0.0]), lambda: table('drive', [0.0, bad], [0.0, 0.0])):
         _check_refused(make_course, 'drive')

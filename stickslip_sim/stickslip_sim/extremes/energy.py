@@ -15,7 +15,7 @@ from itertools import pairwise
 import numpy as np
 
 from ..axis import Axis, CompliantContact
-from ..core.input_profile import Course, constant, ramp
+from ..core.input_profile import InputProfile, constant, ramp
 from ..core.types import Instant, Mode, Sample
 from ..simulation.simulator import Simulator
 from ..solvers import Solver
@@ -57,7 +57,7 @@ class _Account:
         return abs(math.fsum(self.terms) - stored) / size if size > 0.0 else 0.0
 
 
-def _balances(solver: Solver, axis: Axis, drive: Course, duration: float) -> float:
+def _balances(solver: Solver, axis: Axis, drive: InputProfile, duration: float) -> float:
     """Return the worst of the balances of all cycles, and of the whole run."""
     events = make(axis, drive, solver=solver).advance(instant(duration))
     simulator = make(axis, drive, solver=solver)

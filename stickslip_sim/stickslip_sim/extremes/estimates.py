@@ -22,7 +22,7 @@ from ..runs.offline import Trajectory, run_offline
 from ..scene import Scene, SolverSettings, load_scene, scene_names
 from .against import DIGITS
 from .outcome import Finding, Setup, Tally, check
-from .shared_axes import random_axis, random_courses
+from .shared_axes import random_axis, random_profiles
 
 _DURATION = 2.0   # s
 _TOLERANCES = (1e-3, 1e-6, 1e-9, 1e-12)
@@ -65,7 +65,7 @@ def _scenes(setup: Setup) -> Iterator[Scene]:
     for seed in range(setup.count(40, 2)):
         rng = random.Random(seed)
         axis = random_axis(rng)
-        drive, force = random_courses(rng)
+        drive, force = random_profiles(rng)
         yield replace(load_scene(_FEW[0]), name=f'random {seed}', axis=axis, drive=drive, force=force)
 
 

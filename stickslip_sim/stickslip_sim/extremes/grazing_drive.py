@@ -11,13 +11,13 @@ from dataclasses import replace
 
 from ..axis import Axis, CompliantContact
 from ..core.errors import InputError
-from ..core.input_profile import Course, Wave, constant
+from ..core.input_profile import InputProfile, Sinusoid, constant
 
 FREQUENCIES = 0.02, 0.2          # Hz: slow enough for the ring-down of a start to vanish before the first peak
 PHASES = -0.45 * math.pi, 0.45 * math.pi   # rad: the first extreme is the peak
 
 
-def grazing_drive(axis: Axis, overshoot: float, frequency: float, phase: float) -> Course:
+def grazing_drive(axis: Axis, overshoot: float, frequency: float, phase: float) -> InputProfile:
     """Return a drive course (m/s) whose contact force peaks at N mu_inf (1 + overshoot), from prolonged rest.
 
     The peak comes at (π − phase)/(2π frequency), or a little later through the damper; it is the only way to the limit.
@@ -29,7 +29,7 @@ def grazing_drive(axis: Axis, overshoot: float, frequency: float, phase: float) 
         raise InputError('axis', axis, 'with a drive spring and a bounded static law', 'take another axis')
     limit = axis.normal_force * axis.friction.static.coefficient(math.inf)
     peak = _force_peak(axis, 2.0 * math.pi * frequency, phase)
-    return replace(constant(0.0), waves=(Wave(limit * (1.0 + overshoot) / peak, frequency, phase),))
+    return replace(constant(0.0), sinusoids=(Sinusoid(limit * (1.0 + overshoot) / peak, frequency, phase),))
 
 
 def _force_peak(axis: Axis, w: float, phase: float) -> float:

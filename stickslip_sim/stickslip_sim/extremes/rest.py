@@ -7,7 +7,7 @@ import random
 from mpmath import mp, mpf, workdps
 
 from ..axis import Axis, InitialState
-from ..core.input_profile import Course
+from ..core.input_profile import InputProfile
 from ..core.types import EventKind, Mode
 from ..friction import StaticLaw, StaticLawKind
 from ..simulation.simulator import Simulator
@@ -40,7 +40,7 @@ def _held_by_force(solver: Solver, contact: Contact, share: float, drift: list[f
     load = share * 0.24 * axis.normal_force
     side = 1.0 if share > 0.0 else -1.0
     reach = 100.0   # s, so slowly that the contact hardly rings
-    force = Course((0.0, reach, YEAR), (0.0, load, load), (load / reach, 0.0, side * _RAMP))
+    force = InputProfile((0.0, reach, YEAR), (0.0, load, load), (load / reach, 0.0, side * _RAMP))
     simulator = make(axis, 0.0, force, solver=solver)
     _hold(simulator, drift, reach)
     jumps = [Jump(0, 1, mpf(load / reach)), Jump(reach, 1, -mpf(load / reach)), Jump(YEAR, 1, side * mpf(_RAMP)),
@@ -64,7 +64,7 @@ def _held_by_drive(solver: Solver, contact: Contact, share: float, drift: list[f
     axis = paper_axis(contact)
     c, h, v = axis.drive_stiffness, axis.drive_damping, 1e-6 if share > 0.0 else -1e-6
     reach = float(round(share * 0.24 * axis.normal_force / (c * v)))
-    drive = Course((0.0, reach, YEAR), (v, 0.0, v), (0.0, 0.0, 0.0))
+    drive = InputProfile((0.0, reach, YEAR), (v, 0.0, v), (0.0, 0.0, 0.0))
     simulator = make(axis, drive, solver=solver)
     _hold(simulator, drift, reach)
     events = simulator.advance(instant(YEAR + 2000.0))
@@ -99,7 +99,7 @@ def _ageing(solver: Solver, contact: Contact) -> float:
     """Return the relative error of mu_s after a year under a law that rises without bound."""
     law = StaticLaw(StaticLawKind.LOGARITHMIC, 0.12, 0.13, 0.2)
     axis = with_static(paper_axis(contact), law)
-    force = Course((0.0, YEAR), (0.0, 0.0), (0.0, _RAMP))
+    force = InputProfile((0.0, YEAR), (0.0, 0.0), (0.0, _RAMP))
     events = make(axis, 0.0, force, InitialState(rest_time=0.0), solver).advance(instant(YEAR + 100.0))
     check(events and events[0].kind == EventKind.BREAKAWAY, 'no break-away')
     with workdps(DIGITS):

@@ -8,7 +8,7 @@ from itertools import pairwise
 from mpmath import mpf, workdps
 
 from ..axis import InitialState
-from ..core.input_profile import Course, constant
+from ..core.input_profile import InputProfile, constant
 from ..core.types import Event, EventKind, Instant
 from ..solvers import Solver
 from .against import error_of_events
@@ -44,8 +44,8 @@ def _length_of(feed: float) -> float:
 def _late_and_far(solver: Solver, contact: Contact, feed: float) -> float:
     """Return the largest difference of the times between events: clock at 1e9 s and position at 1e6 m, or both at 0."""
     axis = paper_axis(contact)
-    at_zero = _events(solver, contact, Course((0.0,), (feed,), (0.0,)), 0.0, 0.0, _length_of(feed))
-    held = Course((0.0, _LATE), (0.0, feed), (0.0, 0.0))
+    at_zero = _events(solver, contact, InputProfile((0.0,), (feed,), (0.0,)), 0.0, 0.0, _length_of(feed))
+    held = InputProfile((0.0, _LATE), (0.0, feed), (0.0, 0.0))
     late = _events(solver, contact, held, _FAR, _LATE, _length_of(feed))
     check(len(at_zero) > 0 or feed > axis.friction.kinetic.velocities[-1], 'no events')
     check([(e.kind, e.direction) for e in late] == [(e.kind, e.direction) for e in at_zero], 'other events')
@@ -53,7 +53,8 @@ def _late_and_far(solver: Solver, contact: Contact, feed: float) -> float:
                 for (a, b), (c, d) in zip(pairwise(late), pairwise(at_zero))), default=0.0)
 
 
-def _events(solver: Solver, contact: Contact, drive: Course, place: float, begin: float, length: float) -> list[Event]:
+def _events(solver: Solver, contact: Contact, drive: InputProfile, place: float, begin: float,
+            length: float) -> list[Event]:
     simulator = make(paper_axis(contact), drive, initial=InitialState(position=place), solver=solver)
     events = simulator.advance(Instant(begin, 0.0))
     check(all(event.instant == (begin, 0.0) for event in events), 'an event during the hold')
@@ -91,7 +92,7 @@ def _late_and_far_in_parts(solver: Solver, seed: int) -> float:
     """Random ticks late in the run change no bit of the events."""
     rng = random.Random(seed)
     contact, feed = rng.choice(CONTACTS), 10 ** rng.uniform(-4, -2)
-    held = Course((0.0, _LATE), (0.0, feed), (0.0, 0.0))
+    held = InputProfile((0.0, _LATE), (0.0, feed), (0.0, 0.0))
     whole = _events(solver, contact, held, _FAR, _LATE, 3.0)
     simulator = make(paper_axis(contact), held, initial=InitialState(position=_FAR), solver=solver)
     seen, offset = list[Event](), 0.0

@@ -9,34 +9,34 @@ mode comes next is decided by where the sines of that very instant move the forc
 import random
 
 from ..axis import InitialState
-from ..core.input_profile import Course, Wave, constant
+from ..core.input_profile import InputProfile, Sinusoid, constant
 from ..solvers import Solver
 from .against import error_of_run
 from .outcome import Finding, Setup, Tally
 from .shared_axes import RIGID, paper_axis
 
 _DURATION = 3.0   # s
-_DOUBLED = Wave(900.0, 0.7, 0.3), Wave(850.0, 1.1, 2.0)   # whose break-aways were doubled once
+_DOUBLED = Sinusoid(900.0, 0.7, 0.3), Sinusoid(850.0, 1.1, 2.0)   # whose break-aways were doubled once
 
 
 def shaken(setup: Setup) -> Finding:
     """X21: the paper's axis under one to three sines that pass its limit; the run is the reference's."""
     tally = Tally(1e-12)
-    for wave in _DOUBLED:
-        tally.judge(_equals_the_reference, setup.solver, wave)
+    for sinusoid in _DOUBLED:
+        tally.judge(_equals_the_reference, setup.solver, sinusoid)
     for seed in range(setup.count(100, 6)):
-        tally.judge(_equals_the_reference, setup.solver, *_random_waves(random.Random(seed)))
+        tally.judge(_equals_the_reference, setup.solver, *_random_sinusoids(random.Random(seed)))
     return tally.finding('with other events than the reference')
 
 
-def _random_waves(rng: random.Random) -> tuple[Wave, ...]:
+def _random_sinusoids(rng: random.Random) -> tuple[Sinusoid, ...]:
     """Return sines whose amplitudes make 1 to 2.5 times the static limit together."""
     axis = paper_axis(RIGID)
     count = rng.randint(1, 3)
     size = rng.uniform(1.0, 2.5) * axis.friction.static.limit * axis.normal_force / count
-    return tuple(Wave(size, 10 ** rng.uniform(-0.5, 1.0), rng.uniform(-7.0, 7.0)) for _ in range(count))
+    return tuple(Sinusoid(size, 10 ** rng.uniform(-0.5, 1.0), rng.uniform(-7.0, 7.0)) for _ in range(count))
 
 
-def _equals_the_reference(solver: Solver, *waves: Wave) -> float:
-    force = Course((0.0,), (0.0,), (0.0,), waves=waves)
+def _equals_the_reference(solver: Solver, *sinusoids: Sinusoid) -> float:
+    force = InputProfile((0.0,), (0.0,), (0.0,), sinusoids=sinusoids)
     return error_of_run(paper_axis(RIGID), InitialState(), constant(0.0), force, _DURATION, solver)

@@ -7,7 +7,7 @@ import random
 from dataclasses import replace
 
 from ..axis import Axis, CompliantContact, Friction, InitialState, RigidContact
-from ..core.input_profile import Course, constant, ramp, steps, table
+from ..core.input_profile import InputProfile, constant, ramp, steps, table
 from ..core.types import Event, EventKind, Instant
 from ..friction import ExcessTable, KineticTable, StaticLaw, StaticLawKind
 from ..friction.kinetic import default_excess
@@ -40,14 +40,15 @@ def instant(seconds: float) -> Instant:
     return Instant(float(whole), seconds - whole)
 
 
-def make(axis: Axis, drive: float | Course, force: float | Course = 0.0, initial: InitialState | None = None,
+def make(axis: Axis, drive: float | InputProfile, force: float | InputProfile = 0.0,
+         initial: InitialState | None = None,
          solver: Solver = exact.SOLVER) -> Simulator:
     """Return a simulator at time 0; a number is a constant course."""
-    return Simulator(axis, initial or InitialState(), drive if isinstance(drive, Course) else constant(drive),
-                     force if isinstance(force, Course) else constant(force), solver)
+    return Simulator(axis, initial or InitialState(), drive if isinstance(drive, InputProfile) else constant(drive),
+                     force if isinstance(force, InputProfile) else constant(force), solver)
 
 
-def run(axis: Axis, drive: float | Course, duration: float, force: float | Course = 0.0,
+def run(axis: Axis, drive: float | InputProfile, duration: float, force: float | InputProfile = 0.0,
         initial: InitialState | None = None, solver: Solver = exact.SOLVER) -> list[Event]:
     """Return all events of a run from the start."""
     return make(axis, drive, force, initial, solver).advance(instant(duration))
@@ -80,7 +81,7 @@ def random_axis(rng: random.Random) -> Axis:
     return Axis(mass, stiffness, damping, mass * 9.80665, contact, Friction(static, kinetic, excess))
 
 
-def random_courses(rng: random.Random) -> tuple[Course, Course]:
+def random_profiles(rng: random.Random) -> tuple[InputProfile, InputProfile]:
     """Return a drive (m/s) and a force (N): constant, ramp, steps or a periodic table; with a pulse or without."""
     speed = rng.choice((-1, 1)) * 10 ** rng.uniform(-3, -1.3)
     drive = rng.choice((constant(speed), ramp(0.0, speed, 2.0), steps('drive', [0.0, 1.0, 2.0], [speed, -speed, 0.0]),
@@ -90,7 +91,8 @@ def random_courses(rng: random.Random) -> tuple[Course, Course]:
     return drive, force
 
 
-def scaled(course: Course, factor: float) -> Course:
+def scaled(profile: InputProfile, factor: float) -> InputProfile:
     """Return the course with all its values multiplied."""
-    return Course(course.starts, tuple(factor * x for x in course.values), tuple(factor * x for x in course.rates),
-                  course.period, tuple(wave._replace(amplitude=factor * wave.amplitude) for wave in course.waves))
+    return InputProfile(profile.starts, tuple(factor * x for x in profile.values),
+                        tuple(factor * x for x in profile.rates),
+                  profile.period, tuple(one._replace(amplitude=factor * one.amplitude) for one in profile.sinusoids))

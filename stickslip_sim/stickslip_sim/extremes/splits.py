@@ -9,13 +9,13 @@ from dataclasses import replace
 
 from ..axis import Axis, CompliantContact, Friction, InitialState
 from ..core.errors import SolverError
-from ..core.input_profile import Course
+from ..core.input_profile import InputProfile
 from ..core.types import Event, Instant, Mode
 from ..friction import KineticTable, StaticLaw, StaticLawKind
 from ..simulation.simulator import MAX_EVENTS_PER_ADVANCE, Simulator
 from ..solvers import Solver
 from .outcome import Finding, Setup, Tally, check
-from .shared_axes import COMPLIANT, CONTACTS, RIGID, Contact, instant, make, paper_axis, random_axis, random_courses
+from .shared_axes import COMPLIANT, CONTACTS, RIGID, Contact, instant, make, paper_axis, random_axis, random_profiles
 
 _PATIENCE = 20.0   # s for a tick full of events; a solver that spins takes for ever
 
@@ -27,7 +27,7 @@ def splits(setup: Setup) -> Finding:
         tally.judge(_a_million_calls, setup.solver, contact, setup.count(1_000_000, 20_000))
     for seed in range(setup.count(400, 15)):
         rng = random.Random(seed)
-        axis, (drive, force) = random_axis(rng), random_courses(rng)
+        axis, (drive, force) = random_axis(rng), random_profiles(rng)
         tally.judge(_random_calls, setup.solver, seed, axis, drive, force)
     return tally.finding('with other bits or events')
 
@@ -46,7 +46,7 @@ def _share(whole: int, k: int, count: int) -> Instant:
     return Instant(float(second), rest / count)
 
 
-def _random_calls(solver: Solver, seed: int, axis: Axis, drive: Course, force: Course) -> float:
+def _random_calls(solver: Solver, seed: int, axis: Axis, drive: InputProfile, force: InputProfile) -> float:
     rng = random.Random(seed)
     whole, parts = make(axis, drive, force, solver=solver), make(axis, drive, force, solver=solver)
     events = whole.advance(instant(4.0))

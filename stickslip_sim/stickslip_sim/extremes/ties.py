@@ -9,7 +9,7 @@ from dataclasses import replace
 from itertools import groupby, pairwise, permutations
 
 from ..axis import Axis, InitialState
-from ..core.input_profile import Course, constant, steps
+from ..core.input_profile import InputProfile, constant, steps
 from ..core.types import Event, EventKind, Instant
 from ..friction import KineticTable
 from ..simulation.simulator import Simulator
@@ -145,12 +145,12 @@ def _commands_in_any_order(solver: Solver, axis: Axis, seed: int) -> float:
         events += simulator.advance(instant(3.0))
         outcomes.append((events, simulator.sample()))
     check(outcomes[0] == outcomes[1], f'v = {v!r} m/s and F = {f!r} N at {when.seconds!r} s')
-    course = make(axis, _switch(0.002, v, when), _switch(0.0, f, when), solver=solver)
-    events = course.advance(instant(3.0))
+    profile = make(axis, _switch(0.002, v, when), _switch(0.0, f, when), solver=solver)
+    events = profile.advance(instant(3.0))
     check([(e.kind, e.direction) for e in events] == [(e.kind, e.direction) for e in outcomes[0][0]],
           f'courses that jump together differ from commands: v = {v!r} m/s, F = {f!r} N at {when.seconds!r} s')
     return 0.0
 
 
-def _switch(before: float, after: float, when: Instant) -> Course:
+def _switch(before: float, after: float, when: Instant) -> InputProfile:
     return steps('course', [0.0, when.seconds], [before, after]) if when.seconds > 0.0 else constant(after)

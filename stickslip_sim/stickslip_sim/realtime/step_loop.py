@@ -13,17 +13,17 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 
 from ..core.errors import SolverError
-from ..rig import Product, Rig
+from ..rig import Rig, StepResult
 from .command_inputs import CommandInputs, CommandTotals
 from .command_slot import CommandSlot
 from .pacing import StepClock, wake_precisely
-from .timing_statistics import Ledger
+from .timing_statistics import TimingStatistics
 from .watchdog import Watchdog
 
 _IDLE = 0.05            # s between two looks at whether to stop while time stands still
 _PATIENCE = 5.0         # s that a request waits for its boundary
 
-Taker = Callable[[Product], None]
+Sink = Callable[[StepResult], None]
 
 
 class StepLoop:
@@ -32,15 +32,15 @@ class StepLoop:
     `takers` get each product, in the loop's thread.  With `by_request` time moves with `run_steps` only.
     """
 
-    def __init__(self, rig: Rig, clock: StepClock, slots: Sequence[CommandSlot], takers: Sequence[Taker],
+    def __init__(self, rig: Rig, clock: StepClock, slots: Sequence[CommandSlot], sinks: Sequence[Sink],
                  watchdog: Watchdog, by_request: bool = False) -> None:
         self.rig = rig
         self.paused = False
         self.by_request = by_request
         self.failure = ''                    # why the solver gave up; time stands still then
         self.crash: BaseException | None = None
-        self.ledger, self.account = Ledger(), clock.account
-        self._clock, self._takers, self._watchdog = clock, takers, watchdog
+        self.timing_statistics, self.account = TimingStatistics(), clock.account
+        self._clock, self._sinks, self._watchdog = clock, sinks, watchdog
         self._inputs = CommandInputs(slots, (rig.command_velocity, rig.command_force))
         self._requests: deque[Callable[[], None]] = deque()
         self._is_over, self._wake = threading.Event(), threading.Event()
@@ -109,26 +109,26 @@ class StepLoop:
         self._inputs.forget()
         self.rig.reset()
         self._watchdog.forget()
-        self.ledger.forget()
+        self.timing_statistics.forget()
         self.account.clear()
         self.failure = ''
         self._clock.restart(0)
 
     def run_steps(self, count: int, velocity: float | None, force: float | None, stop: Callable[[], bool]
-                  ) -> list[Product]:
+                  ) -> list[StepResult]:
         """Make steps now, under commands (None: those in force), until `stop`; at a boundary only.
 
         Returns what came of them; when the solver gives up on the way, `failure` says why.
         """
         self._inputs.put((velocity, force), self._clock.now())
-        products: list[Product] = []
+        results: list[StepResult] = []
         try:
-            while len(products) < count and not stop() and not self._is_over.is_set():
+            while len(results) < count and not stop() and not self._is_over.is_set():
                 self._clock.account.steps += 1
-                products.append(self._make_step(self._clock.now(), 0))
+                results.append(self._make_step(self._clock.now(), 0))
         except SolverError as error:
             self.failure = str(error)
-        return products
+        return results
 
     def _run(self) -> None:
         wake_precisely()
@@ -155,15 +155,15 @@ class StepLoop:
     def _stands_still(self) -> bool:
         return bool(self.failure) or (self.step >= 0 and (self.paused or self.by_request))
 
-    def _make_step(self, begin: int, lateness: int) -> Product:
+    def _make_step(self, begin: int, lateness: int) -> StepResult:
         age, fresh = self._inputs.take(begin)
         self._watch()
-        product = self.rig.make_step()
-        for take in self._takers:
-            take(product)
+        result = self.rig.make_step()
+        for take in self._sinks:
+            take(result)
         end = self._clock.now()
-        self.ledger.add(self.rig.time_ns, end - begin, lateness, age, end - fresh if fresh else None)
-        return product
+        self.timing_statistics.add(self.rig.time_ns, end - begin, lateness, age, end - fresh if fresh else None)
+        return result
 
     def _watch(self) -> None:
         """Look for a time-out."""

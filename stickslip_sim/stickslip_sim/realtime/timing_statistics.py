@@ -21,7 +21,7 @@ class Quantiles(NamedTuple):
     max: float = math.nan
 
 
-class LedgerWindow(NamedTuple):
+class TimingWindow(NamedTuple):
     """One window: how many steps, and the quantiles of what they took."""
 
     steps: int
@@ -38,7 +38,7 @@ class Worst(NamedTuple):
     time: float = math.nan
 
 
-class Ledger:
+class TimingStatistics:
     """Takes an entry a step; another thread looks at it."""
 
     def __init__(self) -> None:
@@ -56,11 +56,11 @@ class Ledger:
             if value is not None and (name not in self._worst or value > self._worst[name][0]):
                 self._worst[name] = value, time
 
-    def take(self) -> LedgerWindow:
+    def take(self) -> TimingWindow:
         """Begin a new window; return the one until now."""
         rows = [self._rows.popleft() for _ in range(len(self._rows))]    # none is lost to a step that ends meanwhile
         columns = ([row[i] for row in rows] for i in range(4))
-        return LedgerWindow(len(rows), *map(quantiles, columns))
+        return TimingWindow(len(rows), *map(quantiles, columns))
 
     def worst(self, name: str) -> Worst:
         """Return the worst cost, lateness or latency of the run."""

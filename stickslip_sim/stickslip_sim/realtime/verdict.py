@@ -7,7 +7,7 @@ from typing import NamedTuple
 from ..scene.model import Scene, TimingSettings
 from .pacing import Account
 from .step_loop import StepLoop
-from .timing_statistics import Ledger
+from .timing_statistics import TimingStatistics
 
 
 class Verdict(NamedTuple):
@@ -22,20 +22,20 @@ def verdict(scene: Scene, loop: StepLoop) -> Verdict:
     commands = _commands(loop)
     if scene.time.mode != 'realtime':
         return Verdict(None, f'not in real time (time.mode {scene.time.mode}); {commands}')
-    reasons = _reasons(scene.timing, loop.ledger, loop.account)
-    lateness = loop.ledger.worst('lateness')
+    reasons = _reasons(scene.timing, loop.timing_statistics, loop.account)
+    lateness = loop.timing_statistics.worst('lateness')
     worst = f'worst {lateness.value * 1e3:.2f} ms at t = {lateness.time:.4g} s'
     why = f' ({"; ".join(reasons)})' if reasons else ''
     return Verdict(not reasons, f'real-time valid: {"no" if reasons else "yes"}, {worst}{why}; {commands}')
 
 
-def _reasons(limits: TimingSettings, ledger: Ledger, account: Account) -> list[str]:
+def _reasons(limits: TimingSettings, timing_statistics: TimingStatistics, account: Account) -> list[str]:
     """Return what is beyond the limits."""
     reasons = []
     if account.skipped:
         reasons.append(f'{account.skipped * 1e-9:.3f} s of wall time given up')
     for name, limit in (('lateness', limits.max_lateness), ('latency', limits.max_latency)):
-        worst = ledger.worst(name)
+        worst = timing_statistics.worst(name)
         if worst.value > limit:
             reasons.append(f'{name} {worst.value * 1e3:.2f} ms at t = {worst.time:.4g} s is over {limit * 1e3:g} ms')
     share = account.overruns / max(account.steps, 1)

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from ..axis import Axis, InitialState
 from ..core.errors import InputError
-from ..core.input_profile import Course
+from ..core.input_profile import InputProfile
 from .result import Final, ReferenceRun
 
 __all__ = ['Final', 'ReferenceRun', 'simulate']
@@ -23,7 +23,7 @@ FEWEST_DIGITS = 20
 
 
 def simulate(
-    axis: Axis, initial: InitialState, drive: Course, force: Course, duration: float, digits: int = 30
+    axis: Axis, initial: InitialState, drive: InputProfile, force: InputProfile, duration: float, digits: int = 30
 ) -> ReferenceRun:
     """Return the run from time 0 to `duration` (s), right to about `digits` digits.
 

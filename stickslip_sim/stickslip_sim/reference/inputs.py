@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from mpmath import cos, inf, mpf, pi, sin
 
-from ..core.input_profile import Course
+from ..core.input_profile import InputProfile
 from .series import Series
 
 
@@ -73,9 +73,9 @@ class Input:
     `until` is the instant at which the next piece begins (infinite behind the last).
     """
 
-    def __init__(self, course: Course) -> None:
-        self._waves = course.waves
-        self._segments = _segments(course)
+    def __init__(self, profile: InputProfile) -> None:
+        self._sinusoids = profile.sinusoids
+        self._segments = _segments(profile)
         self._here = next(self._segments)
         self._next = next(self._segments, None)
 
@@ -93,7 +93,7 @@ class Input:
         """Return the input from an instant of the present piece on; waves run over absolute time."""
         here = self._here
         offset = here.value + here.slope * (t - here.start)
-        turns = tuple(_turn(t, *map(mpf, wave)) for wave in self._waves)
+        turns = tuple(_turn(t, *map(mpf, sinusoid)) for sinusoid in self._sinusoids)
         value = offset + sum((turn.amplitude * turn.sine for turn in turns), mpf(0))
         return Signal(value, offset, here.slope, turns)
 
@@ -104,14 +104,14 @@ def _turn(t: mpf, amplitude: mpf, frequency: mpf, phase: mpf) -> Turn:
     return Turn(amplitude, omega, sin(angle), cos(angle))
 
 
-def _segments(course: Course) -> Iterator[Segment]:
+def _segments(profile: InputProfile) -> Iterator[Segment]:
     """Yield the pieces in the order of time, without end when the course is periodic."""
     turn = 0
-    pieces = [Segment(*map(mpf, piece)) for piece in zip(course.starts, course.values, course.rates)]
+    pieces = [Segment(*map(mpf, piece)) for piece in zip(profile.starts, profile.values, profile.rates)]
     while True:
-        begin = turn * mpf(course.period) if turn else mpf(0)
+        begin = turn * mpf(profile.period) if turn else mpf(0)
         for piece in pieces:
             yield piece._replace(start=begin + piece.start)
-        if math.isinf(course.period):
+        if math.isinf(profile.period):
             return
         turn += 1

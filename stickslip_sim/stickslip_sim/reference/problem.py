@@ -60,8 +60,8 @@ class Problem:
     static: StaticLaw
     kinetic: Table
     excess: Table | None
-    drive: profiles.Course
-    force: profiles.Course
+    drive: profiles.InputProfile
+    force: profiles.InputProfile
     position: mpf
     velocity: mpf
     rest_time: mpf
@@ -72,7 +72,8 @@ class Problem:
         return sorted(k for k in speeds if k > 0)
 
 
-def problem(axis: product.Axis, initial: product.InitialState, drive: profiles.Course, force: profiles.Course) -> Problem:
+def problem(axis: product.Axis, initial: product.InitialState, drive: profiles.InputProfile,
+            force: profiles.InputProfile) -> Problem:
     """Return the problem in multiple precision; raises InputError when the start has no finite static friction."""
     product.check_start(axis, initial)
     contact = axis.contact if isinstance(axis.contact, product.CompliantContact) else None

@@ -9,6 +9,6 @@ before the same steps give the same numbers in real time, in lock-step, as fast 
 from .encoder import Measured
 from .faults import Fault
 from .rig import FAILED, SILENT_BRIDGE, Rig
-from .step_result import Note, NoteKind, Product
+from .step_result import RigEvent, RigEventKind, StepResult
 
-__all__ = ['FAILED', 'SILENT_BRIDGE', 'Fault', 'Measured', 'Note', 'NoteKind', 'Product', 'Rig']
+__all__ = ['FAILED', 'SILENT_BRIDGE', 'Fault', 'Measured', 'Rig', 'RigEvent', 'RigEventKind', 'StepResult']

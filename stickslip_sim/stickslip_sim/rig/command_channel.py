@@ -11,12 +11,12 @@ from .faults import Fault
 from .random_stream import Stream, restore, state_of, stream
 
 
-class Wire:
+class CommandChannel:
     """Takes commands in and lets them out, before the same step without a fault."""
 
     def __init__(self, grid: Grid, seed: int) -> None:
         self._grid = grid
-        self._luck = stream(seed, Stream.LOSS)
+        self._stream = stream(seed, Stream.LOSS)
         self._under_way: deque[tuple[int, float]] = deque()
 
     @property
@@ -32,7 +32,7 @@ class Wire:
                 arrival += self._grid.steps(fault.value)
             elif fault.kind == 'command_loss':
                 kept *= 1.0 - fault.value
-        if kept < 1.0 and self._luck.random_sample() >= kept:
+        if kept < 1.0 and self._stream.random_sample() >= kept:
             return False
         while self._under_way and self._under_way[-1][0] >= arrival:
             self._under_way.pop()
@@ -41,13 +41,13 @@ class Wire:
 
     def checkpoint(self) -> list[Any]:
         """Return what is under way and the luck to come, as plain data."""
-        return [[list(command) for command in self._under_way], state_of(self._luck)]
+        return [[list(command) for command in self._under_way], state_of(self._stream)]
 
     def restore(self, saved: Sequence[Any]) -> None:
         """Go on from a checkpoint."""
-        under_way, luck = saved
+        under_way, stream = saved
         self._under_way = deque((int(step), float(velocity)) for step, velocity in under_way)
-        restore(self._luck, luck)
+        restore(self._stream, stream)
 
     def take(self, step: int) -> float | None:
         """Return the latest command that has arrived before a step, None without a new one."""

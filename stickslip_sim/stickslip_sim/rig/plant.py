@@ -8,7 +8,7 @@ from typing import Any
 
 from ..axis import Axis
 from ..core.errors import InputError, SolverError
-from ..core.input_profile import Course, constant, course_of, plain_of
+from ..core.input_profile import InputProfile, constant, plain_of, profile_of
 from ..simulation.simulator import Simulator
 from .drive import Drive
 from .faults import Faults
@@ -18,12 +18,12 @@ from .friction import with_friction_scaled
 class Plant:
     """Keeps what was ordered apart from what acts; what changes between two steps takes effect with `act`, at once."""
 
-    def __init__(self, simulator: Simulator, drive: Drive, force: Course, faults: Faults) -> None:
+    def __init__(self, simulator: Simulator, drive: Drive, force: InputProfile, faults: Faults) -> None:
         self.drive = drive
         self._simulator, self._faults = simulator, faults
         self._axis = simulator.axis           # without faults
         self._force, self._acting_force = force, force
-        self._acting_drive = drive.course
+        self._acting_drive = drive.profile
         self._friction_scale = 1.0
         self._is_changed = False              # axis, force or faults, since they last took effect
 
@@ -69,8 +69,8 @@ class Plant:
     def restore(self, saved: Mapping[str, Any]) -> None:
         """Go on from a checkpoint, with the parameters of the axis that held then."""
         self.drive.restore(saved['drive'])
-        self._acting_drive = self.drive.course
-        self._force, self._acting_force = course_of(saved['force']), course_of(saved['acting_force'])
+        self._acting_drive = self.drive.profile
+        self._force, self._acting_force = profile_of(saved['force']), profile_of(saved['acting_force'])
         self._friction_scale = float(saved['friction_scale'])
         axis = with_friction_scaled(self._axis, self._friction_scale)
         self._simulator.restore(saved['simulator'], axis, self._acting_drive, self._acting_force)
@@ -85,12 +85,12 @@ class Plant:
 
     def _command_force(self) -> None:
         pulse = math.fsum(self._faults.values('force_pulse'))
-        course = self._force.plus(pulse) if pulse else self._force
-        if course != self._acting_force:
-            self._acting_force = course
-            self._simulator.command_force(course)
+        profile = self._force.plus(pulse) if pulse else self._force
+        if profile != self._acting_force:
+            self._acting_force = profile
+            self._simulator.command_force(profile)
 
     def _command_drive(self) -> None:
-        if self.drive.course is not self._acting_drive:
-            self._acting_drive = self.drive.course
+        if self.drive.profile is not self._acting_drive:
+            self._acting_drive = self.drive.profile
             self._simulator.command_drive(self._acting_drive)

@@ -8,18 +8,18 @@ from typing import Any
 
 from ..axis import Axis, InitialState
 from ..core.errors import InputError
-from ..core.input_profile import Course
+from ..core.input_profile import InputProfile
 from ..core.time_grid import Grid
 from ..core.types import Event, Instant
 from ..simulation.simulator import Simulator, SolverOf
 from ..solvers import Solver
-from .command_channel import Wire
+from .command_channel import CommandChannel
 from .drive import Drive
 from .encoder import Encoder
 from .faults import Fault, Faults
 from .plant import Plant
 from .settings import RigSettings
-from .step_result import Counts, Note, NoteKind, Product
+from .step_result import Counts, RigEvent, RigEventKind, StepResult
 
 
 class Rig:
@@ -28,7 +28,8 @@ class Rig:
     Drive velocities come through the wire and are followed by the drive within its limits; forces act at once.
     """
 
-    def __init__(self, axis: Axis, initial: InitialState, drive: Course, force: Course, solver: Solver | SolverOf,
+    def __init__(self, axis: Axis, initial: InitialState, drive: InputProfile, force: InputProfile,
+                 solver: Solver | SolverOf,
                  grid: Grid, settings: RigSettings) -> None:
         self.simulator = Simulator(axis, initial, drive, force, solver, accounting=True)
         self._grid, self._settings = grid, settings
@@ -47,12 +48,12 @@ class Rig:
         self.counts = Counts()
         self.has_failed = False               # on_timeout: fault; until cleared
         self._faults = Faults(self._grid, settings.faults)
-        self._wire = Wire(self._grid, settings.seed)
+        self._channel = CommandChannel(self._grid, settings.seed)
         self._plant = Plant(self.simulator, Drive(drive, settings.limits), force, self._faults)
         self._velocity_order: float | None = None
         self._force_order: float | None = None
         self._encoder = Encoder(settings.encoder, self._grid.rate, settings.encoder_delay_steps, settings.seed)
-        self._notes: list[Note] = []
+        self._notes: list[RigEvent] = []
         self.is_silent = False                # since a command time-out, until the next command
         self._is_limited = False
 
@@ -83,7 +84,8 @@ class Rig:
         self.counts.timed_out += 1
         self.is_silent = True
         reaction = self._settings.on_timeout
-        self._notes.append(Note(NoteKind.COMMAND_TIMEOUT, 'velocity', _TIMEOUT.format(silence, _REACTIONS[reaction]),
+        self._notes.append(RigEvent(RigEventKind.COMMAND_TIMEOUT, 'velocity', _TIMEOUT.format(silence,
+                                                                                              _REACTIONS[reaction]),
                                 silence))
         self.has_failed = reaction == 'fault'
         if reaction != 'hold':
@@ -92,13 +94,15 @@ class Rig:
     def inject(self, fault: Fault) -> Fault:
         """Plan a fault from now on; return it with its id.  Raises InputError."""
         fault = self._faults.inject(fault, max(self._next, 1))
-        self._notes.append(Note(NoteKind.FAULT_INJECTED, fault.id, f'{fault.kind} planned', fault.value, fault=fault))
+        self._notes.append(RigEvent(RigEventKind.FAULT_INJECTED, fault.id, f'{fault.kind} planned', fault.value,
+                                    fault=fault))
         return fault
 
     def clear_fault(self, fault_id: str) -> None:
         """End a fault now, or before it begins; raises InputError when there is none by that id."""
         fault = self._faults.clear(fault_id)
-        self._notes.append(Note(NoteKind.FAULT_CLEARED, fault.id, f'{fault.kind} cleared', fault.value, fault=fault))
+        self._notes.append(RigEvent(RigEventKind.FAULT_CLEARED, fault.id, f'{fault.kind} cleared', fault.value,
+                                    fault=fault))
         self._plant.change_faults()
 
     def clear_faults(self) -> list[str]:
@@ -108,7 +112,7 @@ class Rig:
             self.clear_fault(fault_id)
         if self.has_failed:
             self.has_failed = False
-            self._notes.append(Note(NoteKind.FAULT_CLEARED, '', 'the drive takes commands again'))
+            self._notes.append(RigEvent(RigEventKind.FAULT_CLEARED, '', 'the drive takes commands again'))
         return ids
 
     def change_axis(self, axis: Axis) -> None:
@@ -123,7 +127,7 @@ class Rig:
         The encoders are left out: what they measure moves nothing.
         """
         self._plant.act()
-        return {'step': self.step, 'wire': self._wire.checkpoint(), 'faults': self._faults.checkpoint(),
+        return {'step': self.step, 'wire': self._channel.checkpoint(), 'faults': self._faults.checkpoint(),
                 'has_failed': self.has_failed, 'notes': len(self._notes), **self._plant.checkpoint()}
 
     def restore(self, saved: Mapping[str, Any]) -> None:
@@ -132,19 +136,19 @@ class Rig:
         Raises InputError, KeyError, TypeError or ValueError when it is none; the rig is of no use then.
         """
         self._plant.restore(saved)
-        self._wire.restore(saved['wire'])
+        self._channel.restore(saved['wire'])
         self._faults.restore(saved['faults'])
         self.step, self.has_failed = int(saved['step']), bool(saved['has_failed'])
 
     # Steps
 
-    def make_step(self) -> Product:
+    def make_step(self) -> StepResult:
         """Make the next step; raises SolverError."""
         step = self._next
         if step >= self._faults.next_change and step > 0:
             self._enter_faults(step)
         velocity, force = self._velocity_order, self._force_order
-        if velocity is not None or not self._wire.is_empty:
+        if velocity is not None or not self._channel.is_empty:
             self._obey_velocity(velocity, step)
         if force is not None:
             self._force_order = None
@@ -155,7 +159,7 @@ class Rig:
         sample = self.simulator.sample()
         self.step = step
         measured = self._encoder.measure(sample, self._faults.active) if self._settings.measures else None
-        return Product(step, velocity, force, notes, events, sample, measured)
+        return StepResult(step, velocity, force, notes, events, sample, measured)
 
     def advance(self, to: Instant) -> list[Event]:
         """Bring the axis to any time, through the faults of the scene; for runs without steps.  Returns its events."""
@@ -172,10 +176,10 @@ class Rig:
 
     def _obey_velocity(self, sent: float | None, step: int) -> None:
         self._velocity_order = None
-        if sent is not None and not self._wire.put(sent, step, self._faults.active):
+        if sent is not None and not self._channel.put(sent, step, self._faults.active):
             self.counts.lost += 1
-            self._notes.append(Note(NoteKind.COMMAND_LOST, 'velocity', 'a fault ate a command', sent))
-        velocity = self._wire.take(step)
+            self._notes.append(RigEvent(RigEventKind.COMMAND_LOST, 'velocity', 'a fault ate a command', sent))
+        velocity = self._channel.take(step)
         if velocity is None:
             return
         if self.has_failed:
@@ -184,7 +188,8 @@ class Rig:
         self.counts.heard += 1
         if self.is_silent:
             self.is_silent = False
-            self._notes.append(Note(NoteKind.COMMAND_RESUMED, 'velocity', 'drive velocities come again', velocity))
+            self._notes.append(RigEvent(RigEventKind.COMMAND_RESUMED, 'velocity', 'drive velocities come again',
+                                        velocity))
         self._tell_limits(velocity)
         self._plant.drive.follow(velocity, self.simulator.time)
 
@@ -193,13 +198,14 @@ class Rig:
         was_limited, self._is_limited = self._is_limited, not can_follow
         self.counts.limited += self._is_limited
         if self._is_limited and not was_limited:
-            self._notes.append(Note(NoteKind.COMMAND_LIMITED, 'velocity',
+            self._notes.append(RigEvent(RigEventKind.COMMAND_LIMITED, 'velocity',
                                     'beyond the limits of the drive, which follows within them', velocity))
 
     def _enter_faults(self, step: int) -> None:
         ended, begun = self._faults.enter(step)
-        for kind, word, faults in ((NoteKind.FAULT_END, 'ends', ended), (NoteKind.FAULT_BEGIN, 'begins', begun)):
-            self._notes.extend(Note(kind, fault.id, f'{fault.kind} {word}', fault.value, fault=fault)
+        for kind, word, faults in ((RigEventKind.FAULT_END, 'ends', ended), (RigEventKind.FAULT_BEGIN, 'begins',
+                                                                             begun)):
+            self._notes.extend(RigEvent(kind, fault.id, f'{fault.kind} {word}', fault.value, fault=fault)
                                for fault in faults)
         self._plant.change_faults()
 

@@ -11,7 +11,7 @@ from .encoder import Measured
 from .faults import Fault
 
 
-class NoteKind(IntEnum):
+class RigEventKind(IntEnum):
     """What happened to the rig; as in stickslip_msgs/RigEvent."""
 
     COMMAND_REFUSED = 0
@@ -26,10 +26,10 @@ class NoteKind(IntEnum):
     TIME_LOST = 9
 
 
-class Note(NamedTuple):
+class RigEvent(NamedTuple):
     """One thing that happened; `value` in the unit of the thing, `number` where only the first of many is told."""
 
-    kind: NoteKind
+    kind: RigEventKind
     id: str                      # of a fault, or the name of a command
     text: str                    # for people
     value: float = 0.0
@@ -37,13 +37,13 @@ class Note(NamedTuple):
     fault: Fault | None = None
 
 
-class Product(NamedTuple):
+class StepResult(NamedTuple):
     """One step: what went in, and what came out.  Step n reaches from (n − 1)/rate to n/rate; step 0 is the start."""
 
     step: int
     velocity: float | None       # m/s: the command taken at its begin, None without a new one
     force: float | None          # N
-    notes: list[Note]            # of its begin
+    notes: list[RigEvent]            # of its begin
     events: list[Event]
     sample: Sample               # at its end
     measured: Measured | None    # at its end; None without encoders, or when the measurement was lost

@@ -11,7 +11,7 @@ import math
 import random
 from typing import Any
 
-from ..core.input_profile import Wave
+from ..core.input_profile import Sinusoid
 from ..friction import ExcessTable
 from ..scene import Scene
 
@@ -42,8 +42,8 @@ class _Mover:
         if isinstance(value, ExcessTable):
             inner = tuple(self.moved(fraction) for fraction in value.fractions[1:-1])
             return ExcessTable(self.moved(value.velocities), (1.0, *inner, 0.0))
-        if isinstance(value, Wave):
-            return Wave(*map(self.moved, value))
+        if isinstance(value, Sinusoid):
+            return Sinusoid(*map(self.moved, value))
         if type(value) is tuple:
             return tuple(map(self.moved, value))
         if dataclasses.is_dataclass(value) and not isinstance(value, type):

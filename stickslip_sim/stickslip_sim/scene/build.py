@@ -10,7 +10,7 @@ from typing import Any
 
 from ..axis import Axis, CompliantContact, Friction, InitialState, RigidContact, check_start
 from ..core.errors import InputError
-from ..core.input_profile import Course, Wave, constant, ramp, steps, table, waves
+from ..core.input_profile import InputProfile, Sinusoid, constant, ramp, sinusoids, steps, table
 from ..friction import (
     ExcessTable,
     KineticTable,
@@ -34,7 +34,7 @@ _KINETIC: dict[str, Callable[..., SmoothKinetic]] = {
     'stribeck': smooth.stribeck, 'exponential': smooth.exponential, 'hyperbolic': smooth.hyperbolic,
 }
 _EXCESS: dict[str, Callable[..., SmoothExcess]] = {'cosine': smooth.cosine, 'power': smooth.power}
-_KNOTS: dict[str, Callable[..., Course]] = {'steps': steps, 'table': table}
+_KNOTS: dict[str, Callable[..., InputProfile]] = {'steps': steps, 'table': table}
 
 
 def build_scene(given: Mapping[str, object], summary: str = '') -> Scene:
@@ -55,8 +55,8 @@ def build_scene(given: Mapping[str, object], summary: str = '') -> Scene:
         summary=summary or _summary(values),
         axis=axis,
         initial=initial,
-        drive=_course(values, 'drive', 'velocity', 'acceleration', 'velocities'),
-        force=_course(values, 'force', 'constant', 'rate', 'forces'),
+        drive=_profile(values, 'drive', 'velocity', 'acceleration', 'velocities'),
+        force=_profile(values, 'force', 'constant', 'rate', 'forces'),
         solver=solver,
         time=time_settings(values),
         command=CommandSettings(*(values[f'command.{name}'] for name in ('max_velocity', 'max_force', 'timeout'))),
@@ -115,33 +115,33 @@ def _excess(values: Mapping[str, Any], kinetic: KineticTable) -> ExcessTable | N
     return ExcessTable(**excess) if excess else default_excess(kinetic)
 
 
-def _course(values: Mapping[str, Any], section: str, value: str, rate: str, knots: str) -> Course:
+def _profile(values: Mapping[str, Any], section: str, value: str, rate: str, knots: str) -> InputProfile:
     given = _section(values, section)
-    course = _pieces(given, section, value, rate, knots)
-    return replace(course, waves=_waves(given, section))
+    profile = _pieces(given, section, value, rate, knots)
+    return replace(profile, sinusoids=_sinusoids(given, section))
 
 
-def _pieces(given: Mapping[str, Any], section: str, value: str, rate: str, knots: str) -> Course:
+def _pieces(given: Mapping[str, Any], section: str, value: str, rate: str, knots: str) -> InputProfile:
     form = given['course']
     if form in ('constant', 'sine'):
         return constant(given[value])
     if form == 'ramp':
-        course = ramp(given[value], given[rate], given['duration'])
+        profile = ramp(given[value], given[rate], given['duration'])
         name = f'{section}.{rate}'
     else:
-        course = _KNOTS[form](section, given['times'], given[knots], given['period'])
+        profile = _KNOTS[form](section, given['times'], given[knots], given['period'])
         name = f'{section}.{knots}'
-    for number in (*course.values, *course.rates):
+    for number in (*profile.values, *profile.rates):
         if not math.isfinite(number):
             raise InputError(name, given[name.rpartition('.')[2]], 'a course of finite values and rates',
                              'make it smaller or the times longer')
-    return course
+    return profile
 
 
-def _waves(given: Mapping[str, Any], section: str) -> tuple[Wave, ...]:
-    sine = (Wave(given['amplitude'], given['frequency'], given['phase']),) if given['course'] == 'sine' else ()
+def _sinusoids(given: Mapping[str, Any], section: str) -> tuple[Sinusoid, ...]:
+    sine = (Sinusoid(given['amplitude'], given['frequency'], given['phase']),) if given['course'] == 'sine' else ()
     if 'amplitudes' in given and 'frequencies' in given:
-        return sine + waves(section, given['amplitudes'], given['frequencies'], given.get('phases'))
+        return sine + sinusoids(section, given['amplitudes'], given['frequencies'], given.get('phases'))
     for name in ('amplitudes', 'frequencies', 'phases'):
         if name in given:
             raise InputError(f'{section}.{name}', given[name], 'given with both amplitudes and frequencies',

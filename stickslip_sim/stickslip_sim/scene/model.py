@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 
 from ..axis import Axis, InitialState
-from ..core.input_profile import Course
+from ..core.input_profile import InputProfile
 from ..core.time_grid import Grid
 from ..rig.rig import Rig
 from ..rig.settings import RigSettings
@@ -73,8 +73,8 @@ class Scene:
     summary: str = field(compare=False)
     axis: Axis
     initial: InitialState
-    drive: Course   # m/s
-    force: Course   # N
+    drive: InputProfile   # m/s
+    force: InputProfile   # N
     solver: SolverSettings
     time: TimeSettings
     command: CommandSettings

@@ -6,13 +6,13 @@ import math
 
 from ..config.bounds import PHASE, TIME
 from ..config.parameter import Parameter, When
-from ..core.input_profile import FREQUENCIES, MAX_WAVES
+from ..core.input_profile import FREQUENCIES, MAX_SINUSOIDS
 from .declare import choice, number, numbers
 
 _COURSES = ('constant', 'ramp', 'steps', 'sine', 'table')
 
 
-def course(section: str, value: str, rate: str, values: str, unit: str, what: str, most: float,
+def profile(section: str, value: str, rate: str, values: str, unit: str, what: str, most: float,
            fastest_change: float) -> tuple[Parameter, ...]:
     """Return the parameters of an input course of `what`, which is a `unit` and at most `most` of them."""
     ramp = When(f'{section}.course', ('ramp',))
@@ -40,7 +40,7 @@ def course(section: str, value: str, rate: str, values: str, unit: str, what: st
                ' start of the run', low=-most, high=most, when=sine),
         number(f'{section}.frequency', None, 'Hz', 'of a sine', low=slowest, high=fastest, when=sine),
         number(f'{section}.phase', 0.0, 'rad', 'of a sine', low=-PHASE, high=PHASE, when=sine),
-        numbers(f'{section}.amplitudes', None, unit, f'of sines on top of any course, at most {MAX_WAVES}',
+        numbers(f'{section}.amplitudes', None, unit, f'of sines on top of any course, at most {MAX_SINUSOIDS}',
                 low=-most, high=most, required=False),
         numbers(f'{section}.frequencies', None, 'Hz', 'of these sines', low=slowest, high=fastest, required=False),
         numbers(f'{section}.phases', None, 'rad', 'of these sines; left out: 0', low=-PHASE, high=PHASE,

@@ -13,7 +13,7 @@ from ..config.parameter import Parameter, When
 from ..friction.shapes import MAX_EXPONENT, MIN_EXPONENT
 from ..rig.faults import MAX_TIME
 from .declare import choice, number, numbers, texts
-from .profile_schema import course
+from .profile_schema import profile
 
 _SOLVERS = ('exact', 'fixed_step', 'adaptive')
 _METHODS = ('euler', 'rk4', 'RK45', 'DOP853', 'Radau', 'BDF', 'LSODA')
@@ -100,9 +100,9 @@ PARAMETERS: tuple[Parameter, ...] = (
     number('friction.excess.tolerance', 1e-3, '', 'largest difference between the smooth psi and its table',
            low=bounds.FINEST, high=1.0, live=True, when=_EXCESS_SMOOTH),
 
-    *course('drive', 'velocity', 'acceleration', 'velocities', 'm/s', 'velocity of the drive end of the spring',
+    *profile('drive', 'velocity', 'acceleration', 'velocities', 'm/s', 'velocity of the drive end of the spring',
             bounds.SPEED, bounds.ACCELERATION),
-    *course('force', 'constant', 'rate', 'forces', 'N', 'external force on the slider, along +x', bounds.FORCE,
+    *profile('force', 'constant', 'rate', 'forces', 'N', 'external force on the slider, along +x', bounds.FORCE,
             bounds.FORCE_RATE),
 
     number('initial.position', 0.0, 'm', 'slider and drive at the start; the spring is unstretched', low=-bounds.PLACE,

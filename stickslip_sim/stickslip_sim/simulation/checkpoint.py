@@ -17,9 +17,9 @@ def state_of(saved: Iterable[Any], size: int, parameters: Sequence[float]) -> li
     state = [float(number) for number in saved]
     if len(state) != size:
         raise ValueError(f'a state of {len(state)} numbers where {size} are expected')
-    waves = (size - STATE_SIZE) // WAVE_SIZE
+    sinusoids = (size - STATE_SIZE) // WAVE_SIZE
     for name, place, highest in (('mode', MODE, max(Mode)), ('piece', PIECE, int(parameters[KNOTS]) - 1),
-                                 ('waves', WAVES, waves), ('waves', INPUT_WAVES, waves * WAVE_INPUTS)):
+                                 ('waves', WAVES, sinusoids), ('waves', INPUT_WAVES, sinusoids * WAVE_INPUTS)):
         if state[place] not in range(highest + 1):
             raise ValueError(f'{name} = {state[place]!r} is none of this scene')
     return state

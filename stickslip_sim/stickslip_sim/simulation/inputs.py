@@ -5,7 +5,7 @@
 import math
 
 from ..core.errors import InputError
-from ..core.input_profile import Course, Piece, constant
+from ..core.input_profile import InputProfile, Piece, constant
 
 
 class Inputs:
@@ -14,7 +14,7 @@ class Inputs:
     Raises InputError when a course has no meaning.
     """
 
-    def __init__(self, drive: Course, force: Course) -> None:
+    def __init__(self, drive: InputProfile, force: InputProfile) -> None:
         drive.check('drive')
         force.check('force')
         self._first = drive, force
@@ -27,18 +27,18 @@ class Inputs:
         self.until = 0.0
 
     @property
-    def most_waves(self) -> int:
+    def most_sinusoids(self) -> int:
         """How many waves the courses can have."""
-        return sum(len(course.waves) for course in self._first)
+        return sum(len(profile.sinusoids) for profile in self._first)
 
-    def command_drive(self, velocity: float | Course) -> None:
+    def command_drive(self, velocity: float | InputProfile) -> None:
         """Replace the drive velocity by a constant, m/s, or a course; raises InputError."""
-        self._drive = _course('velocity', velocity, 'm/s', self._first[0])
+        self._drive = _profile('velocity', velocity, 'm/s', self._first[0])
         self.are_commanded = True
 
-    def command_force(self, force: float | Course) -> None:
+    def command_force(self, force: float | InputProfile) -> None:
         """Replace the external force by a constant, N, or a course; raises InputError."""
-        self._force = _course('force', force, 'N', self._first[1])
+        self._force = _profile('force', force, 'N', self._first[1])
         self.are_commanded = True
 
     def enter(self, time: float) -> tuple[Piece, Piece]:
@@ -52,19 +52,19 @@ class Inputs:
         self.are_commanded = False
         self.until = until
 
-    def waves(self) -> list[float]:
+    def sinusoids(self) -> list[float]:
         """Return the waves of both courses as `solvers.Solver` wants them, without those that are nothing."""
-        of_drive = [(wave.frequency, wave.phase, wave.amplitude, 0.0) for wave in self._drive.waves]
-        of_force = [(wave.frequency, wave.phase, 0.0, wave.amplitude) for wave in self._force.waves]
+        of_drive = [(sinusoid.frequency, sinusoid.phase, sinusoid.amplitude, 0.0) for sinusoid in self._drive.sinusoids]
+        of_force = [(sinusoid.frequency, sinusoid.phase, 0.0, sinusoid.amplitude) for sinusoid in self._force.sinusoids]
         return [number for frequency, phase, v, f in of_drive + of_force
                 if v != 0.0 or f != 0.0 for number in (frequency, math.fmod(0.5 * phase / math.pi, 1.0), v, f)]
 
 
-def _course(name: str, value: float | Course, unit: str, first: Course) -> Course:
-    if isinstance(value, Course):
+def _profile(name: str, value: float | InputProfile, unit: str, first: InputProfile) -> InputProfile:
+    if isinstance(value, InputProfile):
         value.check(name)
-        if len(value.waves) > len(first.waves):
-            raise InputError(f'{name}.waves', len(value.waves), f'at most {len(first.waves)}, as at the start',
+        if len(value.sinusoids) > len(first.sinusoids):
+            raise InputError(f'{name}.sinusoids', len(value.sinusoids), f'at most {len(first.sinusoids)}, as at the start',
                              'give the simulator a course with as many waves at its start')
         return value
     if not math.isfinite(value):

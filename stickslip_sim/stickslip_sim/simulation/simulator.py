@@ -21,7 +21,7 @@ from ..axis.layout import (
 )
 from ..core.energy import EnergyBalance
 from ..core.errors import InputError, SolverError, UnsoundError
-from ..core.input_profile import Course
+from ..core.input_profile import InputProfile
 from ..core.jit import IS_COMPILED
 from ..core.types import Event, EventKind, Instant, Mode, Sample
 from ..solvers import DONE, FULL, OUT_OF_RANGE, UNSOUND, Solver, exact
@@ -44,14 +44,14 @@ class Simulator:
     account of energy, if it can; the motion is the same to the last bit.
     """
 
-    def __init__(self, axis: Axis, initial: InitialState, drive: Course, force: Course,
+    def __init__(self, axis: Axis, initial: InitialState, drive: InputProfile, force: InputProfile,
                  solver: Solver | SolverOf = exact.SOLVER, accounting: bool = False) -> None:
         check_start(axis, initial)
         self._inputs = Inputs(drive, force)
         self._solver_of: SolverOf = (lambda _: solver) if isinstance(solver, Solver) else solver
         self._initial = initial
         self._take_axis(axis)
-        self._state = _numbers([0.0] * (STATE_SIZE + WAVE_SIZE * self._inputs.most_waves))
+        self._state = _numbers([0.0] * (STATE_SIZE + WAVE_SIZE * self._inputs.most_sinusoids))
         self._state[ACCOUNTING] = float(accounting and self._solver.energy is not None)
         self._row = _numbers([0.0] * SAMPLE_SIZE)
         self._energies = _numbers([0.0] * ENERGY_SIZE)
@@ -61,12 +61,12 @@ class Simulator:
     def reset(self) -> list[Event]:
         """Begin anew at time 0 with the initial state and the original courses; return the events at time 0."""
         self._inputs.reset()
-        self._waves = _numbers(self._inputs.waves())
+        self._sinusoids = _numbers(self._inputs.sinusoids())
         self._time = Instant(0.0, 0.0)
         v, f = self._inputs.enter(0.0)
         start = self._initial
         rows = self._solver.start(self._parameters, self._state, start.position, start.velocity, start.rest_time,
-                                  v.value, v.rate, f.value, f.rate, self._waves, self._table, 0)
+                                  v.value, v.rate, f.value, f.rate, self._sinusoids, self._table, 0)
         self._waiting = list(self._rows(rows))
         self._counts = dict.fromkeys(EventKind, 0)
         return self._waiting
@@ -133,7 +133,7 @@ class Simulator:
             self._counts[event.kind] += 1
         return events
 
-    def command_drive(self, velocity: float | Course) -> None:
+    def command_drive(self, velocity: float | InputProfile) -> None:
         """Let the drive move at a constant velocity (m/s), or after a course over simulation time, from now on.
 
         Events that this causes come with `advance`.  Raises InputError; a course must have no more waves than that of
@@ -141,7 +141,7 @@ class Simulator:
         """
         self._inputs.command_drive(velocity)
 
-    def command_force(self, force: float | Course) -> None:
+    def command_force(self, force: float | InputProfile) -> None:
         """Let a constant external force (N), or a course over simulation time, act from now on, as `command_drive`."""
         self._inputs.command_force(force)
 
@@ -171,7 +171,7 @@ class Simulator:
                 'state': [float(number) for number in self._state],
                 'waiting': [[*map(float, event)] for event in self._waiting]}
 
-    def restore(self, saved: Mapping[str, Any], axis: Axis, drive: Course, force: Course) -> None:
+    def restore(self, saved: Mapping[str, Any], axis: Axis, drive: InputProfile, force: InputProfile) -> None:
         """Go on from a checkpoint that was taken with this axis and these courses in force.
 
         Raises InputError on impossible courses; KeyError, TypeError or ValueError when it is no checkpoint.
@@ -184,7 +184,7 @@ class Simulator:
         until, self._waiting = float(saved['until']), [event_of(event) for event in saved['waiting']]
         self._state = _numbers(state)
         self._inputs.go_on(until)
-        self._waves = _numbers(self._inputs.waves())
+        self._sinusoids = _numbers(self._inputs.sinusoids())
         self._time = Instant(second, fraction)
 
     def _take_axis(self, axis: Axis) -> None:
@@ -193,7 +193,7 @@ class Simulator:
     def _obey(self) -> None:
         """Let the commands of this instant take effect, all at once: their order does not matter."""
         if self._inputs.are_commanded:
-            self._waves = _numbers(self._inputs.waves())
+            self._sinusoids = _numbers(self._inputs.sinusoids())
             self._enter_pieces(self._waiting)
 
     def _advance(self, to: Instant, events: list[Event]) -> None:
@@ -220,7 +220,7 @@ class Simulator:
         v, f = self._inputs.enter(time)
         rows = self._solver.set_inputs(self._parameters, self._state, *self._time,
                                        v.value + v.rate * (time - v.start), v.rate,
-                                       f.value + f.rate * (time - f.start), f.rate, self._waves, self._table, 0)
+                                       f.value + f.rate * (time - f.start), f.rate, self._sinusoids, self._table, 0)
         events.extend(self._rows(rows))
 
     def _rows(self, count: int) -> Iterator[Event]:

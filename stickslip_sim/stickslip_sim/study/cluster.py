@@ -19,17 +19,17 @@ from .description import versions_of_a_study
 from .folder import KEPT
 from .study import Study
 from .table import lines
-from .workers import Crew, WorkerError
+from .workers import WorkerError, Workers
 
 _PATIENCE = 5.0   # s for the scheduler to answer
 
 
 @contextmanager
-def cluster(address: str) -> Iterator[Crew]:
+def cluster(address: str) -> Iterator[Workers]:
     """Yield the workers of the scheduler at an address; raises InputError when there are none, and WorkerError."""
     with _quietly(), closing(_client(address)) as client, _told(address):
         _check_workers(client, address)
-        yield Crew(client.get_executor(), sum(client.nthreads().values()),
+        yield Workers(client.get_executor(), sum(client.nthreads().values()),
                    partial(_checked_lines, versions_of_a_study()))
 
 

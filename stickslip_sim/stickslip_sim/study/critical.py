@@ -18,7 +18,7 @@ from ..scene import Scene
 from .point_figures import Motion, Numbers, figures_of
 from .points import runs_in_batches, scene_at, works_in_batches
 from .steady import sliding_slope
-from .transitions import FAILED, NO, OPEN, YES, Course, Verdicts, course
+from .transitions import FAILED, NO, OPEN, YES, Findings, Verdicts, find_transitions
 from .variation import Variation, checked, parameter_of
 
 _PATIENCE = 20_000   # cycles that a motion is given to settle
@@ -33,8 +33,8 @@ class Critical:
 
     over: Variation
     accuracy: float
-    from_rest: Course
-    from_sliding: Course
+    from_rest: Findings
+    from_sliding: Findings
 
     @property
     def both(self) -> list[tuple[float, float]]:
@@ -56,7 +56,7 @@ def critical(scene: Scene, over: Variation, accuracy: float,
     for end in (over.low, over.high):
         scene_at(scene.values, [over.name], np.array([end]))
     judge = _Judge(scene.values, over.name)
-    return Critical(over, accuracy, *(course(one, over.low, over.high, over.log, accuracy, progress)
+    return Critical(over, accuracy, *(find_transitions(one, over.low, over.high, over.log, accuracy, progress)
                                       for one in (judge.sticks, judge.loses_sliding)))
 
 

@@ -17,7 +17,7 @@ from typing import Any
 from ..core.errors import InputError
 from .description import FORM, description
 from .parquet import write_parquet
-from .resources import check_room
+from .resources import check_resources
 from .study import Study
 from .table import header, may_be_table, next_lines, numbers_of
 
@@ -49,7 +49,7 @@ class Folder:
         with _refusing(self.path, 'nothing is left behind'):
             try:
                 temporary.mkdir()
-                check_room(study, temporary)
+                check_resources(study, temporary)
                 (temporary / SIDECAR).write_text(json.dumps(description(study, command), indent=1) + '\n',
                                                  encoding='utf-8')
                 (temporary / PARTIAL).write_bytes(header(study))

@@ -39,8 +39,8 @@ def scene_at(values: Values, names: Sequence[str], point: Numbers) -> Scene:
 def works_in_batches(scene: Scene) -> bool:
     """Whether the compiled batch can run a scene: exactly solved, constant inputs, no faults."""
     return scene.solver.name == 'exact' and not scene.rig.faults and all(
-        len(course.starts) == 1 and course.rates == (0.0,) and not course.waves and course.period == math.inf
-        for course in (scene.drive, scene.force))
+        len(profile.starts) == 1 and profile.rates == (0.0,) and not profile.sinusoids and profile.period == math.inf
+        for profile in (scene.drive, scene.force))
 
 
 def runs_in_batches(values: Values, names: Sequence[str], points: Numbers, duration: float | None,

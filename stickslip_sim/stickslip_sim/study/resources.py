@@ -15,7 +15,7 @@ _MEGA = 1e6
 _OF_A_WORKER = 50_000_000   # bytes: Python, numpy and the compiled engine, each process for itself
 
 
-def check_room(study: Study, folder: Path) -> None:
+def check_resources(study: Study, folder: Path) -> None:
     """Raise InputError when the table of a study would not fit into memory or onto the disk of a folder."""
     disk = shutil.disk_usage(folder).free
     for where, of_a_point, free in (('memory', _IN_MEMORY * width(study), free_memory()),
@@ -26,7 +26,7 @@ def check_room(study: Study, folder: Path) -> None:
                              'take fewer values for each parameter, or --sobol N')
 
 
-def check_room_for_workers(count: int) -> None:
+def check_memory_for_workers(count: int) -> None:
     """Raise InputError when so many processes would not fit into memory."""
     free = free_memory()
     if count * _OF_A_WORKER > free:

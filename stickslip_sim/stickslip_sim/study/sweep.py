@@ -11,12 +11,12 @@ from itertools import islice
 from .folder import Folder
 from .study import Study
 from .table import lines
-from .workers import Crew
+from .workers import Workers
 
 _AHEAD = 4   # chunks that wait for each worker
 
 
-def sweep(study: Study, folder: Folder, crew: Crew | None = None,
+def sweep(study: Study, folder: Folder, crew: Workers | None = None,
           progress: Callable[[float], None] | None = None) -> int:
     """Run what of a study is not in its folder yet, and finish the folder; return how many points it had to run.
 
@@ -37,7 +37,7 @@ def sweep(study: Study, folder: Folder, crew: Crew | None = None,
     return max(study.count - done * study.chunk, 0)
 
 
-def _in_order(crew: Crew, chunks: Iterator[tuple[Study, int, int]]) -> Iterator[bytes]:
+def _in_order(crew: Workers, chunks: Iterator[tuple[Study, int, int]]) -> Iterator[bytes]:
     """Yield results in the order of the chunks, with a few under way for each worker, whatever their number."""
     waiting = deque(_submitted(crew, islice(chunks, _AHEAD * crew.size)))
     while waiting:
@@ -45,7 +45,7 @@ def _in_order(crew: Crew, chunks: Iterator[tuple[Study, int, int]]) -> Iterator[
         waiting.extend(_submitted(crew, islice(chunks, 1)))
 
 
-def _submitted(crew: Crew, chunks: Iterable[tuple[Study, int, int]]) -> list[Future[bytes]]:
+def _submitted(crew: Workers, chunks: Iterable[tuple[Study, int, int]]) -> list[Future[bytes]]:
     """Hand out chunks; workers that this starts inherit that Ctrl-C is held back, and leave it to their parent."""
     signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
     try:

@@ -57,7 +57,7 @@ class Doubt(NamedTuple):
     failed: bool
 
 
-class Course(NamedTuple):
+class Findings(NamedTuple):
     """The verdict over a range: that at its low end, where it changes, and where it is not known."""
 
     first: int
@@ -99,8 +99,8 @@ class _Scan(NamedTuple):
         return bool((self.verdicts[first:last + 1] == FAILED).any())
 
 
-def course(judge: Judge, low: float, high: float, log: bool, accuracy: float,
-           progress: Callable[[float], None] | None = None) -> Course:
+def find_transitions(judge: Judge, low: float, high: float, log: bool, accuracy: float,
+                     progress: Callable[[float], None] | None = None) -> Findings:
     """Return how the verdict goes from `low` to `high`, each change within a relative `accuracy`.
 
     Two changes between neighbours of the scan, 65 values, even or in steps of one ratio (`log`), cancel each other.
@@ -110,13 +110,13 @@ def course(judge: Judge, low: float, high: float, log: bool, accuracy: float,
     known, changes = scan.known(), scan.changes()
     if not known:
         failed = scan.has_failed(0, _SCAN)
-        return Course(FAILED if failed else OPEN, (), (Doubt(low, high, failed),))
+        return Findings(FAILED if failed else OPEN, (), (Doubt(low, high, failed),))
     found: list[Transition] = []
     for k, (a, b) in enumerate(changes):
         found += _narrowed(judge, _part(scan, a, b), accuracy, _SPLITS)
         if progress:
             progress((k + 1) / len(changes))
-    return Course(int(scan.verdicts[known[0]]), tuple(found), tuple(_doubts(scan)))
+    return Findings(int(scan.verdicts[known[0]]), tuple(found), tuple(_doubts(scan)))
 
 
 def _doubts(scan: _Scan) -> list[Doubt]:

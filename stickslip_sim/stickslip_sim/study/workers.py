@@ -21,7 +21,7 @@ class WorkerError(StickslipError):
     """A worker is gone, or cannot work."""
 
 
-class Crew(NamedTuple):
+class Workers(NamedTuple):
     """So many workers behind a `pool`, and the function that gives them the lines of a stretch of points."""
 
     pool: Executor
@@ -30,11 +30,11 @@ class Crew(NamedTuple):
 
 
 @contextmanager
-def processes(count: int) -> Iterator[Crew]:
+def processes(count: int) -> Iterator[Workers]:
     """Yield processes; on any error what waits for them is dropped and what they are at is waited for."""
     pool = ProcessPoolExecutor(count, get_context('spawn'), _watch_the_parent)
     try:
-        yield Crew(pool, count)
+        yield Workers(pool, count)
     except BrokenProcessPool:
         raise WorkerError(f'a worker process was killed; {KEPT}') from None
     finally:

@@ -8,10 +8,10 @@ from typing import Any
 from ..core.errors import InputError, RecordingError
 from ..recording import RecordedMessage, Run
 from ..recording.topics import DRIVE_VELOCITY, EXTERNAL_FORCE, PARAMETER_EVENTS, RIG_EVENT
-from ..rig import Fault, NoteKind, Rig
+from ..rig import Fault, Rig, RigEventKind
 from ..scene import Scene, scene_from_values
 
-_ORDERS = NoteKind.COMMAND_TIMEOUT, NoteKind.FAULT_INJECTED, NoteKind.FAULT_CLEARED
+_ORDERS = RigEventKind.COMMAND_TIMEOUT, RigEventKind.FAULT_INJECTED, RigEventKind.FAULT_CLEARED
 _VALUES = {1: 'bool_value', 2: 'integer_value', 3: 'double_value', 4: 'string_value', 5: 'byte_array_value',
            6: 'bool_array_value', 7: 'integer_array_value', 8: 'double_array_value', 9: 'string_array_value'}
 
@@ -45,9 +45,9 @@ class Orders:
         self._rig.command_force(message.force)
 
     def _event(self, message: Any) -> None:
-        if message.kind == NoteKind.COMMAND_TIMEOUT:
+        if message.kind == RigEventKind.COMMAND_TIMEOUT:
             self._rig.time_out(message.value)
-        elif message.kind == NoteKind.FAULT_INJECTED:
+        elif message.kind == RigEventKind.FAULT_INJECTED:
             self._rig.inject(Fault(message.id, message.fault, message.start, message.duration, message.value))
         elif message.id:
             self._rig.clear_fault(message.id)

@@ -66,8 +66,8 @@ class _NodeMaker:
         yield self._made()
 
     def _made(self) -> Made:
-        product = self._rig.make_step()
-        return Made(product.step, _without_knots(product.events), product.sample)
+        result = self._rig.make_step()
+        return Made(result.step, _without_knots(result.events), result.sample)
 
 
 def _rig(original: Original, scene: Scene) -> tuple[Rig, int]:

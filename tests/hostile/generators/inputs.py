@@ -19,9 +19,9 @@ def grazing_sine(rng: random.Random) -> Case:
     overshoot = rng.choice((-1.0, 1.0)) * draw.powers(rng, 1e-12, 1e-3)
     frequency = rng.uniform(*FREQUENCIES)
     case = Case(values, rng.choice((1.0, 2.0)) / frequency)
-    wave = grazing_drive(case.scene.axis, overshoot, frequency, rng.uniform(*PHASES)).waves[0]
-    return Case(values | {'drive.course': 'sine', 'drive.velocity': 0.0, 'drive.amplitude': wave.amplitude,
-                          'drive.frequency': wave.frequency, 'drive.phase': wave.phase}, case.duration)
+    sinusoid = grazing_drive(case.scene.axis, overshoot, frequency, rng.uniform(*PHASES)).sinusoids[0]
+    return Case(values | {'drive.course': 'sine', 'drive.velocity': 0.0, 'drive.amplitude': sinusoid.amplitude,
+                          'drive.frequency': sinusoid.frequency, 'drive.phase': sinusoid.phase}, case.duration)
 
 
 def grazing_ramp(rng: random.Random) -> Case:

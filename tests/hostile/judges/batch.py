@@ -17,8 +17,9 @@ _LAST = ('rest_time', 'slip_time', 'stick_time', 'period', 'slip_travel', 'jump'
 def judge(run: Run) -> None:
     """Run an axis under constant inputs in a batch; raises Find where a figure differs."""
     parts = run.parts
-    inputs = [course.values[0] for course in (parts.drive, parts.force)
-              if len(course.starts) == 1 and course.rates == (0.0,) and not course.waves and course.period == math.inf]
+    inputs = [profile.values[0] for profile in (parts.drive, parts.force)
+              if len(profile.starts) == 1 and profile.rates == (0.0,) and not profile.sinusoids
+              and profile.period == math.inf]
     if len(inputs) < 2:
         return
     figures = run_batch(parts.axis, parts.duration, drive_velocity=inputs[0], external_force=inputs[1],

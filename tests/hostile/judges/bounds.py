@@ -5,7 +5,7 @@
 import math
 
 from stickslip_sim.axis import Axis
-from stickslip_sim.core.input_profile import Course
+from stickslip_sim.core.input_profile import InputProfile
 
 from ..case import Find, Run
 
@@ -76,20 +76,20 @@ def _coefficients(axis: Axis, run: Run) -> list[float]:
             *(event.static_coefficient for event in run.events)]
 
 
-def _most(course: Course, end: float) -> float:
+def _most(profile: InputProfile, end: float) -> float:
     values = [abs(v) + abs(r) * max(min(end, stop) - t, 0.0) for t, stop, v, r in zip(
-        course.starts, (*course.starts[1:], course.period), course.values, course.rates)]
-    return max(values) + sum(abs(w.amplitude) for w in course.waves)
+        profile.starts, (*profile.starts[1:], profile.period), profile.values, profile.rates)]
+    return max(values) + sum(abs(w.amplitude) for w in profile.sinusoids)
 
 
-def _changes(course: Course, end: float) -> float:
+def _changes(profile: InputProfile, end: float) -> float:
     """Return a bound on how much the course changes up to the end."""
-    stops = (*course.starts[1:], min(course.period, end))
-    rise = sum(abs(r) * max(min(end, stop) - t, 0.0) for t, stop, r in zip(course.starts, stops, course.rates))
-    finals = [v + r * (stop - t) for t, stop, v, r in zip(course.starts, stops, course.values, course.rates)]
-    jumps = sum(abs(b - a) for a, b in zip(finals, course.values[1:])) + abs(course.values[0] - finals[-1])
-    turns = max(1.0, math.ceil(end / course.period)) if course.period < math.inf else 1.0
-    waves = sum(abs(w.amplitude) * (4.0 * w.frequency * end + 2.0) for w in course.waves)
-    return (rise + jumps) * turns + waves
+    stops = (*profile.starts[1:], min(profile.period, end))
+    rise = sum(abs(r) * max(min(end, stop) - t, 0.0) for t, stop, r in zip(profile.starts, stops, profile.rates))
+    finals = [v + r * (stop - t) for t, stop, v, r in zip(profile.starts, stops, profile.values, profile.rates)]
+    jumps = sum(abs(b - a) for a, b in zip(finals, profile.values[1:])) + abs(profile.values[0] - finals[-1])
+    turns = max(1.0, math.ceil(end / profile.period)) if profile.period < math.inf else 1.0
+    sinusoids = sum(abs(w.amplitude) * (4.0 * w.frequency * end + 2.0) for w in profile.sinusoids)
+    return (rise + jumps) * turns + sinusoids
 
 

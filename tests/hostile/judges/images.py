@@ -9,7 +9,7 @@ from dataclasses import replace
 
 from stickslip_sim.axis import Axis, CompliantContact, InitialState
 from stickslip_sim.core.errors import SolverError
-from stickslip_sim.core.input_profile import FREQUENCIES, Course
+from stickslip_sim.core.input_profile import FREQUENCIES, InputProfile
 from stickslip_sim.core.types import Event
 from stickslip_sim.friction import ExcessTable, KineticTable, StaticLaw
 
@@ -31,8 +31,8 @@ def judge(run: Run, rng: random.Random) -> None:
     _compare(f'length unit times {k:g}', _length_unit(parts, k), (
         e._replace(position=k * e.position, velocity=k * e.velocity, drive_position=k * e.drive_position,
                    drive_force=k * e.drive_force, friction_force=k * e.friction_force) for e in events))
-    waves = [w.frequency for w in (*parts.drive.waves, *parts.force.waves)]
-    fast = [t for t in _TIMES if all(math.ldexp(w, -t) < FREQUENCIES[1] for w in waves)]
+    sinusoids = [w.frequency for w in (*parts.drive.sinusoids, *parts.force.sinusoids)]
+    fast = [t for t in _TIMES if all(math.ldexp(w, -t) < FREQUENCIES[1] for w in sinusoids)]
     if fast:
         _time_unit(parts, events, math.ldexp(1.0, rng.choice(fast)))
 
@@ -112,17 +112,17 @@ def _faster(axis: Axis, k: float) -> Axis:
     return replace(axis, friction=replace(axis.friction, kinetic=kinetic, excess=excess))
 
 
-def _scaled(course: Course, factor: float) -> Course:
-    return _mapped(course, lambda t: t, factor, factor, 1.0, course.period)
+def _scaled(profile: InputProfile, factor: float) -> InputProfile:
+    return _mapped(profile, lambda t: t, factor, factor, 1.0, profile.period)
 
 
-def _quicker(course: Course, k: float, factor: float) -> Course:
-    return _mapped(course, lambda t: k * t, factor, factor / k, 1.0 / k, k * course.period)
+def _quicker(profile: InputProfile, k: float, factor: float) -> InputProfile:
+    return _mapped(profile, lambda t: k * t, factor, factor / k, 1.0 / k, k * profile.period)
 
 
-def _mapped(course: Course, time: Callable[[float], float], value: float, rate: float, frequency: float,
-            period: float) -> Course:
-    return Course(tuple(time(t) for t in course.starts), tuple(value * x for x in course.values),
-                  tuple(rate * x for x in course.rates), period,
+def _mapped(profile: InputProfile, time: Callable[[float], float], value: float, rate: float, frequency: float,
+            period: float) -> InputProfile:
+    return InputProfile(tuple(time(t) for t in profile.starts), tuple(value * x for x in profile.values),
+                  tuple(rate * x for x in profile.rates), period,
                   tuple(w._replace(amplitude=value * w.amplitude, frequency=frequency * w.frequency)
-                        for w in course.waves))
+                        for w in profile.sinusoids))

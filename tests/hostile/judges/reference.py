@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from stickslip_sim.core.errors import SolverError
-from stickslip_sim.core.input_profile import Course
+from stickslip_sim.core.input_profile import InputProfile
 from stickslip_sim.core.types import Event, EventKind
 from stickslip_sim.extremes.against import error_of_events
 from stickslip_sim.extremes.outcome import Missed
@@ -64,10 +64,10 @@ def _compare(parts: Parts, events: Sequence[Event]) -> None:
     raise Find(text)
 
 
-def _times(course: Course, factor: float) -> Course:
-    waves = tuple(wave._replace(amplitude=factor * wave.amplitude) for wave in course.waves)
-    return replace(course, values=tuple(factor * x for x in course.values),
-                   rates=tuple(factor * x for x in course.rates), waves=waves)
+def _times(profile: InputProfile, factor: float) -> InputProfile:
+    sinusoids = tuple(sinusoid._replace(amplitude=factor * sinusoid.amplitude) for sinusoid in profile.sinusoids)
+    return replace(profile, values=tuple(factor * x for x in profile.values),
+                   rates=tuple(factor * x for x in profile.rates), sinusoids=sinusoids)
 
 
 def _slides_steadily(parts: Parts, events: Sequence[Event], wanted: Sequence[Event]) -> bool:

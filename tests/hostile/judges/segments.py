@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from stickslip_sim.axis import Axis, CompliantContact
-from stickslip_sim.core.input_profile import Course
+from stickslip_sim.core.input_profile import InputProfile
 from stickslip_sim.core.types import Event, EventKind, Instant, Mode, Sample
 
 from ..case import Parts, Run, borders
@@ -131,8 +131,8 @@ def _node_of_sample(sample: Sample, excess: Any, excess_noise: Any) -> Node:
 def _segment(parts: Parts, table: Table, begin: Node, end: Node, length: Any) -> Segment:
     axis = parts.axis
     m, c, h, normal = (Long(x) for x in (axis.mass, axis.drive_stiffness, axis.drive_damping, axis.normal_force))
-    waves = [(w, 0) for w in parts.drive.waves] + [(w, 1) for w in parts.force.waves]
-    d = WAVE + 2 * len(waves)
+    sinusoids = [(w, 0) for w in parts.drive.sinusoids] + [(w, 1) for w in parts.force.sinusoids]
+    d = WAVE + 2 * len(sinusoids)
     now = begin.at.seconds
     drive, force = parts.drive.piece_at(now), parts.force.piece_at(now)
     v, v_rate = Long(drive.value) + Long(drive.rate) * (_long(begin.at) - Long(drive.start)), Long(drive.rate)
@@ -179,12 +179,12 @@ def _segment(parts: Parts, table: Table, begin: Node, end: Node, length: Any) ->
     else:
         lower[F], upper[F] = -1, 1
 
-    sines = [_phase(w.frequency, w.phase, begin.at) for w, _ in waves]
-    v_now = v + sum((Long(w.amplitude) * s for (w, k), (s, _) in zip(waves, sines) if k == 0), Long(0))
-    f_now = f + sum((Long(w.amplitude) * s for (w, k), (s, _) in zip(waves, sines) if k == 1), Long(0))
+    sines = [_phase(w.frequency, w.phase, begin.at) for w, _ in sinusoids]
+    v_now = v + sum((Long(w.amplitude) * s for (w, k), (s, _) in zip(sinusoids, sines) if k == 0), Long(0))
+    f_now = f + sum((Long(w.amplitude) * s for (w, k), (s, _) in zip(sinusoids, sines) if k == 1), Long(0))
     net = Long(begin.drive_force) + f_now
     sizes = [abs(Long(begin.drive_force)), 2 * h * (abs(v_now) + abs(u)), abs(f_now),
-             sum((abs(Long(w.amplitude)) * (h if k == 0 else 1) for w, k in waves), Long(0)), abs(f)]
+             sum((abs(Long(w.amplitude)) * (h if k == 0 else 1) for w, k in sinusoids), Long(0)), abs(f)]
     held = Long(0)
     if contact is not None and mode == Mode.STICK:
         held = Long(contact.stiffness) * Long(begin.deflection) + Long(contact.damping) * u
@@ -218,8 +218,8 @@ def _segment(parts: Parts, table: Table, begin: Node, end: Node, length: Any) ->
     rates[Y, U] = 1
     rates[V, ONE] = v_rate
     fastest = Long(0)
-    for k, ((wave, which), (sine, cosine)) in enumerate(zip(waves, sines)):
-        w, amplitude = 2 * _PI * Long(wave.frequency), Long(wave.amplitude)
+    for k, ((sinusoid, which), (sine, cosine)) in enumerate(zip(sinusoids, sines)):
+        w, amplitude = 2 * _PI * Long(sinusoid.frequency), Long(sinusoid.amplitude)
         at = WAVE + 2 * k
         rates[at, at + 1], rates[at + 1, at] = w, -w
         rates[F, at] += c * amplitude if which == 0 else 0
@@ -275,10 +275,10 @@ def _balanced(rates: Any, start: Any, noise: Any, pace: Any, mass: Any) -> tuple
     return rates * unit[None, :] / unit[:, None], start / unit, noise / unit, unit
 
 
-def _size(course: Course, time: float) -> Any:
+def _size(profile: InputProfile, time: float) -> Any:
     """Return a size of all values that a course had so far: their rounding adds up from piece to piece."""
     return Long(max(abs(value) + abs(rate) * max(time - start, 0.0) for start, value, rate in zip(
-        course.starts, course.values, course.rates)))
+        profile.starts, profile.values, profile.rates)))
 
 
 def _long(at: Instant) -> Any:
@@ -298,7 +298,7 @@ def _force_at(parts: Parts, begin: Node, end: Node) -> Any:
     if end.event is None or end.new_force:
         piece = parts.force.piece_at(end.at.seconds)
     total = Long(piece.value) + Long(piece.rate) * (time - Long(piece.start))
-    return total + sum((Long(w.amplitude) * _phase(w.frequency, w.phase, end.at)[0] for w in parts.force.waves),
+    return total + sum((Long(w.amplitude) * _phase(w.frequency, w.phase, end.at)[0] for w in parts.force.sinusoids),
                        Long(0))
 
 

@@ -24,7 +24,8 @@ def judge(run: Run) -> None:
     contact, friction = axis.contact, axis.friction
     if not isinstance(contact, CompliantContact) or contact.damping > 0.0 or axis.drive_damping > 0.0:
         return
-    if any(drive.values) or any(drive.rates) or drive.waves or force.waves or any(force.rates) or len(force.values) > 1:
+    if any(drive.values) or any(drive.rates) or drive.sinusoids or force.sinusoids or any(force.rates) \
+            or len(force.values) > 1:
         return
     if friction.static.initial != friction.kinetic.coefficients[0]:
         return

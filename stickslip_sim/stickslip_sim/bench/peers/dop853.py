@@ -146,7 +146,7 @@ def run(p, begin, pieces, w, duration, tolerance, longest, m, events, steps, wor
 
 
 def _prepare(problem: Problem, setting: Setting) -> Callable[[], Outcome]:
-    p, begin, pieces, waves = problem.parameters, problem.start, problem.pieces, problem.waves
+    p, begin, pieces, waves = problem.parameters, problem.start, problem.pieces, problem.sinusoids
     m, events, steps, work = np.zeros(SIZE), problem.event_rows(), np.zeros(4), np.zeros((5, MORE))
 
     def simulate() -> Outcome:

@@ -66,7 +66,8 @@ def _prepare(problem: Problem, setting: Setting) -> Callable[[], Outcome]:
     m, events, steps = np.zeros(SIZE), problem.event_rows(), round(problem.duration / setting.value)
 
     def simulate() -> Outcome:
-        rows = run(problem.parameters, problem.start, problem.pieces, problem.waves, steps, setting.value, m, events)
+        rows = run(problem.parameters, problem.start, problem.pieces, problem.sinusoids, steps, setting.value, m,
+                   events)
         if rows < 0:
             raise SolverError('more events than the table holds')
         return Outcome(events[:rows].copy(), float(m[X]))

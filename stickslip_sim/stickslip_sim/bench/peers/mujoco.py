@@ -49,7 +49,7 @@ class _Run:
     def simulate(self) -> Outcome:
         """Run once."""
         model, data, problem, m, h = self._model, self._data, self._problem, self._m, self._step
-        p, w, pieces, events = problem.parameters, problem.waves, problem.pieces, self._events
+        p, w, pieces, events = problem.parameters, problem.sinusoids, problem.pieces, self._events
         self._clear(model, data)
         rows, piece = begin(p, m, w, problem.start, pieces, events), 0
         data.qpos[0], data.qvel[0] = m[X], m[U]

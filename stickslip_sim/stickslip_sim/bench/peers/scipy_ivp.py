@@ -48,7 +48,7 @@ class _Guard:
 
 
 def _run(problem: Problem, method: str, tolerance: float) -> Outcome:
-    w = problem.waves
+    w = problem.sinusoids
     options: dict[str, Any] = {'method': method, 'rtol': max(tolerance, _FINEST), 'atol': tolerance,
                                'max_step': problem.longest_step}
 

@@ -20,7 +20,8 @@ def run_segments(problem: Problem, to_event: ToEvent) -> Outcome:
 
     It returns time, x and ẋ there, and the guard or −1.
     """
-    p, w, pieces, m, events = problem.parameters, problem.waves, problem.pieces, np.zeros(SIZE), problem.event_rows()
+    p, w, pieces = problem.parameters, problem.sinusoids, problem.pieces
+    m, events = np.zeros(SIZE), problem.event_rows()
     rows = 0
     for k in range(len(pieces)):
         end = end_of_piece(pieces, k, problem.duration)

@@ -35,7 +35,7 @@ class _Solver:
     def __init__(self, problem: Problem, tolerance: float) -> None:
         from sksundae.cvode import CVODE
 
-        self._problem, w = problem, problem.waves
+        self._problem, w = problem, problem.sinusoids
         self._q: Any = None
 
         def right_side(t: float, y: Any, out: Any) -> None:

@@ -180,7 +180,7 @@ class _Solver:
     def __init__(self, problem: Problem, tolerance: float) -> None:
         self._c, self._code = _loaded()
         self._problem, c = problem, self._c
-        self._y, self._user = np.zeros(2), np.concatenate([[len(problem.waves)], np.zeros(_Q), problem.waves])
+        self._y, self._user = np.zeros(2), np.concatenate([[len(problem.sinusoids)], np.zeros(_Q), problem.sinusoids])
         self._m, self._events = np.zeros(SIZE), problem.event_rows()
         context = ctypes.c_size_t(0)
         c.context(0, ctypes.addressof(context))
@@ -204,7 +204,7 @@ class _Solver:
         """Run once."""
         problem = self._problem
         rows = self._code.run(self._memory, self._vector, problem.parameters, problem.start, problem.pieces,
-                              problem.waves, problem.duration, self._m, self._y, self._user, self._events)
+                              problem.sinusoids, problem.duration, self._m, self._y, self._user, self._events)
         if rows < 0:
             raise SolverError('CVODE gave up' if rows == -2 else 'more events than the table holds')
         return Outcome(self._events[:rows].copy(), float(self._m[X]))

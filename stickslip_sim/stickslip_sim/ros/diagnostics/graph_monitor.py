@@ -20,7 +20,7 @@ _PATIENCE = 3            # looks at a bridge that sends nothing, or at a publish
 _UNKNOWN = '_UNKNOWN_'   # in the name of such a node: ROS hears of it a moment after its topics, and never of plain DDS
 
 
-class Neighbours:
+class GraphMonitor:
     """Tells the log what changed since the look before, and returns what is not as it should be."""
 
     def __init__(self, node: Node, scene: Scene, loop: StepLoop) -> None:

@@ -10,27 +10,27 @@ from ...realtime.pacing import StepClock
 from ...realtime.step_loop import StepLoop
 from ...realtime.verdict import verdict
 from ...recording import topics as names
-from ...rig import Note, NoteKind
+from ...rig import RigEvent, RigEventKind
 from ..node.parameters import SceneNode
-from ..node.publishers import Outlet
+from ..node.publishers import Publishers
 from ..node.topics import publisher
 from ..services.record_service import RecordService
 from . import reports
-from .graph_monitor import Neighbours
+from .graph_monitor import GraphMonitor
 from .rig_events import RigEvents
 
 _PERIOD = 1.0     # s
 
 
-class SecondReport:
+class PeriodicReport:
     """Looks at the loop, the bag and the neighbours; `stamp_ns` says what time the reports bear."""
 
-    def __init__(self, node: SceneNode, loop: StepLoop, clock: StepClock, outlet: Outlet, rig_events: RigEvents,
+    def __init__(self, node: SceneNode, loop: StepLoop, clock: StepClock, publishers: Publishers, rig_events: RigEvents,
                  record_service: RecordService, stamp_ns: Callable[[], int]) -> None:
         self._node, self._loop, self._clock, self._stamp_ns = node, loop, clock, stamp_ns
-        self._outlet, self._rig_events, self._record_service = outlet, rig_events, record_service
+        self._publishers, self._rig_events, self._record_service = publishers, rig_events, record_service
         self._reporter = reports.Reporter(loop)
-        self._neighbours = Neighbours(node, node.scene, loop)
+        self._graph_monitor = GraphMonitor(node, node.scene, loop)
         self._told = ''          # the failure of the solver that was logged
         self._timing_out = publisher(node, names.TIMING)
         self._diagnostics_out = publisher(node, names.DIAGNOSTICS)
@@ -52,26 +52,26 @@ class SecondReport:
         self._tell_troubles(second)
         message = reports.timing_message(second, self._loop, self._clock.period * 1e-9, bool(judged.valid), stamp_ns)
         self._timing_out.publish(message)
-        self._outlet.record_message(names.TIMING, message, self._loop.time_ns, max(self._loop.step, 0))
+        self._publishers.record_message(names.TIMING, message, self._loop.time_ns, max(self._loop.step, 0))
         self._diagnostics_out.publish(reports.diagnostics(stamp_ns, self._node.get_fully_qualified_name(), [
             reports.loop_status(self._loop, second, judged),
             reports.command_status(self._loop, second),
-            reports.solver_status(self._loop, self._node.scene.solver.name, self._outlet.events.latest_time),
+            reports.solver_status(self._loop, self._node.scene.solver.name, self._publishers.events.latest_time),
             reports.recorder_status(self._record_service.recordings),
-            reports.neighbours_status(self._neighbours.look())]))
+            reports.neighbours_status(self._graph_monitor.look())]))
 
     def _tell_troubles(self, second: reports.Second) -> None:
         log = self._node.get_logger()
         if second.skipped > 0.0:
             text = f'{second.skipped:.3f} s behind the clock were given up; simulation time lags by that much'
             log.warning(text)
-            self._note(Note(NoteKind.TIME_LOST, '', text, second.skipped))
+            self._note(RigEvent(RigEventKind.TIME_LOST, '', text, second.skipped))
         for refusal in second.refusals:
-            self._note(Note(NoteKind.COMMAND_REFUSED, refusal.name, refusal.reason, number=refusal.number))
+            self._note(RigEvent(RigEventKind.COMMAND_REFUSED, refusal.name, refusal.reason, number=refusal.number))
         if self._loop.failure and self._loop.failure != self._told:
             log.error(f'the axis stands still: {self._loop.failure}; ~/reset begins anew')
         self._told = self._loop.failure
         self._record_service.look()
 
-    def _note(self, note: Note) -> None:
+    def _note(self, note: RigEvent) -> None:
         self._rig_events.tell(self._loop.step + 1, self._loop.time_ns, note)

@@ -12,7 +12,7 @@ from stickslip_msgs.msg import StepTiming
 
 from ...realtime.refusals import Refusal, Refusals
 from ...realtime.step_loop import StepLoop
-from ...realtime.timing_statistics import LedgerWindow
+from ...realtime.timing_statistics import TimingWindow
 from ...realtime.verdict import Verdict
 from ...rig import FAILED, SILENT_BRIDGE
 from ..node.conversion import set_stamp
@@ -25,7 +25,7 @@ _MANY_OVERRUNS = 0.05    # share of the steps; the odd one is what a desktop ker
 class Second(NamedTuple):
     """What happened in the window since the report before."""
 
-    window: LedgerWindow
+    window: TimingWindow
     real_time_factor: float
     overruns: int
     caught_up: int
@@ -52,7 +52,7 @@ class Reporter:
 
     def look(self, now: int) -> Second:
         """Return what happened since the look before; `now` is ns on the steady clock."""
-        window = self._loop.ledger.take()
+        window = self._loop.timing_statistics.take()
         time, account = self._loop.time_ns, self._loop.account
         passed = now - self._wall
         factor = (time - self._time) / passed if passed > 0 and time >= self._time else math.nan
@@ -66,7 +66,7 @@ class Reporter:
 def timing_message(second: Second, loop: StepLoop, period: float, valid: bool, stamp_ns: int) -> StepTiming:
     """Return the message of a window that ends with the latest step."""
     account, totals, window = loop.account, loop.command_totals, second.window
-    lateness, latency = loop.ledger.worst('lateness'), loop.ledger.worst('latency')
+    lateness, latency = loop.timing_statistics.worst('lateness'), loop.timing_statistics.worst('latency')
     message = StepTiming(
         step=max(loop.step, 0), period=period, real_time_factor=second.real_time_factor, steps=window.steps,
         overruns=second.overruns, total_overruns=account.overruns, caught_up=second.caught_up,
@@ -96,7 +96,8 @@ def loop_status(loop: StepLoop, second: Second, verdict: Verdict) -> DiagnosticS
     level, text = _pace(loop, second)
     account, window = loop.account, second.window
     worst = {f'worst {name} / s': f'{case.value:.9g} at t = {case.time:.9g} s'
-             for name in ('cost', 'lateness', 'latency') if not math.isnan((case := loop.ledger.worst(name)).value)}
+             for name in ('cost', 'lateness',
+                          'latency') if not math.isnan((case := loop.timing_statistics.worst(name)).value)}
     return _status('step loop', level, text, {
         'verdict': verdict.text,
         'step': loop.step, 'simulation time / s': loop.time_ns * 1e-9, 'real-time factor': second.real_time_factor,

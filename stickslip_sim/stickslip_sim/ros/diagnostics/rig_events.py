@@ -5,52 +5,52 @@
 from rclpy.node import Node
 from rclpy.serialization import serialize_message
 
-from stickslip_msgs.msg import RigEvent
+from stickslip_msgs.msg import RigEvent as RigEventMessage
 
 from ...recording.topics import RECORDED, RIG_EVENT
-from ...rig import Note, NoteKind, Product
+from ...rig import RigEvent, RigEventKind, StepResult
 from ..node.conversion import set_stamp
-from ..node.publishers import Outlet
+from ..node.publishers import Publishers
 from ..node.topics import publisher
 
-_WARNINGS = (NoteKind.COMMAND_TIMEOUT, NoteKind.COMMAND_RESUMED, NoteKind.COMMAND_LIMITED)
-_FAULTS = (NoteKind.FAULT_BEGIN, NoteKind.FAULT_END, NoteKind.FAULT_CLEARED)
+_WARNINGS = (RigEventKind.COMMAND_TIMEOUT, RigEventKind.COMMAND_RESUMED, RigEventKind.COMMAND_LIMITED)
+_FAULTS = (RigEventKind.FAULT_BEGIN, RigEventKind.FAULT_END, RigEventKind.FAULT_CLEARED)
 _QUIET = 1.0   # s of simulation time between two lines of a kind in the log
 
 
 class RigEvents:
     """Publishes, records and logs the notes of the steps, and those that come from elsewhere."""
 
-    def __init__(self, node: Node, outlet: Outlet) -> None:
+    def __init__(self, node: Node, publishers: Publishers) -> None:
         self._log = node.get_logger()
-        self._outlet = outlet
+        self._publishers = publishers
         self._publish = publisher(node, RIG_EVENT).publish
         self._index = RECORDED.index(RIG_EVENT)
         self._time_ns = 0                                # of the latest step
-        self._quiet_until: dict[NoteKind, float] = {}
+        self._quiet_until: dict[RigEventKind, float] = {}
 
-    def take(self, product: Product) -> None:
+    def take(self, result: StepResult) -> None:
         """Tell what happened at the begin of a step; called before its state goes out."""
-        if product.step == 0:
+        if result.step == 0:
             self._time_ns = 0
             self._quiet_until.clear()
-        for note in product.notes:
-            self.tell(product.step, self._time_ns, note)
-        self._time_ns = product.sample.instant.nanoseconds
+        for note in result.notes:
+            self.tell(result.step, self._time_ns, note)
+        self._time_ns = result.sample.instant.nanoseconds
 
-    def tell(self, step: int, time_ns: int, note: Note) -> None:
+    def tell(self, step: int, time_ns: int, note: RigEvent) -> None:
         """Tell a note; it holds from the begin of a step on, which is at that simulation time."""
-        message = RigEvent(step=step, time=time_ns * 1e-9, kind=int(note.kind), id=note.id, value=note.value,
+        message = RigEventMessage(step=step, time=time_ns * 1e-9, kind=int(note.kind), id=note.id, value=note.value,
                            count=note.number, text=note.text)
         if note.fault is not None:
             message.fault, message.start, message.duration = note.fault.kind, note.fault.start, note.fault.duration
-        set_stamp(message.header.stamp, self._outlet.start_ns + time_ns)
+        set_stamp(message.header.stamp, self._publishers.start_ns + time_ns)
         data = serialize_message(message)
         self._publish(data)
-        self._outlet.record(self._index, data, time_ns, step)
+        self._publishers.record(self._index, data, time_ns, step)
         self._write(time_ns * 1e-9, note)
 
-    def _write(self, time: float, note: Note) -> None:
+    def _write(self, time: float, note: RigEvent) -> None:
         line = f't = {time:g} s: {note.id + ": " if note.id else ""}{note.text}'
         if note.kind in _FAULTS:
             self._log.info(line)

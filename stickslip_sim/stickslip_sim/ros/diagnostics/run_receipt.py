@@ -10,17 +10,17 @@ from ...realtime.timing_statistics import Worst
 from ...realtime.verdict import verdict
 from ...runs.receipt import receipt_of
 from ...scene.model import Scene
-from ..node.publishers import Outlet
+from ..node.publishers import Publishers
 
 
-def run_receipt(scene: Scene, loop: StepLoop, outlet: Outlet, dropped: int, cost: tuple[float, float]
+def run_receipt(scene: Scene, loop: StepLoop, publishers: Publishers, dropped: int, cost: tuple[float, float]
                 ) -> dict[str, Any]:
     """Return the receipt of the run up to now; `cost` is CPU and wall time, s.  Raises SolverError, see `judge`."""
     simulator = loop.rig.simulator
     simulator.judge()
     period = 1.0 / scene.time.rate
     duration = max(simulator.time.seconds, period)
-    figures = outlet.events.summary(duration)
+    figures = publishers.events.summary(duration)
     receipt = receipt_of(scene, duration, period, figures, simulator.root_iterations, simulator.sample(),
                          simulator.energy, *cost)
     slots = {slot.name: {'received': slot.received, 'refused': slot.refused} for slot in loop.slots}
@@ -30,7 +30,7 @@ def run_receipt(scene: Scene, loop: StepLoop, outlet: Outlet, dropped: int, cost
 
 def _timing(scene: Scene, loop: StepLoop) -> dict[str, Any]:
     judged = verdict(scene, loop)
-    worst = {f'worst_{name}': _plain(loop.ledger.worst(name)) for name in ('cost', 'lateness', 'latency')}
+    worst = {f'worst_{name}': _plain(loop.timing_statistics.worst(name)) for name in ('cost', 'lateness', 'latency')}
     return {**asdict(loop.account), 'skipped': loop.account.skipped * 1e-9, **worst, 'valid': judged.valid,
             'verdict': judged.text}
 

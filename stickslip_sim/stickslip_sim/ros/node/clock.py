@@ -8,7 +8,7 @@ from rosgraph_msgs.msg import Clock
 from ...core.errors import InputError
 from ...core.time_grid import Grid
 from ...recording.topics import CLOCK
-from ...rig import Product
+from ...rig import StepResult
 from ...scene.model import TimeSettings
 from .conversion import set_stamp
 from .topics import publisher
@@ -23,11 +23,11 @@ class ClockOut:
         self._steps, self._ticks = grid, Grid(rate)
         self._next = 0
 
-    def take(self, product: Product) -> None:
+    def take(self, result: StepResult) -> None:
         """Publish, if a tick falls on the end of this step or into it."""
-        if product.step == 0:
+        if result.step == 0:
             self._next = 0
-        now = self._steps.instant(product.step)
+        now = self._steps.instant(result.step)
         if now >= self._ticks.instant(self._next):
             set_stamp(self._message.clock, now.nanoseconds)
             self._publish(self._message)

@@ -15,8 +15,8 @@ from ...core.errors import InputError
 from ...recording import MessageCodec
 from ...recording.messages import header
 from ...recording.topics import JOINT_COMMANDS, JOINT_STATES
-from ...rig import Measured, Product
-from .publishers import Outlet
+from ...rig import Measured, StepResult
+from .publishers import Publishers
 from .topics import publisher
 
 SLIDER, DRIVE = 'axis_slider', 'axis_drive'
@@ -29,16 +29,16 @@ _NANOSECONDS = 1_000_000_000
 class JointStates:
     """Publishes what the encoders say at the end of a step; nothing when that measurement was lost."""
 
-    def __init__(self, node: Node, outlet: Outlet) -> None:
+    def __init__(self, node: Node, publishers: Publishers) -> None:
         self._publish = publisher(node, JOINT_STATES).publish
-        self._outlet = outlet
+        self._publishers = publishers
         self._pack = JointStatePacker().pack
 
-    def take(self, product: Product) -> None:
+    def take(self, result: StepResult) -> None:
         """Publish, stamped as the state of this step."""
-        if product.measured is not None:
-            stamp_ns = self._outlet.start_ns + product.sample.instant.nanoseconds
-            self._publish(self._pack(stamp_ns, product.measured, product.sample.drive_force))
+        if result.measured is not None:
+            stamp_ns = self._publishers.start_ns + result.sample.instant.nanoseconds
+            self._publish(self._pack(stamp_ns, result.measured, result.sample.drive_force))
 
 
 class JointStatePacker:

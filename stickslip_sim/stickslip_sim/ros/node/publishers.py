@@ -14,7 +14,7 @@ from ...recording import flat_layout
 from ...recording import topics as names
 from ...recording.messages import Packer
 from ...recording.topics import RECORDED, Topic
-from ...rig import Product
+from ...rig import StepResult
 from ...simulation.cycles import EventTally
 from .topics import publisher
 
@@ -29,7 +29,7 @@ class Recorder(Protocol):
         """Wait while too many messages wait to be written."""
 
 
-class Outlet:
+class Publishers:
     """Publishes what the step loop hands out, stamped `start_ns` (ROS time at simulation time 0) + simulation time."""
 
     def __init__(self, node: Node) -> None:
@@ -49,16 +49,16 @@ class Outlet:
         self._time_ns = 0
         self.events = EventTally(mode)
 
-    def take(self, product: Product) -> None:
+    def take(self, result: StepResult) -> None:
         """Record the commands of a step; publish and record its events, and the state at its end."""
-        for kind, value in enumerate((product.velocity, product.force)):
+        for kind, value in enumerate((result.velocity, result.force)):
             if value is not None and self.recorder is not None:
-                self.command(kind, product.step, self._time_ns, value)
-        for event in product.events:
-            self.event(max(product.step, 1), event)
-        self.sample(product.step, product.sample)
+                self.command(kind, result.step, self._time_ns, value)
+        for event in result.events:
+            self.event(max(result.step, 1), event)
+        self.sample(result.step, result.sample)
 
-    def keep_pace(self, _: Product) -> None:
+    def keep_pace(self, _: StepResult) -> None:
         """Let time that nothing else drives wait for the bag, so that nothing is missing from it."""
         if (recorder := self.recorder) is not None:
             recorder.wait_for_room()

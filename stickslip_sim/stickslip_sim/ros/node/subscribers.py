@@ -15,7 +15,7 @@ from .topics import command_reader, message_of, raw_subscription
 _QUIET = 1_000_000_000   # ns between two warnings of refused commands of a kind
 
 
-class Inlet:
+class Subscribers:
     """Listens to the topics of commands; `now` is the steady clock of the step loop, ns."""
 
     def __init__(self, node: Node, velocity: CommandSlot, force: CommandSlot, now: Callable[[], int],

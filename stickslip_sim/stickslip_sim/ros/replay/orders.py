@@ -9,7 +9,7 @@ from ...core.errors import InputError, RecordingError
 from ...recording import Topic
 from ...recording.playback import Recording
 from ...recording.topics import DRIVE_VELOCITY, EXTERNAL_FORCE, PARAMETER_EVENTS, RIG_EVENT, SLIDER_STATE
-from ...rig import NoteKind
+from ...rig import RigEventKind
 from ...scene.schema import BY_NAME
 from ..node.topics import deserialized
 
@@ -59,19 +59,19 @@ def request_of(kind: Topic, data: bytes) -> Request | None:
     if kind is PARAMETER_EVENTS:
         changed = [parameter for parameter in message.changed_parameters if parameter.name in BY_NAME]
         return Request('set_parameters_atomically', {'parameters': changed}) if changed else None
-    if message.kind == NoteKind.FAULT_INJECTED:
+    if message.kind == RigEventKind.FAULT_INJECTED:
         return Request('inject_fault', {'id': message.id, 'kind': message.fault, 'start': message.start,
                                         'duration': message.duration, 'value': message.value})
-    if message.kind == NoteKind.FAULT_CLEARED and message.id:
+    if message.kind == RigEventKind.FAULT_CLEARED and message.id:
         return Request('inject_fault', {'id': message.id, 'kind': _CLEAR})
-    if message.kind == NoteKind.FAULT_CLEARED:
+    if message.kind == RigEventKind.FAULT_CLEARED:
         return Request('clear_faults', {})
     return None
 
 
 def is_timeout(kind: Topic, data: bytes) -> bool:
     """Return whether a recorded message tells of a command time-out."""
-    return kind is RIG_EVENT and bool(order_of(kind, data).kind == NoteKind.COMMAND_TIMEOUT)
+    return kind is RIG_EVENT and bool(order_of(kind, data).kind == RigEventKind.COMMAND_TIMEOUT)
 
 
 def refusal_in(response: Any) -> str:

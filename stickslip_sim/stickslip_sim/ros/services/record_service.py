@@ -10,7 +10,7 @@ from std_srvs.srv import SetBool
 from ...core.errors import RecordingError
 from ...realtime.step_loop import StepLoop
 from ..node.parameters import SceneNode
-from ..node.publishers import Outlet
+from ..node.publishers import Publishers
 from ..node.recordings import Recordings
 from .answers import BUSY, answer
 
@@ -21,10 +21,10 @@ class RecordService:
     `tell` publishes what changed (run_info); `receipt` makes the receipt that ends a bag.
     """
 
-    def __init__(self, node: SceneNode, loop: StepLoop, outlet: Outlet, tell: Callable[[], None],
+    def __init__(self, node: SceneNode, loop: StepLoop, publishers: Publishers, tell: Callable[[], None],
                  receipt: Callable[[], dict[str, Any]]) -> None:
         self.recordings = Recordings(node.get_namespace(), node.scene)
-        self._node, self._loop, self._outlet = node, loop, outlet
+        self._node, self._loop, self._publishers = node, loop, publishers
         self._tell, self._receipt = tell, receipt
         node.create_service(SetBool, '~/record', self._set_recording)
 
@@ -52,7 +52,7 @@ class RecordService:
         receipts: list[dict[str, Any]] = []
 
         def detach() -> None:
-            self._outlet.recorder = None
+            self._publishers.recorder = None
             receipts.append(self._receipt())
 
         self._loop.at_boundary(detach)
@@ -67,7 +67,7 @@ class RecordService:
 
     def close(self) -> None:
         """End the recording of a loop that has stopped; raises RecordingError when the bag could not be finished."""
-        self._outlet.recorder = None
+        self._publishers.recorder = None
         if self.is_recording:
             folder = self.recordings.folder
             self.recordings.end(self._receipt())
@@ -77,18 +77,18 @@ class RecordService:
         """Give a recording up that has failed."""
         failure = self.recordings.check()
         if failure:
-            self._outlet.recorder = None
+            self._publishers.recorder = None
             self._node.get_logger().error(f'recording failed, the axis goes on: {failure}')
             self._tell()
 
     def _attach(self) -> None:
         if self._loop.step >= 0:
             self.recordings.continue_from(self._loop.rig.checkpoint())
-        self._outlet.recorder = self.recordings.recorder
+        self._publishers.recorder = self.recordings.recorder
         self._tell()
         for kind, value in enumerate(self._loop.held):
             if value is not None:
-                self._outlet.command(kind, self._loop.step, self._loop.time_ns, value)   # since then, or before
+                self._publishers.command(kind, self._loop.step, self._loop.time_ns, value)   # since then, or before
 
     def _set_recording(self, request: Any, response: Any) -> Any:
         folder = self.recordings.folder

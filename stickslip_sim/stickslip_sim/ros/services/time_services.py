@@ -11,9 +11,9 @@ from std_srvs.srv import SetBool, Trigger
 from stickslip_msgs.srv import Step
 
 from ...realtime.step_loop import StepLoop
-from ...rig import Product
+from ...rig import StepResult
 from ..node.parameters import SceneNode
-from ..node.publishers import Outlet
+from ..node.publishers import Publishers
 from .answers import BUSY, answer
 
 _STEPPING = 3600.0   # s that many steps may take
@@ -22,9 +22,9 @@ _STEPPING = 3600.0   # s that many steps may take
 class TimeServices:
     """`restart` begins a new run at a boundary; `is_recording` and `is_stopping` are asked when it matters."""
 
-    def __init__(self, node: SceneNode, loop: StepLoop, outlet: Outlet, restart: Callable[[], bool],
+    def __init__(self, node: SceneNode, loop: StepLoop, publishers: Publishers, restart: Callable[[], bool],
                  is_recording: Callable[[], bool], is_stopping: Callable[[], bool]) -> None:
-        self._loop, self._outlet, self._restart = loop, outlet, restart
+        self._loop, self._publishers, self._restart = loop, publishers, restart
         self._is_recording, self._is_stopping = is_recording, is_stopping
         node.create_service(Trigger, '~/reset', self.reset)
         node.create_service(SetBool, '~/set_paused', self.set_paused)
@@ -53,19 +53,19 @@ class TimeServices:
         refusal = self._refusal(request)
         if refusal:
             return answer(response, False, refusal)
-        products: list[Product] = []
+        results: list[StepResult] = []
         velocity, force = (None if math.isnan(value) else value for value in (request.velocity, request.force))
 
         def run() -> None:
-            products.extend(self._loop.run_steps(request.steps, velocity, force, self._is_stopping))
+            results.extend(self._loop.run_steps(request.steps, velocity, force, self._is_stopping))
 
         done = self._loop.at_boundary(run, _STEPPING)
-        if products:
-            last = products[-1]
-            response.state, response.friction = self._outlet.state_messages(last.step, last.sample)
-            response.events = [message for product in products for event in product.events
-                               if (message := self._outlet.event_message(product.step, event))]
-        return answer(response, done and len(products) == request.steps, self._told(done, request.steps, len(products)))
+        if results:
+            last = results[-1]
+            response.state, response.friction = self._publishers.state_messages(last.step, last.sample)
+            response.events = [message for result in results for event in result.events
+                               if (message := self._publishers.event_message(result.step, event))]
+        return answer(response, done and len(results) == request.steps, self._told(done, request.steps, len(results)))
 
     def _refusal(self, request: Any) -> str:
         """Return why steps are not made, or an empty text."""
