@@ -1,6 +1,9 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The classical results beside the exact engine: shown in docs/paper.md, kept by tests/test_classics.py."""
+"""The classical results beside the exact engine: shown in docs/paper.md.
+
+tests/solvers/exact/test_classics.py keeps it.
+"""
 
 import math
 from collections.abc import Callable

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Classical results on stick-slip in closed form: what the engine is held to (`classics`, tests/test_classics.py).
+"""Classical results on stick-slip in closed form, which tests/solvers/exact/test_classics.py holds the engine to.
 
 m ẍ = c (v t − x) + h (v − ẋ) − F, with ω = √(c/m), ζ = h/(2 √(cm)) and s = √(1 − ζ²).  Friction drops by ΔF as the slip
 begins; A = ΔF/(v √(cm)) is that drop over what the feed v stands for.

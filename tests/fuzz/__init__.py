@@ -2,5 +2,5 @@
 # SPDX-License-Identifier: Apache-2.0
 """Input that nobody meant well: what it is made of, and what must hold whatever comes.
 
-Some of it in every test run (tests/test_fuzz.py), more for as long as asked for (`make fuzz MINUTES=10`).
+Some of it in every test run (tests/fuzz/test_fuzz.py), more for as long as asked for (`make fuzz MINUTES=10`).
 """

@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 from hypothesis.strategies import SearchStrategy
 
 from stickslip_sim.scene import scene_names
+from tests.support.repository import ROOT
 
 from . import axes, bags, engine, judge, readers, recordings, studies, texts
 from .bounds import within
 
-ROOT = Path(__file__).parents[2]
 _PATIENCE = 20.0   # s for one input; the host may stand still for a while
 
 

@@ -64,7 +64,8 @@ def _profile(name: str, value: float | InputProfile, unit: str, first: InputProf
     if isinstance(value, InputProfile):
         value.check(name)
         if len(value.sinusoids) > len(first.sinusoids):
-            raise InputError(f'{name}.sinusoids', len(value.sinusoids), f'at most {len(first.sinusoids)}, as at the start',
+            raise InputError(f'{name}.sinusoids', len(value.sinusoids),
+                             f'at most {len(first.sinusoids)}, as at the start',
                              'give the simulator a course with as many waves at its start')
         return value
     if not math.isfinite(value):

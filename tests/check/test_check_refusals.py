@@ -1,0 +1,128 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""`stickslip check` on limits and runs that say nothing: one clear line."""
+
+from pathlib import Path
+
+import pytest
+
+from stickslip_sim.core.types import Sample
+from stickslip_sim.recording import BagWriter, RunFacts, topics, write_bag
+from stickslip_sim.runs.offline import run_offline
+from stickslip_sim.scene import load_scene
+from tests.support.check_files import DURATION, LIMITS, limits_file, node_bag, refused
+from tests.support.tool import Capture
+
+
+class TestRefusals:
+    @pytest.mark.parametrize(('text', 'words'), [
+        ('', ['file', 'limits']),
+        ('[1]', ['file', 'window, target, reference, limits']),
+        ('limits:', ['line 1', 'missing']),
+        ('limits: {}', ['limits', 'at least one limit']),
+        ('limits: 3', ['limits = 3', 'at least one limit']),
+        ('limit: {sticks: {max: 1}}', ['limit', 'did you mean limits?']),
+        ('limits: {stick: {max: 1}}', ["'stick'", 'did you mean sticks?']),
+        ('limits: {mine: {max: 1}}', ["'mine'", 'following_error, end_position_error', 'check: sticks']),
+        ('limits: {mine: {check: stics, max: 1}}', ['mine.check', 'did you mean sticks?']),
+        ('limits: {mine: {check: 3, max: 1}}', ['mine.check = 3', 'one of']),
+        ('limits: {sticks: 3}', ['sticks = 3', '{max: 1.0e-3}']),
+        ('limits: {sticks: {maximum: 3}}', ['sticks.maximum = 3', 'one of check, max, window', 'did you mean max?']),
+        ('limits: {sticks: {}}', ['sticks.max', 'add it']),
+        ('limits: {sticks: {max: 1.5}}', ['sticks.max = 1.5', 'whole number']),
+        ('limits: {sticks: {max: -1}}', ['sticks.max = -1', '>= 0']),
+        ('limits: {sticks: {max: 1, max: 2}}', ['max is given twice']),
+        ('limits: {overshoot: {target: 0.1, max: .nan}}', ['overshoot.max = nan', '>= 0']),
+        ('limits: {overshoot: {target: 0.1, max: .inf}}', ['overshoot.max = inf', '<= 1e+12 m']),
+        ('limits: {overshoot: {target: 0.1, max: "1"}}', ["overshoot.max = '1'", 'without quotes']),
+        ('limits: {overshoot: {target: 0.1, max: 1 mm}}', ["overshoot.max = '1 mm'", 'a number']),
+        ('limits: {overshoot: {target: true, max: 1.0}}', ['overshoot.target = True', 'a number']),
+        ('limits: {overshoot: {max: 1.0}}', ['overshoot.target', 'add it']),
+        ('limits: {settling_time: {target: 0.0, max: 1.0}}', ['settling_time.band', '> 0']),
+        ('limits: {settling_time: {target: 0.0, band: 0.0, max: 1.0}}', ['settling_time.band = 0.0', '> 0']),
+        ('limits: {limit_cycle_amplitude: {cycles: 0, max: 1.0}}', ['cycles = 0', '>= 1']),
+        ('limits: {peak_speed: {target: 0.0, max: 1.0}}', ['peak_speed.target', 'one of check, max, window']),
+        ('limits: {timing: invalid}', ["timing = 'invalid'", 'valid']),
+        ('limits: {timing: {max: 1}}', ['timing', 'valid']),
+        ('limits: {timing: valid}', ['timing', 'the node recorded in real time', 'drop this limit']),
+        ('target: far\n' + LIMITS, ["target = 'far'", 'a number']),
+        ('window: 3\n' + LIMITS, ['window = 3', 'begin, end']),
+        ('window: {start: 3.0}\n' + LIMITS, ['window.start = 3.0', 'begin, end']),
+        ('window: {begin: 0.3, end: 0.3}\n' + LIMITS, ['window = [0.3, 0.3]', 'begin before end']),
+        ('window: {begin: -1.0}\n' + LIMITS, ['window.begin = -1.0', '>= 0']),
+        ('window: {end: 1.5}\n' + LIMITS, ['sticks.window.end = 1.5', '0 to 1.4 s']),
+        ('window: {begin: 0.0001, end: 0.0002}\n' + LIMITS, ['window = [0.0001, 0.0002]', 'one sample']),
+        ('limits: {overshoot: {target: 0.0, max: 1.0}}', ['overshoot.target = 0.0', 'another place', 'begin before']),
+        ('reference: 3\n' + LIMITS, ['reference = 3', 'times, positions']),
+        ('reference: {times: [0.0]}\n' + LIMITS, ['reference.positions', 'add it']),
+        ('reference: {times: [0.0, 1.0], positions: [0.0]}\n' + LIMITS, ['reference.positions = [0.0]', '(2)']),
+        ('reference: {times: [1.0, 1.0], positions: [0.0, 1.0]}\n' + LIMITS, ['reference.times', 'increasing']),
+        ('reference: {times: [], positions: []}\n' + LIMITS, ['reference.times', 'at least one']),
+        ('limits: {"a\\nb": {check: sticks, max: 1}}', ['name', 'printable']),
+        ('limits: {sticks: {max: 1}', ['line 1']),
+        ('limits: &x {sticks: {max: 1}}\nwindow: *x', ['aliases']),
+    ])
+    def test_limits(self, text: str, words: list[str], tmp_path: Path, capsys: Capture) -> None:
+        path = limits_file(tmp_path, text)
+        line = refused(capsys, 'paper_fig7', '--duration', DURATION, '--limits', path, '--junit', tmp_path / 'c.xml')
+        for word in words:
+            assert word in line
+        assert [file.name for file in tmp_path.iterdir()] == ['limits.yaml']
+
+    def test_limits_that_are_no_text(self, tmp_path: Path, capsys: Capture) -> None:
+        (tmp_path / 'b.yaml').write_bytes(b'\xff\xfe\x00')
+        arguments = ['paper_fig7', '--duration', DURATION, '--limits']
+        assert 'is it a limits file?' in refused(capsys, *arguments, tmp_path / 'b.yaml')
+        assert 'Is a directory' in refused(capsys, *arguments, tmp_path)
+        assert 'No such file' in refused(capsys, *arguments, tmp_path / 'none.yaml')
+
+    @pytest.mark.parametrize(('arguments', 'words'), [
+        (['paper_fig7'], ['--duration S', 'check --help']),
+        (['paper_fig7', '--duration', '0'], ['duration = 0.0', '> 0']),
+        (['paper_fig7', '--duration', '1e9'], ['rows']),
+        (['paper_fig9', '--duration', '1'], ['paper_fig9', 'did you mean']),
+        (['no/such/folder', '--duration', '1'], ['folder', 'readable']),
+        (['no_such.mcap'], ['no_such.mcap', 'no recorded run']),
+        (['paper_fig7', '--duration', '1', '--set', 'axis.mass=-1'], ['axis.mass']),
+        (['paper_fig7', '--duration', '1', '--junit', '/no/folder/c.xml'], ['--junit', '/no/folder']),
+        (['paper_fig7', '--duration', '1', '--junit', '-', '--json', '-'], ['--json', '--junit']),
+        (['BAG', '--duration', '1'], ['--duration and --set', 'recorded']),
+        (['BAG', '--set', 'axis.mass=1.0'], ['--duration and --set', 'recorded']),
+    ])
+    def test_wrong_use(self, arguments: list[str], words: list[str], fig8_bag: Path, tmp_path: Path,
+                       capsys: Capture) -> None:
+        given = [str(fig8_bag) if argument == 'BAG' else argument for argument in arguments]
+        line = refused(capsys, *given, '--limits', limits_file(tmp_path, LIMITS))
+        for word in words:
+            assert word in line
+
+    @pytest.mark.parametrize('content', [b'', b'no bag at all, but long enough to look like one'])
+    def test_no_bag(self, content: bytes, tmp_path: Path, capsys: Capture) -> None:
+        (tmp_path / 'x.mcap').write_bytes(content)
+        assert 'x.mcap' in refused(capsys, tmp_path / 'x.mcap', '--limits', limits_file(tmp_path, LIMITS))
+
+    def test_a_bag_of_another_thing(self, tmp_path: Path, capsys: Capture) -> None:
+        limits = limits_file(tmp_path, LIMITS)
+        BagWriter(tmp_path / 'other', [topics.DIAGNOSTICS, topics.TIMING], {}, {}).close()
+        line = refused(capsys, tmp_path / 'other', '--limits', limits)
+        assert 'no topic of type stickslip_msgs/msg/SliderState' in line
+        cells = [*topics.recorded('/a'), *topics.recorded('/b')]
+        BagWriter(tmp_path / 'two', [topic for topic in cells if topic is not topics.PARAMETER_EVENTS], {}, {}).close()
+        assert 'are both of type' in refused(capsys, tmp_path / 'two', '--limits', limits)
+
+    def test_a_bag_without_states(self, tmp_path: Path, capsys: Capture) -> None:
+        BagWriter(tmp_path / 'empty', topics.recorded(), {}, {}).close()
+        limits = limits_file(tmp_path, LIMITS)
+        assert 'no state of the axis' in refused(capsys, tmp_path / 'empty', '--limits', limits)
+
+    def test_a_bag_of_two_runs(self, tmp_path: Path, capsys: Capture) -> None:
+        scene = load_scene('paper_fig7')
+        rows: list[Sample] = [*run_offline(scene, 0.01, scene.time.step).sample_rows()]
+        write_bag(tmp_path / 'two', RunFacts.of(scene), rows + rows, [], {})
+        assert 'time goes back' in refused(capsys, tmp_path / 'two', '--limits', limits_file(tmp_path, LIMITS))
+
+    @pytest.mark.parametrize('timing', [None, {'steps': 3}, {'valid': None, 'verdict': 'not in real time'}, 'good'])
+    def test_a_bag_without_a_verdict(self, timing: object, tmp_path: Path, capsys: Capture) -> None:
+        folder = node_bag(tmp_path / 'run', timing)
+        line = refused(capsys, folder, '--limits', limits_file(tmp_path, 'limits: {timing: valid}'))
+        assert 'only a run that the node recorded in real time' in line

@@ -1,0 +1,149 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Runs of the tool that end otherwise: wrong use, full disks, readers that leave, signals; one line, nothing left."""
+
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import click
+import pytest
+
+from stickslip_sim.cli.main import run
+from tests.support.tool import Capture, answered, refused, restore_interrupt
+
+
+@pytest.mark.parametrize(('arguments', 'words'), [
+    (['simulate', 'paper_fig7'], ['--duration', 'simulate --help']),
+    (['simulate', '--duration', '1'], ['SCENE']),
+    (['simulate', 'paper_fig7', '--duration', 'long'], ['--duration', 'long', 'float']),
+    (['simulate', 'paper_fig7', '--duration', '-1'], ['duration', '-1', '> 0']),
+    (['simulate', 'paper_fig7', '--duration', 'nan'], ['duration', 'nan', '> 0']),
+    (['simulate', 'paper_fig7', '--duration', 'inf'], ['duration', 'inf', '<= 1e+09 s']),
+    (['simulate', 'no_such_scene', '--duration', '1'], ['no_such_scene', 'paper_fig8']),
+    (['simulate', 'paper_fig7', '--duration', '1', '--set', 'axis.mas=1'], ['axis.mas']),
+    (['simulate', 'paper_fig7', '--duration', '1', '--set', 'axis.mass=-1'], ['axis.mass', '-1', '>= 1e-09 and']),
+    (['simulate', 'paper_fig7', '--duration', '1', '--set', 'axis.mass'], ['axis.mass']),
+    (['simulate', 'paper_fig7', '--duration', '1', '--knots'], ['--knots', '--events']),
+    (['simulate', 'paper_fig7', '--duration', '1', '--sample-period', '1'], ['--sample-period', '--samples']),
+    (['simulate', 'paper_fig7', '--duration', '1', '--samples', '-', '--sample-period', '0'], ['sample period', '> 0']),
+    (['simulate', 'paper_fig7', '--duration', '1e6', '--samples', '-', '--sample-period', '1e-6'], ['rows']),
+    (['simulate', 'paper_fig7', '--duration', '1', '--events', '-', '--samples', '-'], ['--samples', '--events']),
+    (['simulate', 'paper_fig7', '--duration', '1', '--plot', 'run.jpg'], ['--plot', '.png']),
+    (['simulate', 'paper_fig7', '--duration', '1', '--events', '/no/folder/e.csv'], ['--events', '/no/folder']),
+    (['simulate', 'paper_fig7', '--duration', '1', '--receipt', '/'], ['--receipt', 'file name']),
+    (['simulate', 'paper_fig7', '--duration', '1', '--frobnicate'], ['--frobnicate']),
+    (['sing'], ['sing']),
+])
+def test_wrong_use(arguments: list[str], words: list[str], capsys: Capture) -> None:
+    line = refused(capsys, *arguments)
+    for word in words:
+        assert word in line
+
+
+def test_wrong_use_where_click_is_older(monkeypatch: pytest.MonkeyPatch, capsys: Capture) -> None:
+    """Ubuntu 24.04 has click 8.1."""
+    monkeypatch.delattr(click.exceptions, 'NoArgsIsHelpError', raising=False)
+    assert 'sing' in refused(capsys, 'sing')
+
+
+def test_without_a_verb_the_help_is_the_answer(capsys: Capture) -> None:
+    code, out, err = answered(capsys)
+    assert (code, out) == (2, '')
+    assert err.startswith('Usage: stickslip [OPTIONS] COMMAND [ARGS]...')
+    assert 'simulate' in err
+
+
+def test_an_existing_bag_folder_is_refused_before_the_work(tmp_path: Path, capsys: Capture) -> None:
+    assert str(tmp_path) in refused(capsys, 'simulate', 'paper_fig7', '--duration', '1e8', '--bag', tmp_path)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_unwritable_folder(capsys: Capture) -> None:
+    """In /sys not even root can make a file."""
+    assert 'written' in refused(capsys, 'simulate', 'paper_fig7', '--duration', '1', '--events', '/sys/e.csv')
+
+
+def test_a_full_disk_gets_one_line(capsys: Capture) -> None:
+    line = refused(capsys, 'simulate', 'paper_fig7', '--duration', '1', '--events', '/dev/full')
+    assert 'No space left' in line
+
+
+@pytest.mark.parametrize('arguments', [
+    ['scenes'], ['--help'], ['simulate', 'paper_fig7', '--duration', '1'],
+    ['simulate', 'paper_fig7', '--duration', '9', '--samples', '-'], ['extremes', '--only', 'X4', '--quick'],
+])
+def test_full_standard_output_gets_one_line(arguments: list[str]) -> None:
+    with open('/dev/full', 'w') as full:
+        done = subprocess.run([sys.executable, '-m', 'stickslip_sim', *arguments], stdout=full, stderr=subprocess.PIPE,
+                              text=True, timeout=60, check=False)
+    assert done.returncode == 2
+    assert done.stderr.startswith('stickslip: ')
+    assert 'standard output' in done.stderr
+    assert 'No space left' in done.stderr
+    assert done.stderr.count('\n') == 1
+
+
+def test_closed_standard_output() -> None:
+    command = f'{sys.executable} -m stickslip_sim simulate paper_fig7 --duration 1'
+    assert subprocess.run(['sh', '-c', f'{command} >&-'], timeout=60, check=False).returncode == 0
+    done = subprocess.run(['sh', '-c', f'{command} --events - >&-'], stderr=subprocess.PIPE, text=True, timeout=60,
+                          check=False)
+    assert (done.returncode, done.stderr.count('\n')) == (2, 1)
+    assert 'standard output' in done.stderr
+
+
+def test_internal_errors_get_one_line(monkeypatch: pytest.MonkeyPatch, capsys: Capture) -> None:
+    def fail(*_: object) -> None:
+        raise ZeroDivisionError('first\nsecond')
+
+    monkeypatch.setattr('stickslip_sim.runs.offline.run_offline', fail)
+    assert 'ZeroDivisionError: first' in refused(capsys, 'simulate', 'paper_fig7', '--duration', '1', code=1)
+    monkeypatch.setenv('STICKSLIP_DEBUG', '1')
+    with pytest.raises(ZeroDivisionError):
+        run(['simulate', 'paper_fig7', '--duration', '1'])
+
+
+def test_a_reader_that_leaves_early_is_no_error() -> None:
+    command = [sys.executable, '-m', 'stickslip_sim', 'simulate', 'paper_fig8', '--duration', '10', '--samples', '-']
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        assert process.stdout.readline().startswith('time,position,velocity,')
+        process.stdout.close()
+        assert process.stderr.read() == ''
+        assert process.wait(30) == 0
+
+
+@pytest.mark.parametrize(('number', 'code'), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_an_interrupted_run_leaves_nothing(number: signal.Signals, code: int, tmp_path: Path) -> None:
+    with started('--duration', '5e5', '--events', tmp_path / 'e.csv') as process:
+        time.sleep(0.5)
+        process.send_signal(number)
+        _, err = process.communicate(timeout=30)
+    assert process.returncode == code
+    assert err == ('stickslip: interrupted\n' if number == signal.SIGINT else '')
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.ros
+def test_an_interrupted_bag_vanishes(tmp_path: Path) -> None:
+    with started('--duration', '500', '--bag', tmp_path / 'bag') as process:
+        while process.poll() is None and not (tmp_path / 'bag').exists():
+            time.sleep(0.02)
+        process.send_signal(signal.SIGINT)
+        _, err = process.communicate(timeout=30)
+    assert (process.returncode, err) == (130, 'stickslip: interrupted\n')
+    assert list(tmp_path.iterdir()) == []
+
+
+def started(*arguments: str | Path) -> subprocess.Popen[str]:
+    """Start a run of paper_fig8; return when the tool is about to parse its arguments."""
+    program = 'from stickslip_sim.cli import main; print(flush=True); main()'
+    process = subprocess.Popen([sys.executable, '-c', program, 'simulate', 'paper_fig8', *map(str, arguments)],
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=restore_interrupt)
+    assert process.stdout is not None
+    process.stdout.readline()
+    return process

@@ -1,0 +1,92 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""What README and docs/hil.md have a newcomer do first: `make run`, and the examples beside an axis."""
+
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from stickslip_sim.recording import read_run
+from tests.support.repository import ROOT
+from tests.support.ros_nodes import Client, client, running
+from tests.support.tool import restore_interrupt
+from tests.support.waiting import wait_for
+
+pytestmark = pytest.mark.ros
+
+DRIVE = ROOT / 'examples' / 'drive.py'
+CONTROLLER = ROOT / 'examples' / 'controller.py'
+LOCKSTEP = ROOT / 'examples' / 'lockstep.py'
+
+
+def python(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([sys.executable, *map(str, arguments)], capture_output=True, text=True, timeout=60,
+                          check=False)
+
+
+@pytest.fixture(scope='module')
+def axis(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
+    with running(folder=tmp_path_factory.mktemp('axis')), client() as it:
+        it.connect()
+        yield it
+
+
+def test_the_demonstration_records_and_has_nothing_to_complain_of(tmp_path: Path) -> None:
+    done = python('-m', 'stickslip_sim.ros.demo', '--duration', '1', '--out', tmp_path)
+    assert (done.returncode, done.stderr) == (0, '')
+    [folder] = tmp_path.iterdir()
+    assert (folder / 'run.png').stat().st_size > 10_000
+    assert read_run(folder).receipt is not None    # it was closed
+
+
+def test_what_is_sent_holds(axis: Client) -> None:
+    done = python(DRIVE, '0.005', '--force', '400')
+    assert done.returncode == 0, done.stderr
+    wait_for(lambda: axis.latest('slider_state').drive_velocity == 0.005, 'its effect')
+
+
+def test_a_wrong_unit_is_told_to_the_sender(axis: Client) -> None:
+    before = axis.latest('slider_state').drive_velocity
+    wait_for(lambda: 'velocity = 5.0 is refused' in python(DRIVE, '5').stderr, 'a refusal that is heard in its second')
+    assert axis.latest('slider_state').drive_velocity == before
+
+
+def test_nothing_to_send_is_wrong_use() -> None:
+    done = python(DRIVE)
+    assert done.returncode == 2
+    assert 'give a velocity in m/s' in done.stderr
+
+
+def test_the_controller_is_the_one_of_the_page() -> None:
+    _, _, code = CONTROLLER.read_text(encoding='utf-8').partition('DriveVelocity, SliderState\n\n\n')
+    shown = [line.strip() for line in (ROOT / 'docs/hil.md').read_text(encoding='utf-8').splitlines()]
+    assert code
+    assert [line.strip() for line in code.splitlines() if line.strip() and line.strip() not in shown] == []
+
+
+def test_the_controller_drives_the_axis_and_ends_quietly(axis: Client) -> None:
+    assert axis.trigger('reset').success    # to 0 mm
+    controller = subprocess.Popen([sys.executable, CONTROLLER], stderr=subprocess.PIPE, text=True,
+                                  preexec_fn=restore_interrupt)
+    try:
+        wait_for(lambda: axis.latest('slider_state').drive_velocity == 0.010, 'the command of the controller')
+        controller.send_signal(signal.SIGINT)
+        _, errors = controller.communicate(timeout=20)
+    finally:
+        controller.kill()
+    assert (controller.returncode, errors) == (0, '')
+
+
+def test_lock_step_gives_the_same_run_each_time(tmp_path: Path) -> None:
+    ends = []
+    for _ in range(2):
+        with running('-p', 'scene:=positioning', '-p', 'time.mode:=lockstep', '-r', '__ns:=/stepped', folder=tmp_path):
+            done = python(LOCKSTEP, '--duration', '0.3', '--ros-args', '-r', '__ns:=/stepped')
+            assert done.returncode == 0, done.stderr
+            ends.append(done.stderr.rpartition(']: ')[2])
+    assert ends[0] == ends[1]
+    assert ends[0].startswith('0.3 s: ')

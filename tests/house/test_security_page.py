@@ -1,0 +1,48 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The limits that docs/security.md tells are those of the code."""
+
+
+import pytest
+
+from stickslip_sim.config import parameter, ros_yaml
+from stickslip_sim.core.input_profile import MAX_SINUSOIDS
+from stickslip_sim.friction.kinetic import MAX_KNOTS
+from stickslip_sim.recording import opening, reader, records, schemas
+from stickslip_sim.rig.faults import MAX_FAULTS
+from stickslip_sim.runs import offline
+from stickslip_sim.study import folder
+from stickslip_sim.verify import steps
+from tests.support.repository import ROOT
+
+ROWS = [line for line in (ROOT / 'docs/security.md').read_text().splitlines() if '|' in line]
+
+
+@pytest.mark.parametrize(('what', 'limits'), [
+    ('a scene, limits or other', (ros_yaml.SIZE_LIMIT, ros_yaml.MOST_NODES, ros_yaml.MOST_LEVELS)),
+    ('a text in a scene', (parameter.TEXT_LIMIT,)),
+    ('knots of a friction table', (MAX_KNOTS, MAX_SINUSOIDS, MAX_FAULTS)),
+    ('a record of a bag', (records.SIZE_LIMIT >> 20,)),
+    ('schemas, attachments', (opening.MOST_TOLD >> 20,)),
+    ('a definition', (schemas.LONGEST, schemas.MOST_ELEMENTS)),
+    ('a topic of a bag', (reader.MOST_HELD >> 20,)),
+    ('the description of a sweep', (folder.LONGEST >> 20,)),
+    ('steps that a recording may lack', (steps.MOST_MISSING,)),
+    ('samples and events', (offline.MAX_SAMPLES, offline.MAX_EVENTS)),
+])
+def test_limits(what: str, limits: tuple[int, ...]) -> None:
+    (row,) = [row for row in ROWS if row.startswith(f'| {what}')]
+    told = [int(word) for word in row.split('|')[2].replace(';', ' ').replace(',', ' ').split() if word.isdecimal()]
+    assert tuple(told) == limits
+
+
+def test_limits_of_the_node() -> None:
+    pytest.importorskip('rclpy')
+    from stickslip_msgs.srv import Step
+    from stickslip_sim.ros.node.bounded_node import MOST_PARAMETERS
+    from stickslip_sim.ros.node.topics import COMMAND_SIZE
+
+    page = '\n'.join(ROWS)
+    assert f'| a message on a command topic | {COMMAND_SIZE} bytes |' in page
+    assert f'| steps of one `~/step` | {Step.Request.MAX_STEPS} |' in page
+    assert f'| parameters that one request sets or asks for | {MOST_PARAMETERS} |' in page

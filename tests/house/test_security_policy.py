@@ -1,0 +1,148 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The permissions for SROS 2 are those that the programs need: no endpoint is missing, none is too many."""
+
+import xml.etree.ElementTree as ET
+from collections.abc import Iterator
+from contextlib import ExitStack
+from fnmatch import fnmatchcase
+from typing import NamedTuple
+
+import pytest
+
+from stickslip_sim.cli.main import run
+from tests.support.repository import ROOT
+from tests.support.ros_nodes import Client, client, running
+from tests.support.waiting import wait_for
+
+pytestmark = pytest.mark.ros
+
+POLICY = ET.parse(ROOT / 'stickslip_sim/security/stickslip.policy.xml').getroot()
+# What `ros2 security` takes of a policy: by element the attributes that must be there, that may be, and the children.
+STRUCTURE = {
+    'policy': ({'version'}, set(), {'enclaves'}),
+    'enclaves': (set(), set(), {'enclave'}),
+    'enclave': ({'path'}, set(), {'profiles'}),
+    'profiles': (set(), set(), {'profile'}),
+    'profile': ({'ns', 'node'}, set(), {'topics', 'services'}),
+    'topics': (set(), {'publish', 'subscribe'}, {'topic'}),
+    'services': (set(), {'request', 'reply'}, {'service'}),
+    'topic': (set(), set(), set()),
+    'service': (set(), set(), set()),
+}
+BAG = 'bag'
+OF_OWN_CONTROLLERS = {('publish', 'drive_velocity'), ('subscribe', 'slider_state'), ('subscribe', 'mode_event')}
+
+Act = tuple[str, str]    # publish, subscribe, request or reply; the name of a topic or service, or an expression
+
+
+class Program(NamedTuple):
+    """A program in a namespace, with what makes it use all that it can."""
+
+    enclave: str
+    executable: str
+    node: str
+    namespace: str
+    parameters: tuple[str, ...]
+
+    @property
+    def ros_arguments(self) -> list[str]:
+        return ['-r', f'__ns:={self.namespace}', *(word for value in self.parameters for word in ('-p', value))]
+
+
+PROGRAMS = [
+    Program('feed_axis', 'sim_node', 'feed_axis', '/', ('time.mode:=lockstep', 'joint_interface.enabled:=true')),
+    Program('feed_axis', 'sim_node', 'feed_axis', '/press', ('use_sim_time:=true',)),
+    Program('controller', 'cascade_controller', 'cascade_controller', '/', ('use_sim_time:=true',)),
+    Program('controller', 'compensating_controller', 'compensating_controller', '/press', ()),
+    Program('replay', 'replay_node', 'replay', '/', (f'bag:={BAG}', 'clock:=10.0', 'start_paused:=true')),
+    Program('replay', 'replay_node', 'replay', '/press', (
+        f'bag:={BAG}', 'mode:=commands', 'axis:=feed_axis', 'start_paused:=true', 'use_sim_time:=true')),
+    Program('health', 'health', 'health', '/nowhere', ('patience:=3600.0', 'use_sim_time:=true')),
+]
+
+
+def granted(enclave: str, namespace: str = '/') -> dict[Act, Act]:
+    """Return what an enclave may do, as it is written and as it means with its profiles in a namespace."""
+    return {(act, place.text or ''): (act, resolved(place.text or '', namespace, profile.attrib['node']))
+            for profile in POLICY.findall(f".//enclave[@path='/stickslip/{enclave}']//profile")
+            for group in profile for act in group.attrib for place in group}
+
+
+def resolved(name: str, namespace: str, node: str) -> str:
+    return name if name.startswith('/') else f'{namespace.rstrip("/")}/{name.replace("~", node)}'
+
+
+def names(enclave: str, act: str) -> set[str]:
+    return {name for what, name in granted(enclave) if what == act}
+
+
+def endpoints(look: Client, node: str, namespace: str) -> set[Act]:
+    """Return what a node has on the graph; nothing while it is not there."""
+    if (node, namespace) not in look.node.get_node_names_and_namespaces():
+        return set()
+    return {(act, name) for act, ask in (
+        ('publish', look.node.get_publisher_names_and_types_by_node),
+        ('subscribe', look.node.get_subscriber_names_and_types_by_node),
+        ('reply', look.node.get_service_names_and_types_by_node),
+        ('request', look.node.get_client_names_and_types_by_node)) for name, _ in ask(node, namespace)}
+
+
+def covers(expression: Act, endpoint: Act) -> bool:
+    return expression[0] == endpoint[0] and fnmatchcase(endpoint[1], expression[1])
+
+
+def test_structure() -> None:
+    def check(element: ET.Element) -> None:
+        needed, possible, children = STRUCTURE[element.tag]
+        assert needed <= set(element.attrib) <= needed | possible, element.attrib
+        assert {child.tag for child in element} <= children, element.tag
+        assert children or (element.text and element.text == element.text.strip())
+        for child in element:
+            check(child)
+
+    check(POLICY)
+    assert POLICY.attrib['version'] == '0.2.0'
+    groups = [*POLICY.iter('topics'), *POLICY.iter('services')]
+    assert groups
+    assert all(list(group.attrib.values()) == ['ALLOW'] for group in groups)
+
+
+@pytest.fixture(scope='module')
+def look(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
+    """Return one who sees the graph of all programs; they run at once."""
+    folder = tmp_path_factory.mktemp('policy')
+    assert run(['simulate', 'positioning', '--duration', '0.1', '--bag', str(folder / BAG)]) == 0
+    with client() as looking, ExitStack() as stack:
+        for program in PROGRAMS:
+            stack.enter_context(running(*program.ros_arguments, program=program.executable, folder=folder))
+        yield looking
+
+
+@pytest.mark.parametrize('enclave', ['feed_axis', 'controller', 'replay', 'health'])
+def test_programs_have_what_they_need_and_no_more(look: Client, enclave: str) -> None:
+    there = {program: set[Act]() for program in PROGRAMS if program.enclave == enclave}
+
+    def unused() -> set[Act]:
+        for program in there:
+            there[program] |= endpoints(look, program.node, program.namespace)
+        return {written for program, found in there.items() for written, meant in granted(enclave, program.namespace)
+                .items() if any(covers(meant, endpoint) for endpoint in found)} ^ set(granted(enclave))
+
+    rest = OF_OWN_CONTROLLERS if enclave == 'controller' else set()
+    wait_for(lambda: unused() == rest and all(there.values()), f'the endpoints of {enclave}')
+    for program, found in there.items():
+        allowed = granted(enclave, program.namespace).values()
+        assert not {endpoint for endpoint in found if not any(covers(meant, endpoint) for meant in allowed)}, program
+
+
+def test_controller_and_operator_talk_to_the_node_alone() -> None:
+    """Beside the log and parameter events, which every node has."""
+    common = {'/rosout', '/parameter_events'}
+    published, heard = names('feed_axis', 'publish'), names('feed_axis', 'subscribe') - {'/clock'}
+    assert names('controller', 'publish') - common < heard
+    assert names('controller', 'subscribe') < published
+    assert not names('controller', 'request')
+    assert names('operator', 'publish') == heard | common
+    assert names('operator', 'subscribe') == published
+    assert names('operator', 'request') >= {'feed_axis/*'}

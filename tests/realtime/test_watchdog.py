@@ -1,0 +1,194 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The watchdog: on the steady clock in real time, on simulation time elsewhere, and not for the loop's own faults."""
+
+import math
+from collections.abc import Callable, Mapping
+
+import pytest
+
+from stickslip_sim.core.errors import InputError
+from stickslip_sim.core.time_grid import Grid
+from stickslip_sim.realtime.command_slot import CommandSlot
+from stickslip_sim.realtime.pacing import Pacer, StepClock, Unpaced
+from stickslip_sim.realtime.step_loop import StepLoop
+from stickslip_sim.realtime.watchdog import Watchdog
+from stickslip_sim.rig import RigEventKind, StepResult
+from stickslip_sim.scene import load_scene
+from tests.realtime.test_pacing import FakeClock
+from tests.support.rigs import make, told
+from tests.support.waiting import wait_for
+
+MS = 1_000_000
+TIMEOUT = 0.1
+
+Act = Callable[['Bench'], object]
+
+
+class Bench:
+    """A loop whose clock is a fake; acts happen when a step was made, so before the next one."""
+
+    def __init__(self, mode: str = 'realtime', timeout: float = TIMEOUT, rate: float = 1000.0) -> None:
+        grid, self.clock = Grid(rate), FakeClock()
+        paced = Pacer(grid, clock=self.clock, watches_steady=mode == 'realtime')
+        step_clock: StepClock = Unpaced(grid) if mode == 'lockstep' else paced
+        self.slot = CommandSlot('velocity', 'm/s', 1.0)
+        self.rig = make(rate=rate)
+        self.results: list[StepResult] = []
+        self.loop = StepLoop(self.rig, step_clock, (self.slot,), [self._take], Watchdog(timeout), mode == 'lockstep')
+
+    def command(self) -> None:
+        self.slot.offer(0.01, self.clock.now())
+
+    def stall(self, milliseconds: int) -> None:
+        """Let time pass while the loop stands."""
+        self.clock.time += milliseconds * MS
+
+    def run(self, steps: int, acts: Mapping[int, Act]) -> list[int]:
+        """Make steps; return those before which silence was told."""
+        self._acts, self._last = acts, steps
+        self.loop.start()
+        if self.loop.by_request:
+            wait_for(lambda: self.loop.step == 0, 'the start')
+            assert self.loop.at_boundary(lambda: self.loop.run_steps(steps, None, None, lambda: False))
+        wait_for(lambda: self.loop.step >= steps or self.loop.crash, 'the steps')
+        self.loop.stop()
+        assert self.loop.crash is None
+        return [step for step, kind in told(self.results) if kind == RigEventKind.COMMAND_TIMEOUT]
+
+    def _take(self, result: StepResult) -> None:
+        self.results.append(result)
+        if result.step in self._acts:
+            self._acts[result.step](self)
+        if result.step == self._last:
+            self.loop.paused = True
+
+
+def command(bench: Bench) -> None:
+    bench.command()
+
+
+def stall(milliseconds: int) -> Act:
+    return lambda bench: bench.stall(milliseconds)
+
+
+MODES = ('realtime', 'lockstep', 'free_run')
+
+
+class TestSilence:
+    @pytest.mark.parametrize('mode', MODES)
+    def test_is_told_at_the_first_step_that_begins_too_late(self, mode: str) -> None:
+        bench = Bench(mode)
+        assert bench.run(400, {9: command}) == [111]      # step 10 begins at 9 ms, step 111 at 110 ms
+        note = next(note for result in bench.results for note in result.notes)
+        assert note.value == pytest.approx(0.101, abs=1e-12)
+        assert 'no drive velocity for 0.101 s: the latest is held' in note.text
+        assert bench.rig.counts.timed_out == 1
+
+    @pytest.mark.parametrize('mode', MODES)
+    def test_of_just_the_timeout_is_none(self, mode: str) -> None:
+        acts = dict.fromkeys(range(9, 400, 100), command)
+        assert Bench(mode).run(409, acts) == []
+
+    @pytest.mark.parametrize('mode', MODES)
+    def test_of_a_step_more_is_one(self, mode: str) -> None:
+        acts = dict.fromkeys(range(9, 400, 101), command)
+        assert Bench(mode).run(380, acts) == [111, 212, 313]
+
+    @pytest.mark.parametrize('mode', MODES)
+    def test_begins_with_the_first_command(self, mode: str) -> None:
+        assert Bench(mode).run(400, {}) == []
+
+    @pytest.mark.parametrize('mode', MODES)
+    def test_is_told_again_only_after_a_command(self, mode: str) -> None:
+        bench = Bench(mode)
+        assert bench.run(900, {9: command, 599: command}) == [111, 701]
+        assert [kind for _, kind in told(bench.results)] == [
+            RigEventKind.COMMAND_TIMEOUT, RigEventKind.COMMAND_RESUMED, RigEventKind.COMMAND_TIMEOUT]
+
+    @pytest.mark.parametrize('mode', MODES)
+    def test_off(self, mode: str) -> None:
+        assert Bench(mode, timeout=0.0).run(400, {9: command}) == []
+
+    @pytest.mark.parametrize(('rate', 'timeout', 'step'), [(10.0, 0.3, 14), (20_000.0, 0.001, 31), (3.0, 1.0, 14)])
+    def test_at_other_rates(self, rate: float, timeout: float, step: int) -> None:
+        assert Bench('lockstep', timeout, rate).run(50, {9: command}) == [step]
+
+    def test_refused_commands_are_none(self) -> None:
+        def bad(bench: Bench) -> None:
+            bench.slot.offer(math.nan, bench.clock.now())
+
+        assert Bench().run(300, {9: command, 50: bad, 80: bad}) == [111]
+
+
+class TestStalls:
+    """A loop that stood still itself does not cry wolf; and its stall does not keep it from crying."""
+
+    @pytest.mark.parametrize('stalled', [50, 200, 450, 700, 5000])
+    @pytest.mark.parametrize('mode', MODES)
+    def test_with_commands_that_wait_to_be_heard(self, mode: str, stalled: int) -> None:
+        every_20_steps: dict[int, Act] = dict.fromkeys(range(9, 2000, 20), command)
+        acts = {**every_20_steps, 1000: stall(stalled)}
+        assert Bench(mode).run(2000, acts) == []
+
+    @pytest.mark.parametrize('stalled', [50, 200, 450, 700, 5000])
+    def test_a_controller_that_died_before_is_noticed_after(self, stalled: int) -> None:
+        (step,) = Bench().run(2000, {9: command, 30: stall(stalled)})
+        assert 31 < step <= 111 + min(stalled, 500) + 1      # what is caught up does not count
+
+    def test_short_ones_all_the_time(self) -> None:
+        acts: dict[int, Act] = {9: command}
+        for step in range(10, 2000, 10):
+            acts[step] = stall(3)
+        (step,) = Bench().run(2000, acts)
+        assert 111 <= step <= 200
+
+    @pytest.mark.parametrize('stalled', [200, 700, 5000])
+    def test_do_not_move_a_time_out_in_simulation_time(self, stalled: int) -> None:
+        assert Bench('free_run').run(300, {9: command, 30: stall(stalled), 90: stall(stalled)}) == [111]
+
+
+class TestPause:
+    def test_is_no_silence(self) -> None:
+        def pause(bench: Bench) -> None:
+            bench.loop.pause(True)
+            bench.stall(10_000)
+            bench.loop.pause(False)
+
+        assert Bench().run(300, {9: command, 60: pause}) == [112]      # step 61 is made at once, without its period
+
+    def test_steps_on_request_in_a_pause_are_none_either(self) -> None:
+        bench = Bench()
+        bench.run(50, {9: command})
+        other = StepLoop(bench.rig, Pacer(Grid(1000.0), clock=bench.clock), (bench.slot,), [bench.results.append],
+                         Watchdog(TIMEOUT))
+        other.paused = True
+        other.start()
+        for _ in range(3):
+            bench.stall(500)
+            assert other.at_boundary(lambda: other.run_steps(200, None, None, lambda: False))
+        other.stop()
+        assert other.step == 650
+        assert told(bench.results) == []
+
+
+def test_a_reset_forgets_the_commands() -> None:
+    bench = Bench('lockstep')
+    again = StepLoop(bench.rig, Unpaced(Grid(1000.0)), (bench.slot,), [bench.results.append], Watchdog(TIMEOUT), True)
+    again.start()
+    assert again.at_boundary(lambda: again.run_steps(50, 0.01, None, lambda: False))
+    assert again.at_boundary(again.restart)
+    assert again.at_boundary(lambda: again.run_steps(300, None, None, lambda: False))
+    again.stop()
+    assert again.step == 300
+    assert told(bench.results) == []
+
+
+@pytest.mark.parametrize(('timeout', 'is_refused'), [(0.0, False), (0.001, False), (0.0009, True), (1e-12, True),
+                                                     (-1.0, True), (math.nan, True)])
+def test_a_timeout_below_a_step_is_refused(timeout: float, is_refused: bool) -> None:
+    if is_refused:
+        with pytest.raises(InputError, match=r'command\.timeout'):
+            load_scene('paper_fig8', {'command.timeout': timeout})
+    else:
+        assert load_scene('paper_fig8', {'command.timeout': timeout}).command.timeout == timeout

@@ -1,0 +1,77 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The executable `health`, asked about real nodes."""
+
+import signal
+import subprocess
+
+import pytest
+from diagnostic_msgs.msg import DiagnosticStatus
+
+from stickslip_sim.core.errors import StickslipError
+from tests.support.ros_nodes import client, executable, running
+
+from stickslip_sim.ros.diagnostics.health_node import judge  # isort: skip  # after ros_nodes, which skips without ROS
+
+pytestmark = pytest.mark.ros
+
+
+def health(*ros_args: str) -> tuple[int, str, str]:
+    """Return the exit code, standard output and standard error."""
+    done = subprocess.run([executable('health'), '--ros-args', *ros_args], capture_output=True, text=True, timeout=60,
+                          check=False)
+    return done.returncode, done.stdout, done.stderr
+
+
+class TestAxis:
+    def test_one_that_runs_is_well(self) -> None:
+        with running('-r', '__ns:=/press'):
+            code, told, errors = health('-r', '__ns:=/press', '-p', 'patience:=20.0')
+        assert (code, errors) == (0, '')
+        assert told.startswith('/press/feed_axis is well')
+
+    def test_one_that_hangs_says_nothing(self) -> None:
+        with running() as process, client() as axis:
+            axis.connect()
+            process.send(signal.SIGSTOP)
+            code, told, errors = health('-p', 'patience:=3.0')
+        assert (code, told) == (1, '')
+        assert errors.startswith('health: /feed_axis said nothing on /diagnostics within 3 s')
+
+    def test_one_of_another_namespace_is_not_meant(self) -> None:
+        with running('-r', '__ns:=/press') as process, client('/press') as axis:
+            axis.connect()
+            code, _, errors = health('-p', 'patience:=3.0')
+            process.end()
+        assert code == 1
+        assert 'in this namespace' in errors
+
+    def test_one_whose_recording_failed_is_not_well(self) -> None:
+        with running('-p', 'record.enabled:=true', '-p', 'record.folder:=/proc/nowhere') as process:
+            code, told, errors = health('-p', 'patience:=20.0')
+            process.end()
+        assert (code, told) == (1, '')
+        assert errors.startswith('health: /feed_axis is not well: recorder: ')
+        assert len(errors.splitlines()) == 1
+
+
+@pytest.mark.parametrize(('words', 'told'), [
+    (['-p', 'patience:=0.0'], 'patience = 0.0'),
+    (['-p', 'patence:=3.0'], 'did you mean patience?'),
+    (['--', 'now'], "argument = 'now'"),
+])
+def test_refused(words: list[str], told: str) -> None:
+    code, _, errors = health(*words)
+    assert code == 2
+    assert told in errors
+    assert len(errors.splitlines()) == 1
+
+
+class TestJudge:
+    def test_by_the_worst(self) -> None:
+        fine, slow, full = (DiagnosticStatus(name=name, level=level, message=f'{name} told')
+                            for name, level in (('loop', b'\0'), ('command', b'\1'), ('recorder', b'\2')))
+        assert judge('/a', [fine]) == '/a is well: loop: loop told'
+        assert judge('/a', [fine, slow]) == '/a is well, with warnings: command: command told'
+        with pytest.raises(StickslipError, match=r'not well: recorder: recorder told$'):
+            judge('/a', [slow, full, fine])

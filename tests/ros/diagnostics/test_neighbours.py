@@ -1,0 +1,130 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Who else is on the topics of a node, and whose clock it follows."""
+
+import time
+from typing import Any
+
+import pytest
+from sensor_msgs.msg import JointState
+
+from stickslip_sim.recording import topics as names
+from stickslip_sim.ros.diagnostics import graph_monitor
+from tests.support.ros2_control_client import THRESHOLD, Rule, always, hardware_interface, near_is_silent
+from tests.support.ros_nodes import Client, client, running
+from tests.support.waiting import wait_for
+
+pytestmark = pytest.mark.ros
+
+ON = ('-p', 'joint_interface.enabled:=true')
+
+
+def trouble(axis: Client, text: str) -> Any:
+    """Return the next status of the neighbours that has a text."""
+    def find(message: Any) -> Any:
+        return next(status for status in message.status if status.name == 'neighbours')
+    return find(axis.next('/diagnostics', lambda message: text in find(message).message))
+
+
+def no_trouble(axis: Client) -> None:
+    assert trouble(axis, 'nobody in the way').level == b'\0'
+
+
+class TestNeighbours:
+    def test_controllers_come_and_go(self) -> None:
+        with running(*ON) as process, client() as axis:
+            axis.connect()
+            axis.node.destroy_publisher(axis._velocity)
+            with hardware_interface(always(0.003), name='first'):
+                with hardware_interface(always(0.004), name='second'):
+                    status = trouble(axis, '2 controllers at once')
+                    assert status.level == b'\1'
+                    assert '/drive_velocity, /joint_commands: /first, /second' in status.message
+                no_trouble(axis)
+                axis.next('slider_state', lambda state: state.drive_velocity == 0.003)
+            assert 'velocity is gone, and its 0.003 stays in force' in trouble(axis, 'gone').message
+            assert axis.latest('slider_state').drive_velocity == 0.003
+            with hardware_interface(always(0.005), name='first'):
+                axis.next('slider_state', lambda state: state.drive_velocity == 0.005)
+                no_trouble(axis)
+            trouble(axis, 'its 0.005 stays')
+            assert axis.trigger('reset').success
+            no_trouble(axis)
+            _, errors = process.end()
+        told = [line.split(']: ')[1] for line in errors.splitlines() if 'velocity' in line and 'real-time' not in line]
+        alone, gone = '/first alone commands the velocity', 'the controller of the velocity is gone, and its {} stays'
+        assert [line.split(':')[0].split(' in force')[0] for line in told[-5:]] == [
+            '2 controllers at once on /drive_velocity, /joint_commands', alone, gone.format(0.003), alone,
+            gone.format(0.005)]
+
+    def test_a_controller_bears_its_name_from_the_first_look_on(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """ROS knows a publisher some 40 ms before it knows whose it is."""
+        monkeypatch.setattr(graph_monitor, '_PATIENCE', 60)    # looks, which take as long as those of the node
+        with client() as watcher:
+            publishers = graph_monitor._Publishers(watcher.node, [names.JOINT_COMMANDS])
+
+            def changed() -> bool:
+                time.sleep(0.05)
+                return publishers.have_changed()
+
+            for _ in range(4):
+                with hardware_interface(always(0.0), name='other'):
+                    wait_for(changed, 'a controller')
+                    assert publishers.nodes == ['/other']
+                wait_for(changed, 'its end')
+                assert publishers.nodes == []
+
+    def test_a_stranger_on_a_topic_of_the_node(self) -> None:
+        with running(*ON) as process, client() as axis:
+            axis.connect()
+            out = axis.node.create_publisher(JointState, 'joint_states', 10)
+            assert '/client publishes on /joint_states too' in trouble(axis, 'joint_states').message
+            axis.node.destroy_publisher(out)
+            no_trouble(axis)
+            _, errors = process.end()
+        assert errors.count('publishes on /joint_states too') == 1
+        assert '/joint_states has one publisher again' in errors
+
+    @pytest.mark.parametrize('rule', [Rule.ALL_POSITIONS, Rule.COMMANDED_POSITIONS])
+    def test_one_that_never_sends_is_told_of(self, rule: Rule) -> None:
+        """They compare positions, and none is commanded: at position 0, or for ever, there is no difference."""
+        with running(*ON, '-p', 'drive.velocity:=0.0') as process, client() as axis:
+            axis.connect()
+            with hardware_interface(always(0.003), near_is_silent(), rule) as hardware:
+                status = trouble(axis, 'sends nothing')
+                assert hardware.sent == 0
+            assert THRESHOLD in status.message
+            process.end()
+
+
+class TestClock:
+    @pytest.mark.parametrize('mode', ['lockstep', 'free_run'])
+    def test_its_own_is_not_followed(self, mode: str) -> None:
+        with running('-p', f'time.mode:={mode}', '-p', 'use_sim_time:=true') as process:
+            code, errors = process.wait()
+        assert code == 2
+        assert errors.startswith('sim_node: use_sim_time = True is refused: must be false on this node')
+        assert mode in errors
+        assert len(errors.splitlines()) == 1
+
+    def test_nor_later(self) -> None:
+        with running('-p', 'time.mode:=lockstep') as process, client() as axis:
+            axis.connect(is_moving=False)
+            answer = axis.set_parameters(use_sim_time=True)
+            assert (answer.successful, answer.reason.split(':')[0]) == (False, 'use_sim_time = True is refused')
+            assert axis.set_parameters(use_sim_time=False).successful
+            process.end()
+
+    def test_that_of_another_is_warned_of(self) -> None:
+        with running() as process, client() as axis:
+            axis.connect()
+            assert axis.set_parameters(use_sim_time=True).successful
+            _, errors = process.end()
+        assert errors.count('use_sim_time with time.mode: realtime') == 1
+
+    def test_of_another_type(self) -> None:
+        with running('-p', 'use_sim_time:=3') as process:
+            code, errors = process.wait()
+        assert code == 2
+        assert "'use_sim_time' to '3'" in errors
+        assert len(errors.splitlines()) == 1

@@ -1,0 +1,135 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Floods of commands, controllers that die, an interrupt amid many steps: counted, noticed, and the bag is whole."""
+
+import math
+import resource
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from stickslip_sim.config.ros_yaml import plain_value
+from stickslip_sim.recording import read_run
+from stickslip_sim.rig import RigEventKind
+from stickslip_sim.scene import Scene, load_scene
+from tests.support.replays import assert_same_states, made_again
+from tests.support.ros_nodes import client, node_and_client, recording_into, running
+from tests.support.waiting import wait_for
+
+from stickslip_msgs.srv import Step  # isort: skip
+
+pytestmark = pytest.mark.ros
+_SENDER = """
+import sys, time, rclpy
+from rclpy.node import Node
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from stickslip_msgs.msg import DriveVelocity
+
+rate, value = map(float, sys.argv[1:])
+rclpy.init()
+node = Node('controller')
+quality = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+out = node.create_publisher(DriveVelocity, 'drive_velocity', quality)
+begin, count = time.monotonic(), 0
+while True:
+    out.publish(DriveVelocity(velocity=value))
+    count += 1
+    time.sleep(max(begin + count / rate - time.monotonic(), 0.0))
+"""
+
+
+@contextmanager
+def controller(rate: float, value: float) -> Iterator[None]:
+    """Run a process that sends a velocity at a rate, Hz, and is killed at the end."""
+    process = subprocess.Popen([sys.executable, '-c', _SENDER, str(rate), str(value)])
+    try:
+        yield
+    finally:
+        process.kill()
+        process.wait()
+
+
+def memory_of(pid: int) -> float:
+    """Return the resident memory of a process, MB."""
+    pages = int(Path(f'/proc/{pid}/statm').read_text().split()[1])
+    return pages * resource.getpagesize() / 1e6
+
+
+class TestFlood:
+    def test_of_commands_is_counted_and_costs_no_memory(self, tmp_path: Path) -> None:
+        with node_and_client(tmp_path, 'realtime') as (process, axis), controller(10_000.0, 0.003):
+            first = axis.next('timing', lambda timing: timing.total_received > 1000)
+            before = memory_of(process.pid)
+            timing = axis.next('timing', lambda timing: timing.total_received > first.total_received + 8000)
+            assert timing.total_refused == 0
+            assert timing.step - first.step > 200
+            assert axis.next('slider_state').drive_velocity == 0.003
+            assert memory_of(process.pid) - before < 5.0
+
+    def test_of_what_is_no_number_is_refused_counted_and_told_once_a_second(self) -> None:
+        with running('-p', 'drive.velocity:=0.001') as process, client() as axis:
+            axis.connect()
+            begin = time.monotonic()
+            with controller(2000.0, math.nan):
+                timing = axis.next('timing', lambda timing: timing.total_refused > 2000)
+            assert timing.total_refused == timing.total_received
+            assert axis.next('slider_state').drive_velocity == 0.001
+            lasted = time.monotonic() - begin
+            code, errors = process.end()
+        assert code == 0
+        assert 1 <= errors.count('velocity = nan is refused: must be finite and within') <= lasted + 1
+
+
+class TestController:
+    def test_that_dies_is_noticed_and_one_that_restarts_is_obeyed(self, tmp_path: Path) -> None:
+        wanted = ['-p', 'command.timeout:=2.0', '-p', 'command.on_timeout:=ramp_to_zero', '-p',
+                  'command.timeout_deceleration:=0.1']
+        with node_and_client(tmp_path, 'realtime', *wanted, *recording_into(tmp_path / 'run')) as (_, axis):
+            for count, velocity in enumerate((0.004, 0.006), 1):
+                with controller(200.0, velocity):
+                    axis.next('slider_state', runs_at(velocity))
+                axis.next('slider_state', runs_at(0.0))
+                timing = axis.next('timing', lambda timing: timing.total_timed_out > 0)
+                assert timing.total_timed_out == count
+                assert axis.status('command')[0].message.startswith('timed out: no drive velocity comes')
+        recorded = read_run(tmp_path / 'run')
+        kinds = [event.kind for event in map(recorded.decode, recorded.messages(['/rig_event']))]
+        assert kinds == [RigEventKind.COMMAND_TIMEOUT, RigEventKind.COMMAND_RESUMED, RigEventKind.COMMAND_TIMEOUT]
+        assert '2 time-outs' in recorded.receipt['timing']['verdict']
+        assert_same_states(recorded, made_again(recorded, scene_with(wanted)))
+
+
+def runs_at(velocity: float) -> Callable[[Any], bool]:
+    return lambda state: state.drive_velocity == velocity
+
+
+def scene_with(arguments: list[str]) -> Scene:
+    """Return the default scene changed by arguments as ROS takes them."""
+    pairs = [argument.split(':=') for argument in arguments if ':=' in argument]
+    return load_scene('paper_fig8', {name: plain_value(value) for name, value in pairs})
+
+
+class TestInterrupt:
+    def test_amid_many_steps_ends_them_and_closes_the_bag(self, tmp_path: Path) -> None:
+        folder = tmp_path / 'run'
+        with running('-p', 'time.mode:=lockstep', *recording_into(folder)) as process, client() as axis:
+            axis.connect(is_moving=False)
+            service = axis.node.create_client(Step, 'feed_axis/step')
+            assert service.wait_for_service(10.0)
+            service.call_async(Step.Request(steps=100_000, velocity=0.003, force=math.nan))
+            wait_for(lambda: axis.heard['slider_state'] and axis.latest('slider_state').step > 500, 'steps')
+            code, errors = process.end(signal.SIGINT)
+        assert (code, 'Traceback' in errors) == (0, False), errors
+        recorded = read_run(folder)
+        assert recorded.is_complete
+        last = recorded.columns('/slider_state')['step'][-1]
+        assert 500 < last < 100_000
+        assert recorded.receipt['timing']['steps'] == last + 1
+        assert recorded.receipt['dropped_messages'] == 0

@@ -1,0 +1,268 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The node as others see it: parameters, topics, motion, commands, services.  One node for all of it."""
+
+import itertools
+import math
+import statistics
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from stickslip_sim.core.types import EventKind, Instant
+from stickslip_sim.scene import load_scene
+from stickslip_sim.scene.schema import PARAMETERS
+from stickslip_sim.simulation.simulator import Simulator
+from tests.support.ros_nodes import Client, NodeProcess, client, nanoseconds, running
+from tests.support.waiting import wait_for
+
+pytestmark = pytest.mark.ros
+
+ParameterType = {'bool': 1, 'integer': 2, 'double': 3, 'string': 4, 'double_array': 8, 'string_array': 9}
+
+
+@pytest.fixture(scope='module')
+def process(tmp_path_factory: pytest.TempPathFactory) -> Iterator[NodeProcess]:
+    with running(folder=tmp_path_factory.mktemp('node')) as process:
+        yield process
+        code, errors = process.end()
+        assert code == 0
+        assert 'Traceback' not in errors
+
+
+@pytest.fixture(scope='module')
+def connected(process: NodeProcess) -> Iterator[Client]:
+    with client() as it:
+        it.connect()
+        yield it
+
+
+@pytest.fixture
+def axis(connected: Client) -> Client:
+    """The client of an axis that begins anew."""
+    connected.reset()
+    return connected
+
+
+class TestParameters:
+    def test_all_of_the_schema_and_no_other(self, connected: Client) -> None:
+        of_ros = {'use_sim_time', 'start_type_description_service'}
+        assert set(connected.parameter_names()) - of_ros == {entry.name for entry in PARAMETERS}
+
+    def test_descriptions(self, connected: Client) -> None:
+        for entry, told in zip(PARAMETERS, connected.describe(*[entry.name for entry in PARAMETERS]), strict=True):
+            assert told.name == entry.name
+            assert told.type == ParameterType[entry.type]
+            assert told.read_only is not entry.live
+            assert entry.description in told.description
+            assert entry.unit in told.description
+            assert entry.allowed in told.additional_constraints
+            if entry.type == 'double':
+                assert [told.floating_point_range[0].from_value, told.floating_point_range[0].to_value] == [
+                    entry.low, math.inf if entry.infinite else entry.high]
+
+    def test_values_are_those_of_the_default_scene(self, connected: Client) -> None:
+        names = ['scene', 'axis.mass', 'friction.kinetic.velocities', 'drive.velocity', 'initial.rest_time']
+        scene, mass, velocities, drive, rest = connected.values(*names)
+        assert (scene.string_value, mass.double_value, drive.double_value) == ('paper_fig8', 350.0, 0.002)
+        assert list(velocities.double_array_value) == [0.0, 0.035]
+        assert rest.double_value == math.inf
+
+    def test_one_without_a_value_does_not_hide_the_others(self, connected: Client) -> None:
+        absent, mass = connected.values('drive.times', 'axis.mass')
+        assert (absent.type, mass.double_value) == (0, 350.0)
+
+    @pytest.mark.parametrize(('values', 'told'), [
+        ({'axis__mass': -1.0}, ['axis.mass = -1.0', '>= 1e-09 and <= 1e+12 kg']),
+        ({'axis__mass': math.nan}, ['axis.mass = nan', '>= 1e-09']),
+        ({'axis__mass': 'heavy'}, ["axis.mass = 'heavy'", 'a number']),
+        ({'axis__normal_force': math.inf}, ['axis.normal_force = inf', '<= 1e+15 N']),
+        ({'friction__kinetic__velocities': [0.02, 0.01]}, ['friction.kinetic.velocities']),
+        ({'friction__kinetic__coefficients': [0.5, 0.05]}, ['friction.kinetic.coefficients[0] = 0.5', '0.12']),
+        ({'axis__mass': 300.0, 'friction__static__limit': 0.01}, ['friction.static.limit']),
+        ({'time__rate': 500.0}, ['time.rate = 500.0', 'start it with another parameter file']),
+        ({'axis__weight': 1.0}, ['axis.weight']),
+    ])
+    def test_refused(self, connected: Client, values: dict[str, object], told: list[str]) -> None:
+        answer = connected.set_parameters(**values)
+        assert not answer.successful
+        assert '\n' not in answer.reason
+        assert all(words in answer.reason for words in told), answer.reason
+        assert connected.values('axis.mass')[0].double_value == 350.0
+
+    def test_a_change_acts_while_the_axis_moves(self, axis: Client) -> None:
+        axis.next('friction_force', lambda message: message.force > 100.0)
+        assert axis.set_parameters(axis__normal_force=7000).successful     # a whole number will do
+        try:
+            assert axis.values('axis.normal_force')[0].double_value == 7000.0
+            event = axis.next('mode_event', lambda event: event.kind == EventKind.BREAKAWAY)
+            assert event.friction_force == pytest.approx(7000.0 * event.static_coefficient, rel=1e-9)
+        finally:
+            assert axis.set_parameters(axis__normal_force=3432.3275).successful
+
+    def test_two_that_fit_only_together(self, connected: Client) -> None:
+        both = {'friction__kinetic__velocities': [0.0, 0.02, 0.035],
+                'friction__kinetic__coefficients': [0.12, 0.08, 0.05]}
+        one = dict([next(iter(both.items()))])
+        assert not connected.set_parameters(**one).successful
+        assert connected.set_parameters(**both).successful
+        assert connected.set_parameters(friction__kinetic__velocities=[0.0, 0.035],
+                                        friction__kinetic__coefficients=[0.12, 0.05]).successful
+
+
+class TestTopics:
+    @pytest.mark.parametrize(('name', 'kind', 'reliable', 'latched'), [
+        ('/slider_state', 'stickslip_msgs/msg/SliderState', True, False),
+        ('/friction_force', 'stickslip_msgs/msg/FrictionForce', True, False),
+        ('/mode_event', 'stickslip_msgs/msg/ModeEvent', True, False),
+        ('/timing', 'stickslip_msgs/msg/StepTiming', True, False),
+        ('/run_info', 'stickslip_msgs/msg/RunInfo', True, True),
+        ('/diagnostics', 'diagnostic_msgs/msg/DiagnosticArray', True, False),
+    ])
+    def test_published(self, connected: Client, name: str, kind: str, reliable: bool, latched: bool) -> None:
+        (endpoint,) = connected.node.get_publishers_info_by_topic(name)
+        assert (endpoint.node_name, endpoint.topic_type) == ('feed_axis', kind)
+        assert (endpoint.qos_profile.reliability.name == 'RELIABLE') is reliable
+        assert (endpoint.qos_profile.durability.name == 'TRANSIENT_LOCAL') is latched
+
+    @pytest.mark.parametrize(('name', 'kind'), [
+        ('/drive_velocity', 'stickslip_msgs/msg/DriveVelocity'),
+        ('/external_force', 'stickslip_msgs/msg/ExternalForce')])
+    def test_subscribed(self, connected: Client, name: str, kind: str) -> None:
+        (endpoint,) = connected.node.get_subscriptions_info_by_topic(name)
+        assert (endpoint.node_name, endpoint.topic_type) == ('feed_axis', kind)
+        assert endpoint.qos_profile.reliability.name == 'BEST_EFFORT'
+
+    def test_run_info_for_those_who_join_late(self, connected: Client) -> None:
+        info, scene = connected.latest('run_info'), load_scene('paper_fig8')
+        assert (info.scene, info.scene_hash, info.solver, info.rate) == (scene.name, scene.hash, 'exact', 1000.0)
+
+    def test_one_state_a_step_at_the_rate(self, axis: Client) -> None:
+        end = axis.next('slider_state', lambda state: state.step >= 2000)
+        states = [state for state in axis.heard['slider_state'][-1900:] if state.step <= end.step]
+        assert [b.step - a.step for a, b in itertools.pairwise(states)] == [1] * (len(states) - 1)
+        assert all(math.isclose(state.time, state.step / 1000, rel_tol=3e-16) for state in states)
+        assert {stamp(b) - stamp(a) for a, b in itertools.pairwise(states)} == {1_000_000}
+
+    def test_simulation_time_follows_the_clock(self, axis: Client) -> None:
+        lags = []
+        for _ in range(20):
+            state = axis.next('slider_state')
+            lags.append(axis.node.get_clock().now().nanoseconds - stamp(state))
+        assert -1e6 < statistics.median(lags) < 50e6
+
+    def test_timing(self, axis: Client) -> None:
+        timing = axis.next('timing', lambda timing: timing.step > 1500)
+        assert timing.period == 0.001
+        assert timing.real_time_factor == pytest.approx(1.0, abs=0.1)
+        assert timing.steps == pytest.approx(1000, abs=100)
+        assert 0.0 < timing.cost_p50 <= timing.cost_p99 <= timing.cost_p999 <= timing.cost_max
+        assert 0.0 <= timing.lateness_p50 < 0.005
+        assert math.isnan(timing.command_age_p50)
+
+    def test_diagnostics(self, axis: Client) -> None:
+        message = axis.next('/diagnostics')
+        assert [status.name for status in message.status] == [
+            'step loop', 'command', 'solver', 'recorder', 'neighbours']
+        assert {status.hardware_id for status in message.status} == {'/feed_axis'}
+        status, values = axis.status('solver')
+        assert (status.level, values['solver']) == (b'\0', 'exact')
+
+
+class TestMotion:
+    def test_events_are_those_of_the_offline_simulation(self, axis: Client) -> None:
+        """Whatever the steps and the clock did, bit for bit."""
+        begin = axis.heard['mode_event']
+        axis.next('mode_event', lambda event: event.time > 2.0)
+        first = max(i for i, event in enumerate(begin) if event.time < 0.8)   # the first of this run
+        heard = begin[first:]
+        scene = load_scene('paper_fig8')
+        events = Simulator(scene.axis, scene.initial, scene.drive, scene.force).advance(Instant(3.0, 0.0))
+        expected = [event for event in events if event.kind != EventKind.KNOT][:len(heard)]
+        assert len(heard) > 8
+        for event, message in zip(expected, heard, strict=True):
+            assert (message.time, message.kind, message.mode, message.direction) == (
+                event.time, event.kind, event.mode, event.direction)
+            assert (message.position, message.velocity, message.drive_force, message.friction_force) == (
+                event.position, event.velocity, event.drive_force, event.friction_force)
+            assert message.step == math.ceil(event.time * 1000)
+
+    def test_a_velocity_is_held(self, axis: Client) -> None:
+        axis.send_velocity(0.005)
+        first = axis.next('slider_state', lambda state: state.drive_velocity == 0.005)
+        later = axis.next('slider_state', lambda state: state.step >= first.step + 200)
+        assert later.drive_velocity == 0.005
+        assert later.drive_position - first.drive_position == pytest.approx(0.005 * (later.time - first.time))
+        timing = axis.next('timing', lambda timing: timing.command_age_p50 > 0.0)
+        assert timing.command_age_p50 <= timing.command_age_max
+
+    def test_a_force_moves_the_axis(self, axis: Client) -> None:
+        axis.send_velocity(0.0)
+        axis.send_force(-1500.0)      # beyond 0.24 N
+        event = axis.next('mode_event', lambda event: event.kind == EventKind.BREAKAWAY)
+        assert event.direction == -1
+        axis.send_force(0.0)
+
+    def test_bad_commands_are_refused(self, axis: Client) -> None:
+        axis.send_velocity(0.004)
+        axis.next('slider_state', lambda state: state.drive_velocity == 0.004)
+        before = refusals(axis.status('command')[1])
+        for count, bad in enumerate((math.nan, math.inf, -math.inf, 1e3), 1):
+            axis.send_velocity(bad)
+            axis.send_force(1e3 * bad)
+            status, values = axis.status('command', refused_since(before, count))
+        assert status.level == b'\1'
+        assert values['velocity last refusal'] == (
+            'velocity = 1000.0 is refused: must be finite and within ±1.0 m/s; the previous command stays')
+        assert axis.next('slider_state').drive_velocity == 0.004
+
+
+class TestServices:
+    def test_pause_and_go_on(self, axis: Client) -> None:
+        axis.next('slider_state', lambda state: state.step > 10)
+        assert axis.switch('set_paused', True).success
+        assert axis.next('timing', lambda timing: timing.steps == 0).step == axis.latest('slider_state').step
+        begin = len(axis.heard['slider_state'])
+        last = axis.latest('slider_state').step
+        status, _ = axis.status('step loop')
+        assert 'paused' in status.message
+        assert axis.switch('set_paused', False).success
+        axis.next('slider_state', lambda state: state.step > last + 100)
+        assert axis.heard['slider_state'][begin].step == last + 1
+
+    def test_reset_is_a_new_run(self, axis: Client) -> None:
+        axis.send_velocity(0.005)
+        axis.next('slider_state', lambda state: state.drive_velocity == 0.005 and state.step > 200)
+        before = nanoseconds(axis.latest('run_info').start_time)
+        state = axis.reset()
+        assert (state.step, state.drive_velocity) == (0, 0.002)
+        assert nanoseconds(axis.latest('run_info').start_time) > before
+
+    def test_record(self, axis: Client, process: NodeProcess) -> None:
+        answer = axis.switch('record', True)
+        assert answer.success, answer.message
+        folder = Path(answer.message.removeprefix('recording into '))
+        wait_for(lambda: axis.latest('run_info').bag_path == str(folder), 'run_info')
+        refused = axis.trigger('reset')
+        assert not refused.success
+        assert 'recording' in refused.message
+        assert not (folder / 'metadata.yaml').read_text().count('message_count: 1')
+        axis.status('recorder', lambda values: int(values['written']) > 500)
+        assert axis.switch('record', False).message == f'recorded into {folder}'
+        assert axis.switch('record', False).message == 'not recording'
+
+
+def refusals(values: dict[str, str]) -> list[int]:
+    """Return how many velocities and forces were refused."""
+    return [int(values[f'{name} refused']) for name in ('velocity', 'force')]
+
+
+def refused_since(before: list[int], count: int) -> Callable[[dict[str, str]], bool]:
+    return lambda values: refusals(values) == [refused + count for refused in before]
+
+
+def stamp(message: Any) -> int:
+    header = message.header.stamp
+    return int(header.sec) * 1_000_000_000 + int(header.nanosec)

@@ -1,0 +1,139 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Recordings of the node: where they may go, what they hold, and what a full disk does."""
+
+import resource
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from stickslip_sim.core.errors import RecordingWarning
+from stickslip_sim.recording import Run, read_run
+from stickslip_sim.scene import load_scene
+from tests.support.ros_nodes import assert_clean, client, recording_into, running
+from tests.support.tool import restore_interrupt
+from tests.support.waiting import wait_for
+
+from stickslip_sim.ros.node.recordings import (  # isort: skip  # after tests.support.ros_nodes, which skips without ROS
+    Recordings,
+)
+
+pytestmark = pytest.mark.ros
+
+
+class TestRecording:
+    def test_an_existing_folder_stays_and_the_axis_goes_on(self, tmp_path: Path) -> None:
+        (tmp_path / 'mine').write_text('precious')
+        with running(*recording_into(tmp_path)) as process, client() as axis:
+            axis.connect()
+            status, _ = axis.status('recorder')
+            assert status.level == b'\2'
+            assert f'{tmp_path} exists and is never overwritten' in status.message
+            answer = axis.switch('record', True)
+            assert (answer.success, answer.message) == (False, status.message)
+            axis.next('slider_state', lambda state: state.step > 500)
+            assert_clean(*process.end())
+        assert [file.name for file in tmp_path.iterdir()] == ['mine']
+
+    def test_a_full_disk_ends_the_recording_not_the_axis(self, tmp_path: Path) -> None:
+        folder = tmp_path / 'run'
+        with running(*recording_into(folder), prepare=with_small_files) as process, client() as axis:
+            axis.connect()
+            status, _ = axis.status('recorder', lambda values: int(values['dropped']) > 0)
+            assert status.level == b'\2'
+            assert 'File too large; the recording ends here' in status.message
+            wait_for(lambda: axis.latest('run_info').bag_path == '', 'run_info without a bag')
+            step = axis.latest('slider_state').step
+            axis.next('slider_state', lambda state: state.step > step + 100)
+            assert_clean(*process.end())
+        with pytest.warns(RecordingWarning, match='no end'):
+            run = read_run(folder)
+        assert len(run.columns('/slider_state')['step']) > 100
+
+    def test_the_receipt_tells_the_solver_and_its_settings(self, tmp_path: Path) -> None:
+        folder = tmp_path / 'run'
+        wanted = [*recording_into(folder), '-p', 'solver.name:=fixed_step', '-p', 'solver.step:=0.0005']
+        with running(*wanted) as process, client() as axis:
+            axis.connect()
+            assert_clean(*process.end())
+        receipt = read_run(folder).receipt
+        assert (receipt['solver'], receipt['solver_settings']) == ('fixed_step', {'method': 'euler', 'step': 0.0005})
+        assert 'error_estimate' not in receipt
+
+    def test_namespace(self, tmp_path: Path) -> None:
+        folder = tmp_path / 'run'
+        with running('-r', '__ns:=/cell/press', *recording_into(folder)) as process, client('/cell/press') as axis:
+            axis.connect()
+            names = {name for name, _ in axis.node.get_topic_names_and_types()}
+            assert {'/cell/press/slider_state', '/cell/press/drive_velocity', '/diagnostics'} <= names
+            assert axis.next('/diagnostics').status[0].hardware_id == '/cell/press/feed_axis'
+            assert_clean(*process.end())
+        assert set(read_run(folder).topics) >= {'/cell/press/slider_state', '/parameter_events'}
+
+    def test_only_below_the_folder_of_the_start(self, tmp_path: Path) -> None:
+        """Who may set parameters may not write anywhere: not up, not elsewhere, not through a link."""
+        (tmp_path / 'runs').mkdir()
+        (tmp_path / 'runs' / 'away').symlink_to(tmp_path, target_is_directory=True)
+        with running('-p', f'record.folder:={tmp_path}/runs/first', folder=tmp_path) as process, client() as axis:
+            axis.connect()
+            for place in ('elsewhere', f'{tmp_path}/runs/../up', f'{tmp_path}/runs/away/x', '/dev/shm/x', '~/x'):
+                assert axis.set_parameters(record__folder=place).successful
+                answer = axis.switch('record', True)
+                assert (answer.success, 'must lie below' in answer.message) == (False, True), answer.message
+            for place in (f'{tmp_path}/runs/second', ''):
+                assert axis.set_parameters(record__folder=place).successful
+                assert axis.switch('record', True).success
+                assert axis.switch('record', False).success
+            process.end()
+        assert {path.name for path in tmp_path.iterdir()} == {'runs'}
+        assert len(list((tmp_path / 'runs').iterdir())) == 3
+
+    @pytest.mark.parametrize('ending', ['/', '//', '/.'])
+    def test_a_folder_as_a_shell_completes_it(self, tmp_path: Path, ending: str) -> None:
+        scene = load_scene('paper_fig8', {'record.folder': f'{tmp_path}/runs/first{ending}'})
+        recordings = Recordings('/', scene)
+        recordings.begin(scene)
+        recordings.end({})
+        assert read_run(tmp_path / 'runs' / 'first').is_complete
+
+    def test_a_scene_whose_name_is_a_path(self, tmp_path: Path) -> None:
+        scene = tmp_path / 'scene.yaml'
+        scene.write_text('/**:\n  ros__parameters: {scene: ../../up, axis: {mass: 300.0}, record: {enabled: true}}\n')
+        with running('--params-file', str(scene), folder=tmp_path) as process, client() as axis:
+            axis.connect()
+            process.end()
+        (folder,) = (tmp_path / 'runs').iterdir()
+        assert folder.name.startswith('.._.._up_')
+
+    def test_bytes_are_those_that_were_published(self, tmp_path: Path) -> None:
+        """Also from a recording that begins and ends while the axis runs."""
+        folder = tmp_path / 'run'
+        with running('-p', f'record.folder:={folder}') as process, client() as axis:
+            axis.connect()
+            axis.send_velocity(0.003)
+            axis.next('slider_state', lambda state: state.drive_velocity == 0.003)
+            assert axis.switch('record', True).success
+            begin = axis.latest('slider_state').step
+            axis.next('slider_state', lambda state: state.step > begin + 600)
+            assert axis.switch('record', False).success
+            heard = {state.step: state for state in axis.heard['slider_state']}
+            assert_clean(*process.end())
+        run = read_run(folder)
+        assert run.is_complete
+        assert_same(run, '/slider_state', heard)
+        (command,) = (run.decode(message) for message in run.messages(['/drive_velocity']))
+        assert command.velocity == 0.003      # the one in force when it began
+
+
+def assert_same(run: Run, topic: str, heard: dict[int, Any]) -> None:
+    from rclpy.serialization import serialize_message
+    messages = list(run.messages([topic]))
+    assert len(messages) > 500
+    for message in messages:
+        assert message.data == serialize_message(heard[message.sequence])
+
+
+def with_small_files() -> None:
+    restore_interrupt()
+    resource.setrlimit(resource.RLIMIT_FSIZE, (200_000, 200_000))

@@ -1,0 +1,130 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The start of the node: what is refused, in one line, and what scene its files give."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from stickslip_sim.core.errors import InputError
+from stickslip_sim.scene import load_scene
+from tests.support.ros_nodes import assert_clean, client, executable, running
+
+pytestmark = pytest.mark.ros
+
+
+class TestRefusedStart:
+    @pytest.mark.parametrize(('content', 'told'), [
+        ('axis: {mass: -1.0}', ['axis.mass = -1.0', '>= 1e-09 and <= 1e+12 kg']),
+        ('axis: {weight: 1.0}', ['axis.weight = 1.0']),
+        ('axis: {mass: heavy}', ["axis.mass = 'heavy'"]),
+        ('friction: {kinetic: {velocities: [0.0, 1], coefficients: [0.1, 0.1]}}', ['a list of one type']),
+        ('axis: [', ['scene.yaml', 'YAML as ROS reads it']),
+        (None, ['scene.yaml', 'No such file']),
+    ])
+    def test_one_line_and_exit_code(self, tmp_path: Path, content: str | None, told: list[str]) -> None:
+        file = tmp_path / 'scene.yaml'
+        if content is not None:
+            file.write_text(f'/**:\n  ros__parameters:\n    scene: mine\n    {content}\n')
+        code, errors = start('--params-file', str(file))
+        assert code == 2
+        assert errors.startswith('sim_node: ')
+        assert len(errors.splitlines()) == 1, errors
+        assert all(words in errors for words in told), errors
+
+    @pytest.mark.parametrize('text', [
+        '', '# nothing\n', 'other:\n  ros__parameters:\n    scene: mine\n', '/**:\n  ros__parameters:\n',
+        '/**:\n  ros__parameters:\n    scene: a\n---\n/**:\n  ros__parameters:\n    scene: b\n',
+        '/**:\n  ros__parameters:\n    scene: mine.yaml\n', '/**:\n  ros__parameters:\n    axis: {mass: 0.0}\n',
+    ])
+    def test_in_the_words_of_the_tool(self, tmp_path: Path, text: str) -> None:
+        file = tmp_path / 'scene.yaml'
+        file.write_text(text)
+        with pytest.raises(InputError) as of_the_tool:
+            load_scene(str(file))
+        assert start('--params-file', str(file)) == (2, f'sim_node: {of_the_tool.value}\n')
+
+    def test_a_file_for_a_node_elsewhere(self, tmp_path: Path) -> None:
+        file = tmp_path / 'scene.yaml'
+        file.write_text('/press/feed_axis:\n  ros__parameters:\n    axis: {mass: 1.0}\n')
+        code, errors = start('--params-file', str(file))
+        assert (code, len(errors.splitlines())) == (2, 1), errors
+        assert 'axis.mass = 1.0 is refused: must be in a section of /feed_axis' in errors
+
+    @pytest.mark.parametrize(('name', 'value', 'told'), [
+        ('ROS_DOMAIN_ID', '9999', '0 to 232'), ('ROS_DOMAIN_ID', '-1', '0 to 232'), ('ROS_DOMAIN_ID', 'x', '0 to 232'),
+        ('ROS_STATIC_PEERS', 'no address', 'Unable to resolve peer'),
+        ('AMENT_PREFIX_PATH', '', 'setup.bash'),
+        ('RMW_IMPLEMENTATION', 'rmw_smoke_signals', 'rmw_fastrtps_cpp'), ('ROS_LOG_DIR', '/proc/x', '/proc/x'),
+    ])
+    def test_environment(self, monkeypatch: pytest.MonkeyPatch, name: str, value: str, told: str) -> None:
+        program = executable('sim_node')
+        monkeypatch.setenv(name, value)
+        code, errors = run(program)
+        assert (code, len(errors.splitlines())) == (2, 1), errors
+        assert value in errors
+        assert told in errors
+
+    @pytest.mark.parametrize(('arguments', 'told'), [
+        (['-p', 'axis.mas:=1.0'], ['axis.mas = 1.0', 'did you mean axis.mass?']),
+        (['-p', 'scene:=paper_fig9'], ['paper_fig9', 'paper_fig8']),
+        (['--nonsense'], ['--nonsense']),
+        (['-p', 'record.enabled:=true', '-p', 'axis.mass:=-1.0'], ['axis.mass = -1.0']),
+        (['-p', 'solver.name:=adaptive'], ['solver.name', 'exact or fixed_step in the node']),
+    ])
+    def test_arguments(self, arguments: list[str], told: list[str]) -> None:
+        code, errors = start(*arguments)
+        assert (code, len(errors.splitlines())) == (2, 1), errors
+        assert all(words in errors for words in told), errors
+
+
+def start(*ros_args: str) -> tuple[int, str]:
+    return run(executable('sim_node'), '--ros-args', *ros_args)
+
+
+def run(*command: str) -> tuple[int, str]:
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    return done.returncode, done.stderr
+
+
+class TestFiles:
+    @pytest.mark.parametrize(('texts', 'arguments', 'scene', 'mass'), [
+        (['scene: mine'], [], 'mine', 350.0),
+        (['scene: paper_fig7'], ['-p', 'axis.mass:=300.0'], 'paper_fig7', 300.0),
+        (['record: {enabled: false}'], ['-p', 'scene:=positioning'], 'positioning', 350.0),
+        (['{scene: mine, axis: {mass: 200.0}}', 'seed: 5'], ['-p', 'scene:=yours'], 'yours', 200.0),
+        (['use_sim_time: false'], [], 'paper_fig8', 350.0),
+    ])
+    def test_are_a_scene_by_the_rules_of_the_tool(self, tmp_path: Path, texts: list[str], arguments: list[str],
+                                                  scene: str, mass: float) -> None:
+        for number, text in reversed([*enumerate(texts)]):    # what comes later on the command line wins
+            file = tmp_path / f'{number}.yaml'
+            file.write_text(f'/**:\n  ros__parameters: {text}\n' if text[0] == '{'
+                            else f'/**:\n  ros__parameters:\n    {text}\n')
+            arguments = ['--params-file', str(file), *arguments]
+        with running(*arguments) as process, client() as axis:
+            axis.connect()
+            of_the_node = axis.values('scene', 'axis.mass', 'contact.model', 'friction.static.law')
+            assert [value.string_value or value.double_value for value in of_the_node[:2]] == [scene, mass]
+            if texts[0].startswith('scene'):
+                same = load_scene(str(tmp_path / '0.yaml')).values
+                assert [value.string_value for value in of_the_node[2:]] == [
+                    same['contact.model'], same['friction.static.law']]
+            assert_clean(*process.end())
+
+    def test_one_without_an_axis_is_warned_of(self, tmp_path: Path) -> None:
+        file = tmp_path / 'scene.yaml'
+        file.write_text('/**:\n  ros__parameters:\n    scene: mine\n')
+        with running('--params-file', str(file)) as process, client() as axis:
+            axis.connect()
+            code, errors = process.end()
+        assert (code, 'nothing of an axis' in errors) == (0, True)
+
+
+def test_nothing_is_imported_before_signals_are_taken() -> None:
+    program = ('import os, signal, sys, collections.abc; before = set(sys.modules); import stickslip_sim.ros.sim_node;'
+               ' print(*sorted(set(sys.modules) - before))')
+    done = subprocess.run([sys.executable, '-c', program], capture_output=True, text=True, timeout=60, check=True)
+    assert done.stdout.split() == ['stickslip_sim', 'stickslip_sim.ros', 'stickslip_sim.ros.sim_node']

@@ -1,0 +1,242 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The modes of time: the same course in real time, in lock-step, free and offline, with stalls thrown in; /clock."""
+
+import itertools
+import math
+import signal
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from stickslip_sim.core.errors import InputError
+from stickslip_sim.recording import Run, read_run
+from stickslip_sim.runs.offline import run_offline
+from stickslip_sim.scene import Scene, load_scene
+from tests.support.replays import FIELDS, assert_same_states, made_again
+from tests.support.rigs import run
+from tests.support.ros_nodes import Client, NodeProcess, assert_clean, client, nanoseconds, running
+from tests.support.waiting import wait_for
+
+rosgraph_msgs = pytest.importorskip('rosgraph_msgs.msg')
+from rclpy.node import Node  # noqa: E402
+from rclpy.parameter import Parameter  # noqa: E402
+from rclpy.qos import QoSProfile  # noqa: E402
+
+from stickslip_msgs.srv import Step  # noqa: E402
+
+pytestmark = pytest.mark.ros
+
+STALL = 0.2          # s
+MS = 1_000_000
+RICH: dict[str, Any] = {
+    'seed': 77, 'command.acceleration_limit': 0.2, 'joint_interface.enabled': True, 'encoder.resolution': 1e-6,
+    'faults.ids': ['dry', 'knock', 'noisy'], 'faults.kinds': ['friction_scale', 'force_pulse', 'command_loss'],
+    'faults.starts': [0.2, 0.5, 0.1], 'faults.durations': [0.4, 0.05, math.inf], 'faults.values': [1.4, 500.0, 0.3],
+}
+
+
+@contextmanager
+def node_of(scene: Scene, folder: Path, name: str, mode: str) -> Iterator[tuple[NodeProcess, Client]]:
+    """Run a node on a scene in a mode of time, recording into folder/name."""
+    file = folder / f'{name}.yaml'
+    file.write_text(scene.text)
+    arguments = ['--params-file', str(file), '-p', f'time.mode:={mode}', '-p', 'record.enabled:=true', '-p',
+                 f'record.folder:={folder / name}']
+    if mode == 'free_run':
+        arguments += ['-p', 'time.factor:=.inf']
+    with running(*arguments) as process, client() as axis:
+        axis.connect(is_moving=mode != 'lockstep')
+        yield process, axis
+        code, errors = process.end()
+        assert (code, 'Traceback' in errors) == (0, False), errors
+
+
+@contextmanager
+def stalls(process: NodeProcess) -> Iterator[None]:
+    """Stop the process for a while, again and again."""
+    is_over = threading.Event()
+
+    def stall() -> None:
+        while not is_over.wait(2 * STALL):
+            process.send(signal.SIGSTOP)
+            time.sleep(STALL)
+            process.send(signal.SIGCONT)
+
+    thread = threading.Thread(target=stall)
+    thread.start()
+    try:
+        yield
+    finally:
+        is_over.set()
+        thread.join()
+
+
+def wait_for_steps(axis: Client, count: int) -> None:
+    step = axis.latest('slider_state').step + count
+    axis.next('slider_state', lambda state: state.step > step)
+
+
+def steps(axis: Client, count: int, velocity: float = math.nan, force: float = math.nan) -> Any:
+    answer = axis.call(Step, 'step', steps=count, velocity=velocity, force=force)
+    assert answer.success, answer.message
+    return answer
+
+
+def repeat_in_lockstep(axis: Client, recorded: Run) -> None:
+    """Give the commands of a bag with ~/step, before the steps that they came before."""
+    commands: dict[int, dict[str, float]] = {}
+    for message in recorded.messages(['/drive_velocity', '/external_force']):
+        content = recorded.decode(message)
+        name = 'velocity' if hasattr(content, 'velocity') else 'force'
+        commands.setdefault(message.sequence, {})[name] = getattr(content, name)
+    begins = [1, *sorted(set(commands) - {0, 1}), recorded.counts['/slider_state']]
+    for begin, end in itertools.pairwise(begins):
+        steps(axis, end - begin, **commands.get(begin, {}))
+
+
+class TestTheSameCourse:
+    def test_in_real_time_in_lockstep_and_offline(self, tmp_path: Path) -> None:
+        scene = load_scene('paper_fig8', RICH)
+        with node_of(scene, tmp_path, 'live', 'realtime') as (process, axis), stalls(process):
+            assert axis.node.count_publishers('/clock') == 0
+            for k in range(40):
+                axis.send_velocity(0.004 * math.sin(0.3 * k))
+                if k % 7 == 0:
+                    axis.send_force(30.0 * math.cos(k))
+                wait_for_steps(axis, 25)
+        live = read_run(tmp_path / 'live')
+        assert live.counts['/drive_velocity'] > 15
+        assert live.receipt['commands']['lost'] > 1
+        assert live.receipt['timing']['overruns'] > 100
+        with node_of(scene, tmp_path, 'stepped', 'lockstep') as (process, axis), stalls(process):
+            repeat_in_lockstep(axis, live)
+        stepped = read_run(tmp_path / 'stepped')
+        assert_same_columns(live, stepped)
+        assert_same_states(live, made_again(live, scene))
+        assert stepped.receipt['commands']['lost'] == live.receipt['commands']['lost']
+
+    def test_the_receipt_is_that_of_the_offline_run_however_long(self, tmp_path: Path) -> None:
+        """A second time, after a reset, for an hour and 20 000 events; the events of the first do not count."""
+        scene = load_scene('paper_fig8', {'time.rate': 1.0})
+        with node_of(scene, tmp_path, 'long', 'lockstep') as (_, axis):
+            steps(axis, 50)
+            assert axis.switch('record', False).success
+            assert axis.trigger('reset').success
+            assert axis.set_parameters(record__folder=str(tmp_path / 'again')).successful
+            assert axis.switch('record', True).success
+            for _ in range(5):
+                steps(axis, 800)
+        results, offline = (receipt['results'] for receipt in (
+            read_run(tmp_path / 'again').receipt, run_offline(scene, 4000.0).receipt))
+        for each in (results, offline):
+            del each['root_iterations']    # they depend on where the steps end
+        assert sum(results['events'].values()) > 20_000
+        assert results == offline
+
+    def test_free_by_the_course_of_the_scene(self, tmp_path: Path) -> None:
+        scene = load_scene('positioning', {'faults.ids': ['dry'], 'faults.kinds': ['friction_scale'],
+                                           'faults.starts': [1.0], 'faults.durations': [2.0], 'faults.values': [1.6]})
+        with node_of(scene, tmp_path, 'free', 'free_run') as (process, axis), stalls(process):
+            axis.next('slider_state', lambda state: state.time > 4.0)
+        free = read_run(tmp_path / 'free')
+        assert free.receipt['dropped_messages'] == 0
+        assert_same_states(free, run(scene.make_rig(), free.counts['/slider_state']))
+
+    def test_free_with_commands_that_come_when_they_come(self, tmp_path: Path) -> None:
+        scene = load_scene('paper_fig8', RICH)
+        with node_of(scene, tmp_path, 'free', 'free_run') as (process, axis), stalls(process):
+            for k in range(40):
+                axis.send_velocity(0.004 * math.sin(0.3 * k))
+                wait_for_steps(axis, 50)
+        free = read_run(tmp_path / 'free')
+        assert free.counts['/drive_velocity'] > 3
+        assert free.receipt['dropped_messages'] == 0
+        assert_same_states(free, made_again(free, scene))
+
+
+def assert_same_columns(one: Run, other: Run) -> None:
+    for topic, names in (('/slider_state', (*FIELDS, 'step', 'sequence', 'log_time')),
+                         ('/friction_force', ('step', 'force', 'coefficient', 'contact_deflection')),
+                         ('/mode_event', ('step', 'time', 'kind', 'position', 'friction_force', 'rest_time'))):
+        first, second = one.columns(topic), other.columns(topic)
+        for name in names:
+            np.testing.assert_array_equal(first[name], second[name], err_msg=f'{topic} {name}')
+
+
+@pytest.fixture(scope='class')
+def node_with_a_clock() -> Iterator[Client]:
+    """The client of a lock-step node with 300 ticks a second for 1000 steps; it hears them too."""
+    with running('-p', 'time.mode:=lockstep', '-p', 'clock.rate:=300.0') as process, client() as axis:
+        axis.connect(is_moving=False)
+        heard = axis.heard['/clock'] = []
+
+        def tick(message: Any) -> None:
+            states = axis.heard['slider_state']
+            heard.append((nanoseconds(message.clock), nanoseconds(states[-1].header.stamp) if states else -1))
+
+        axis.node.create_subscription(rosgraph_msgs.Clock, '/clock', tick, QoSProfile(depth=100))
+        wait_for(lambda: axis.trigger('reset').success and heard, 'a tick')
+        yield axis
+        assert_clean(*process.end())
+
+
+@pytest.fixture
+def clocked(node_with_a_clock: Client) -> Client:
+    """That client at the start of a run, of which it heard."""
+    heard = node_with_a_clock.heard['/clock']
+    heard.clear()
+    assert node_with_a_clock.trigger('reset').success
+    wait_for(lambda: heard and heard[-1][0] == 0, 'the start')
+    del heard[:-1]    # ticks of the run before that were still on their way
+    return node_with_a_clock
+
+
+class TestClock:
+    def test_after_the_state_of_its_step_at_its_own_rate(self, clocked: Client) -> None:
+        heard = clocked.heard['/clock']
+        for _ in range(22):
+            steps(clocked, 1)
+        wait_for(lambda: heard[-1][0] == 20 * MS, 'the last tick')
+        assert [time for time, _ in heard] == [math.ceil(k * 10 / 3) * MS for k in range(7)]
+        assert all(state >= time for time, state in heard)
+
+    def test_others_follow_it(self, clocked: Client) -> None:
+        follower = Node('follower', context=clocked.node.context,
+                        parameter_overrides=[Parameter('use_sim_time', value=True)])
+        clocked.add(follower)
+        try:
+            wait_for(lambda: clocked.node.count_subscribers('/clock') == 2, 'the follower')
+            steps(clocked, 40)
+            wait_for(lambda: follower.get_clock().now().nanoseconds == 40 * MS, 'the time of the follower')
+        finally:
+            clocked.remove(follower)
+
+
+class TestFreeRun:
+    def test_goes_at_its_factor(self) -> None:
+        with running('-p', 'time.mode:=free_run', '-p', 'time.factor:=2.0') as process, client() as axis:
+            axis.connect()
+            timing = axis.next('timing', lambda timing: timing.real_time_factor == pytest.approx(2.0, rel=0.05))
+            assert not timing.valid
+            _, values = axis.status('step loop')
+            assert values['verdict'].startswith('not in real time (time.mode free_run)')
+            assert axis.latest('slider_state').header.stamp.sec < 1000
+            assert_clean(*process.end())
+
+
+@pytest.mark.parametrize(('given', 'told'), [
+    ({'time.mode': 'lockstep', 'time.factor': math.inf}, 'only time.mode: free_run'),
+    ({'time.mode': 'realtime', 'time.factor': math.inf}, 'only time.mode: free_run'),
+    ({'time.mode': 'lockstep', 'clock.rate': 1001.0}, 'at most time.rate'),
+    ({'clock.rate': 100.0}, 'clock.rate'), ({'time.mode': 'fast'}, 'time.mode'),
+])
+def test_times_that_do_not_fit_are_refused(given: dict[str, object], told: str) -> None:
+    with pytest.raises(InputError, match=told):
+        load_scene('paper_fig8', given)

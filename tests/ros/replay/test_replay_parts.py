@@ -1,0 +1,270 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Parts of the replay, without ROS: the bag, its time line, the player."""
+
+import threading
+import time
+from collections.abc import Callable, Iterator
+from functools import partial
+from pathlib import Path
+
+import pytest
+from mcap.writer import CompressionType, Writer
+
+from stickslip_sim.core.errors import RecordingError
+from stickslip_sim.recording import QosProfile, write_bag
+from stickslip_sim.recording.playback import Recording
+from stickslip_sim.recording.topics import RECORDED
+from stickslip_sim.ros.replay.player import Act, Player
+from stickslip_sim.ros.replay.timeline import Timeline
+from tests.support.recorded_runs import FACTS, damage, events, samples
+from tests.support.waiting import wait_for
+
+SECOND = 1_000_000_000
+
+
+class StillClock:
+    """A clock that goes only when it is told to."""
+
+    def __init__(self) -> None:
+        self.time = 5 * SECOND
+
+    def now(self) -> int:
+        return self.time
+
+    def sleep(self, seconds: float) -> None:
+        raise NotImplementedError
+
+
+class TestTimeline:
+    def test_goes_at_a_rate_that_may_change(self) -> None:
+        clock = StillClock()
+        timeline = Timeline(2.0, clock=clock)
+        timeline.move(10 * SECOND)
+        clock.time += SECOND
+        assert timeline.now() == 12 * SECOND
+        assert timeline.left(13 * SECOND) == 0.5
+        timeline.change_rate(0.25)
+        clock.time += 4 * SECOND
+        assert timeline.now() == 13 * SECOND
+        assert timeline.left(14 * SECOND) == 4.0
+        assert timeline.left(12 * SECOND) == -4.0
+
+    def test_stands_still_and_goes_on(self) -> None:
+        clock = StillClock()
+        timeline = Timeline(1.0, is_paused=True, clock=clock)
+        timeline.move(SECOND)
+        clock.time += SECOND
+        assert timeline.now() == SECOND
+        assert timeline.left(SECOND) == float('inf')
+        timeline.pause(False)
+        clock.time += SECOND
+        timeline.pause(True)
+        timeline.pause(True)
+        clock.time += SECOND
+        assert timeline.now() == 2 * SECOND
+
+    def test_no_lateness_adds_up(self) -> None:
+        clock = StillClock()
+        timeline = Timeline(1.1, clock=clock)
+        start = clock.time
+        for _ in range(1000):
+            clock.time += 999_999
+            timeline.now()
+        assert timeline.now() == round((clock.time - start) * 1.1)
+
+
+class Counting:
+    """A script that notes its acts."""
+
+    begin = 0
+
+    def __init__(self, times: list[int]) -> None:
+        self.times = times
+        self.prepared = 0
+        self.done: list[int] = []
+
+    def prepare(self) -> None:
+        self.prepared += 1
+
+    def acts(self) -> Iterator[Act]:
+        for number, at in enumerate(self.times):
+            yield Act(at, partial(self.done.append, number))
+
+
+@pytest.fixture
+def play() -> Iterator[Callable[..., Player]]:
+    players: list[Player] = []
+
+    def make(script: Counting, is_paused: bool = False, loop: bool = False, rate: float = 1.0) -> Player:
+        players.append(Player(script, Timeline(rate, is_paused), threading.Event(), 0.0, loop))
+        players[-1].start()
+        return players[-1]
+
+    yield make
+    for player in players:
+        player.end()
+
+
+class TestPlayer:
+    def test_plays_each_in_its_time(self, play: Callable[..., Player]) -> None:
+        script = Counting([0, SECOND // 20, SECOND // 20, SECOND // 10])
+        begin = time.monotonic()
+        player = play(script)
+        wait_for(lambda: player.is_over, 'the end')
+        assert time.monotonic() - begin >= 0.1
+        assert script.done == [0, 1, 2, 3]
+        assert player.crash is None
+
+    def test_goes_faster_when_told(self, play: Callable[..., Player]) -> None:
+        script = Counting([0, 3600 * SECOND])
+        player = play(script)
+        wait_for(lambda: script.done == [0], 'the first message')
+        player.change_rate(1e6)
+        wait_for(lambda: player.is_over, 'the end')
+        assert script.done == [0, 1]
+
+    def test_one_at_a_time_while_paused(self, play: Callable[..., Player]) -> None:
+        script = Counting([0, 0, 7200 * SECOND])
+        player = play(script, is_paused=True)
+        for number in range(3):
+            assert script.done == list(range(number))
+            assert player.play_next()
+            wait_for(partial(script.done.__contains__, number), f'message {number}')
+        wait_for(lambda: player.is_over, 'the end')
+        assert not player.play_next()
+
+    def test_play_next_is_refused_while_it_plays(self, play: Callable[..., Player]) -> None:
+        player = play(Counting([3600 * SECOND]))
+        assert not player.play_next()
+        player.pause(True)
+        assert player.play_next()
+        wait_for(lambda: player.is_over, 'the end')
+
+    def test_again_and_again_until_it_is_stopped(self, play: Callable[..., Player]) -> None:
+        script = Counting([0, 1000])
+        player = play(script, loop=True)
+        wait_for(lambda: script.prepared > 3, 'some messages')
+        player.end()
+        assert player.is_over
+        assert script.done[:6] == [0, 1, 0, 1, 0, 1]
+
+    def test_what_goes_wrong_is_kept(self, play: Callable[..., Player]) -> None:
+        script = Counting([0])
+        script.acts = lambda: iter([Act(0, lambda: 1 // 0)])  # type: ignore[method-assign]
+        player = play(script)
+        wait_for(lambda: player.is_over, 'the end')
+        assert isinstance(player.crash, ZeroDivisionError)
+
+
+@pytest.fixture(scope='module')
+def bag(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp('bags') / 'run'
+    write_bag(folder, FACTS, samples(2000), events(), {})
+    return folder
+
+
+def file_of(folder: Path) -> Path:
+    return folder / f'{folder.name}_0.mcap'
+
+
+def changed(bag: Path, target: Path, change: Callable[[bytearray], bytes | bytearray]) -> Path:
+    """Write the file of a bag anew with a change."""
+    target.write_bytes(change(bytearray(file_of(bag).read_bytes())))
+    return target
+
+
+class TestRecording:
+    def test_topics_and_span(self, bag: Path) -> None:
+        recording = Recording(bag)
+        assert {name: topic.qos for name, topic in recording.topics.items()} == {
+            f'/{topic.name.lstrip("/")}': topic.qos for topic in RECORDED}
+        assert (recording.begin, recording.end, recording.is_complete) == (0, 1_999_000_000, True)
+
+    def test_messages_from_any_time_on(self, bag: Path) -> None:
+        recording = Recording(bag)
+        messages = list(recording.messages(['/slider_state'], 1_500_000_000, 1_600_000_000))
+        assert [message.sequence for message in messages] == list(range(1500, 1601))
+        everything = [message.log_time for message in recording.messages(recording.topics, 0, recording.end)]
+        assert everything == sorted(everything)
+
+    def test_cut_off(self, bag: Path, tmp_path: Path) -> None:
+        recording = Recording(changed(bag, tmp_path / 'cut.mcap', lambda data: data[:len(data) // 2]))
+        assert not recording.is_complete
+        steps = [message.sequence for message in recording.messages(['/slider_state'], 0, recording.end)]
+        assert steps == list(range(len(steps)))
+        assert 500 < len(steps) < 1500
+        assert recording.end == (len(steps) - 1) * 1_000_000
+
+    @pytest.mark.parametrize(('size', 'told'), [(0, 'not an MCAP file'), (5, 'not an MCAP file'),
+                                                (20, 'not an MCAP file'), (60, 'no message can be read')])
+    def test_cut_off_before_all(self, bag: Path, tmp_path: Path, size: int, told: str) -> None:
+        with pytest.raises(RecordingError, match=told):
+            Recording(changed(bag, tmp_path / 'cut.mcap', lambda data: data[:size]))
+
+    def test_damaged_in_the_middle(self, bag: Path, tmp_path: Path) -> None:
+        recording = Recording(changed(bag, tmp_path / 'damaged.mcap', lambda data: data))
+        damage(recording.path)
+        played: list[int] = []
+        with pytest.raises(RecordingError, match=r'damaged behind [01]\.\d+ s'):
+            played.extend(message.sequence for message in recording.messages(['/slider_state'], 0, recording.end))
+
+    def test_no_bag(self, tmp_path: Path) -> None:
+        (tmp_path / 'text.mcap').write_text('nothing of that kind')
+        with pytest.raises(RecordingError, match='not an MCAP file'):
+            Recording(tmp_path / 'text.mcap')
+        with pytest.raises(RecordingError, match='no recorded run there'):
+            Recording(tmp_path / 'nowhere')
+
+    def test_nothing_in_it(self, tmp_path: Path) -> None:
+        with pytest.raises(RecordingError, match='no message can be read'):
+            Recording(foreign(tmp_path, {}, messages=0))
+
+
+class TestOtherRecorders:
+    """Bags that other programs write."""
+
+    def test_offers_of_older_versions(self, tmp_path: Path) -> None:
+        time = '{sec: 9223372036, nsec: 854775807}'
+        offer = (f'- {{history: 1, depth: 5, reliability: 2, durability: 1, deadline: {time}, lifespan: {time},'
+                 f' liveliness: 1, liveliness_lease_duration: {time}, avoid_ros_namespace_conventions: false}}')
+        topic = Recording(foreign(tmp_path, {'offered_qos_profiles': offer})).topics['/chatter']
+        assert topic.qos == QosProfile(5, 'best_effort', 'transient_local')
+        assert (topic.type, topic.encoding, topic.type_hash) == ('std_msgs/msg/Empty', 'cdr', '')
+
+    def test_no_offer_or_several(self, tmp_path: Path) -> None:
+        one = QosProfile(1, 'best_effort').as_yaml()
+        several = str([one, {**one, 'durability': 'transient_local'}])
+        for number, metadata in enumerate(({}, {'offered_qos_profiles': several})):
+            assert Recording(foreign(tmp_path, metadata, f'{number}.mcap')).topics['/chatter'].qos == QosProfile(10)
+
+    @pytest.mark.parametrize('offer', ['- {history: 1}', '[', '- 5', '{a: b}'])
+    def test_offers_that_are_none(self, tmp_path: Path, offer: str) -> None:
+        with pytest.raises(RecordingError, match='/chatter has no readable quality of service'):
+            Recording(foreign(tmp_path, {'offered_qos_profiles': offer}))
+
+    @pytest.mark.parametrize('compression', [CompressionType.LZ4, CompressionType.NONE])
+    def test_other_compressions(self, tmp_path: Path, compression: CompressionType) -> None:
+        recording = Recording(foreign(tmp_path, {}, compression=compression))
+        assert [message.data for message in recording.messages(['/chatter'], 0, 9)] == [b'\0\1\0\0\0'] * 3
+
+    def test_without_figures_at_its_end(self, tmp_path: Path) -> None:
+        """It is played as it was written."""
+        recording = Recording(foreign(tmp_path, {}, use_statistics=False))
+        assert recording.is_complete
+        assert [m.log_time for m in recording.messages(['/chatter'], recording.begin, recording.end)] == [3, 2, 1]
+
+
+def foreign(folder: Path, metadata: dict[str, str], name: str = 'foreign.mcap', messages: int = 3,
+            compression: CompressionType = CompressionType.ZSTD, use_statistics: bool = True) -> Path:
+    """Write a bag as another program might: messages at 1, 2, ... ns, the later ones first."""
+    path = folder / name
+    with path.open('wb') as stream:
+        writer = Writer(stream, compression=compression, use_statistics=use_statistics)
+        writer.start('ros2', 'another')
+        schema = writer.register_schema('std_msgs/msg/Empty', 'ros2msg', b'')
+        channel = writer.register_channel('/chatter', 'cdr', schema, metadata)
+        for at in reversed(range(1, messages + 1)):
+            writer.add_message(channel, at, b'\0\1\0\0\0', at, 0)
+        writer.finish()  # type: ignore[no-untyped-call]
+    return path

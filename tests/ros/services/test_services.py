@@ -1,0 +1,211 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Storms of service calls: clear answers, and the state stays valid."""
+
+import math
+import random
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from stickslip_sim.core.errors import InputError
+from stickslip_sim.recording import read_run
+from stickslip_sim.rig import Fault
+from stickslip_sim.rig.faults import RULES
+from stickslip_sim.scene import load_scene, scene_from_values
+from tests.support.replays import FIELDS, assert_same_states, made_again
+from tests.support.ros_nodes import Client, node_and_client, recording_into
+
+from stickslip_msgs.srv import InjectFault, Step  # isort: skip
+
+pytestmark = pytest.mark.ros
+CALLS = 150
+BILLION = 10**9
+COUNTS: tuple[int, ...] = (0, -1, -BILLION, BILLION, 100_001, 1, 2, 7, 50)
+SPEEDS = (math.nan, 0.002, -0.004, 0.01, math.inf, -math.inf, 1.5)
+FORCES = (math.nan, 0.0, 100.0, -300.0, math.inf, 1e6)
+MASSES = (350.0, 200.0, 500.0, -1.0, math.nan, 0.0)
+
+
+class Storm:
+    """Calls in any order, each with an answer that is known beforehand."""
+
+    def __init__(self, axis: Client, mode: str, seed: int) -> None:
+        self.axis, self.stream = axis, random.Random(seed)
+        self.is_stepped, self.is_paused, self.is_recording = mode == 'lockstep', False, False
+        self.values = dict(load_scene('paper_fig8', {'time.mode': mode}).values)
+        self.rig = scene_from_values(self.values).make_rig()     # in lock-step it is driven as the node is
+        self.rig.make_step()
+
+    def call(self) -> None:
+        """Make one call."""
+        self.stream.choices([self.step, self.inject, self.clear, self.reset, self.pause, self.record, self.parameter],
+                          [6, 4, 1, 1, 2, 1, 2])[0]()
+
+    def expect(self, answer: Any, success: bool, *told: str) -> None:
+        assert answer.success is success, answer
+        assert answer.message
+        assert '\n' not in answer.message
+        for words in told:
+            assert words in answer.message
+
+    def step(self) -> None:
+        count, velocity, force = self.stream.choice(COUNTS), self.stream.choice(SPEEDS), self.stream.choice(FORCES)
+        answer = self.axis.call(Step, 'step', steps=count, velocity=velocity, force=force)
+        if not 1 <= count <= 100_000:
+            self.expect(answer, False, f'steps = {count} is refused: must be 1 to 100000')
+        elif not math.isnan(velocity) and not abs(velocity) <= 1.0:
+            self.expect(answer, False, f'velocity = {velocity} is refused', 'NaN leaves the one in force')
+        elif not math.isnan(force) and not abs(force) <= 1e5:
+            self.expect(answer, False, f'force = {force} is refused')
+        elif not (self.is_stepped or self.is_paused):
+            self.expect(answer, False, 'refused while time runs by itself')
+        else:
+            self.expect(answer, True, f'{count} step')
+            if self.is_stepped:
+                self.follow(answer, count, velocity, force)
+
+    def follow(self, answer: Any, count: int, velocity: float, force: float) -> None:
+        """Make the same steps; the state and the events must be the same to the last bit."""
+        if not math.isnan(velocity):
+            self.rig.command_velocity(velocity)
+        if not math.isnan(force):
+            self.rig.command_force(force)
+        results = [self.rig.make_step() for _ in range(count)]
+        assert answer.state.step == results[-1].step
+        assert {name: getattr(answer.state, name) for name in FIELDS} == {
+            name: getattr(results[-1].sample, name) for name in FIELDS}
+        assert answer.friction.force == results[-1].sample.friction_force
+        assert [(event.step, event.time, event.kind) for event in answer.events] == [
+            (result.step, event.time, event.kind) for result in results for event in result.events
+            if event.kind <= 5]
+
+    def inject(self) -> None:
+        kind = self.stream.choice([*RULES, 'clear', 'gremlin'])
+        value = self.stream.choice([0.0, 0.5, 2.0, 200.0, math.nan, -1.0])
+        asked = Fault(self.stream.choice(['', 'a', 'b', 'x\n', 'y' * 99]), kind, self.stream.choice([0.0, 0.004, -1.0]),
+                      self.stream.choice([0.01, 0.05, math.inf, 0.0]), value)
+        answer = self.axis.call(InjectFault, 'inject_fault', id=asked.id, kind=kind, start=asked.start,
+                                duration=asked.duration, value=value)
+        try:
+            given = asked.id if kind == 'clear' else self.rig.inject(asked).id
+            if kind == 'clear':
+                self.rig.clear_fault(given)
+        except InputError as error:
+            self.expect_refusal(answer, error)
+        else:
+            self.expect(answer, True, given)
+            assert answer.id == given
+
+    def expect_refusal(self, answer: Any, error: InputError) -> None:
+        self.expect(answer, False, f'{error.name} = ', 'is refused: must be ')
+        assert answer.message == str(error)
+
+    def clear(self) -> None:
+        answer = self.axis.trigger('clear_faults')
+        self.expect(answer, True)
+        assert answer.message == 'cleared: ' + (', '.join(self.rig.clear_faults()) or 'there were none')
+
+    def reset(self) -> None:
+        answer = self.axis.trigger('reset')
+        if self.is_recording:
+            self.expect(answer, False, 'refused while recording', '~/record')
+            return
+        self.expect(answer, True)
+        self.rig.reset()
+        self.rig.make_step()
+
+    def pause(self) -> None:
+        wanted = self.stream.random() < 0.5
+        answer = self.axis.switch('set_paused', wanted)
+        if self.is_stepped:
+            self.expect(answer, False, 'time.mode: lockstep', '~/step')
+            return
+        self.expect(answer, True, 'paused' if wanted else 'running', 'at simulation time')
+        self.is_paused = wanted
+
+    def record(self) -> None:
+        wanted = self.stream.random() < 0.6
+        answer = self.axis.switch('record', wanted)
+        self.expect(answer, True, 'record')
+        self.is_recording = wanted
+
+    def parameter(self) -> None:
+        mass = self.stream.choice(MASSES)
+        answer = self.axis.set_parameters(axis__mass=mass)
+        if not mass > 0.0:
+            assert (answer.successful, 'axis.mass = ' in answer.reason) == (False, True)
+            return
+        assert answer.successful
+        self.values['axis.mass'] = mass
+        self.rig.change_axis(scene_from_values(self.values).axis)
+
+
+class LiveStorm(Storm):
+    """A storm over time that runs by itself, all of it in one bag; what the rig makes of it is looked up there."""
+
+    def __init__(self, axis: Client, seed: int) -> None:
+        super().__init__(axis, 'realtime', seed)
+        self.is_recording = True
+
+    def call(self) -> None:
+        super().call()
+        self.axis.send_velocity(self.stream.uniform(-0.005, 0.005))
+        self.axis.send_force(self.stream.choice([0.0, 150.0, math.nan]))
+
+    def inject(self) -> None:
+        kind, value = self.stream.choice([('friction_scale', 1.5), ('force_pulse', 200.0), ('drive_freeze', 0.0),
+                                        ('command_delay', 0.01), ('command_loss', 0.5), ('encoder_dropout', 0.5)])
+        is_good = self.stream.random() < 0.7
+        answer = self.axis.call(InjectFault, 'inject_fault', kind=kind, start=self.stream.choice([0.0, 0.01]),
+                                duration=self.stream.choice([0.01, 0.1]), value=value if is_good else -1e10)
+        self.expect(answer, is_good, answer.id if is_good else 'value = -10000000000.0 is refused')
+
+    def clear(self) -> None:
+        self.expect(self.axis.trigger('clear_faults'), True, 'cleared: ')
+
+    def record(self) -> None:
+        self.expect(self.axis.switch('record', True), True, 'already recording into ')
+
+
+class TestStorm:
+    def test_in_lockstep_the_motion_is_that_of_the_orders(self, tmp_path: Path) -> None:
+        with node_and_client(tmp_path, 'lockstep') as (_, axis):
+            storm = Storm(axis, 'lockstep', 1)
+            for _ in range(CALLS):
+                storm.call()
+            answer = axis.call(Step, 'step', steps=300, velocity=math.nan, force=math.nan)
+            storm.follow(answer, 300, math.nan, math.nan)
+
+    def test_in_real_time_the_bag_tells_all_that_the_motion_depends_on(self, tmp_path: Path) -> None:
+        with node_and_client(tmp_path, 'realtime', *recording_into(tmp_path / 'run')) as (_, axis):
+            storm = LiveStorm(axis, 2)
+            for _ in range(CALLS):
+                storm.call()
+        recorded = read_run(tmp_path / 'run')
+        assert recorded.counts['/rig_event'] > 10
+        assert recorded.counts['/slider_state'] > 300
+        assert_same_states(recorded, made_again(recorded, load_scene('paper_fig8')))
+
+
+def test_what_was_cleared_is_told(tmp_path: Path) -> None:
+    with node_and_client(tmp_path, 'lockstep', '-p', 'command.timeout:=0.05', '-p', 'command.on_timeout:=fault'
+                         ) as (_, axis):
+        def step(count: int, velocity: float = math.nan) -> Any:
+            return axis.call(Step, 'step', steps=count, velocity=velocity, force=math.nan).state
+
+        def clear() -> str:
+            message: str = axis.trigger('clear_faults').message
+            return message
+
+        assert clear() == 'cleared: there were none'
+        for fault in ('a', 'b'):
+            assert axis.call(InjectFault, 'inject_fault', id=fault, kind='drive_freeze', duration=1.0).success
+        assert clear() == 'cleared: a, b'
+        step(1, 0.01)
+        assert step(100).drive_velocity == step(1, 0.01).drive_velocity == 0.0     # it takes none any more
+        assert axis.call(InjectFault, 'inject_fault', id='c', kind='friction_scale', duration=1.0, value=1.5).success
+        assert clear() == 'cleared: c, the command time-out (the drive takes commands again)'
+        assert step(1, 0.01).drive_velocity == 0.01
+        assert clear() == 'cleared: there were none'

@@ -1,0 +1,169 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Cycle figures and summary of a run, from its events."""
+
+import math
+from itertools import pairwise
+
+import pytest
+
+from stickslip_sim.axis import InitialState
+from stickslip_sim.core.input_profile import table
+from stickslip_sim.core.types import Event, EventKind, Mode
+from stickslip_sim.simulation.cycles import Cycle, EventTally, Span, cycle_figures, mode_spans, summary
+from tests.support.axes import COMPLIANT, RIGID, Contact, paper_axis, run
+
+
+@pytest.mark.parametrize(('contact', 'period', 'jump', 'peak', 'break_force', 'stick_force'), [
+    (RIGID, 0.619075168, 1.238150336e-3, 1.23285921663e-2, 781.443710909, 235.301790949),
+    (COMPLIANT, 0.659065697, 1.31813139e-3, 1.16642823367e-2, 788.081203029, 246.606758267)])
+def test_limit_cycle_of_the_model(contact: Contact, period: float, jump: float, peak: float, break_force: float,
+                                  stick_force: float) -> None:
+    figures = summary(run(paper_axis(contact), 0.002, 60.0), 60.0)
+    last = figures.last
+    assert figures.motion == 'stick-slip'
+    assert figures.settled
+    assert last is not None
+    assert last.period == pytest.approx(period, abs=6e-10)
+    assert last.jump == pytest.approx(jump, abs=6e-12)
+    assert last.peak_speed == pytest.approx(peak, abs=6e-14)
+    assert last.break_away_drive_force == pytest.approx(break_force, abs=6e-10)
+    assert last.arrest_drive_force == pytest.approx(stick_force, abs=6e-10)
+    assert last.break_away_force == pytest.approx(last.static_coefficient * 350 * 9.80665, rel=1e-12)
+    assert last.rest_time == pytest.approx(last.stick_time, rel=1e-12)
+    assert last.direction == 1
+
+
+def test_first_cycles_follow_the_events_of_the_model() -> None:
+    first, second, *_ = cycle_figures(run(paper_axis(RIGID), 0.002, 3.0))
+    assert first.begin == pytest.approx(0.67979883333333, abs=1e-14)
+    assert first.rest_time == math.inf
+    assert first.slip_time == pytest.approx(0.83862368925988008 - 0.67979883333333, abs=1e-14)
+    assert first.stick_time == pytest.approx(1.3313467055455221 - 0.83862368925988008, abs=1e-14)
+    assert first.period == pytest.approx(first.slip_time + first.stick_time, abs=1e-15)
+    assert first.peak_speed == pytest.approx(1.45614975366e-2, abs=1e-13)
+    assert first.slip_travel == first.jump == pytest.approx(1.3615322557025e-3, abs=1e-15)
+    assert second.static_coefficient == pytest.approx(0.2297848, abs=6e-8)
+
+
+def test_a_compliant_contact_gives_way_in_stick() -> None:
+    last = cycle_figures(run(paper_axis(COMPLIANT), 0.002, 60.0))[-1]
+    assert last.jump > last.slip_travel > 0.9 * last.jump
+
+
+def test_mean_over_the_last_cycles() -> None:
+    events = run(paper_axis(RIGID), 0.002, 20.0)
+    figures = summary(events, 20.0)
+    cycles = cycle_figures(events)[-10:]
+    assert figures.mean is not None
+    assert figures.averaged == len(cycles) == 10
+    assert figures.mean.period == pytest.approx(sum(cycle.period for cycle in cycles) / 10, rel=1e-14)
+    assert figures.mean.direction == 1
+
+
+def test_share_of_time_in_stick_adds_up() -> None:
+    events = run(paper_axis(RIGID), 0.002, 10.0)
+    spans = mode_spans(events, 0.0, 10.0, Mode.STICK)
+    stick = sum(span.end - span.begin for span in spans if span.mode == Mode.STICK)
+    assert sum(span.end - span.begin for span in spans) == pytest.approx(10.0, rel=1e-14)
+    assert all(a.end == b.begin and a.mode != b.mode for a, b in pairwise(spans))
+    assert summary(events, 10.0).stick_share == pytest.approx(stick / 10.0, rel=1e-14)
+
+
+def test_smooth_sliding_has_no_cycles() -> None:
+    events = run(paper_axis(RIGID), 0.2, 5.0)
+    figures = summary(events, 5.0)
+    assert figures.motion == 'smooth sliding'
+    assert (figures.cycles, figures.last, figures.mean, figures.settled) == (0, None, None, False)
+    assert figures.stick_share < 0.05
+
+
+def test_a_run_that_starts_sliding_counts_from_its_start() -> None:
+    initial = InitialState(velocity=0.2)
+    events = run(paper_axis(RIGID), 0.2, 2.0, initial=initial)
+    figures = summary(events, 2.0, Mode.DECELERATING)
+    assert figures.motion == 'smooth sliding'
+    assert figures.stick_share == 0.0
+
+
+def test_rest_and_single_slip_are_told_apart() -> None:
+    assert summary([], 1.0).motion == 'at rest'
+    assert summary([], 1.0).stick_share == 1.0
+    pull = table('drive', (0.0, 0.75, 0.76), (0.002, 0.002, 0.0))
+    single = summary(run(paper_axis(RIGID), pull, 5.0), 5.0)
+    assert (single.motion, single.cycles, single.events[EventKind.BREAKAWAY]) == ('single slip', 0, 1)
+
+
+def test_directions_are_told() -> None:
+    profile = table('drive', (0.0, 3.0, 3.01), (0.002, 0.002, -0.002))
+    cycles = cycle_figures(run(paper_axis(RIGID), profile, 12.0))
+    assert {cycle.direction for cycle in cycles} == {-1, 1}
+    assert all(cycle.slip_travel > 0.0 and cycle.peak_speed > 0.0 for cycle in cycles)
+
+
+def test_reversal_at_once_ends_one_slip_and_begins_another() -> None:
+    events = [_event(1.0, EventKind.BREAKAWAY, Mode.ACCELERATING, 1, 0.0, 0.0),
+              _event(1.5, EventKind.DECELERATE, Mode.DECELERATING, 1, 0.5, 2.0),
+              _event(2.0, EventKind.REVERSE, Mode.ACCELERATING, -1, 1.0, 0.0),
+              _event(2.5, EventKind.DECELERATE, Mode.DECELERATING, -1, 0.5, -3.0),
+              _event(3.0, EventKind.STICK, Mode.STICK, -1, 0.25, 0.0),
+              _event(4.5, EventKind.BREAKAWAY, Mode.ACCELERATING, 1, 0.25, 0.0)]
+    there, back = cycle_figures(events)
+    assert (there.direction, there.slip_time, there.stick_time, there.slip_travel, there.peak_speed) == (1, 1, 0, 1, 2)
+    assert (back.direction, back.slip_time, back.stick_time, back.slip_travel, back.peak_speed) == (-1, 1, 1.5, 0.75, 3)
+
+
+def test_a_slip_whose_end_is_unknown_is_no_cycle() -> None:
+    events = [_event(1.0, EventKind.BREAKAWAY, Mode.ACCELERATING, 1, 0.0, 0.0),
+              _event(4.0, EventKind.BREAKAWAY, Mode.ACCELERATING, 1, 0.25, 0.0),
+              _event(5.0, EventKind.STICK, Mode.STICK, 1, 0.5, 0.0)]
+    assert cycle_figures(events) == []
+    assert cycle_figures(events[:1]) == []
+
+
+def test_a_break_away_that_does_not_move_belongs_to_the_stick() -> None:
+    events = [_event(1.0, EventKind.BREAKAWAY, Mode.ACCELERATING, 1, 0.0, 0.0),
+              _event(2.0, EventKind.STICK, Mode.STICK, 1, 0.5, 0.0),
+              _event(3.0, EventKind.BREAKAWAY, Mode.STICK, 1, 0.5, 0.0),
+              _event(4.0, EventKind.BREAKAWAY, Mode.ACCELERATING, 1, 0.5, 0.0)]
+    [cycle] = cycle_figures(events)
+    assert (cycle.slip_time, cycle.stick_time) == (1.0, 2.0)
+
+
+def test_times_late_in_a_run_keep_their_digits() -> None:
+    begin = Event(1e9, 0.25, EventKind.BREAKAWAY, Mode.ACCELERATING, 1, 0, 0, 0, 0, 0, 0.2, 1.0)
+    end = begin._replace(fraction=0.25 + 1e-9, kind=EventKind.STICK, mode=Mode.STICK)
+    after = begin._replace(second=1e9 + 1, fraction=0.0)
+    [cycle] = cycle_figures([begin, end, after])
+    assert isinstance(cycle, Cycle)
+    assert cycle.slip_time == pytest.approx(1e-9, rel=1e-6)
+    assert cycle.period == 0.75
+
+
+def test_spans_within_a_window() -> None:
+    events = [_event(1.0, EventKind.BREAKAWAY, Mode.ACCELERATING, 1, 0.0, 0.0),
+              _event(2.0, EventKind.STICK, Mode.STICK, 1, 0.5, 0.0)]
+    assert mode_spans(events, 1.5, 3.0, Mode.STICK) == [Span(1.5, 2.0, Mode.ACCELERATING), Span(2.0, 3.0, Mode.STICK)]
+
+
+def test_only_time_within_the_window_counts() -> None:
+    events = [_event(1.0, EventKind.BREAKAWAY, Mode.ACCELERATING, 1, 0.0, 0.0),
+              _event(2.0, EventKind.STICK, Mode.STICK, 1, 0.5, 0.0),
+              _event(3.5, EventKind.BREAKAWAY, Mode.ACCELERATING, 1, 0.5, 0.0),
+              _event(3.75, EventKind.STICK, Mode.STICK, 1, 1.0, 0.0)]
+    assert summary(events, 1.5, Mode.STICK, begin=1.5).stick_share == 2 / 3
+    assert summary(events, 4.0).stick_share == (1.0 + 1.5 + 0.25) / 4.0
+
+
+def test_a_tally_knows_at_any_time_what_a_summary_says() -> None:
+    events = run(paper_axis(COMPLIANT), 0.002, 20.0)
+    tally = EventTally()
+    for count, event in enumerate(events, 1):
+        tally.add(event)
+        assert tally.latest_time == event.time
+        assert tally.summary(event.time + 0.01) == summary(events[:count], event.time + 0.01)
+
+
+def _event(time: float, kind: EventKind, mode: Mode, direction: int, position: float, velocity: float) -> Event:
+    return Event(math.floor(time), time - math.floor(time), kind, mode, direction, position, velocity, position, 10.0,
+                 10.0, 0.2, 1.0)

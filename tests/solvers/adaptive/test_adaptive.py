@@ -1,0 +1,226 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The adaptive solver: near the exact engine within its tolerance, with smooth laws and waves, and it always ends."""
+
+import math
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Any
+
+import pytest
+
+from stickslip_sim.axis import CompliantContact, Friction, InitialState
+from stickslip_sim.core.errors import InputError, SolverError
+from stickslip_sim.core.input_profile import InputProfile, Sinusoid, steps, table
+from stickslip_sim.core.types import Event, EventKind, Mode
+from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
+from stickslip_sim.friction.kinetic import default_excess
+from stickslip_sim.runs.offline import run_offline
+from stickslip_sim.scene import load_scene
+from stickslip_sim.solvers import adaptive
+from tests.conftest import Program
+from tests.support.axes import COMPLIANT, RIGID, instant, of_kind, paper_axis
+from tests.support.solver_runs import EXACT, firm, make, of_scene, simulate
+
+TIGHT = adaptive.solver('DOP853', 1e-11, 1e-13)
+
+
+def assert_near(found: list[Event], expected: list[Event], seconds: float) -> None:
+    found, expected = firm(found), firm(expected)
+    assert [(e.kind, e.direction) for e in found] == [(e.kind, e.direction) for e in expected]
+    for event, other in zip(found, expected):
+        assert event.time == pytest.approx(other.time, rel=0.0, abs=seconds)
+        assert event.position == pytest.approx(other.position, rel=0.0, abs=0.1 * seconds)
+        assert event.friction_force == pytest.approx(other.friction_force, rel=0.0, abs=2e4 * seconds)
+
+
+class TestAgainstTheExactEngine:
+    @pytest.mark.parametrize('name', ['paper_fig4_constant', 'paper_fig4_falling', 'paper_fig7', 'paper_fig8',
+                                      'positioning', 'cutting_force'])
+    def test_shipped_scenes(self, name: str) -> None:
+        scene = load_scene(name)
+        if scene.drive.sinusoids or scene.force.sinusoids:
+            pytest.skip('exact needs waves for that')
+        expected, found = of_scene(EXACT, scene, 3.0), of_scene(TIGHT, scene, 3.0)
+        assert_near(found[0], expected[0], 2e-8)
+        assert found[1].mode == expected[1].mode
+        assert found[1].position == pytest.approx(expected[1].position, abs=1e-10)
+
+    @pytest.mark.parametrize(('method', 'seconds'), [('RK45', 1e-7), ('DOP853', 1e-7), ('Radau', 1e-7),
+                                                     ('BDF', 1e-4), ('LSODA', 1e-5)])
+    @pytest.mark.parametrize('branches', [True, False])
+    def test_every_method(self, method: str, seconds: float, branches: bool) -> None:
+        for contact in (RIGID, COMPLIANT):
+            axis = paper_axis(contact, branches=branches)
+            expected = simulate(EXACT, axis, 0.002, 1.7)[0]
+            assert_near(simulate(adaptive.solver(method, 1e-8, 1e-11), axis, 0.002, 1.7)[0], expected, seconds)
+
+    def test_a_tighter_tolerance_is_nearer(self) -> None:
+        scene = load_scene('paper_fig7')
+        expected = of_scene(EXACT, scene, 3.0)[0]
+        errors = []
+        for rtol in (1e-5, 1e-7, 1e-9, 1e-11):
+            found = of_scene(adaptive.solver('RK45', rtol, rtol * 1e-2), scene, 3.0)[0]
+            errors.append(max(abs(a.time - b.time) for a, b in zip(found, expected, strict=True)))
+        assert all(after < 0.1 * before for before, after in pairwise(errors))
+        assert errors[-1] < 1e-9
+
+    @pytest.mark.parametrize('contact', [RIGID, COMPLIANT])
+    def test_courses_commands_and_other_parameters(self, contact: object) -> None:
+        axis = paper_axis(COMPLIANT if contact is COMPLIANT else RIGID)
+        drive = table('drive', [0.0, 0.4, 0.9, 1.4], [0.0, 0.01, -0.02, -0.02])
+        force = steps('force', [0.0, 0.3, 0.302], [0.0, 9000.0, -50.0])
+        runs = []
+        for solver in (EXACT, TIGHT):
+            simulator = make(solver, axis, drive, force)
+            events = simulator.advance(instant(1.2))
+            simulator.command_force(70.0)
+            events += simulator.advance(instant(1.7))
+            simulator.command_drive(0.004)
+            simulator.change_axis(replace(axis, mass=200.0, contact=COMPLIANT if contact is RIGID else RIGID))
+            events += simulator.advance(instant(2.5))
+            runs.append(([e for e in events if e.kind != EventKind.KNOT], simulator.sample()))
+        assert len(runs[0][0]) > 10
+        assert_near(runs[1][0], runs[0][0], 1e-8)
+        for name in ('position', 'velocity', 'drive_force', 'friction_force', 'contact_deflection', 'rest_time'):
+            assert getattr(runs[1][1], name) == pytest.approx(getattr(runs[0][1], name), rel=1e-6, abs=1e-9)
+
+    def test_samples_agree_in_every_mode(self) -> None:
+        exact, found = (make(solver, paper_axis(COMPLIANT), 0.002) for solver in (EXACT, TIGHT))
+        modes = set()
+        for k in range(1, 161):
+            exact.advance(instant(k / 100))
+            found.advance(instant(k / 100))
+            a, b = exact.sample(), found.sample()
+            modes.add(a.mode)
+            assert (a.mode, a.direction) == (b.mode, b.direction)
+            assert b[4:] == pytest.approx(a[4:], rel=1e-6, abs=1e-7)
+        assert modes == set(Mode)
+
+
+def test_splits_agree_within_the_tolerance() -> None:
+    scene = load_scene('paper_fig8')
+    whole = of_scene(TIGHT, scene, 2.0)[0]
+    simulator = make(TIGHT, scene.axis, scene.drive, scene.force, scene.initial)
+    parts = [event for k in range(1, 401) for event in simulator.advance(instant(k / 200))]
+    assert_near([e for e in parts if e.kind != EventKind.KNOT], whole, 2e-8)
+
+
+@dataclass(frozen=True)
+class Falling:
+    """The paper's falling branch as a law: the same as its table, but for the knots."""
+
+    def coefficient(self, speed: float) -> float:
+        return max(0.05, 0.12 - 2.0 * speed)
+
+
+@dataclass(frozen=True)
+class Stribeck:
+    def coefficient(self, speed: float) -> float:
+        return 0.05 + 0.07 * math.exp(-(speed / 0.01) ** 2) + 0.2 * speed
+
+
+class TestSmoothLaws:
+    @pytest.mark.parametrize('contact', [RIGID, COMPLIANT])
+    @pytest.mark.parametrize('branches', [True, False])
+    def test_a_law_that_equals_the_table_gives_the_same(self, contact: object, branches: bool) -> None:
+        axis = paper_axis(COMPLIANT if contact is COMPLIANT else RIGID, branches=branches)
+        solver = adaptive.solver('DOP853', 1e-11, 1e-13, Falling())
+        assert_near(simulate(solver, axis, 0.002, 2.2)[0], simulate(EXACT, axis, 0.002, 2.2)[0], 1e-7)
+
+    @pytest.mark.parametrize('contact', [RIGID, COMPLIANT])
+    @pytest.mark.parametrize('branches', [True, False])
+    def test_fine_tables_come_to_the_law(self, contact: object, branches: bool) -> None:
+        """The error of a table falls with the square of its width: the law is their limit."""
+        law = Stribeck()
+        errors = []
+        for count in (50, 200, 800):
+            speeds = tuple(0.08 * i / count for i in range(count + 1))
+            kinetic = KineticTable(speeds, tuple(map(law.coefficient, speeds)), 0.2)
+            excess = default_excess(KineticTable((0.0, 0.05), (0.1, 0.1))) if branches else None
+            friction = Friction(StaticLaw(StaticLawKind.EXPONENTIAL, 0.125, 0.24, 0.2), kinetic, excess)
+            axis = replace(paper_axis(COMPLIANT if contact is COMPLIANT else RIGID), friction=friction)
+            smooth = firm(simulate(adaptive.solver('DOP853', 1e-10, 1e-13, law), axis, 0.002, 1.8)[0])
+            tabled = firm(simulate(EXACT, axis, 0.002, 1.8)[0])
+            assert [e.kind for e in smooth] == [e.kind for e in tabled]
+            errors.append(max(abs(a.time - b.time) for a, b in zip(smooth, tabled)))
+        assert errors[1] < errors[0] / 8.0
+        assert errors[2] < errors[1] / 8.0
+
+
+class TestWaves:
+    def test_a_mass_alone_follows_the_integral(self) -> None:
+        """No spring, damper or friction: the motion is known, and so is the drive's."""
+        free = replace(paper_axis(RIGID, branches=False), normal_force=0.0, drive_stiffness=0.0, drive_damping=0.0)
+        force = InputProfile((0.0,), (3.5,), (0.0,), sinusoids=(Sinusoid(700.0, 2.0, 0.4),))
+        drive = InputProfile((0.0,), (0.1,), (0.0,), sinusoids=(Sinusoid(0.3, 1.5, -0.2), Sinusoid(0.1, 1e-9,
+                                                                                                   0.5 * math.pi)))
+        final = simulate(TIGHT, free, drive, 1.3, force, InitialState(velocity=5.0))[1]
+        omega = 4.0 * math.pi
+        assert final.velocity == pytest.approx(
+            5.0 + 0.01 * 1.3 + 2.0 / omega * (math.cos(0.4) - math.cos(omega * 1.3 + 0.4)), rel=1e-11)
+        omega = 3.0 * math.pi
+        assert final.drive_position == pytest.approx(
+            0.2 * 1.3 + 0.3 / omega * (math.cos(-0.2) - math.cos(omega * 1.3 - 0.2)), rel=1e-12)
+
+    def test_no_wave_of_a_stuck_axis_is_passed_over(self) -> None:
+        """At rest nothing bounds the step but the wave itself; its first crest beyond the limit breaks the contact."""
+        force = InputProfile((0.0,), (0.0,), (0.0,), sinusoids=(Sinusoid(900.0, 0.5, 0.0),))
+        event = simulate(TIGHT, paper_axis(RIGID), 0.0, 3.0, force)[0][0]
+        assert event.time == pytest.approx(math.asin(0.24 * 350 * 9.80665 / 900.0) / math.pi, rel=1e-12)
+
+
+class TestItEnds:
+    def test_a_guard_at_its_limit_on_entry_does_not_fire_for_ever(self) -> None:
+        """mu_k(0) = mu_s(0): a compliant stick begins exactly on its limit, and goes inwards."""
+        events = simulate(adaptive.solver(), paper_axis(COMPLIANT), 0.002, 2.0)[0]
+        stops = of_kind(events, EventKind.STICK)
+        assert len(stops) == 2
+        after = events[events.index(stops[0]) + 1]
+        assert after.time - stops[0].time > 0.4
+
+    @pytest.mark.parametrize('contact', [RIGID, COMPLIANT, CompliantContact(5e6, 0.0)])
+    def test_nothing_holds_and_nothing_brakes(self, contact: object) -> None:
+        assert isinstance(contact, (type(RIGID), CompliantContact))
+        free = replace(paper_axis(contact, branches=False), normal_force=0.0, drive_damping=0.0)
+        simulator = make(adaptive.solver('RK45', 1e-8), free, 0.001)
+        simulator.advance(instant(1.0))
+        assert abs(simulator.sample().velocity) < 0.01
+
+    def test_steady_sliding_is_not_a_flood_of_events(self) -> None:
+        for branches in (True, False):
+            events, final = simulate(adaptive.solver(), paper_axis(RIGID, branches=branches), 0.08, 10.0)
+            assert final.velocity == pytest.approx(0.08, rel=1e-6)
+            assert len(events) < 500
+
+    def test_guards_that_fire_for_ever_end_the_run_soon(self) -> None:
+        """Smooth sliding decays to the speed of the drive, where guards are zero to within the tolerance."""
+        scene = load_scene('fast_feed', {'solver.name': 'adaptive'})
+        with pytest.raises(SolverError, match=r'^\d\d events up to .* time hardly goes on'):
+            run_offline(scene, 10.0)
+
+    def test_numbers_that_end_are_a_solver_error(self) -> None:
+        simulator = make(adaptive.solver(), paper_axis(RIGID), 0.0, 0.0, InitialState(velocity=1e305))
+        with pytest.raises(SolverError, match=r'another solver\.method or other tolerances'):
+            simulator.advance(instant(1.0))
+
+    def test_a_year_at_rest(self) -> None:
+        simulator = make(adaptive.solver('Radau'), paper_axis(COMPLIANT), 0.0, 100.0)
+        assert simulator.advance(instant(3.15e7)) == []
+        assert simulator.sample().contact_deflection == pytest.approx(100.0 / 5.6e6, rel=1e-6)
+
+
+@pytest.mark.parametrize(('settings', 'name'), [
+    ({'method': 'rk4'}, 'solver.method'), ({'rtol': 0.0}, 'solver.rtol'), ({'rtol': 1e-14}, 'solver.rtol'),
+    ({'rtol': math.nan}, 'solver.rtol'), ({'rtol': 1.0}, 'solver.rtol'), ({'atol': 0.0}, 'solver.atol'),
+    ({'atol': math.inf}, 'solver.atol'), ({'atol': -1.0}, 'solver.atol'),
+])
+def test_bad_settings_are_refused(settings: dict[str, Any], name: str) -> None:
+    with pytest.raises(InputError) as caught:
+        adaptive.solver(**settings)
+    assert caught.value.name == name
+
+
+def test_scipy_is_loaded_only_by_those_who_use_it(in_a_process: Program) -> None:
+    program = 'import sys\nimport stickslip_sim.runs.offline\nprint("scipy" in sys.modules)'
+    assert in_a_process(program, compiled=False).split() == ['False']

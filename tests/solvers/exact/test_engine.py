@@ -1,0 +1,192 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Properties of the exact engine that hold for every axis; the suite of extremes judges the harder ones."""
+
+import math
+import random
+from dataclasses import replace
+from itertools import pairwise
+
+import pytest
+
+from stickslip_sim.axis import CompliantContact, InitialState
+from stickslip_sim.core.errors import SolverError
+from stickslip_sim.core.input_profile import InputProfile, ramp, steps, table
+from stickslip_sim.core.types import Event, EventKind, Instant, Mode
+from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
+from tests.conftest import Program
+from tests.support.axes import COMPLIANT, RIGID, Contact, instant, make, of_kind, paper_axis, run
+
+
+def test_smooth_sliding_ends_in_steady_coasting() -> None:
+    """A decaying oscillation ends where it drowns in rounding: at the speed of the drive, without more events."""
+    for contact in (RIGID, COMPLIANT):
+        simulator = make(paper_axis(contact), 0.08)
+        simulator.advance(instant(20.0))
+        assert (simulator.sample().mode, simulator.sample().velocity) == (Mode.COASTING, 0.08)
+        assert simulator.advance(instant(1e6)) == []
+
+
+def test_a_command_that_repeats_the_present_value_changes_no_bit() -> None:
+    axis = paper_axis(COMPLIANT)
+    quiet, busy = make(axis, 0.002), make(axis, 0.002)
+    a: list[Event] = []
+    b: list[Event] = []
+    for k in range(1, 3001):
+        to = Instant(k // 1000, (k % 1000) / 1000)
+        a += quiet.advance(to)
+        busy.command_drive(0.002)
+        b += busy.advance(to)
+        assert quiet.sample() == busy.sample()
+    assert a == b
+
+
+def test_state_is_continuous_and_forces_balance() -> None:
+    """m ẍ = F_d + F_e − F at every sample, and nothing jumps by more than its rate allows."""
+    axis = paper_axis(COMPLIANT)
+    simulator = make(axis, 0.005, steps('force', [0.0, 1.0, 1.2], [0.0, 400.0, -100.0]))
+    before = None
+    for k in range(1, 4001):
+        simulator.advance(Instant(k // 2000, (k % 2000) / 2000))
+        s = simulator.sample()
+        balance = s.drive_force + s.external_force - s.friction_force - 350.0 * s.acceleration
+        assert abs(balance) < 2e-11 * 824.0
+        if before is not None:
+            assert abs(s.position - before.position) <= 0.0005 * max(abs(s.velocity), abs(before.velocity)) * 1.5 + 1e-7
+        before = s
+
+
+def test_reverses_at_once_where_a_rigid_contact_cannot_hold() -> None:
+    """A frictionless slider swings for ever; a lightly braked one reverses until it stays."""
+    free = replace(paper_axis(RIGID), normal_force=0.0, drive_damping=0.0)
+    events = run(free, 0.0, 2.0, initial=InitialState(velocity=0.1))
+    turns = of_kind(events, EventKind.REVERSE)
+    half_period = math.pi / math.sqrt(6e5 / 350.0)
+    assert len(turns) == 26
+    assert turns[-1].time == pytest.approx((len(turns) - 0.5) * half_period, rel=1e-13)
+    light = replace(paper_axis(RIGID), normal_force=300.0, drive_damping=0.0)
+    events = run(light, 0.0, 5.0, initial=InitialState(velocity=0.05))
+    assert len(of_kind(events, EventKind.REVERSE)) > 2
+    assert events[-1].kind == EventKind.STICK
+    amplitudes = [abs(e.position) for e in of_kind(events, EventKind.REVERSE)]
+    assert all(b < a for a, b in pairwise(amplitudes))
+
+
+def test_compiled_and_plain_python_agree_bit_by_bit(in_a_process: Program) -> None:
+    """The same source with and without numba, in two processes."""
+    program = '''
+import random
+from tests.support.axes import random_axis, run, Contact
+for seed in range(25):
+    rng = random.Random(seed)
+    axis = random_axis(rng)
+    for event in run(axis, rng.choice((-1, 1)) * 10 ** rng.uniform(-3, -1.5), 3.0):
+        print([float(x).hex() for x in event])
+'''
+    assert in_a_process(program, compiled=True) == in_a_process(program, compiled=False)
+
+
+def test_grazing_the_limit_is_neither_missed_nor_invented() -> None:
+    """A drive that slows down and turns back: the force peaks at the limit but for a relative 1e-4 to 1e-12."""
+    rng = random.Random(11)
+    axis = paper_axis(RIGID)
+    c, h = axis.drive_stiffness, axis.drive_damping
+    for margin in (1e-4, 1e-6, 1e-9, 1e-12, -1e-12, -1e-9, -1e-4):
+        for _ in range(100):
+            v, rate = rng.uniform(0.5e-3, 5e-3), -(10 ** rng.uniform(-4, -2))
+            delay = rng.uniform(0.0, 1.0)
+            t = -(v + h * rate / c) / rate
+            peak = c * (v + 0.5 * rate * t) * t + h * (v + rate * t)
+            held = replace(axis, normal_force=peak / 0.24 / (1.0 + margin))
+            drive = InputProfile((0.0, delay), (0.0, v), (0.0, rate))
+            events = run(held, drive, delay + 1.9 * t)
+            broke = bool(events) and events[0].time < delay + 1.1 * t
+            assert broke == (margin > 0.0), (margin, v, rate)
+
+
+@pytest.mark.parametrize('law', ['CONSTANT', 'EXPONENTIAL', 'KATO', 'HYPERBOLIC', 'LOGARITHMIC'])
+@pytest.mark.parametrize('exponent', [0.4, 1.0, 2.5])
+@pytest.mark.parametrize('contact', [RIGID, COMPLIANT])
+def test_break_away_of_every_static_law_is_on_the_limit(law: str, exponent: float, contact: Contact) -> None:
+    """At every break-away |F| = N mu_s(t⁻), and at no sampled instant of stick before it is |F| beyond the limit."""
+    axis = paper_axis(contact)
+    static = StaticLaw(StaticLawKind[law], 0.12, 0.24, 0.2, exponent)
+    axis = replace(axis, friction=replace(axis.friction, static=static))
+    drive = table('drive', [0.0, 1.0, 2.0, 4.0], [0.006, 0.002, -0.008, 0.004])
+    simulator = make(axis, drive, initial=InitialState(rest_time=0.3))
+    breaks, n = 0, axis.normal_force
+    for k in range(1, 4001):
+        for event in simulator.advance(Instant(k // 1000, (k % 1000) / 1000)):
+            if event.kind == EventKind.BREAKAWAY:
+                breaks += 1
+                assert event.static_coefficient == pytest.approx(static.coefficient(event.rest_time), rel=1e-14)
+                assert abs(event.friction_force) == pytest.approx(n * event.static_coefficient, rel=1e-14)
+        s = simulator.sample()
+        if s.mode == Mode.STICK:
+            assert abs(s.friction_force) <= n * static.coefficient(s.rest_time) * (1.0 + 1e-12)
+    assert breaks >= 2
+
+
+def test_parameters_may_change_on_the_way() -> None:
+    """Position, velocity and spring stay; a load that goes lets the slider go; back and forth changes nothing."""
+    for contact in (RIGID, COMPLIANT):
+        axis = paper_axis(contact)
+        simulator, twin = make(axis, 0.002), make(axis, 0.002)
+        to = Instant(0.0, 0.6)
+        assert simulator.advance(to) == twin.advance(to) == []
+        before = simulator.sample()
+        simulator.change_axis(replace(axis, normal_force=0.5 * axis.normal_force))
+        after = simulator.sample()
+        assert (after.position, after.drive_force) == (before.position, before.drive_force)
+        events = simulator.advance(to)
+        assert [(e.kind, e.time) for e in events] == [(EventKind.BREAKAWAY, 0.6)]
+        for events, sim in ((simulator.advance(instant(3.0)), simulator), (twin.advance(instant(3.0)), twin)):
+            assert events
+            assert sim.sample().time == 3.0
+    simulator = make(paper_axis(RIGID), 0.002)
+    simulator.advance(Instant(0.0, 0.5))
+    simulator.change_axis(paper_axis(COMPLIANT))
+    deflection = simulator.sample().contact_deflection
+    assert deflection == pytest.approx(simulator.sample().drive_force / 5e6, rel=1e-14)
+    simulator.change_axis(paper_axis(RIGID))
+    assert run(paper_axis(RIGID), 0.002, 2.0)[1:] != []
+    for event, other in zip(simulator.advance(instant(2.0)), run(paper_axis(RIGID), 0.002, 2.0), strict=True):
+        assert (event.kind, event.direction) == (other.kind, other.direction)
+        assert event.time == pytest.approx(other.time, abs=1e-14)
+
+
+def test_a_state_that_is_not_finite_is_an_error() -> None:
+    simulator = make(replace(paper_axis(RIGID), mass=1e-300), 0.002)
+    simulator.advance(instant(0.7))
+    with pytest.raises(SolverError, match='range of numbers'):
+        simulator.sample()
+
+
+@pytest.mark.parametrize('sign', [1.0, -1.0])
+def test_without_friction_the_drive_takes_the_slider_along_either_way(sign: float) -> None:
+    for contact in (RIGID, COMPLIANT):
+        free = replace(paper_axis(contact), normal_force=0.0)
+        events = run(free, ramp(0.0, sign * 0.01, 1.0), 1.0)
+        assert (events[0].kind, events[0].direction) == (EventKind.BREAKAWAY, sign)
+
+
+def test_an_undamped_contact_breaks_away_on_the_other_side_too() -> None:
+    """After the arrest the contact swings back; nothing grows, and |F| never passes the limit."""
+    static = StaticLaw(StaticLawKind.CONSTANT, 0.12, 0.12)
+    axis = paper_axis(CompliantContact(5e6, 0.0))
+    axis = replace(axis, drive_damping=0.0, friction=replace(
+        axis.friction, static=static, kinetic=KineticTable((0.0,), (0.12,)), excess=None))
+    simulator = make(axis, 0.0, initial=InitialState(velocity=0.08))
+    for k in range(1, 1001):
+        simulator.advance(instant(k * 1e-4))
+        sample = simulator.sample()
+        assert abs(sample.friction_force) <= 0.12 * axis.normal_force * (1.0 + 1e-12)
+
+
+def test_changing_to_the_same_axis_changes_no_force() -> None:
+    axis = paper_axis(COMPLIANT)
+    simulator = make(axis, 0.0, steps('force', [0.0, 0.1], [0.0, 400.0]))
+    simulator.advance(instant(0.105))
+    before = simulator.sample().friction_force
+    simulator.change_axis(axis)
+    assert simulator.sample().friction_force == pytest.approx(before, rel=1e-14)

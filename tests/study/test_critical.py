@@ -1,0 +1,271 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Critical values: the closed forms of the literature, bistability, and what is refused."""
+
+import math
+import re
+
+import numpy as np
+import pytest
+
+from stickslip_sim.axis import InitialState
+from stickslip_sim.cli.main import run
+from stickslip_sim.core.errors import InputError
+from stickslip_sim.core.types import EventKind
+from stickslip_sim.extremes.shared_axes import make, of_kind
+from stickslip_sim.scene import Scene, load_scene
+from stickslip_sim.study import Variation
+from stickslip_sim.study.critical import Critical, critical, default_range
+from stickslip_sim.study.points import scene_at
+from stickslip_sim.study.theory import critical_drop, critical_feed, feed_of_theory, healing_critical_feed
+from stickslip_sim.study.transitions import FAILED, NO, OPEN, YES, Doubt, Findings, Verdicts, find_transitions
+from stickslip_sim.study.variation import Numbers
+from tests.support.axes import instant
+from tests.support.tool import Capture
+
+CONSTANT = {'friction.static.law': 'constant', 'friction.static.initial': 0.24,
+            'friction.kinetic.velocities': [0.0], 'friction.kinetic.coefficients': [0.12]}
+GROWING = {**CONSTANT, 'friction.static.initial': 0.12, 'friction.static.limit': 0.24,
+           'friction.static.time_constant': 0.2, 'axis.drive_damping': 0.0}
+IMPEDANCE = math.sqrt(350.0 * 6e5)   # N s/m
+ACCURACY = 1e-9
+
+
+def of_the_feed(scene: Scene, low: float, high: float, accuracy: float = ACCURACY) -> Critical:
+    return critical(scene, Variation('drive.velocity', low, high, log=True), accuracy)
+
+
+@pytest.mark.parametrize(('zeta', 'drop'), [(0.01, 0.365065), (0.1, 1.470118), (0.2, 2.724989)])
+def test_constant_friction_has_the_critical_feed_of_the_closed_form(zeta: float, drop: float) -> None:
+    scene = load_scene('paper_fig4_constant', {**CONSTANT, 'axis.drive_damping': 2.0 * zeta * IMPEDANCE})
+    assert critical_drop(zeta) == pytest.approx(drop, abs=1e-6)
+    expected = 0.12 * 3432.3275 / (critical_drop(zeta) * IMPEDANCE)
+    found = of_the_feed(scene, 1e-3, 1.0)
+    (transition,) = found.from_rest.transitions
+    assert transition.resolved
+    assert not transition.rises
+    assert transition.value == pytest.approx(expected, rel=ACCURACY)
+    assert transition.low <= expected * (1.0 + 1e-12)
+    assert transition.high >= expected * (1.0 - 1e-12)
+    assert found.from_sliding == Findings(NO, ())
+    assert found.both == [(1e-3, transition.value)]
+
+
+@pytest.mark.parametrize(('law', 'accuracy'), [('exponential', ACCURACY), ('hyperbolic', 2e-3)])
+def test_growth_at_rest_has_its_critical_feed_within_what_is_told(law: str, accuracy: float) -> None:
+    """Near it the drops shrink as 1/n: what cannot be told in some thousand cycles is left open, and said to be."""
+    scene = load_scene('paper_fig4_constant', {**GROWING, 'friction.static.law': law})
+    expected = healing_critical_feed(6e5, 3432.3275 * 0.12 / 0.2)
+    assert feed_of_theory(scene.axis) == expected
+    (transition,) = of_the_feed(scene, 5e-3, 9e-3, accuracy).from_rest.transitions
+    assert transition.resolved == (accuracy > 1e-3)
+    assert transition.low < expected < transition.high
+    assert transition.high - transition.low < 2e-3 * expected
+
+
+def test_katos_law_below_one_has_no_critical_feed() -> None:
+    scene = load_scene('paper_fig4_constant', {**GROWING, 'friction.static.law': 'kato',
+                                               'friction.static.exponent': 0.5})
+    assert of_the_feed(scene, 1e-3, 0.1).from_rest == Findings(YES, ())
+
+
+def test_sliding_on_the_papers_slope_is_lost_from_2000_newtons_on_and_both_motions_are_told() -> None:
+    scene = load_scene('paper_fig4_falling')
+    found = critical(scene, Variation('axis.normal_force', 500.0, 5000.0), 1e-12)
+    (lost,) = found.from_sliding.transitions
+    assert lost.value == pytest.approx(4000.0 * 0.035 / 0.07, rel=1e-12)
+    (sticks,) = found.from_rest.transitions
+    assert sticks.rises
+    assert sticks.value < 1500.0
+    assert not sticks.resolved
+    assert found.both == [(sticks.high, lost.value)]
+
+
+@pytest.mark.parametrize(('share', 'grows'), [(0.999, True), (1.001, False)])
+def test_runs_from_sliding_agree(share: float, grows: bool) -> None:
+    scene = load_scene('paper_fig4_falling', {'drive.velocity': 0.0175})
+    found = critical(scene, Variation('axis.drive_damping', 5000.0, 9000.0), ACCURACY)
+    (lost,) = found.from_sliding.transitions
+    axis = load_scene('paper_fig4_falling', {'axis.drive_damping': share * lost.value}).axis
+    balance = axis.normal_force * axis.friction.kinetic.coefficient(0.0175)
+    events = make(axis, 0.0175, balance, InitialState(velocity=0.0176)).advance(instant(20.0))
+    swings = [abs(event.velocity - 0.0175) for event in events]
+    assert len(swings) > 100
+    assert (swings[-1] > swings[0]) == grows
+
+
+def sticks_late(scene: Scene, duration: float, late: float) -> int:
+    """Return how many sticks come in the last `late` seconds of a run."""
+    simulator = make(scene.axis, scene.drive, scene.force, scene.initial)
+    parts = (simulator.advance(instant(end)) for end in np.linspace(0.0, duration, 21)[1:].tolist())
+    return sum(event.time > duration - late for part in parts for event in of_kind(part, EventKind.STICK))
+
+
+def test_sticks_between_reversals_last_however_heavy_the_slider_is() -> None:
+    """Forward slip, reversal, stick and again: the last complete cycle may be the one without a stick."""
+    scene = load_scene('paper_fig7', {'drive.velocity': 0.02})
+    found = critical(scene, Variation('axis.mass', 20000.0, 32000.0, log=True), 1e-6)
+    assert found.from_rest == Findings(YES, ())
+
+
+@pytest.mark.parametrize(('changes', 'name', 'low', 'high'), [
+    ({}, 'axis.drive_damping', 1e4, 1.3e4), ({'drive.velocity': 0.02}, 'axis.normal_force', 1900.0, 2300.0)])
+def test_what_is_told_of_intermittent_stick_slip_is_what_long_runs_do(
+        changes: dict[str, object], name: str, low: float, high: float) -> None:
+    """Between sticks the slider swings, ever longer towards the border, and may slip out by chance."""
+    scene = load_scene('paper_fig8', changes)
+    (one,) = critical(scene, Variation(name, low, high, log=True), 1e-9).from_rest.transitions
+    assert not one.resolved
+    ends = [sticks_late(scene_at(scene.values, [name], np.array([value])), 1e4, 5e3) for value in (one.low, one.high)]
+    assert [count > 0 for count in ends] == [not one.rises, one.rises]
+
+
+def test_a_cycle_about_to_vanish_is_not_taken_for_one_that_stays() -> None:
+    """Just beyond the tangent bifurcation 8600 sticks come, ever more alike, and then none."""
+    scene = load_scene('paper_fig4_constant')
+    (one,) = critical(scene, Variation('axis.mass', 13.0, 14.0, log=True), 1e-9).from_rest.transitions
+    assert one.high > 13.453134863828902
+    value = np.array([max(one.high, 13.4531349)])
+    assert sticks_late(scene_at(scene.values, ['axis.mass'], value), 1e4, 5e3) > 1000
+
+
+def test_several_changes_are_all_found() -> None:
+    found = find_transitions(lambda values: (np.sin(values) > 0.0).astype(np.int64), 1.0, 10.0, False, 1e-12)
+    assert found.first == YES
+    assert [one.value for one in found.transitions] == pytest.approx([math.pi, 2.0 * math.pi, 3.0 * math.pi], rel=1e-12)
+    assert [one.rises for one in found.transitions] == [False, True, False]
+    assert [found.at(value) for value in (3.0, 4.0, 7.0, 9.9)] == [YES, NO, YES, NO]
+
+
+def test_what_cannot_be_told_stays_open() -> None:
+    def judge(values: Numbers) -> Verdicts:
+        return np.where(abs(values - 2.0) < 1e-3, OPEN, values > 2.0).astype(np.int64)
+
+    (one,) = find_transitions(judge, 1.0, 3.5, False, 1e-9).transitions
+    assert not one.resolved
+    assert one.low == pytest.approx(1.999, abs=3e-4)
+    assert one.high == pytest.approx(2.001, abs=3e-4)
+    for verdict in (OPEN, FAILED):
+        found = find_transitions(lambda values: np.full(len(values), verdict), 1.0, 2.0, False, 1e-9)  # noqa: B023
+        assert found == Findings(verdict, (), (Doubt(1.0, 2.0, verdict == FAILED),))
+
+
+def test_what_cannot_be_told_between_two_equal_verdicts_or_at_an_end_is_told() -> None:
+    def judge(values: Numbers) -> Verdicts:
+        found = np.where((values > 2.0) & (values < 3.0), OPEN, YES)
+        return np.where(values > 8.0, FAILED, found).astype(np.int64)
+
+    found = find_transitions(judge, 1.0, 9.0, False, 1e-9)
+    assert (found.first, found.transitions) == (YES, ())
+    assert [(one.low, one.high, one.failed) for one in found.doubts] == [(2.0, 3.0, False), (8.0, 9.0, True)]
+    assert [found.at(value) for value in (1.5, 2.5, 5.0, 8.5)] == [YES, OPEN, YES, OPEN]
+
+
+def test_a_failed_run_between_two_verdicts_is_told() -> None:
+    def judge(values: Numbers) -> Verdicts:
+        return np.where(abs(values - 2.0) < 1e-3, FAILED, values > 2.0).astype(np.int64)
+
+    (one,) = find_transitions(judge, 1.0, 3.5, False, 1e-9).transitions
+    assert (one.resolved, one.failed) == (False, True)
+
+
+def test_verdicts_that_come_by_turns_are_no_figure() -> None:
+    """As near a motion that sticks by chance: beyond the ends of what is told no verdict contradicts."""
+    def judge(values: Numbers) -> Verdicts:
+        by_chance = np.mod(1e9 * np.sin(12345.0 * values), 1.0) > 0.5
+        return np.where(abs(values - 2.0) < 3e-3, by_chance, values > 2.0).astype(np.int64)
+
+    (one,) = find_transitions(judge, 1.0, 3.5, False, 1e-9).transitions
+    assert not one.resolved
+    assert one.rises
+    assert 1.99 < one.low <= 1.997 + 1e-4
+    assert 2.003 - 1e-4 <= one.high < 2.01
+
+
+@pytest.mark.parametrize('seed', range(40))
+def test_both_ends_of_what_is_told_have_the_verdict_that_is_told(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    width, likely = 10.0 ** rng.uniform(-6.0, -1.0), rng.uniform(0.1, 0.9)
+
+    def judge(values: Numbers) -> Verdicts:
+        by_chance = np.mod(1e9 * np.sin(12345.0 * values + seed), 1.0) < likely
+        found = np.where(abs(values - 2.0) < width, by_chance, values > 2.0)
+        return np.where(abs(values - 2.0) < 0.1 * width, OPEN, found).astype(np.int64)
+
+    for one in find_transitions(judge, 1.0, 3.5, False, 1e-9).transitions:
+        assert judge(np.array([one.low, one.high])).tolist() == [int(not one.rises), int(one.rises)]
+
+
+def test_three_clear_changes_between_two_values_of_the_scan_are_three() -> None:
+    def judge(values: Numbers) -> Verdicts:
+        return (((values > 2.03) & (values < 2.05)) | (values > 2.07)).astype(np.int64)
+
+    found = find_transitions(judge, 1.0, 6.0, False, 1e-12).transitions
+    assert [one.value for one in found] == pytest.approx([2.03, 2.05, 2.07], rel=1e-11)
+    assert [(one.rises, one.resolved) for one in found] == [(True, True), (False, True), (True, True)]
+
+
+def test_the_finest_accuracy_ends() -> None:
+    (one,) = find_transitions(lambda values: (values > math.pi).astype(np.int64), 1.0, 10.0, False, 1e-15).transitions
+    assert one.resolved
+    assert one.low <= math.pi < one.high
+    assert one.high - one.low <= 2.0 * math.ulp(math.pi)
+
+
+def test_the_tool_tells_both_values(capsys: Capture) -> None:
+    assert run(['critical', 'paper_fig4_falling', '--of', 'axis.normal_force', '--between', '500:5000']) == 0
+    out = capsys.readouterr().out
+    assert 'from rest' in out
+    assert 'bistable' in out
+    assert 'to 2000 N both go on' in out
+
+
+def test_the_tool_says_that_there_is_no_transition(capsys: Capture) -> None:
+    assert run(['critical', 'paper_fig7', '--of', 'drive.velocity', '--between', '1e-4:1e-3']) == 0
+    out = capsys.readouterr().out
+    assert out.count('no transition') == 2
+    assert 'stick-slip all over the range' in out
+
+
+def test_the_tool_tells_what_is_undecided(capsys: Capture) -> None:
+    """With no more digits than the stretch has a use for, rounded outwards."""
+    assert run(['critical', 'paper_fig8', '--of', 'axis.drive_damping', '--between', '1.1e4:1.2e4']) == 0
+    out = capsys.readouterr().out
+    told = r'^from rest      between [\d.]+ and [\d.]+ N s/m, undecided: stick-slip below, no stick-slip above$'
+    assert re.search(told, out, re.MULTILINE), out
+    low, high = map(float, re.findall(r'between ([\d.]+) and ([\d.]+) N', out)[0])
+    assert low < 11490.0 < 11491.0 < high
+
+
+def test_without_a_range_it_looks_about_the_value_of_the_scene() -> None:
+    over = default_range(load_scene('paper_fig7'), 'drive.velocity')
+    assert (over.low, over.high, over.log) == (2e-5, 0.2, True)
+    assert default_range(load_scene('paper_fig7'), 'friction.kinetic.coefficients[1]').high == pytest.approx(5.0)
+
+
+@pytest.mark.parametrize(('arguments', 'said'), [
+    (['--of', 'axis.mas'], 'axis.mass'), (['--of', 'contact.model'], 'a number'),
+    (['--of', 'axis.mass', '--between', '1'], 'LOW:HIGH'), (['--of', 'axis.mass', '--between', '5:1'], 'swap'),
+    (['--of', 'axis.mass', '--between', 'a:1'], 'finite number'), (['--of', 'axis.mass', '--between', '-1:1'], '1e-09'),
+    (['--of', 'axis.mass', '--accuracy', '0'], '--accuracy'),
+    (['--of', 'axis.mass', '--accuracy', 'nan'], '--accuracy'),
+    (['--of', 'force.constant'], '--between'), (['--of', 'contact.stiffness'], '--between'),
+    (['--of', 'contact.stiffness', '--between', '1:2'], 'contact.model'),
+    (['--of', 'friction.kinetic.coefficients[7]', '--between', '0.1:0.2'], 'has 2')])
+def test_wrong_use_gets_one_line(arguments: list[str], said: str, capsys: Capture) -> None:
+    assert run(['critical', 'paper_fig7', *arguments]) == 2
+    out, err = capsys.readouterr()
+    assert (out, err.count('\n')) == ('', 1)
+    assert said in err
+
+
+def test_inputs_that_change_with_time_are_refused() -> None:
+    with pytest.raises(InputError, match='constant inputs'):
+        critical(load_scene('cutting_force'), Variation('axis.mass', 100.0, 500.0), ACCURACY)
+
+
+def test_the_closed_form_of_the_feed_is_the_one_of_the_drop() -> None:
+    from stickslip_sim.study.theory import Oscillator
+
+    axis = load_scene('paper_fig4_constant', CONSTANT).axis
+    assert feed_of_theory(axis) == critical_feed(Oscillator(350.0, 6e5, 4000.0), 0.12 * 3432.3275)

@@ -1,0 +1,139 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""`stickslip map` as a user meets it: pictures of sweeps, and folders that are none."""
+
+import json
+import math
+import shutil
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from stickslip_sim.cli.main import run
+from stickslip_sim.scene import load_scene
+from stickslip_sim.study import Grid, Study, variation
+from stickslip_sim.study.bifurcation import bifurcation
+from stickslip_sim.study.borders import borders
+from stickslip_sim.study.folder import PARTIAL, SIDECAR, TABLE
+from tests.support.tool import Capture, refused
+
+SMALL = ['paper_fig7', '--over', 'drive.velocity=1e-3:0.06:6:log', '--over', 'axis.drive_stiffness=1e5:1e6:4:log']
+
+
+@pytest.fixture(scope='module')
+def swept(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp('swept') / 'out'
+    assert run(['sweep', *SMALL, '--out', str(folder)]) == 0
+    return folder
+
+
+def test_a_map_with_picks(swept: Path, tmp_path: Path) -> None:
+    pictures = [tmp_path / 'map.png', tmp_path / 'map.svg']
+    assert run(['map', str(swept), *(word for path in pictures for word in ('--out', str(path))),
+                '--pick', '0.002,6e5', '--pick', '0.05,3e5', '--show', 'period']) == 0
+    assert pictures[0].read_bytes().startswith(b'\x89PNG')
+    text = pictures[1].read_text()
+    for words in ('drive velocity / (mm/s)', 'drive stiffness / (N/µm)', 'period / s', 'smooth sliding',
+                  'steady sliding loses stability', 'spring stretch / mm'):
+        assert words in text
+    assert run(['map', str(swept), '--out', str(tmp_path / 'again.svg'), '--pick', '0.002,6e5', '--pick', '0.05,3e5',
+                '--show', 'period']) == 0
+    assert (tmp_path / 'again.svg').read_text() == text
+
+
+def test_a_sweep_whose_steps_numpy_rounded_otherwise_is_drawn(swept: Path, tmp_path: Path) -> None:
+    there = tmp_path / 'there'
+    shutil.copytree(swept, there)
+    titles, *rows = (there / TABLE).read_text().splitlines()
+    moved = [f'{math.nextafter(float(feed), 1.0)!r},{rest}' for feed, rest in (row.split(',', 1) for row in rows)]
+    (there / TABLE).write_text('\n'.join((titles, *moved, '')))
+    assert (there / TABLE).read_text() != (swept / TABLE).read_text()
+    assert run(['map', str(there), '--out', str(tmp_path / 'map.svg')]) == 0
+
+
+def test_the_feed_lies_along_x_and_the_critical_feed_is_drawn(tmp_path: Path) -> None:
+    assert run(['sweep', 'paper_fig4_constant', '--set', 'friction.static.law=constant', '--set',
+                'friction.static.initial=0.24', '--over', 'axis.drive_damping=100:8000:3:log', '--over',
+                'drive.velocity=1e-3:0.2:4:log', '--out', str(tmp_path / 'out')]) == 0
+    assert run(['map', str(tmp_path / 'out'), '--out', str(tmp_path / 'map.svg')]) == 0
+    text = (tmp_path / 'map.svg').read_text()
+    assert 'critical feed, closed form' in text
+    assert text.index('drive velocity') < text.index('drive damping')
+
+
+def test_a_feed_that_rests_has_no_steady_sliding_that_could_be_lost() -> None:
+    scene = load_scene('paper_fig7')
+    study = Study(scene.values, Grid((variation('drive.velocity=0:0.06:3'), variation('axis.mass=300:400:2'))))
+    known = borders(study)
+    assert known is not None
+    assert np.isnan(known.is_lost[:, 0]).all()
+    assert (known.is_lost[:, 1:] == (known.feeds[1:] < 0.035)).all()
+    through_rest = Study(scene.values, Grid((variation('drive.velocity=-0.01:0.01:3'),)))
+    sliding = bifurcation(through_rest, through_rest.figures(0, 3)).sliding
+    friction = scene.axis.normal_force * (0.12 - 0.07 * 0.01 / 0.035)
+    assert sliding[:, 1] == pytest.approx([-friction, np.nan, friction], rel=1e-9, nan_ok=True)
+
+
+def test_a_bifurcation_diagram(tmp_path: Path) -> None:
+    assert run(['sweep', 'paper_fig4_falling', '--over', 'drive.velocity=1e-3:0.06:8:log', '--out',
+                str(tmp_path / 'out')]) == 0
+    assert run(['map', str(tmp_path / 'out'), '--out', str(tmp_path / 'b.svg')]) == 0
+    text = (tmp_path / 'b.svg').read_text()
+    for words in ('drive force / N', 'at break-away', 'steady sliding', 'unstable', 'jump from cycle to cycle / mm'):
+        assert words in text
+
+
+@pytest.mark.parametrize(('arguments', 'said'), [
+    (['--out', 'map.jpg'], '.png'), (['--out', 'map.png', '--show', 'colour'], 'amplitude'),
+    (['--out', 'map.png', '--pick', '1'], '--pick'), (['--out', 'map.png', '--pick', '1,2'], '--pick'),
+    (['--out', 'map.png', '--pick', 'a,b'], '--pick'), (['--out', 'map.png', '--pick', 'nan,6e5'], '--pick'),
+    (['--out', '/no/folder/map.png'], '/no/folder'), (['--out', 'map.png', '--out', 'map.png'], 'another place'),
+    (['--out', 'map.png', *['--pick', '0.002,6e5'] * 7], 'at most 6')])
+def test_a_map_that_cannot_be_is_refused(swept: Path, arguments: list[str], said: str, tmp_path: Path, capsys: Capture,
+                                         monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert said in refused(capsys, 'map', swept, *arguments)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_what_is_no_complete_sweep_of_one_or_two_parameters_is_refused(swept: Path, tmp_path: Path,
+                                                                       capsys: Capture) -> None:
+    picture = ['--out', str(tmp_path / 'map.png')]
+    assert 'study.json' in refused(capsys, 'map', tmp_path, *picture)
+    shutil.copytree(swept, tmp_path / 'part')
+    (tmp_path / 'part' / TABLE).rename(tmp_path / 'part' / PARTIAL)
+    assert '--resume' in refused(capsys, 'map', tmp_path / 'part', *picture)
+    drawn = ['--over', 'axis.mass=300:400', '--sobol', '4', '--out', str(tmp_path / 's')]
+    assert run(['sweep', 'paper_fig7', *drawn]) == 0
+    capsys.readouterr()
+    assert 'a grid of two parameters' in refused(capsys, 'map', tmp_path / 's', *picture)
+    told = json.loads((swept / SIDECAR).read_text())
+    over = told['over']
+    for changed in ({'over': None}, {'over': [{**one, 'count': '7'} for one in over]}, {'scene_text': 3}, {'points': 7},
+                    {'over': [{**one, 'low': 'a'} for one in over]}, {'duration': '1'}, {'sobol': {'points': 4}}):
+        (tmp_path / 'part' / SIDECAR).write_text(json.dumps({**told, **changed}))
+        assert 'it was changed' in refused(capsys, 'map', tmp_path / 'part', *picture), changed
+    (tmp_path / 'part' / SIDECAR).write_text('[' * 100_000)
+    assert 'study.json' in refused(capsys, 'map', tmp_path / 'part', *picture)
+    shutil.copytree(swept, tmp_path / 'cut')
+    (tmp_path / 'cut' / TABLE).write_bytes((swept / TABLE).read_bytes()[:-300])
+    assert 'points' in refused(capsys, 'map', tmp_path / 'cut', *picture)
+
+
+@pytest.mark.parametrize(('place', 'value'), [
+    (('points',), 4), (('duration',), '1'), (('over', 0, 'count'), 3.0), (('over', 0, 'low'), 'x'),
+    (('over', 0, 'name'), None), (('over',), False), (('sobol',), []), (('scene_text',), 7)])
+def test_an_edited_description_is_refused(tmp_path: Path, capsys: Capture, place: tuple[Any, ...], value: Any) -> None:
+    out = tmp_path / 'out'
+    assert run(['sweep', 'paper_fig7', '--over', 'drive.velocity=0.001:0.01:3', '--duration', '1', '--out',
+                str(out)]) == 0
+    told = node = json.loads((out / SIDECAR).read_text())
+    for key in place[:-1]:
+        node = node[key]
+    node[place[-1]] = value
+    (out / SIDECAR).write_text(json.dumps(told))
+    capsys.readouterr()
+    refused(capsys, 'map', out, '--out', tmp_path / 'map.svg')
+    assert not (tmp_path / 'map.svg').exists()

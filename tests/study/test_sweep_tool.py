@@ -1,0 +1,291 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""`stickslip sweep` as a user meets it: interrupted, killed, resumed, on a full disk, misused."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from stickslip_sim.cli.main import run
+from stickslip_sim.study import Study, resources
+from stickslip_sim.study.description import study_of
+from stickslip_sim.study.folder import PARQUET, PARTIAL, SIDECAR, TABLE, Folder
+from stickslip_sim.study.point_figures import FIGURES
+from stickslip_sim.study.table import header, read_columns
+from tests.support.tool import Capture, refused, restore_interrupt
+
+SMALL = ['paper_fig7', '--over', 'drive.velocity=1e-3:0.06:6:log', '--over', 'axis.drive_stiffness=1e5:1e6:4:log']
+LONG = ['paper_fig7', '--over', 'drive.velocity=1e-3:0.03:8000:log', '--duration', '40']   # four chunks
+FULL = 'import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (600_000, 600_000)); '
+
+
+def started(*arguments: str | Path) -> 'subprocess.Popen[str]':
+    return subprocess.Popen([sys.executable, '-m', 'stickslip_sim', 'sweep', *map(str, arguments)], text=True,
+                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True,
+                            preexec_fn=restore_interrupt)
+
+
+def wait_for_lines(path: Path, process: 'subprocess.Popen[str]') -> None:
+    """Wait until there is a whole chunk, and the sweep still runs."""
+    end = time.monotonic() + 60.0
+    while not path.exists() or path.read_bytes().count(b'\n') <= 2000:
+        assert time.monotonic() < end
+        assert process.poll() is None, process.communicate()
+        time.sleep(0.005)
+
+
+@pytest.fixture(scope='module')
+def uninterrupted(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    folder = tmp_path_factory.mktemp('whole') / 'out'
+    assert run(['sweep', *LONG, '--out', str(folder)]) == 0
+    return (folder / TABLE).read_bytes()
+
+
+def test_a_sweep_says_what_it_is_and_can_be_read_back(tmp_path: Path, capsys: Capture) -> None:
+    assert run(['sweep', *SMALL, '--set', 'axis.mass=300.0', '--out', str(tmp_path / 'out')]) == 0
+    assert '24 points' in capsys.readouterr().out
+    told = json.loads((tmp_path / 'out' / SIDECAR).read_text())
+    assert {'stickslip', 'numpy', 'python', 'hot_path'} <= told['versions'].keys()
+    assert 'mass: 300.0' in told['scene_text']
+    study = study_of(told)
+    columns = read_columns(tmp_path / 'out' / TABLE, study)
+    points, figures = study.points(0, 24), study.figures(0, 24)
+    assert np.array_equal(columns['drive.velocity'], points[:, 0])
+    for name in FIGURES:
+        assert columns[name].tobytes() == getattr(figures, name).tobytes(), name
+
+
+def test_the_sidecar_is_the_study(tmp_path: Path) -> None:
+    drawn = ['stribeck', '--over', 'friction.kinetic.stribeck_velocity=1e-3:1e-2:log', '--sobol', '5']
+    for name, arguments in (('grid', SMALL), ('drawn', drawn)):
+        out = tmp_path / name
+        assert run(['sweep', *arguments, '--out', str(out)]) == 0
+        study = study_of(Folder(out).described())
+        Folder(out).check_same(study)
+        assert isinstance(study, Study)
+
+
+def test_workers_change_no_bit(tmp_path: Path, uninterrupted: bytes) -> None:
+    assert run(['sweep', *LONG, '--workers', '2', '--out', str(tmp_path / 'two')]) == 0
+    assert (tmp_path / 'two' / TABLE).read_bytes() == uninterrupted
+
+
+@pytest.mark.parametrize('workers', ['1', '2'])
+def test_killed_in_the_middle_and_resumed_it_gives_the_same_file(workers: str, tmp_path: Path,
+                                                                 uninterrupted: bytes) -> None:
+    out = tmp_path / 'out'
+    process = started(*LONG, '--workers', workers, '--out', out)
+    wait_for_lines(out / PARTIAL, process)
+    process.kill()
+    process.communicate()
+    assert not (out / TABLE).exists()
+    with (out / PARTIAL).open('ab') as file:
+        file.write(b'0.001,stick-sl')   # as a power failure would leave it
+    resumed = started(*LONG, '--out', out, '--resume')
+    said, error = resumed.communicate(timeout=60)
+    assert resumed.returncode == 0, error
+    assert ', 8000 of them run now' not in said
+    assert (out / TABLE).read_bytes() == uninterrupted
+    assert not (out / PARTIAL).exists()
+
+
+@pytest.mark.parametrize('workers', ['1', '2'])
+def test_ctrl_c_keeps_what_is_done(workers: str, tmp_path: Path, uninterrupted: bytes) -> None:
+    out = tmp_path / 'out'
+    process = started(*LONG, '--workers', workers, '--out', out)
+    wait_for_lines(out / PARTIAL, process)
+    os.killpg(process.pid, signal.SIGINT)
+    said, error = process.communicate(timeout=60)
+    assert process.returncode == 130, error
+    assert (said, error.count('\n')) == ('', 1)
+    assert '--resume' in error
+    rows = (out / PARTIAL).read_bytes()
+    assert uninterrupted.startswith(rows)
+    assert rows.count(b'\n') % 2000 == 1
+    assert run(['sweep', *LONG, '--out', str(out), '--resume']) == 0
+    assert (out / TABLE).read_bytes() == uninterrupted
+
+
+def test_no_worker_outlives_a_killed_sweep(tmp_path: Path) -> None:
+    process = started(*LONG, '--workers', '2', '--out', tmp_path / 'out')
+    wait_for_lines(tmp_path / 'out' / PARTIAL, process)
+    process.kill()
+    process.communicate(timeout=60)   # the workers hold its standard error: it ends when they are gone
+
+
+def test_a_full_disk_gets_one_line_and_keeps_whole_chunks(tmp_path: Path, uninterrupted: bytes) -> None:
+    out = tmp_path / 'out'
+    arguments = ['sweep', *LONG, '--out', str(out)]
+    program = f'{FULL}from stickslip_sim.cli.main import run; raise SystemExit(run({arguments}))'
+    done = subprocess.run([sys.executable, '-c', program], capture_output=True, text=True, timeout=60, check=False)
+    assert (done.returncode, done.stdout, done.stderr.count('\n')) == (2, '', 1)
+    assert 'File too large' in done.stderr
+    assert '--resume' in done.stderr
+    rows = (out / PARTIAL).read_bytes()
+    assert uninterrupted.startswith(rows)
+    assert rows.count(b'\n') % 2000 == 1
+    assert run(['sweep', *LONG, '--out', str(out), '--resume']) == 0
+    assert (out / TABLE).read_bytes() == uninterrupted
+
+
+def test_a_worker_that_dies_is_told(tmp_path: Path) -> None:
+    process = started(*LONG, '--workers', '2', '--out', tmp_path / 'out')
+    wait_for_lines(tmp_path / 'out' / PARTIAL, process)
+    children = Path(f'/proc/{process.pid}/task/{process.pid}/children').read_text().split()
+    workers = [pid for pid in children if b'spawn_main' in Path(f'/proc/{pid}/cmdline').read_bytes()]
+    os.kill(int(workers[0]), signal.SIGKILL)
+    said, error = process.communicate(timeout=60)
+    assert (process.returncode, said, error.count('\n')) == (1, '', 1)
+    assert 'worker' in error
+    assert '--resume' in error
+
+
+def test_resuming_what_is_complete_does_nothing(tmp_path: Path, capsys: Capture) -> None:
+    assert run(['sweep', *SMALL, '--out', str(tmp_path / 'out')]) == 0
+    before = (tmp_path / 'out' / TABLE).stat().st_mtime_ns
+    capsys.readouterr()
+    assert run(['sweep', *SMALL, '--out', str(tmp_path / 'out'), '--resume']) == 0
+    assert '0 of them run now' in capsys.readouterr().out
+    assert (tmp_path / 'out' / TABLE).stat().st_mtime_ns == before
+
+
+def test_resuming_another_study_is_refused(tmp_path: Path, capsys: Capture) -> None:
+    out = tmp_path / 'out'
+    assert run(['sweep', *SMALL, '--out', str(out)]) == 0
+    before = {path.name: path.read_bytes() for path in out.iterdir()}
+    capsys.readouterr()
+    for more, said in ((['--set', 'axis.mass=300.0'], 'scene_hash'), (['--duration', '3'], 'duration'),
+                       (['--over', 'axis.mass=300:400:2'], 'points')):
+        assert said in refused(capsys, 'sweep', *SMALL, *more, '--out', out, '--resume')
+    assert {path.name: path.read_bytes() for path in out.iterdir()} == before
+    told = json.loads(before[SIDECAR])
+    (out / SIDECAR).write_text(json.dumps({**told, 'versions': {**told['versions'], 'stickslip': '0.0.1'}}))
+    assert 'versions' in refused(capsys, 'sweep', *SMALL, '--out', out, '--resume')
+
+
+@pytest.mark.parametrize(('arguments', 'said'), [
+    (['paper_fig7', '--over', 'axis.masss=1:2:3'], 'did you mean axis.mass?'),
+    (['paper_fig7', '--over', 'contact.model=1:2:3'], 'a number'),
+    (['paper_fig7', '--over', 'friction.kinetic.coefficients[01]=0.04:0.06:3'], 'did you mean'),
+    (['paper_fig7', '--over', 'axis.mass=2:1:3'], 'swap'), (['paper_fig7', '--over', 'axis.mass=1:2:1'], 'N >= 2'),
+    (['paper_fig7', '--over', 'axis.normal_force=0:2:3:log'], 'logarithmic'),
+    (['paper_fig7', '--over', 'axis.mass=0:2:3'], '>= 1e-09'),
+    (['paper_fig7', '--over', 'axis.mass=1:2'], 'LOW:HIGH:N'),
+    (['paper_fig7', '--over', 'axis.mass=1:2:3', '--sobol', '8'], 'no N'),
+    (['paper_fig7', '--over', 'axis.mass=1:2', '--sobol', '0'], '--sobol'),
+    (['paper_fig7', '--over', 'axis.mass=1:2', '--sobol', '9999999999'], '--sobol'),
+    (['paper_fig7', '--over', 'axis.mass=1:2:3', '--workers', '0'], '--workers'),
+    (['paper_fig7', '--over', 'axis.mass=1:2:3', '--workers', 'two'], '--workers'),
+    (['paper_fig7', '--over', 'axis.mass=1:2:3', '--duration', '-1'], 'duration'),
+    (['no_such', '--over', 'axis.mass=1:2:3'], 'no_such'), (['paper_fig7'], '--over'),
+    (['paper_fig7', '--over', 'axis.mass=1:2:1000000', '--over', 'axis.drive_damping=1:2:1000000'], 'MB of memory')])
+def test_wrong_use_gets_one_line_and_leaves_nothing(arguments: list[str], said: str, tmp_path: Path,
+                                                    capsys: Capture) -> None:
+    assert said in refused(capsys, 'sweep', *arguments, '--out', tmp_path / 'out')
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_places_that_cannot_be_are_refused(tmp_path: Path, capsys: Capture) -> None:
+    (tmp_path / 'there').mkdir()
+    assert '--resume' in refused(capsys, 'sweep', *SMALL, '--out', tmp_path / 'there')
+    assert 'study.json' in refused(capsys, 'sweep', *SMALL, '--out', tmp_path / 'there', '--resume')
+    assert 'study.json' in refused(capsys, 'sweep', *SMALL, '--out', tmp_path / 'nowhere', '--resume')
+    assert 'make the folder' in refused(capsys, 'sweep', *SMALL, '--out', tmp_path / 'no' / 'where')
+    error = refused(capsys, 'sweep', *SMALL, '--out', '/sys/sweep')
+    assert 'can be written' in error
+    assert 'nothing is left behind' in error
+    assert sorted(path.name for path in tmp_path.rglob('*')) == ['there']
+
+
+def test_a_table_of_something_else_is_not_gone_on_with(tmp_path: Path, capsys: Capture) -> None:
+    out = tmp_path / 'out'
+    assert run(['sweep', *SMALL, '--out', str(out)]) == 0
+    (out / TABLE).unlink()
+    (out / PARTIAL).write_text('a,b\n1,2\n')
+    capsys.readouterr()
+    assert 'was changed' in refused(capsys, 'sweep', *SMALL, '--out', out, '--resume')
+    assert (out / PARTIAL).read_text() == 'a,b\n1,2\n'
+
+
+@pytest.mark.parametrize('flaw', ['a line is gone', 'no motion', 'zeros', 'no text', 'a number of another point',
+                                  'no number'])
+def test_a_chunk_that_is_not_whole_is_run_again(flaw: str, tmp_path: Path, uninterrupted: bytes) -> None:
+    out = tmp_path / 'out'
+    assert run(['sweep', *LONG, '--out', str(out)]) == 0
+    rows = uninterrupted.splitlines(keepends=True)
+    bad = {'a line is gone': b'', 'no motion': rows[3000].replace(b'stick-slip', b'slick-stip'), 'no text': b'\xff\n',
+           'zeros': b'\0' * 100 + b'\n', 'a number of another point': b'1' + rows[3000],
+           'no number': rows[3000].replace(b'slip,1.0,', b'slip,inf,')}
+    assert bad[flaw] != rows[3000]
+    (out / TABLE).unlink()
+    (out / PARTIAL).write_bytes(b''.join([*rows[:3000], bad[flaw], *rows[3001:]]))
+    assert Folder(out).whole_chunks(study_of(Folder(out).described())) == 1
+    assert run(['sweep', *LONG, '--out', str(out), '--resume']) == 0
+    assert (out / TABLE).read_bytes() == uninterrupted
+
+
+def test_two_processes_do_not_share_a_folder(tmp_path: Path, uninterrupted: bytes, capsys: Capture) -> None:
+    out = tmp_path / 'out'
+    process = started(*LONG, '--out', out)
+    wait_for_lines(out / PARTIAL, process)
+    process.send_signal(signal.SIGSTOP)   # so that it surely works on the folder all the time
+    try:
+        assert 'no other process' in refused(capsys, 'sweep', *LONG, '--out', out, '--resume')
+    finally:
+        process.send_signal(signal.SIGCONT)
+    error = process.communicate(timeout=60)[1]
+    assert process.returncode == 0, error
+    assert (out / TABLE).read_bytes() == uninterrupted
+
+
+def test_more_workers_than_memory_holds_are_refused(tmp_path: Path, capsys: Capture,
+                                                    monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(resources, 'free_memory', lambda: 200_000_000)
+    monkeypatch.setattr(os, 'sched_getaffinity', lambda _: range(5))
+    for workers in ('5', 'all'):
+        error = refused(capsys, 'sweep', *SMALL, '--workers', workers, '--out', tmp_path / 'out')
+        assert 'at most 4: they would take 250 MB of memory, of which 200 MB are free' in error
+        assert not (tmp_path / 'out').exists()
+
+
+def test_parquet_has_the_same_table(tmp_path: Path) -> None:
+    pandas = pytest.importorskip('pandas')
+    pytest.importorskip('fastparquet')
+    assert run(['sweep', *SMALL, '--out', str(tmp_path / 'out')]) == 0
+    study = study_of(Folder(tmp_path / 'out').described())
+    table = pandas.read_parquet(tmp_path / 'out' / PARQUET)
+    assert ','.join(table.columns) + '\n' == header(study).decode()
+    columns = read_columns(tmp_path / 'out' / TABLE, study)
+    for name in (*study.names, *FIGURES[1:]):
+        assert np.array_equal(table[name].to_numpy(), columns[name], equal_nan=True)
+    assert set(table['motion']) == {'stick-slip', 'smooth sliding'}
+
+
+def test_a_broken_pandas_keeps_no_study_from_its_end(tmp_path: Path) -> None:
+    for name in ('pandas', 'fastparquet'):
+        (tmp_path / f'{name}.py').write_text('raise ImportError("built for another numpy")\n')
+    done = subprocess.run([sys.executable, '-m', 'stickslip_sim', 'sweep', *SMALL, '--out', str(tmp_path / 'out')],
+                          env={**os.environ, 'PYTHONPATH': os.pathsep.join([str(tmp_path), *filter(None, sys.path)])},
+                          capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / 'out' / TABLE).exists()
+    assert not (tmp_path / 'out' / PARQUET).exists()
+
+
+def test_a_partial_table_with_other_columns_is_run_again(tmp_path: Path) -> None:
+    out = tmp_path / 'out'
+    command = ['sweep', 'paper_fig7', '--over', 'drive.velocity=0.001:0.01:3', '--duration', '1', '--out', str(out)]
+    assert run(command) == 0
+    whole = (out / TABLE).read_text()
+    titles, first, second, third = whole.splitlines()
+    (out / TABLE).unlink()
+    (out / PARTIAL).write_text('\n'.join((titles, first, f'{second},1', third, '')))
+    assert run([*command, '--resume']) == 0
+    assert (out / TABLE).read_text() == whole

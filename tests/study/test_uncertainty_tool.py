@@ -1,0 +1,116 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""`stickslip uncertainty` as a user meets it: what it says and writes, resumed, misused."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from stickslip_sim.cli.main import run
+from stickslip_sim.study.description import study_of
+from stickslip_sim.study.folder import PARTIAL, TABLE, Folder
+from tests.support.tool import Capture
+
+KNOWN = """parameters:
+  friction.static.limit: {distribution: normal, mean: 0.24, standard_deviation: 0.02, between: [0.18, 0.3]}
+  friction.static.time_constant: {distribution: lognormal, median: 0.2, geometric_standard_deviation: 1.5,
+                                  between: [0.05, 0.8]}
+"""
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> str:
+    path = tmp_path / 'friction.yaml'
+    path.write_text(KNOWN)
+    return str(path)
+
+
+def test_it_tells_percentiles_and_indices_and_writes_them(tmp_path: Path, file: str, capsys: Capture) -> None:
+    out = tmp_path / 'out'
+    assert run(['uncertainty', 'paper_fig7', '--with', file, '--samples', '32', '--out', str(out)]) == 0
+    said = capsys.readouterr().out
+    told = json.loads((out / 'uncertainty.json').read_text())
+    assert '32 samples of 2 parameters, 128 points, 128 run now' in said
+    assert 'cut to 0.18 .. 0.3 (0.0027 off)' in said
+    assert told['stick_slip'] == 1.0
+    assert list(told['percentiles']['period']) == ['5', '25', '50', '75', '95']
+    index = told['indices']['period']['friction.static.time_constant']
+    assert f'{index["first_order"]:6.3f} ± {index["error"]:.3f}' in said
+    assert study_of(Folder(out).described()).count == 128
+
+
+def test_a_picture_of_it(tmp_path: Path, file: str) -> None:
+    common = ['uncertainty', 'paper_fig7', '--with', file, '--samples', '32', '--out', str(tmp_path / 'out')]
+    assert run([*common, '--plot', str(tmp_path / 'one.svg')]) == 0
+    assert run([*common, '--plot', str(tmp_path / 'two.svg'), '--resume']) == 0
+    text = (tmp_path / 'one.svg').read_text()
+    for words in ('100 % of 64 points stick and slip', 'amplitude / mm', 'points / %', '5 and 95 %',
+                  'with its interactions', 'friction static time constant'):
+        assert words in text
+    assert text == (tmp_path / 'two.svg').read_text()
+
+
+def test_a_picture_where_nothing_sticks_and_slips(tmp_path: Path, file: str) -> None:
+    picture = tmp_path / 'none.svg'
+    assert run(['uncertainty', 'paper_fig7', '--with', file, '--samples', '16', '--set', 'drive.velocity=0.0', '--out',
+                str(tmp_path / 'out'), '--plot', str(picture)]) == 0
+    assert '0 % of 32 points stick and slip' in picture.read_text()
+    assert 'with its interactions' not in picture.read_text()
+
+
+def test_resumed_it_gives_the_same_files(tmp_path: Path, file: str) -> None:
+    common = ['uncertainty', 'paper_fig7', '--with', file, '--samples', '1024', '--duration', '4']   # three chunks
+    whole, cut = tmp_path / 'whole', tmp_path / 'cut'
+    assert run([*common, '--out', str(whole)]) == 0
+    assert run([*common, '--out', str(cut)]) == 0
+    lines = (cut / TABLE).read_bytes().splitlines(keepends=True)
+    (cut / TABLE).unlink()
+    (cut / 'uncertainty.json').unlink()
+    (cut / PARTIAL).write_bytes(b''.join(lines[:2500]))   # as a kill would leave it
+    assert run([*common, '--out', str(cut), '--resume']) == 0
+    for name in (TABLE, 'uncertainty.json'):
+        assert (cut / name).read_bytes() == (whole / name).read_bytes()
+
+
+@pytest.mark.parametrize(('arguments', 'words'), [
+    (['--samples', '100'], ('--samples', '100', 'power of two')),
+    (['--set', 'friction.static.limit=-1.0'], ('friction.static.limit',)),
+    (['--set', 'friction.static.initial=0.2'], ('at friction.static.limit=0.18', 'friction.static.limit')),
+    (['--workers', '0'], ('--workers', '0')),
+    (['--plot', 'picture.jpg'], ('--plot', '.png or .svg')),
+    (['--plot', '/no/where.png'], ('--plot', '/no')),
+    (['--resume'], ('sweep',))])
+def test_misuse_gets_one_line_and_writes_nothing(arguments: list[str], words: tuple[str, ...], tmp_path: Path,
+                                                 file: str, capsys: Capture) -> None:
+    out = tmp_path / 'out'
+    assert run(['uncertainty', 'paper_fig7', '--with', file, '--out', str(out), *arguments]) == 2
+    said, error = capsys.readouterr()
+    assert (said, error.count('\n')) == ('', 1)
+    for word in words:
+        assert word in error
+    assert not out.exists()
+
+
+def test_a_wrong_file_is_named(tmp_path: Path, capsys: Capture) -> None:
+    path = tmp_path / 'friction.yaml'
+    path.write_text(KNOWN.replace('mean', 'meen'))
+    assert run(['uncertainty', 'paper_fig7', '--with', str(path), '--out', str(tmp_path / 'out')]) == 2
+    error = capsys.readouterr().err
+    assert 'friction.yaml: friction.static.limit.meen' in error
+    assert 'did you mean mean?' in error
+
+
+def test_where_nothing_was_solved_that_is_what_it_tells(tmp_path: Path, file: str, capsys: Capture) -> None:
+    command = ['uncertainty', 'paper_fig7', '--with', file, '--samples', '16', '--duration', '2', '--out',
+               str(tmp_path / 'out')]
+    assert run(command) == 0
+    titles, *lines = (tmp_path / 'out' / TABLE).read_text().splitlines()
+    failed = [','.join([*line.split(',')[:2], 'failed', *[''] * 10]) for line in lines]
+    (tmp_path / 'out' / TABLE).write_text('\n'.join((titles, *failed, '')))
+    capsys.readouterr()
+    assert run([*command, '--resume']) == 0
+    out = capsys.readouterr().out
+    assert 'a share that is not known of those 0 of 32 independent points where it is known, 32 failed\n' in out
+    assert '64 of 64 points failed: the exact engine gave up; see column motion\n' in out
+    assert json.loads((tmp_path / 'out' / 'uncertainty.json').read_text())['stick_slip'] is None

@@ -1,0 +1,80 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Limits files, evidence and bags for tests of `stickslip check`, and the tool itself."""
+
+import math
+import shutil
+from pathlib import Path
+
+from stickslip_sim.check.judgement import Outcome, judge
+from stickslip_sim.check.limits import limits_of
+from stickslip_sim.check.sources import Evidence, simulated
+from stickslip_sim.config.ros_yaml import read_yaml
+from stickslip_sim.recording import RunFacts, write_bag
+from stickslip_sim.runs.offline import run_offline
+from stickslip_sim.scene import Scene, load_scene, scene_from_values
+from tests.support import tool
+from tests.support.tool import Capture
+
+LIMITS = 'limits: {sticks: {max: 1}, longest_stick: {max: 1.0}, peak_speed: {max: 0.02}}'
+DURATION = '1.4'   # s; paper_fig7 sticks once
+
+# An axis without friction that swings out from rest position 0: everything about it has a closed form.
+START_VELOCITY = 0.1                     # m/s
+DECAY = 4000.0 / (2.0 * 350.0)           # 1/s
+FREQUENCY = math.sqrt(6e5 / 350.0 - DECAY**2)   # rad/s
+FREE = scene_from_values({'initial.velocity': START_VELOCITY}, 'free')
+
+
+def free_position(time: float) -> float:
+    return START_VELOCITY / FREQUENCY * math.exp(-DECAY * time) * math.sin(FREQUENCY * time)
+
+
+def evidence(scene: Scene | str, duration: float) -> Evidence:
+    scene = load_scene(scene) if isinstance(scene, str) else scene
+    return simulated(run_offline(scene, duration, scene.time.step))
+
+
+def judged(text: str, found: Evidence) -> dict[str, Outcome]:
+    """Return the outcomes of limits given as YAML, by name."""
+    return {outcome.name: outcome for outcome in judge(limits_of(read_yaml(text)), found)}
+
+
+def measured(text: str, found: Evidence) -> float:
+    """Return the figure of the one limit given as YAML."""
+    (outcome,) = judged(f'limits: {{{text}}}', found).values()
+    assert outcome.value is not None
+    return outcome.value
+
+
+def limits_file(folder: Path, text: str) -> str:
+    path = folder / 'limits.yaml'
+    path.write_text(text, encoding='utf-8')
+    return str(path)
+
+
+def node_bag(folder: Path, timing: object) -> Path:
+    """Write a bag as a node does, with this in its receipt."""
+    scene = load_scene('paper_fig7')
+    done = run_offline(scene, 0.2, scene.time.step)
+    write_bag(folder, RunFacts.of(scene), done.sample_rows(), done.events, {'timing': timing})
+    return folder
+
+
+def cut(bag: Path, folder: Path, share: float) -> Path:
+    """Return a copy of a bag that ends early, as a killed process leaves it."""
+    shutil.copytree(bag, folder)
+    (path,) = folder.glob('*.mcap')
+    data = path.read_bytes()
+    path.write_bytes(data[:int(share * len(data))])
+    return folder
+
+
+def checked(capsys: Capture, *arguments: str | Path) -> tuple[int, str, str]:
+    """Run `stickslip check` in this process; return its exit code, standard output and standard error."""
+    return tool.answered(capsys, 'check', *arguments)
+
+
+def refused(capsys: Capture, *arguments: str | Path) -> str:
+    """Return the one line on standard error."""
+    return tool.refused(capsys, 'check', *arguments)

@@ -1,0 +1,39 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Runs of the node in real time in which everything happens that a bag can tell of."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import partial
+from pathlib import Path
+
+from tests.support.ros_nodes import Client, assert_clean, client, recording_into, running
+from tests.support.waiting import wait_for
+
+from stickslip_msgs.srv import InjectFault  # isort: skip
+
+
+@contextmanager
+def eventful_run(folder: Path) -> Iterator[Client]:
+    """Record commands, faults, changed parameters and transitions; let the caller look before the bag is closed."""
+    with running(*recording_into(folder)) as process, client() as axis:
+        axis.connect()
+        for velocity in (0.004, -0.003, 0.002):
+            axis.send_velocity(velocity)
+            wait_for(partial(_follows, axis, velocity), 'the command in force')
+        assert axis.call(InjectFault, 'inject_fault', id='dry', kind='friction_scale', start=0.05, duration=9.0,
+                         value=1.5).success
+        assert axis.call(InjectFault, 'inject_fault', kind='force_pulse', start=0.2, duration=0.1, value=500.0).success
+        axis.send_force(300.0)
+        assert axis.set_parameters(axis__mass=300.0).successful
+        axis.next('mode_event')
+        assert axis.call(InjectFault, 'inject_fault', id='dry', kind='clear').success
+        assert axis.trigger('clear_faults').success
+        axis.send_force(0.0)
+        axis.next('timing')
+        yield axis
+        assert_clean(*process.end())
+
+
+def _follows(axis: Client, velocity: float) -> bool:
+    return bool(axis.latest('slider_state').drive_velocity == velocity)

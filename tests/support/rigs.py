@@ -1,0 +1,86 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Rigs without ROS, and orders for them by step, which can be given again."""
+
+import random
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
+from typing import Any
+
+from stickslip_sim.axis import Axis, InitialState
+from stickslip_sim.core.input_profile import InputProfile, constant
+from stickslip_sim.core.time_grid import Grid
+from stickslip_sim.rig import Fault, Rig, RigEventKind, StepResult
+from stickslip_sim.rig.faults import RULES
+from stickslip_sim.rig.settings import RigSettings
+from stickslip_sim.solvers import Solver, exact
+from tests.support.axes import COMPLIANT, RIGID, paper_axis
+
+Order = Callable[[Rig], object]
+Script = Mapping[int, Iterable[Order]]
+
+RATE = 1000.0
+STUCK = paper_axis(RIGID)       # breaks away at 823.8 N after prolonged rest
+AXIS = paper_axis(COMPLIANT)
+
+
+def make(axis: Axis = AXIS, drive: InputProfile | float = 0.002, force: InputProfile | float = 0.0, rate: float = RATE,
+         **settings: Any) -> Rig:
+    def profile(given: InputProfile | float) -> InputProfile:
+        return given if isinstance(given, InputProfile) else constant(given)
+
+    return Rig(axis, InitialState(), profile(drive), profile(force), exact.SOLVER, Grid(rate), RigSettings(**settings))
+
+
+def tired_after(time: float) -> Solver:
+    """Return the exact solver, which gives up at a time."""
+    def advance(p: Any, s: Any, second: float, fraction: float, events: Any, row: int) -> Any:
+        if second + fraction > time:
+            return row, -1
+        return exact.SOLVER.advance(p, s, second, fraction, events, row)
+
+    return exact.SOLVER._replace(advance=advance)
+
+
+def run(rig: Rig, steps: int, script: Script | None = None) -> list[StepResult]:
+    """Make steps; orders of a step are given before it."""
+    results = []
+    for _ in range(steps):
+        for order in (script or {}).get(rig.step + 1, ()):
+            order(rig)
+        results.append(rig.make_step())
+    return results
+
+
+def inject(kind: str, start: float = 0.0, duration: float = 0.05, value: float = 0.0, name: str = '') -> Order:
+    return lambda rig: rig.inject(Fault(name, kind, start, duration, value))
+
+
+def told(results: Iterable[StepResult]) -> list[tuple[int, RigEventKind]]:
+    """Return what the notes tell, by step."""
+    return [(result.step, note.kind) for result in results for note in result.notes]
+
+
+def bits(results: Iterable[Any]) -> list[str]:
+    """Return what differs when a single bit does, −0.0 and 0.0 included."""
+    return [repr(result) for result in results]
+
+
+def random_script(seed: int, steps: int) -> Script:
+    """Return orders of all kinds, about one in ten steps."""
+    stream = random.Random(seed)
+    return {step: [_random_order(stream) for _ in range(stream.randint(1, 3))]
+            for step in sorted(stream.sample(range(steps), steps // 10))}
+
+
+def _random_order(stream: random.Random) -> Order:
+    velocity, force, mass = stream.uniform(-0.02, 0.02), stream.uniform(-900.0, 900.0), stream.uniform(300.0, 400.0)
+    kind = stream.choice([*RULES])
+    value = {'friction_scale': stream.uniform(0.1, 3.0), 'force_pulse': stream.uniform(-500.0, 500.0),
+             'encoder_step': 1e-4, 'encoder_dropout': 0.5, 'command_loss': 0.5, 'command_delay': 0.007}.get(kind, 0.0)
+    fault = Fault('', kind, stream.choice([0.0, 0.01]), stream.choice([0.001, 0.02]), value)
+    return stream.choice([
+        lambda rig: rig.command_velocity(velocity), lambda rig: rig.command_velocity(velocity),
+        lambda rig: rig.command_force(force), lambda rig: rig.inject(fault),
+        lambda rig: rig.change_axis(replace(AXIS, mass=mass)), lambda rig: rig.time_out(0.5),
+        lambda rig: rig.clear_faults()])

@@ -1,0 +1,270 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Real nodes in processes of their own, and a client that talks to them over DDS.  Conditions have deadlines."""
+
+import importlib
+import os
+import signal
+import subprocess
+import threading
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+rclpy = pytest.importorskip('rclpy')
+with warnings.catch_warnings():   # rclpy loads it at the first message, and it loads what Python wants to be rid of
+    warnings.simplefilter('ignore')
+    importlib.import_module('rosidl_generator_py')
+
+from diagnostic_msgs.msg import DiagnosticArray  # noqa: E402
+from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParametersAtomically  # noqa: E402
+from rclpy.context import Context  # noqa: E402
+from rclpy.executors import SingleThreadedExecutor  # noqa: E402
+from rclpy.node import Node  # noqa: E402
+from rclpy.parameter import Parameter  # noqa: E402
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy  # noqa: E402
+from std_srvs.srv import SetBool, Trigger  # noqa: E402
+
+from stickslip_msgs.msg import (  # noqa: E402
+    DriveVelocity,
+    ExternalForce,
+    FrictionForce,
+    ModeEvent,
+    RunInfo,
+    SliderState,
+    StepTiming,
+)
+from tests.support.tool import restore_interrupt  # noqa: E402
+from tests.support.waiting import DEADLINE, wait_for  # noqa: E402
+
+# Without `make test` every session still keeps to itself.
+os.environ.setdefault('ROS_DOMAIN_ID', str(1 + os.getpid() % 100))
+os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
+
+_LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+_ALL = QoSProfile(depth=5000)
+_COMMAND = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+_HEARD = {
+    'slider_state': (SliderState, _ALL), 'friction_force': (FrictionForce, _ALL), 'mode_event': (ModeEvent, _ALL),
+    'timing': (StepTiming, _ALL), 'run_info': (RunInfo, _LATCHED), '/diagnostics': (DiagnosticArray, _ALL),
+}
+
+
+def nanoseconds(time: Any) -> int:
+    """Return a time of ROS as a number."""
+    return int(time.sec) * 1_000_000_000 + int(time.nanosec)
+
+
+def executable(name: str) -> str:
+    """Return an installed program, as `ros2 run` finds it."""
+    for prefix in os.environ['AMENT_PREFIX_PATH'].split(os.pathsep):
+        path = Path(prefix, 'lib', 'stickslip_sim', name)
+        if path.is_file():
+            return str(path)
+    raise AssertionError(f'{name} is not installed: run `make build`')
+
+
+def recording_into(folder: Path) -> list[str]:
+    """Return the arguments of a node that records from the start."""
+    return ['-p', 'record.enabled:=true', '-p', f'record.folder:={folder}']
+
+
+class NodeProcess:
+    """A program with default signal handling, in a process group of its own, as a terminal starts it."""
+
+    def __init__(self, *ros_args: str, folder: Path | None = None, prepare: Callable[[], None] | None = None,
+                 program: str = 'sim_node') -> None:
+        self._process = subprocess.Popen(
+            [executable(program), '--ros-args', *ros_args], cwd=folder, stderr=subprocess.PIPE, text=True,
+            start_new_session=True, preexec_fn=prepare or restore_interrupt)
+
+    @property
+    def pid(self) -> int:
+        return self._process.pid
+
+    def send(self, number: int) -> None:
+        self._process.send_signal(number)
+
+    def wait(self) -> tuple[int, str]:
+        """Return the exit code and standard error."""
+        try:
+            _, errors = self._process.communicate(timeout=DEADLINE)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            raise
+        return self._process.returncode, errors
+
+    def end(self, number: int = signal.SIGINT) -> tuple[int, str]:
+        self.send(number)
+        return self.wait()
+
+    def kill(self) -> None:
+        if self._process.poll() is None:
+            self._process.kill()
+            print(self._process.communicate()[1])    # what it had to say, for the report of a test that failed
+
+
+def assert_clean(code: int, errors: str) -> None:
+    """Check how a process ended."""
+    assert code == 0, errors
+    assert 'Traceback' not in errors
+    assert 'Exception' not in errors
+
+
+@contextmanager
+def running(*ros_args: str, folder: Path | None = None, prepare: Callable[[], None] | None = None,
+            program: str = 'sim_node') -> Iterator[NodeProcess]:
+    process = NodeProcess(*ros_args, folder=folder, prepare=prepare, program=program)
+    try:
+        yield process
+    finally:
+        process.kill()
+
+
+class Client:
+    """Hears all topics of a node, sends commands, calls services; its callbacks run in a thread."""
+
+    def __init__(self, namespace: str = '/') -> None:
+        self._context = Context()
+        rclpy.init(context=self._context)
+        self.node = Node('client', context=self._context, namespace=namespace)
+        self.heard: dict[str, list[Any]] = {name: [] for name in _HEARD}
+        for name, (kind, qos) in _HEARD.items():
+            self.node.create_subscription(kind, name, self.heard[name].append, qos)
+        self._velocity = self.node.create_publisher(DriveVelocity, 'drive_velocity', _COMMAND)
+        self._force = self.node.create_publisher(ExternalForce, 'external_force', _COMMAND)
+        self._services: dict[str, Any] = {}
+        self._executor = SingleThreadedExecutor(context=self._context)
+        self._executor.add_node(self.node)
+        self._is_closing = threading.Event()
+        self._thread = threading.Thread(target=self._spin, daemon=True)
+        self._thread.start()
+
+    def _spin(self) -> None:
+        while not self._is_closing.is_set():
+            self._executor.spin_once(timeout_sec=0.1)
+
+    def close(self) -> None:
+        self._is_closing.set()
+        self._thread.join(DEADLINE)
+        self._executor.shutdown()
+        self.node.destroy_node()
+        self._context.try_shutdown()
+
+    def connect(self, is_moving: bool = True) -> None:
+        """Wait until a node hears the commands and is heard; without states while its time stands still."""
+        wait_for(lambda: self._velocity.get_subscription_count() and self._force.get_subscription_count()
+                 and (self.heard['slider_state'] or not is_moving) and self.heard['run_info'], 'the node')
+
+    def add(self, node: Node) -> None:
+        """Let the callbacks of another node of this context run too."""
+        self._executor.add_node(node)
+
+    def remove(self, node: Node) -> None:
+        """End another node."""
+        self._executor.remove_node(node)
+        node.destroy_node()
+
+    def latest(self, topic: str) -> Any:
+        return self.heard[topic][-1]
+
+    def next(self, topic: str, is_it: Callable[[Any], bool] = lambda _: True, deadline: float = DEADLINE,
+             begin: int | None = None) -> Any:
+        """Return the next message of a topic that fulfils a condition, from now or from the message `begin` on."""
+        begin = len(self.heard[topic]) if begin is None else begin
+        return wait_for(lambda: next(filter(is_it, self.heard[topic][begin:]), None), f'a message on {topic}', deadline)
+
+    def send_velocity(self, velocity: float) -> None:
+        self._velocity.publish(DriveVelocity(velocity=velocity))
+
+    def send_force(self, force: float) -> None:
+        self._force.publish(ExternalForce(force=force))
+
+    def call(self, kind: Any, name: str, node: str = 'feed_axis', /, **request: Any) -> Any:
+        full = f'{node}/{name}'
+        if full not in self._services:
+            self._services[full] = self.node.create_client(kind, full)
+            assert self._services[full].wait_for_service(DEADLINE), full
+            self.greet(node)
+        future = self._services[full].call_async(kind.Request(**request))
+        wait_for(future.done, f'the answer of {full}')
+        return future.result()
+
+    def greet(self, node: str = 'feed_axis') -> None:
+        """Wait until a node knows every endpoint that was made here so far.
+
+        An answer to a client that a server does not know yet is lost (rmw_fastrtps waits 0.1 s for it).  So a question
+        is put until it is answered, by a client that was made after them all: endpoints are heard of in this order.
+        """
+        client = self.node.create_client(GetParameters, f'{node}/get_parameters')
+        assert client.wait_for_service(DEADLINE), node
+        answered = threading.Event()
+        for _ in range(round(DEADLINE)):
+            client.call_async(GetParameters.Request()).add_done_callback(lambda _: answered.set())
+            if answered.wait(1.0):
+                break
+        assert answered.is_set(), f'{node} does not answer'
+
+    def trigger(self, name: str) -> Any:
+        return self.call(Trigger, name)
+
+    def reset(self) -> Any:
+        """Let a new run begin; return its first state that is heard, which the old run's come before."""
+        infos, states = len(self.heard['run_info']), len(self.heard['slider_state'])
+        before = nanoseconds(self.latest('run_info').start_time)
+        assert self.trigger('reset').success
+        info = self.next('run_info', lambda info: nanoseconds(info.start_time) > before, begin=infos)
+        start = nanoseconds(info.start_time)
+        return self.next('slider_state', lambda state: nanoseconds(state.header.stamp) >= start, begin=states)
+
+    def switch(self, name: str, on: bool) -> Any:
+        return self.call(SetBool, name, data=on)
+
+    def set_parameters(self, node: str = 'feed_axis', /, **values: object) -> Any:
+        """Set parameters of a node together; `__` in a name stands for a dot."""
+        parameters = [Parameter(name.replace('__', '.'), value=value).to_parameter_msg()
+                      for name, value in values.items()]
+        return self.call(SetParametersAtomically, 'set_parameters_atomically', node, parameters=parameters).result
+
+    def parameter_names(self) -> list[str]:
+        names: list[str] = self.call(ListParameters, 'list_parameters').result.names
+        return names
+
+    def describe(self, *names: str) -> Any:
+        return self.call(DescribeParameters, 'describe_parameters', names=list(names)).descriptors
+
+    def values(self, *names: str) -> Any:
+        return self.call(GetParameters, 'get_parameters', names=list(names)).values
+
+    def status(self, name: str, is_it: Callable[[dict[str, str]], bool] = lambda _: True) -> Any:
+        """Return the next status of /diagnostics by that name and its values that fulfil a condition."""
+        def find(message: Any) -> Any:
+            return next(status for status in message.status if status.name == name)
+
+        def pairs(status: Any) -> dict[str, str]:
+            return {pair.key: pair.value for pair in status.values}
+
+        status = find(self.next('/diagnostics', lambda message: is_it(pairs(find(message)))))
+        return status, pairs(status)
+
+
+@contextmanager
+def client(namespace: str = '/') -> Iterator[Client]:
+    it = Client(namespace)
+    try:
+        yield it
+    finally:
+        it.close()
+
+
+@contextmanager
+def node_and_client(folder: Path, mode: str, *ros_args: str) -> Iterator[tuple[NodeProcess, Client]]:
+    """Run a node in a mode of time, connected; it ends clean."""
+    with running('-p', f'time.mode:={mode}', *ros_args, folder=folder) as process, client() as axis:
+        axis.connect(is_moving=mode != 'lockstep')
+        yield process, axis
+        assert_clean(*process.end())

@@ -1,0 +1,172 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Recordings of a real node, run again without ROS: whatever was ordered while it ran."""
+
+import math
+import signal
+from pathlib import Path
+
+import pytest
+
+from stickslip_sim.cli.main import run as tool
+from stickslip_sim.recording import read_run
+from stickslip_sim.rig import RigEventKind
+from stickslip_sim.verify.original import open_original
+from stickslip_sim.verify.verification import Verdict, verify
+from tests.support.rewritten_bags import rewritten
+from tests.support.ros_nodes import Client, client, running
+
+pytestmark = pytest.mark.ros
+
+from stickslip_msgs.srv import InjectFault, Step  # noqa: E402
+
+SETTINGS = ('command.timeout:=0.4', 'command.on_timeout:=fault', 'command.acceleration_limit:=1.0',
+            'force.course:=sine', 'force.amplitude:=200.0', 'force.frequency:=7.0')
+
+
+def parameters(*settings: str) -> list[str]:
+    return [word for setting in settings for word in ('-p', setting)]
+
+
+def stir(axis: Client) -> None:
+    """Order something of every kind, some of it while the axis pauses."""
+    inject(axis, 'dry', 'friction_scale', 0.05, 1.5)
+    inject(axis, 'lost', 'command_loss', 0.0, 0.5)
+    inject(axis, 'late', 'command_delay', 0.0, 0.03)
+    inject(axis, 'knock', 'force_pulse', 0.1, 300.0, 0.05)
+    for k in range(60):
+        axis.send_velocity(0.002 + 1e-4 * k)
+        axis.send_force(-10.0 * k)
+        axis.next('slider_state')
+    assert axis.set_parameters(axis__normal_force=4000.0, friction__static__limit=0.4).successful
+    assert axis.switch('set_paused', True).success
+    assert axis.call(InjectFault, 'inject_fault', id='dry', kind='clear').success
+    assert axis.set_parameters(axis__mass=300.0).successful
+    assert axis.switch('set_paused', False).success
+    axis.next('slider_state', lambda state: state.drive_velocity == 0.0)    # the time-out
+    axis.send_velocity(0.02)                                                # not taken
+    assert axis.trigger('clear_faults').success
+    axis.send_velocity(0.01)
+    axis.next('slider_state', lambda state: state.drive_velocity == 0.01)
+    inject(axis, '', 'drive_freeze', 0.02, 0.0, 0.1)
+    inject(axis, 'wet', 'friction_scale', 0.3, 0.5, 0.5)                    # planned when the recording ends
+
+
+def inject(axis: Client, name: str, kind: str, start: float, value: float, duration: float = math.inf) -> None:
+    answer = axis.call(InjectFault, 'inject_fault', id=name, kind=kind, start=start, duration=duration, value=value)
+    assert answer.success, answer.message
+
+
+def is_identical(verdict: Verdict) -> bool:
+    return verdict.difference is None and verdict.missing == 0 and verdict.steps > 100 and verdict.events > 2
+
+
+def test_from_the_start_then_in_mid_run_then_killed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Three recordings of one node, each run again by itself."""
+    with client('/cell') as axis, running(*parameters(*SETTINGS, 'record.enabled:=true'), '-r', '__ns:=/cell',
+                                          folder=tmp_path) as process:
+        axis.connect()
+        whole = Path(axis.latest('run_info').bag_path)
+        stir(axis)
+        assert axis.switch('record', False).success
+        middle = begun(axis)
+        axis.next('mode_event')
+        assert axis.trigger('clear_faults').success
+        stir(axis)
+        assert axis.switch('record', False).success
+        last = begun(axis)
+        written = axis.next('slider_state').step
+        axis.send_force(5000.0)
+        axis.next('slider_state', lambda state: state.step > written + 500)
+        axis.send_force(-5000.0)
+        axis.next('slider_state', lambda state: state.step > written + 1500)
+        process.send(signal.SIGKILL)
+        process.wait()
+    first = verify(open_original(whole))
+    assert is_identical(first), first
+    assert {RigEventKind.COMMAND_TIMEOUT, RigEventKind.FAULT_CLEARED, RigEventKind.COMMAND_LOST} <= kinds(whole)
+    recording = open_original(middle)
+    assert recording.checkpoint is not None
+    assert recording.checkpoint['step'] >= first.steps - 1
+    assert is_identical(verify(recording)), verify(recording)
+    killed = open_original(last)
+    assert killed.notes == ('the recording has no end: cut off, or still being written',)
+    assert is_identical(verify(killed)), verify(killed)
+    every_order_counts(whole, tmp_path)
+    what_if(whole, middle, capsys)
+
+
+def every_order_counts(bag: Path, tmp_path: Path) -> None:
+    """Leave out a single order of each kind: the run comes out different."""
+    run = read_run(bag)
+    for topic in ('/cell/drive_velocity', '/cell/external_force', '/cell/rig_event', '/parameter_events'):
+        last = [message.sequence for message in run.messages([topic]) if '/rig_event' not in topic
+                or run.decode(message).kind == RigEventKind.COMMAND_TIMEOUT][-1]
+        difference = verify(open_original(without(bag, topic, last, tmp_path))).difference
+        assert difference is not None, topic
+        assert difference.step >= last
+
+
+def without(bag: Path, topic: str, step: int, tmp_path: Path) -> Path:
+    """Return a copy of a bag without what was recorded on a topic before a step."""
+    return rewritten(bag, tmp_path / topic.replace('/', '_'), message=lambda name, number, data: (
+        None if (name, number) == (topic, step) else data))
+
+
+def what_if(whole: Path, middle: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for bag, change, code, told in (
+            (whole, 'initial.rest_time=0.5', 0, 'motion '), (whole, 'contact.model=rigid', 0, 'motion '),
+            (middle, 'axis.mass=100.0', 0, 'motion '), (whole, 'time.rate=500.0', 2, 'its orders are counted in steps'),
+            (middle, 'initial.rest_time=0.5', 2, 'this recording begins in mid-run')):
+        capsys.readouterr()
+        assert tool(['verify', str(bag), '--set', change]) == code
+        assert told in ''.join(capsys.readouterr())
+
+
+def begun(axis: Client) -> Path:
+    """Begin a recording; return its folder."""
+    answer = axis.switch('record', True)
+    assert answer.success
+    return Path(answer.message.removeprefix('recording into '))
+
+
+def kinds(folder: Path) -> set[int]:
+    run = read_run(folder)
+    return {int(kind) for kind in run.columns('rig_event')['kind']}
+
+
+def test_in_lock_step_with_what_happened_in_the_same_gap(tmp_path: Path) -> None:
+    """Between two steps: faults, parameters, the begin of the recording, and more of both."""
+    with client() as axis, running(*parameters('time.mode:=lockstep', 'scene:=paper_fig7'), folder=tmp_path):
+        axis.connect(is_moving=False)
+        assert axis.call(Step, 'step', steps=1200, velocity=0.004, force=math.nan).success
+        inject(axis, 'dry', 'friction_scale', 0.0, 1.7)
+        inject(axis, 'lost', 'command_loss', 0.0, 0.5)
+        assert axis.set_parameters(axis__normal_force=3000.0).successful
+        folder = begun(axis)
+        assert axis.call(InjectFault, 'inject_fault', id='dry', kind='clear').success
+        assert axis.set_parameters(axis__normal_force=100.0).successful
+        inject(axis, 'knock', 'force_pulse', 0.01, -700.0, 0.2)
+        for k in range(40):
+            assert axis.call(Step, 'step', steps=13, velocity=0.001 * k, force=7.0 * k).success
+        assert axis.switch('record', False).success
+    assert is_identical(verify(open_original(folder))), verify(open_original(folder))
+
+
+def test_a_new_run_with_other_parameters(tmp_path: Path) -> None:
+    """Changed while it pauses at its start, before and after the recording begins."""
+    with client() as axis, running(*parameters('time.mode:=free_run', 'time.factor:=3.0'), folder=tmp_path):
+        axis.connect()
+        assert axis.switch('set_paused', True).success
+        assert axis.trigger('reset').success
+        assert axis.set_parameters(axis__normal_force=3000.0, friction__static__limit=0.45).successful
+        inject(axis, 'knock', 'force_pulse', 0.0, -900.0, 0.2)
+        folder = begun(axis)
+        assert axis.set_parameters(axis__mass=200.0).successful
+        assert axis.switch('set_paused', False).success
+        axis.next('slider_state', lambda state: state.time > 3.0)
+        assert axis.switch('record', False).success
+    recording = open_original(folder)
+    assert recording.checkpoint is not None
+    assert recording.checkpoint['step'] == 0
+    assert is_identical(verify(recording)), verify(recording)
