@@ -12,7 +12,7 @@ SHELL := /bin/bash
 HERE := ros2_ws/on_this_machine
 TOOLS := ros2_ws/.venv/bin
 
-.PHONY: help build run test check extremes bench hil soak fuzz hostile docs clean
+.PHONY: help build run test check extremes bench hil soak fuzz hostile pictures docs clean
 
 help:  ## list the targets
 	@sed -nE 's/^([a-z]+):.*## (.*)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 14
@@ -54,6 +54,9 @@ fuzz: tools  ## made-up files and runs for MINUTES=10; fails when one is not rea
 
 hostile: tools  ## scenes near all that an event search may miss, for MINUTES=10, with SEED=; fails when a judge finds one wrong
 	@$(HERE) python3 -m tests.hostile --minutes $(MINUTES) $(if $(SEED),--seed $(SEED))
+
+pictures: tools  ## the schematic pictures of README and docs, from dev/pictures/
+	@$(HERE) python3 -m dev.pictures
 
 docs: tools  ## the pages in docs/ as a site in runs/docs/
 	@$(TOOLS)/mkdocs build && echo runs/docs/index.html
