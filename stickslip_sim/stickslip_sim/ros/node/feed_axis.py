@@ -53,8 +53,8 @@ class FeedAxis(SceneNode):
         warm_up(scene)
         self._slots = (CommandSlot('velocity', 'm/s', scene.command.max_velocity),
                        CommandSlot('force', 'N', scene.command.max_force))
-        self._publishers = Publishers(self)
-        self._rig_events = RigEvents(self, self._publishers)
+        self._outputs = Publishers(self)
+        self._rig_events = RigEvents(self, self._outputs)
         grid = Grid(scene.time.rate)
         self._step_clock = step_clock(grid, scene.time.mode, scene.time.factor)
         self.loop = StepLoop(scene.make_rig(), self._step_clock, self._slots, self._sinks(grid),
@@ -92,33 +92,33 @@ class FeedAxis(SceneNode):
 
         def apply() -> None:
             self.loop.rig.change_axis(scene.axis)
-            stamp_ns = self._publishers.start_ns + self.loop.time_ns
+            stamp_ns = self._outputs.start_ns + self.loop.time_ns
             event = conversion.parameter_event(self.get_fully_qualified_name(), stamp_ns,
                                                [parameter.to_parameter_msg() for parameter in changed])
             data = self._record_service.recordings.parameter_event(conversion.fields_of(event))
-            self._publishers.record(RECORDED.index(names.PARAMETER_EVENTS), data, self.loop.time_ns, self.loop.step + 1)
+            self._outputs.record(RECORDED.index(names.PARAMETER_EVENTS), data, self.loop.time_ns, self.loop.step + 1)
 
         if not self.loop.at_boundary(apply):
             self.get_logger().error('the step loop is busy: the changed parameters did not take effect')
 
     def _sinks(self, grid: Grid) -> list[Sink]:
-        sinks: list[Sink] = [self._rig_events.take, self._publishers.take]
+        sinks: list[Sink] = [self._rig_events.take, self._outputs.take]
         if self.scene.rig.measures:
-            sinks.append(JointStates(self, self._publishers).take)
+            sinks.append(JointStates(self, self._outputs).take)
         if self.scene.time.makes_clock:
-            sinks += [ClockOut(self, grid, self.scene.time.clock_rate).take, self._publishers.keep_pace]
+            sinks += [ClockOut(self, grid, self.scene.time.clock_rate).take, self._outputs.keep_pace]
         return sinks
 
     def _open_endpoints(self, is_stopping: Callable[[], bool]) -> None:
         self._run_info_out = publisher(self, names.RUN_INFO)
         Subscribers(self, *self._slots, self._step_clock.now, with_joints=self.scene.rig.measures)
-        self._record_service: RecordService = RecordService(self, self.loop, self._publishers, self._publish_run_info,
+        self._record_service: RecordService = RecordService(self, self.loop, self._outputs, self._publish_run_info,
                                                             self._receipt)
-        times = TimeServices(self, self.loop, self._publishers, self._restart,
+        times = TimeServices(self, self.loop, self._outputs, self._restart,
                              lambda: self._record_service.is_recording, is_stopping)
         offer_standard_services(self, self.loop, times)
         FaultServices(self, self.loop)
-        self._report = PeriodicReport(self, self.loop, self._step_clock, self._publishers, self._rig_events,
+        self._report = PeriodicReport(self, self.loop, self._step_clock, self._outputs, self._rig_events,
                                     self._record_service, self._stamp_ns)
 
     def _restart(self) -> bool:
@@ -135,20 +135,20 @@ class FeedAxis(SceneNode):
 
     def _begin_run(self) -> None:
         """Let the outlet begin where the rig is before its first step."""
-        self._publishers.begin_run(self._start_ns(), self.loop.rig.simulator.sample().mode)
+        self._outputs.begin_run(self._start_ns(), self.loop.rig.simulator.sample().mode)
 
     def _receipt(self) -> dict[str, Any]:
         try:
             dropped = self._record_service.recordings.total_dropped
-            return run_receipt(self.scene, self.loop, self._publishers, dropped, self._cost.so_far())
+            return run_receipt(self.scene, self.loop, self._outputs, dropped, self._cost.so_far())
         except SolverError as error:    # the state has left the range of numbers
             return {'failure': str(error)}
 
     def _publish_run_info(self) -> None:
         message = conversion.run_info(messages.run_info(
-            RunFacts.of(self.scene), self._now_ns(), self._publishers.start_ns, self._record_service.recordings.folder))
+            RunFacts.of(self.scene), self._now_ns(), self._outputs.start_ns, self._record_service.recordings.folder))
         self._run_info_out.publish(message)
-        self._publishers.record_message(names.RUN_INFO, message, self.loop.time_ns, max(self.loop.step, 0))
+        self._outputs.record_message(names.RUN_INFO, message, self.loop.time_ns, max(self.loop.step, 0))
 
     def _start_ns(self) -> int:
         """Return the stamp of simulation time 0: 0 where simulation time is the time of the graph."""
@@ -156,7 +156,7 @@ class FeedAxis(SceneNode):
 
     def _stamp_ns(self) -> int:
         """Return the time of the graph."""
-        return self._publishers.start_ns + self.loop.time_ns if self.scene.time.makes_clock else self._now_ns()
+        return self._outputs.start_ns + self.loop.time_ns if self.scene.time.makes_clock else self._now_ns()
 
     def _now_ns(self) -> int:
         nanoseconds: int = self.get_clock().now().nanoseconds
