@@ -14,7 +14,7 @@ from dev.pictures.svg import Sheet, Style
 from stickslip_sim.cli.main import stickslip
 from stickslip_sim.recording import topics
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 
 
 @pytest.mark.parametrize('name', PICTURES)

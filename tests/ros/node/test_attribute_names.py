@@ -22,8 +22,9 @@ def attributes(tree: ast.AST) -> set[str]:
 
 def nodes() -> list[ast.ClassDef]:
     """Return our classes whose base has Node in its name."""
-    return [part for file in sorted(ROOM.rglob('*.py')) for part in ast.walk(ast.parse(file.read_text(encoding='utf-8')))
-            if isinstance(part, ast.ClassDef) and any('Node' in ast.unparse(base) for base in part.bases)]
+    trees = [ast.parse(file.read_text(encoding='utf-8')) for file in sorted(ROOM.rglob('*.py'))]
+    return [part for tree in trees for part in ast.walk(tree) if isinstance(part, ast.ClassDef)
+            and any('Node' in ast.unparse(base) for base in part.bases)]
 
 
 @pytest.mark.parametrize('ours', nodes(), ids=lambda ours: ours.name)
