@@ -88,6 +88,21 @@ def test_a_slow_motion_beside_a_fast_one_keeps_its_digits() -> None:
         assert found == pytest.approx(float(exact), rel=1e-13)
 
 
+def test_a_motion_that_faded_long_ago_keeps_its_digits() -> None:
+    """Over-damped with eigenvalues -1e9 and -2e9, nothing that pushes: what is left of it does not grow with time."""
+    near, far, t = -1e9, -2e9, 100.0
+    rate, x = -3e8, 1.0
+    c = (rate - near * x) / (far - near)
+    a = x - c
+    _, _, first, second, third, square = moments((1.5e9, 2e18, -5e8, near, far), x, rate, 0.0, 0.0, t)
+    once = a / -near + c / -far
+    twice = a / near ** 2 + c / far ** 2
+    assert first == pytest.approx(once, rel=1e-13)
+    assert second == pytest.approx(once * t - twice, rel=1e-13)
+    assert third == pytest.approx(0.5 * once * t * t - twice * t, rel=1e-13)
+    assert square == pytest.approx(-0.5 * a * a / near - 2.0 * a * c / (near + far) - 0.5 * c * c / far, rel=1e-13)
+
+
 @pytest.mark.parametrize('span', [1e-9, 1e-3, 0.3, 1.0, 30.0, 1e4, 1e9])
 def test_the_integrals_of_waves(span: float) -> None:
     rng = random.Random(7)

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Integrals over a motion with two real eigenvalues far apart, however slow the one and however fast the other.
 
-A fast exponential goes beside a slow motion a + b ∫e^(λ₁t) + k ∫∫e^(λ₁t), which becomes a polynomial where λ₁ vanishes;
-nothing divides by λ₁.
+A fast exponential goes beside a slow motion a e^(λ₁t) + k ∫e^(λ₁t) + …, which becomes a polynomial where λ₁ vanishes;
+nothing divides by a λ₁ that is small.
 """
 
 import math
@@ -15,7 +15,10 @@ _TERMS = 60          # never reached: 25 terms are below rounding
 
 @compiled
 def far_apart(osc, x, rate, k0, k1, t):
-    """Return what `moments` does, from x = a + b φ₁ + q₁ φ₂ + c e^(λ₂t), φₙ the repeated integrals of e^(λ₁t)."""
+    """Return what `moments` does, from x = a e^(λ₁t) + q₀ φ₁ + q₁ φ₂ + c e^(λ₂t).
+
+    φₙ are the repeated integrals of e^(λ₁t).
+    """
     _, _, _, near, far = osc
     if abs(near) > abs(far):
         near, far = far, near
@@ -26,15 +29,30 @@ def far_apart(osc, x, rate, k0, k1, t):
     b = near * a + q0
     grown, p1, p2, p3, p4, p5 = _repeated(near, t)
     fast, f1, f2, f3, _, _ = _repeated(far, t)
-    end, end_rate = a + b * p1 + q1 * p2, b * grown + q1 * p1
+    end, end_rate = a * grown + q0 * p1 + q1 * p2, b * grown + q1 * p1
     both = _exponential(near + far, t)                          # ∫ of the product of the two exponentials
     mixed = b * both + q1 * (p1 * fast - both) / far             # ∫ of the slow rate times the fast exponential
     mixed = (end * fast - a - mixed) / far
-    square = (a * a * t + 2.0 * a * (b * p2 + q1 * p3) + b * b * _first_square(near, t, p1)
-              + q1 * (b * p2 * p2 + (q1 * _second_square(near, t, p1, p2, p3) if q1 != 0.0 else 0.0))
-              + c * (2.0 * mixed + c * _exponential(2.0 * far, t)))
-    return (end + c * fast, end_rate + c * far * fast, a * t + b * p2 + q1 * p3 + c * f1,
-            0.5 * a * t * t + b * p3 + q1 * p4 + c * f2, a * t * t * t / 6.0 + b * p4 + q1 * p5 + c * f3, square)
+    square = _slow_square(near, t, a, q0, q1, p1, p2, p3) + c * (2.0 * mixed + c * _exponential(2.0 * far, t))
+    return (end + c * fast, end_rate + c * far * fast, a * p1 + q0 * p2 + q1 * p3 + c * f1,
+            a * p2 + q0 * p3 + q1 * p4 + c * f2, a * p3 + q0 * p4 + q1 * p5 + c * f3, square)
+
+
+@compiled
+def _slow_square(rate, t, a, q0, q1, p1, p2, p3):
+    """Return ∫(a e^(λ₁t) + q₀ φ₁ + q₁ φ₂)².
+
+    Beyond a time constant it is made from where the motion settles: a² t would leave nothing of what has faded.
+    """
+    if abs(rate * t) > 1.0:
+        ramp = -q1 / rate
+        level = (ramp - q0) / rate
+        z = a - level
+        return (z * z * _exponential(2.0 * rate, t) + 2.0 * z * (level * p1 + ramp * (t * p1 - p2))
+                + ((level + ramp * t / 3.0) * ramp * t + level * level) * t)
+    b = rate * a + q0
+    return (a * a * t + 2.0 * a * (b * p2 + q1 * p3) + b * b * _first_square(rate, t)
+            + q1 * (b * p2 * p2 + (q1 * _second_square(rate, t) if q1 != 0.0 else 0.0)))
 
 
 @compiled
@@ -69,11 +87,9 @@ def _repeated(rate, t):
 
 
 @compiled
-def _first_square(rate, t, first):
-    """Return ∫φ₁² of the first integral of exp(rate t), which is `first` at t."""
+def _first_square(rate, t):
+    """Return ∫φ₁² of the first integral of exp(rate t), |rate t| no more than 1."""
     z = rate * t
-    if abs(z) > 1.0:
-        return (_exponential(2.0 * rate, t) - 2.0 * first + t) / (rate * rate)
     power, weight, total, n = 4.0, 0.5, 1.0 / 3.0, 2.0
     for _ in range(_TERMS):
         n += 1.0
@@ -87,11 +103,9 @@ def _first_square(rate, t, first):
 
 
 @compiled
-def _second_square(rate, t, first, second, third):
-    """Return ∫φ₂² of the second integral of exp(rate t)."""
+def _second_square(rate, t):
+    """Return ∫φ₂² of the second integral of exp(rate t), |rate t| no more than 1."""
     z = rate * t
-    if abs(z) > 1.0:
-        return (_first_square(rate, t, first) - 2.0 * (t * second - third) + t * t * t / 3.0) / (rate * rate)
     power, weight, total, n = 16.0, 1.0 / 24.0, 0.05, 4.0
     for _ in range(_TERMS):
         n += 1.0

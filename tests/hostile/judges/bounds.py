@@ -6,6 +6,7 @@ import math
 
 from stickslip_sim.axis import Axis
 from stickslip_sim.core.input_profile import InputProfile
+from stickslip_sim.core.types import Event, Sample
 
 from ..case import Find, Run
 
@@ -38,7 +39,7 @@ def _energy(run: Run) -> float:
 
 def _forces(run: Run) -> float:
     axis, end = run.parts.axis, run.parts.duration
-    fastest = _most(run.parts.drive, end) + max((abs(e.velocity) for e in run.events), default=0.0)
+    fastest = _most(run.parts.drive, end) + max(abs(state.velocity) for state in _states(run))
     stretch = max((abs(e.drive_force) for e in run.events), default=0.0)
     table = axis.friction.kinetic
     slopes = [abs((b - a) / (w - v)) for a, b, v, w in zip(table.coefficients, table.coefficients[1:], table.velocities,
@@ -50,7 +51,11 @@ def _forces(run: Run) -> float:
 
 def _way(run: Run) -> float:
     return 2.0 * _most(run.parts.drive, run.parts.duration) * run.parts.duration + max(
-        (abs(e.position - run.start.position) for e in run.events), default=0.0)
+        abs(state.position - run.start.position) for state in _states(run))
+
+
+def _states(run: Run) -> list[Event | Sample]:
+    return [run.start, *run.events, *(sample for _, sample in run.stretches)]
 
 
 def speed_bound(run: Run) -> float:

@@ -181,3 +181,45 @@ def test_a_speed_that_peaks_on_a_knot_turns_there() -> None:
     simulator.judge()
     assert [event.kind for event in events] == [EventKind.BREAKAWAY, EventKind.KNOT, EventKind.DECELERATE]
     assert events[2].time - events[1].time < 1e-9
+
+
+PLAIN = {'axis.drive_damping': 0.0, 'friction.static.law': 'constant', 'friction.acceleration_dependence': False,
+         'contact.model': 'rigid', 'drive.course': 'constant'}
+DIGITS: dict[str, tuple[dict[str, Any], float]] = {
+    'a slow slider under a fast drive that pulls at nothing': ({
+        'axis.mass': 1e5, 'axis.drive_stiffness': 0.0, 'axis.normal_force': 4e10, 'drive.velocity': 3e5,
+        'friction.static.initial': 1e-5, 'friction.kinetic.velocities': [0.0, 6e-7, 4000.0],
+        'friction.kinetic.coefficients': [1e-5, 9e-6, 1.1e-5], 'initial.velocity': 3e-5,
+        'initial.rest_time': 0.0}, 1.0),
+    'a contact that hardly holds': ({
+        'axis.mass': 2.5e10, 'axis.drive_stiffness': 3e11, 'axis.normal_force': 3.0, 'drive.velocity': -2e-9,
+        'contact.model': 'compliant', 'contact.stiffness': 0.1, 'contact.damping': 0.0,
+        'friction.static.initial': 3e-4, 'friction.kinetic.velocities': [0.0],
+        'friction.kinetic.coefficients': [3e-4]}, 4500001.0),
+    'a contact that hardly holds and has a damper': ({
+        'axis.mass': 3e11, 'axis.drive_stiffness': 3e15, 'axis.drive_damping': 1e8, 'axis.normal_force': 1e6,
+        'drive.velocity': 0.01, 'contact.model': 'compliant', 'contact.stiffness': 0.003, 'contact.damping': 0.0,
+        'friction.static.initial': 10.0, 'friction.kinetic.velocities': [0.0],
+        'friction.kinetic.coefficients': [10.0]}, 1e5),
+    'a slip that settled 1e11 time constants ago': ({
+        'axis.mass': 5.3e-6, 'axis.drive_stiffness': 5e13, 'axis.normal_force': 4.5e-5, 'drive.velocity': -1.4e-5,
+        'friction.static.initial': 1e-6, 'friction.kinetic.velocities': [0.0, 2e-7],
+        'friction.kinetic.coefficients': [1e-6, 3e-8], 'friction.kinetic.end_slope': 7.8e8}, 70.0),
+    'a coast whose spring lost its digits on the way': ({
+        'axis.mass': 2.3e7, 'axis.drive_stiffness': 6.6e5, 'axis.normal_force': 1e-8, 'drive.velocity': 0.13,
+        'friction.static.initial': 0.36, 'friction.kinetic.velocities': [0.0, 400.0],
+        'friction.kinetic.coefficients': [0.36, 0.28], 'friction.static.law': 'exponential',
+        'friction.static.limit': 300.0, 'friction.static.time_constant': 1e-9,
+        'friction.acceleration_dependence': True}, 100.0),
+}
+
+
+@pytest.mark.parametrize('name', DIGITS)
+def test_digits_that_rounding_takes_are_no_contradiction(name: str) -> None:
+    values, end = DIGITS[name]
+    scene = load_scene('paper_fig8', PLAIN | values)
+    simulator = Simulator(scene.axis, scene.initial, scene.drive, scene.force, accounting=True)
+    simulator.advance(instant(end))
+    simulator.judge()
+    assert simulator.energy is not None
+    assert simulator.energy.relative_residual < 1e-10

@@ -36,10 +36,10 @@ def event_is_sound(p, s, begin):
         sound = _holds(p, s, s[NEXT], s[SPRING], s[DEFLECTION], s[VELOCITY], s[ACCELERATION], s[V], s[F], s[REST], 1.0)
     elif s[MODE] == COASTING:
         end = band_of(p, s) if s[NEXT_KIND] == ACCELERATE else 0.0
-        sound = _coasts(p, s, s[SPRING], s[V], s[F], end, end)
+        sound = _coasts(p, s, 0.0, s[SPRING], s[V], s[F], end, end)
     else:
         sound = _slips(p, s, s[VELOCITY], begin, s[NEXT_KIND] != COAST)
-    return sound and _balances(p, s, 0.0, s[SPRING], s[V], s[VELOCITY], s[F])
+    return sound and _balances(p, s, 0.0, s[SPRING], s[V], s[VELOCITY], begin, s[F])
 
 
 @compiled
@@ -54,10 +54,10 @@ def is_sound(p, s, second, fraction):
     if s[MODE] == STICK:
         sound = _holds(p, s, t, spring, s[DEFLECTION] + y, u, a, v, force, s[REST] + t, 0.0)
     elif s[MODE] == COASTING:
-        sound = _coasts(p, s, spring, v, force, 0.0, band_of(p, s))
+        sound = _coasts(p, s, t, spring, v, force, 0.0, band_of(p, s))
     else:
         sound = _slips(p, s, u, s[VELOCITY], False)
-    return sound and _balances(p, s, t, spring, v, u, force)
+    return sound and _balances(p, s, t, spring, v, u, s[VELOCITY], force)
 
 
 @inlined
@@ -73,12 +73,16 @@ def _holds(p, s, t, spring, deflection, u, a, v, force, rest, share):
 
 
 @inlined
-def _coasts(p, s, spring, v, force, low, high):
-    """Whether the residual while coasting is between two ends of its band."""
+def _coasts(p, s, t, spring, v, force, low, high):
+    """Whether the residual while coasting is between two ends of its band.
+
+    It began at one of them; the spring's stretch is the difference of two ways, and knows that end no better.
+    """
     u = s[VELOCITY]
     friction = p[NORMAL] * friction_line(p, int(s[PIECE]), abs(u))[0]
     residual = s[DIRECTION] * (drive_force(p, spring, v, u) + force) - friction
     slack = ALLOWED * _forces(p, spring, v, u, force, p[NORMAL] * p[STATIC_INITIAL])
+    slack += _ROUNDING * p[STIFFNESS] * _way(s, t, v, u)
     return low - slack <= residual <= high + slack
 
 
@@ -95,20 +99,27 @@ def _slips(p, s, u, begin, at_an_end):
 
 
 @inlined
-def _balances(p, s, t, spring, v, u, force):
+def _balances(p, s, t, spring, v, u, begin, force):
     """Whether the balance of energy is open by no more than a share of what went through, or than forces round to.
 
     A load that comes and goes within one stick goes through without a trace: what the spring holds at the limit counts.
+    What rounding leaves of the forces at the velocity `begin`, where the motion began, is lost along its whole way.
     """
     left, scale = balance(p, s, t)
     top = p[NORMAL] * p[STATIC_LIMIT]
     if p[STIFFNESS] > 0.0:
         scale = max(scale, 0.5 * top * top / p[STIFFNESS])
-    forces = _forces(p, spring, v, u, force, top)
+    fastest = max(abs(u), abs(begin))
+    forces = _forces(p, spring, v, fastest, force, top)
     if s[MODE] != STICK and s[MODE] != COASTING:   # on a steep piece of the table
-        forces += 2.0 * p[MASS] * abs(s[GAMMA]) * (abs(v) + abs(u))
-    way = abs(s[DRIVE]) + abs(s[POSITION]) + (abs(v) + abs(u)) * t
-    return left <= ALLOWED * scale + _ROUNDING * forces * way and scale < math.inf
+        forces += 2.0 * p[MASS] * abs(s[GAMMA]) * (abs(v) + fastest)
+    return left <= ALLOWED * scale + _ROUNDING * forces * _way(s, t, v, u) and scale < math.inf
+
+
+@inlined
+def _way(s, t, v, u):
+    """Return how far drive and slider went, m."""
+    return abs(s[DRIVE]) + abs(s[POSITION]) + (abs(v) + abs(u)) * t
 
 
 @inlined

@@ -5,7 +5,9 @@
 The works are integrals over the motion that follows from the state at the anchor, and none is the balance itself: they
 know nothing of where the engine says that the motion arrives (see `linear.moments`).  Without waves the inputs are
 v + v′t and F + F′t, and every work is made from the integrals of x and of x²; x is the variable that a motion settles
-in, the slider's velocity in stick, and in slip what the drive is ahead of it, v − ẋ.  `wave_works` adds the sines.
+in, the slider's velocity in stick, and in slip what the drive is ahead of it, v − ẋ.  Where that is nearly all of v,
+little is left for the other one, and few of its digits; then the other one is x: of a slow slider that slips under a
+fast drive, and of a contact so weak that it hardly holds.  `wave_works` adds the sines.
 """
 
 from ...axis.layout import (
@@ -16,6 +18,8 @@ from ...axis.motion import COASTING, STICK, drive_travel, is_rigid_stick, oscill
 from ...core.jit import compiled, inlined
 from ...linear.moments import moments
 from .wave_works import moving_works, still_works
+
+_FEW = 0.05   # of the drive's way: what is left of it with more than one digit less is integrated by itself
 
 
 @inlined
@@ -30,9 +34,7 @@ def works(p, s, t):
         return moving_works(p, s, t)
     if s[MODE] == COASTING:
         return _coasting(p, s, t)
-    if s[MODE] != STICK:
-        return _slip(p, s, t)
-    return _rigid_hold(p, s, t) if p[COMPLIANT] == 0.0 else _compliant_hold(p, s, t)
+    return _rigid_hold(p, s, t) if is_rigid_stick(p, s) else _moving(p, s, t)
 
 
 @inlined
@@ -58,36 +60,59 @@ def _coasting(p, s, t):
 
 
 @inlined
-def _compliant_hold(p, s, t):
+def _moving(p, s, t):
+    """Return the works in slip, or in a compliant contact."""
+    v, rate = s[V], s[V_RATE]
+    slips = s[MODE] != STICK
+    steady, slope = slip_friction(p, s) if slips else (0.0, 0.0)
+    contact, damping = (0.0, p[NORMAL] * slope) if slips else (p[CONTACT_STIFFNESS], p[CONTACT_DAMPING])
+    way = (v + 0.5 * rate * t) * t
+    if slips:
+        stretch, stretch1, v_lead, lead_square, y, u1, square = _from_lead(p, s, t, contact, damping)
+        if abs(y) < _FEW * abs(way):
+            stretch, stretch1, v_lead, lead_square, y, u1, square = _from_slider(p, s, t)
+    else:
+        stretch, stretch1, v_lead, lead_square, y, u1, square = _from_slider(p, s, t)
+        if abs(way - y) < _FEW * abs(way):
+            stretch, stretch1, v_lead, lead_square, y, u1, square = _from_lead(p, s, t, contact, damping)
+    drive = p[STIFFNESS] * (v * stretch + rate * stretch1) + p[DAMPING] * v_lead
+    external, damper, lost = s[F] * y + s[F_RATE] * u1, p[DAMPING] * lead_square, damping * square
+    if slips:
+        return drive, external, p[NORMAL] * s[DIRECTION] * steady * y + lost, damper, 0.0
+    return drive, external, 0.0, damper, lost
+
+
+@compiled
+def _from_slider(p, s, t):
+    """Return ∫w, ∫t w, ∫v x, ∫x², ∫ẋ, ∫t ẋ and ∫ẋ² of w = s − x and x = v − ẋ, from the moments of ẋ."""
     v, rate = s[V], s[V_RATE]
     push = (p[STIFFNESS] * v + p[DAMPING] * rate + s[F_RATE]) / p[MASS]
     _, _, y, once, twice, square = moments(oscillator_of(s), s[VELOCITY], s[ACCELERATION], push,
                                            p[STIFFNESS] * rate / p[MASS], t)
-    u1 = t * y - once                                # ∫ t u
+    u1 = t * y - once
     v_u, v_square = v * y + rate * u1, _square(v, rate, t)
     stretch = (s[SPRING] + (0.5 * v + rate * t / 6.0) * t) * t - once
     stretch1 = (0.5 * s[SPRING] + (v / 3.0 + 0.125 * rate * t) * t) * t * t - (t * once - twice)
-    drive = p[STIFFNESS] * (v * stretch + rate * stretch1) + p[DAMPING] * (v_square - v_u)
-    return (drive, s[F] * y + s[F_RATE] * u1, 0.0, p[DAMPING] * (v_square - 2.0 * v_u + square),
-            p[CONTACT_DAMPING] * square)
+    return stretch, stretch1, v_square - v_u, v_square - 2.0 * v_u + square, y, u1, square
 
 
-@inlined
-def _slip(p, s, t):
+@compiled
+def _from_lead(p, s, t, contact, damping):
+    """Return what `_from_slider` does, from the moments of x.
+
+    What resists the motion is `contact` times the way, `damping` times the speed, and what does not change.
+    """
     v, rate = s[V], s[V_RATE]
-    steady, slope = slip_friction(p, s)
-    osc = oscillator_of(s)
-    _, _, lead, once, twice, square = moments(osc, v - s[VELOCITY], rate - s[ACCELERATION],
-                                              (p[NORMAL] * slope * rate - s[F_RATE]) / p[MASS], 0.0, t)
+    push = (contact * v + damping * rate - s[F_RATE]) / p[MASS]
+    _, _, lead, once, twice, square = moments(oscillator_of(s), v - s[VELOCITY], rate - s[ACCELERATION], push,
+                                              contact * rate / p[MASS], t)
     lead1 = t * lead - once
-    v_lead, v_square = v * lead + rate * lead1, _square(v, rate, t)
+    v_lead = v * lead + rate * lead1
     y = (v + 0.5 * rate * t) * t - lead
     u1 = (0.5 * v + rate * t / 3.0) * t * t - lead1
     stretch = s[SPRING] * t + once
     stretch1 = 0.5 * s[SPRING] * t * t + (t * once - twice)
-    drive = p[STIFFNESS] * (v * stretch + rate * stretch1) + p[DAMPING] * v_lead
-    friction = p[NORMAL] * (s[DIRECTION] * steady * y + slope * (v_square - 2.0 * v_lead + square))
-    return drive, s[F] * y + s[F_RATE] * u1, friction, p[DAMPING] * square, 0.0
+    return stretch, stretch1, v_lead, square, y, u1, _square(v, rate, t) - 2.0 * v_lead + square
 
 
 @inlined
