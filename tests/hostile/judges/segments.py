@@ -205,6 +205,8 @@ def _segment(parts: Parts, table: Table, begin: Node, end: Node, length: Any) ->
             start[F], noise[F] = sigma * normal * drop, 4 * EPSILON * normal * friction
             if table.has_branches:
                 start[F] = noise[F] = Long(0)
+        elif kind == EventKind.BREAKAWAY:   # begins as it swung; the spring is the difference of two ways
+            noise[F] += EPSILON * c * abs(Long(begin.position))
     start[U], noise[U] = u, 2 * EPSILON * abs(u)
     start[V], noise[V] = v, 2 * EPSILON * (abs(v) + _size(parts.drive, now))
     start[ONE], noise[ONE] = Long(1), 4 * EPSILON
