@@ -41,7 +41,7 @@ def test_bad_knots_are_refused(times: list[float], values: list[float], period: 
             make('drive', times, values, period)
 
 
-@pytest.mark.parametrize(('wave', 'word'), [
+@pytest.mark.parametrize(('sinusoid', 'word'), [
     (Sinusoid(math.nan, 1.0, 0.0), 'finite'), (Sinusoid(1.0, 0.0, 0.0), 'Hz'), (Sinusoid(1.0, 1e7, 0.0), 'Hz'),
     (Sinusoid(1.0, 1.0, math.inf), 'finite')])
 def test_bad_waves_are_refused(sinusoid: Sinusoid, word: str) -> None:
