@@ -328,8 +328,8 @@ def count(frame, event, argument):
         raise SystemExit('no end')
 def counted(contact, frequency, duration, accounting):
     global calls
-    waves = InputProfile((0.0,), (0.0,), (0.0,), waves=(Sinusoid(1e-7, frequency, 0.1),)), InputProfile(
-        (0.0,), (0.0,), (0.0,), waves=(Sinusoid(50.0, frequency, 0.2),))
+    waves = InputProfile((0.0,), (0.0,), (0.0,), sinusoids=(Sinusoid(1e-7, frequency, 0.1),)), InputProfile(
+        (0.0,), (0.0,), (0.0,), sinusoids=(Sinusoid(50.0, frequency, 0.2),))
     simulator = Simulator(paper_axis(contact), InitialState(), *waves, accounting=accounting)
     calls = 0
     sys.setprofile(count)
