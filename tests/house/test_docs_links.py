@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The pages: every file, folder and heading that one points to is there, and the site is made of them.  No network."""
+"""The pages: what finds links that lead nowhere, and the site that is made of the pages.  No network."""
 
 import re
 import subprocess
@@ -9,36 +9,16 @@ from pathlib import Path
 
 import pytest
 
+from dev.links import broken, links, main, missing
 from tests.support.repository import ROOT
+from tests.support.tool import Capture
 
 PAGES = sorted([*ROOT.glob('*.md'), *(ROOT / 'docs').glob('*.md')])
-_CODE = re.compile(r'^```.*?^```|`[^`\n]*`', re.MULTILINE | re.DOTALL)
-_LINK = re.compile(r'!?\[[^\]]*\]\(([^)\s]+)\)')
-_HEADING = re.compile(r'^#+ +(.*)$', re.MULTILINE)
 
 
-def anchors(page: Path) -> set[str]:
-    """Return the headings of a page as GitHub and MkDocs name them."""
-    text = re.sub(r'^```.*?^```', '', page.read_text(encoding='utf-8'), flags=re.MULTILINE | re.DOTALL)
-    return {re.sub(r'[^\w\- ]', '', heading.lower()).strip().replace(' ', '-') for heading in _HEADING.findall(text)}
-
-
-def broken(page: Path, text: str) -> list[str]:
-    """Return the links in the text of a page that lead nowhere."""
-    found = []
-    for link in _LINK.findall(_CODE.sub('', text)):
-        if re.match(r'[a-z]+:', link):    # elsewhere
-            continue
-        place, _, anchor = link.partition('#')
-        target = page.parent / place if place else page
-        if not target.exists() or (anchor and anchor not in anchors(target)):
-            found.append(link)
-    return found
-
-
-@pytest.mark.parametrize('page', PAGES, ids=lambda page: page.name)
-def test_links(page: Path) -> None:
-    assert broken(page, page.read_text(encoding='utf-8')) == []
+def test_nothing_leads_nowhere(capsys: Capture) -> None:
+    """As `make check` looks."""
+    assert main() == 0, capsys.readouterr().err
 
 
 @pytest.mark.parametrize('page', PAGES, ids=lambda page: page.name)
@@ -54,10 +34,16 @@ def test_what_is_broken_is_found() -> None:
                                                 'docs/images/nowhere.png']
 
 
+def test_paths_are_looked_for_at_the_top_and_in_the_package() -> None:
+    text = ('docs/model.md, `launch/sim.launch.py`, stickslip_sim/core/errors.py, tests/test_*.py, tests/nowhere.py,'
+            ' https://example.org/docs/nowhere.md and my_docs/nowhere.md, but docs/nowhere.md.')
+    assert missing(text) == ['docs/nowhere.md', 'tests/nowhere.py']
+
+
 def test_every_page_of_the_docs_is_on_their_front_page() -> None:
     front = (ROOT / 'docs/index.md').read_text(encoding='utf-8')
     assert {page.name for page in (ROOT / 'docs').glob('*.md')} - {'index.md'} == {
-        link for link in _LINK.findall(front) if link.endswith('.md')}
+        link for link in links(front) if link.endswith('.md')}
 
 
 def test_the_site_is_made_without_a_warning(tmp_path: Path) -> None:

@@ -13,8 +13,7 @@ from dev.pictures.__main__ import PICTURES
 from dev.pictures.svg import Sheet, Style
 from stickslip_sim.cli.main import stickslip
 from stickslip_sim.recording import topics
-
-ROOT = Path(__file__).parents[2]
+from tests.support.repository import ROOT
 
 
 @pytest.mark.parametrize('name', PICTURES)

@@ -4,13 +4,13 @@
 
 import os
 import re
-from pathlib import Path
 from typing import Any
 
 import pytest
 import yaml
 
-ROOT = Path(__file__).parents[2]
+from tests.support.repository import ROOT
+
 DISTROS = {path.stem.removeprefix('requirements-') for path in (ROOT / 'ros2_ws').glob('requirements-*.in')} - {
     'test', 'bench'}
 PARTS = re.findall(r'^#   \.ci/ros2 (\w+)', (ROOT / '.ci/ros2').read_text(encoding='utf-8'), re.MULTILINE)
