@@ -26,10 +26,12 @@ run: build  ## run the node on the paper's scene, drive it, record it, show what
 test: tools  ## all tests, in a ROS domain of their own
 	@$(HERE) --own-domain python3 -m pytest tests
 
-check: tools  ## style, types, architecture and links
+check: tools  ## style, types, architecture, spelling, words and links
 	@$(TOOLS)/ruff check .
 	@$(TOOLS)/mypy
 	@PYTHONPATH=stickslip_sim $(TOOLS)/lint-imports
+	@$(TOOLS)/codespell
+	@$(TOOLS)/python -m dev.words
 	@$(TOOLS)/python -m dev.links
 
 extremes: tools  ## what breaks other simulators, measured beside its mark (minutes); fails when one is missed

@@ -1,0 +1,82 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""`python3 -m dev.words`: no text of the repository has a word that dev/words.yaml refuses."""
+
+import re
+import sys
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import yaml
+
+from .files import ROOT, texts
+
+LIST = ROOT / 'dev/words.yaml'
+# Those that have to name what they refuse, and texts of others.
+_OUTSIDE = (':!dev/words.yaml', ':!tests/house/test_words.py', ':!tests/data', ':!CHANGELOG.md', ':!LICENSE',
+            ':!ros2_ws/requirements-*')
+_CAPITAL = re.compile(r'(?<=[a-z0-9])(?=[A-Z])')
+
+
+class Rule(NamedTuple):
+    """What is written instead of what, and where."""
+
+    write: str
+    refused: re.Pattern[str]
+    right: re.Pattern[str] | None
+    pages_only: bool
+
+
+class Fault(NamedTuple):
+    """A word that is not written, where it stands, and what is."""
+
+    line: int
+    word: str
+    write: str
+
+
+def rules(entries: Iterable[dict[str, Any]]) -> list[Rule]:
+    """Return the rules of the list; raises ValueError for an entry with a key that means nothing."""
+    found = []
+    for entry in entries:
+        if unknown := set(entry) - {'write', 'not', 'but', 'only'}:
+            raise ValueError(f'{LIST.name}: {entry["write"]}: unknown: {", ".join(unknown)}')
+        refused = r'(?<!\w)(?:' + '|'.join(entry['not']) + r')(?!\w)'
+        found.append(Rule(entry['write'], re.compile(refused, re.IGNORECASE),
+                          re.compile('|'.join(entry['but'])) if 'but' in entry else None,
+                          entry.get('only') == 'pages'))
+    return found
+
+
+def faults(text: str, refusals: Iterable[Rule]) -> Iterator[Fault]:
+    """Yield the words of a text that are refused, a rule after the other; names are read as the words in them."""
+    lines = text.splitlines()
+    words = _CAPITAL.sub(' ', '\n'.join(lines)).replace('_', ' ')
+    for rule in refusals:
+        for match in rule.refused.finditer(words):
+            number = words.count('\n', 0, match.start()) + 1
+            if not (rule.right and rule.right.search(lines[number - 1])):
+                yield Fault(number, match.group(), rule.write)
+
+
+def all_faults() -> Iterator[tuple[Path, Fault]]:
+    """Yield what is refused in the repository."""
+    listed = rules(yaml.safe_load(LIST.read_text(encoding='utf-8')))
+    elsewhere = [rule for rule in listed if not rule.pages_only]
+    for file in texts(*_OUTSIDE):
+        for fault in faults(file.read_text(encoding='utf-8'), listed if file.suffix == '.md' else elsewhere):
+            yield file, fault
+
+
+def main() -> int:
+    """Print each word that is refused, and what to write; return the exit code."""
+    count = 0
+    for file, fault in all_faults():
+        print(f'{file.relative_to(ROOT)}:{fault.line}: "{fault.word}": write {fault.write}', file=sys.stderr)
+        count += 1
+    return 1 if count else 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -1,0 +1,42 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The list of words that are not written: what it finds, and that the repository has none of them."""
+
+import pytest
+
+from dev.words import Fault, all_faults, faults, rules
+
+LISTED = rules([
+    {'write': 'periodic report', 'not': ['second reports?']},
+    {'write': 'input profile', 'not': ['courses?'], 'but': [r'drive\.course']},
+    {'write': 'that is', 'not': [r'i\.e\.'], 'only': 'pages'},
+])
+
+
+def test_the_repository_has_none() -> None:
+    """As `make check` looks."""
+    assert [f'{file}:{fault.line}: {fault.word}' for file, fault in all_faults()] == []
+
+
+@pytest.mark.parametrize('text', ['the second report', 'from .second_report import', 'class SecondReports:',
+                                  'Second reports'])
+def test_names_are_read_as_the_words_in_them(text: str) -> None:
+    assert [fault.write for fault in faults(text, LISTED)] == ['periodic report']
+
+
+def test_where_and_what() -> None:
+    assert list(faults('a\nb i.e. c\n', LISTED)) == [Fault(2, 'i.e.', 'that is')]
+
+
+@pytest.mark.parametrize('text', ['recourse', 'the seconds report', 'drive.course: a course', ''])
+def test_parts_of_words_and_other_meanings_are_right(text: str) -> None:
+    assert list(faults(text, LISTED)) == []
+
+
+def test_another_meaning_is_one_of_its_line() -> None:
+    assert [fault.line for fault in faults('drive.course\ncourse', LISTED)] == [2]
+
+
+def test_an_entry_with_an_unknown_key_is_refused() -> None:
+    with pytest.raises(ValueError, match='unknown: instead'):
+        rules([{'write': 'a', 'not': ['b'], 'instead': 'c'}])
