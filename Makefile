@@ -26,10 +26,11 @@ run: build  ## run the node on the paper's scene, drive it, record it, show what
 test: tools  ## all tests, in a ROS domain of their own
 	@$(HERE) --own-domain python3 -m pytest tests
 
-check: tools  ## style, types, architecture, spelling, words and links
+check: tools  ## style, types, architecture, dead code, spelling, words and links
 	@$(TOOLS)/ruff check .
 	@$(TOOLS)/mypy
 	@PYTHONPATH=stickslip_sim $(TOOLS)/lint-imports
+	@$(TOOLS)/vulture
 	@$(TOOLS)/codespell
 	@$(TOOLS)/python -m dev.words
 	@$(TOOLS)/python -m dev.links

@@ -15,13 +15,12 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from .paper_panels import Motion, forces, friction_loop, legend_below, part, velocity
 from .style import DOUBLE_COLUMN, JOURNAL, letter, save
 
-MAX_ROWS = 8
 _ROW, _LEGEND = 1.9, 0.6   # in
 _ALIKE = 5.0               # so many times as large an extent, and rows do not share an axis
 
 
 def plot_side_by_side(motions: Mapping[str, Motion], path: Path | str) -> None:
-    """Draw a row for each run, by its name, at most MAX_ROWS; runs that are alike have the same axes."""
+    """Draw a row for each run, by its name; runs that are alike have the same axes."""
     with rc_context(JOURNAL):
         figure = Figure(figsize=(DOUBLE_COLUMN, _ROW * len(motions) + _LEGEND),
                         layout=ConstrainedLayoutEngine(w_pad=0.05, h_pad=0.05))

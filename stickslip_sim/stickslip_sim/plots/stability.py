@@ -24,7 +24,6 @@ from .paper_panels import Motion, phase_plane
 from .scale import Scale
 from .style import BLACK, DOUBLE_COLUMN, GREY, JOURNAL, RED, SINGLE_COLUMN, Numbers, legend_outside, save
 
-MOST_PICKS = 6
 PLAIN = ('smooth sliding', 'sliding that swings on', 'at rest', 'failed', 'undecided')
 _PLAIN_COLOURS = ('#f2f2f2', '#c4c4c4', '#56B4E9', '#ffffff', '#ffffff')
 _HATCHES = {3: ('xxxxxx', RED), 4: ('//////', BLACK)}   # what is not known is no colour
