@@ -77,10 +77,12 @@ def segments(run: Run) -> Iterator[Segment]:
     """Return the segments of a run."""
     parts, table = run.parts, Table(run.parts.axis)
     nodes = list(_nodes(run, table))
+    came = 0.0
     for begin, end in pairwise(nodes):
         length = (Long(end.at.second) - Long(begin.at.second)) + (Long(end.at.fraction) - Long(begin.at.fraction))
         if length > 0:
-            yield _segment(parts, table, begin, end, length)
+            yield _segment(parts, table, begin, end, length, came)
+            came = abs(end.position - begin.position)
 
 
 def _nodes(run: Run, table: Table) -> Iterator[Node]:
@@ -128,7 +130,8 @@ def _node_of_sample(sample: Sample, excess: Any, excess_noise: Any) -> Node:
                 excess_noise, True)
 
 
-def _segment(parts: Parts, table: Table, begin: Node, end: Node, length: Any) -> Segment:
+def _segment(parts: Parts, table: Table, begin: Node, end: Node, length: Any, came: float) -> Segment:
+    """Return the segment; the slider `came` so far (m) in the one before, and the spring knows that no better."""
     axis = parts.axis
     m, c, h, normal = (Long(x) for x in (axis.mass, axis.drive_stiffness, axis.drive_damping, axis.normal_force))
     sinusoids = [(w, 0) for w in parts.drive.sinusoids] + [(w, 1) for w in parts.force.sinusoids]
@@ -190,7 +193,7 @@ def _segment(parts: Parts, table: Table, begin: Node, end: Node, length: Any) ->
         held = Long(contact.stiffness) * Long(begin.deflection) + Long(contact.damping) * u
     against = held if mode == Mode.STICK else sigma * normal * friction
     sizes.append(abs(against) + normal * axis.friction.static.initial * (1 if mode == Mode.STICK else 0.1))
-    rounding = FORCES * sum(sizes)
+    rounding = FORCES * sum(sizes) + EPSILON * c * Long(came)
     start = np.zeros(d, dtype=Long)
     noise = np.zeros(d, dtype=Long)
     start[F], noise[F] = (net - against if moves else net), rounding
