@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Put what `stickslip bench` wrote, and tick.py added to it, into docs/accuracy.md, between its markers.
+"""Put what `stickslip bench` wrote, and tick.py added to it, into docs/accuracy_tables.md, between its markers.
 
     python3 -m benchmarks.accuracy runs/bench
 """
@@ -14,7 +14,7 @@ from stickslip_sim.bench.race_report import markdown
 
 from .page import replace_generated
 
-PAGE = pathlib.Path('docs/accuracy.md')
+PAGE = pathlib.Path('docs/accuracy_tables.md')
 IMAGES = pathlib.Path('docs/images')
 
 

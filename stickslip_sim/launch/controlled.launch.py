@@ -16,12 +16,12 @@ from launch_ros.substitutions import FindPackageShare
 
 ARGUMENTS = {
     'scene': ('positioning', 'shipped scene of the axis, or a parameter file'),
-    'controller': ('cascade_controller', 'that moves the axis'),
-    'namespace': ('', 'of both nodes and their topics'),
-    'feed': ('0.0005', 'of the moves, m/s'),
-    'travel': ('0.002', 'of a move, m'),
-    'record': ('true', 'whether to record a bag from the start'),
-    'parameters': ('', "further ones of the axis, like 'encoder.resolution:=1.0e-6 seed:=3'"),
+    'controller': ('cascade_controller', 'controller that moves the axis'),
+    'namespace': ('', 'namespace of both nodes and their topics'),
+    'feed': ('0.0005', 'feed of the moves, m/s'),
+    'travel': ('0.002', 'travel of a move, m'),
+    'record': ('true', 'true: record a bag from the start; false: none'),
+    'parameters': ('', "further parameters of the axis, like 'encoder.resolution:=1.0e-6 seed:=3'"),
 }
 CHOICES = {'controller': ['cascade_controller', 'compensating_controller']}
 # The axis stands until the controller moves it.

@@ -11,15 +11,15 @@ from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 
 ARGUMENTS = {
-    'bag': (None, 'folder of the run, or an .mcap file'),
-    'mode': ('states', 'states: all that was recorded; commands: what the axis was told, into a live one'),
-    'rate': ('1.0', 'seconds of the recording per second'),
-    'loop': ('false', 'whether to begin anew at the end'),
-    'start_offset': ('0.0', 's of the recording that are left out at its begin'),
-    'playback_duration': ('-1.0', 's of the recording that are played; -1: to its end'),
-    'delay': ('0.0', 's before it is played, each time'),
-    'start_paused': ('false', 'whether to wait for ~/resume at the begin'),
-    'clock': ('0.0', 'Hz: how often /clock is published; 0: not at all'),
+    'bag': (None, 'folder of the run, or its .mcap file'),
+    'mode': ('states', 'states: every recorded topic; commands: the recorded commands, faults and parameters, into a live axis'),
+    'rate': ('1.0', 'speed: seconds of the recording per second'),
+    'loop': ('false', 'true: start again at the end'),
+    'start_offset': ('0.0', 'seconds of the recording to skip at its start'),
+    'playback_duration': ('-1.0', 'seconds of the recording to play; -1: to its end'),
+    'delay': ('0.0', 'seconds to wait before it plays, each time'),
+    'start_paused': ('false', 'true: wait for ~/resume at the start'),
+    'clock': ('0.0', 'rate of /clock, Hz; 0: not published'),
 }
 CHOICES = {'mode': ['states', 'commands']}
 

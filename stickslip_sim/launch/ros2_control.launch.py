@@ -25,9 +25,9 @@ def generate_launch_description() -> LaunchDescription:
     return LaunchDescription([
         DeclareLaunchArgument('scene', default_value='positioning', description='shipped scene, or a parameter file'),
         DeclareLaunchArgument('namespace', default_value='machine', description='namespace of the axis and its topics'),
-        DeclareLaunchArgument('controller', default_value='velocity_controller', description='of the axis',
+        DeclareLaunchArgument('controller', default_value='velocity_controller', description='controller of the axis',
                               choices=['velocity_controller', 'position_controller']),
-        DeclareLaunchArgument('parameters', default_value='', description="further ones of the axis, like 'seed:=3'"),
+        DeclareLaunchArgument('parameters', default_value='', description="further parameters of the axis, like 'seed:=3'"),
         Node(package='robot_state_publisher', executable='robot_state_publisher', output='screen',
              parameters=[{'robot_description': ParameterValue(description(), value_type=str)}]),
         Node(package='controller_manager', executable='ros2_control_node', output='screen', parameters=[controllers],

@@ -17,13 +17,13 @@ from launch_ros.actions import Node
 
 ARGUMENTS = {
     'scene': ('paper_fig8', 'shipped scene, or a parameter file'),
-    'namespace': ('', 'of the node and its topics'),
-    'mode': ('', 'of its time: realtime, lockstep or free_run'),
+    'namespace': ('', 'namespace of the node and its topics'),
+    'mode': ('', 'mode of time: realtime, lockstep or free_run'),
     'rate': ('', 'steps per second of simulation time'),
-    'record': ('', 'true: a bag from the start; false: none'),
-    'folder': ('', 'of the bag, which must not exist; empty: one below runs/'),
-    'parameters': ('', "further ones, like 'drive.velocity:=0.005 seed:=3'"),
-    'clock': ('/clock', 'topic of its clock in lockstep and free_run; without a slash it is one of the namespace'),
+    'record': ('', 'true: record a bag from the start; false: none'),
+    'folder': ('', 'new folder of the bag, which must not exist; empty: one below runs/'),
+    'parameters': ('', "further parameters, like 'drive.velocity:=0.005 seed:=3'"),
+    'clock': ('/clock', 'topic of the clock in lockstep and free_run; without a leading slash it lies in the namespace'),
 }
 PARAMETERS = {'scene': 'scene', 'mode': 'time.mode', 'rate': 'time.rate', 'record': 'record.enabled',
               'folder': 'record.folder'}

@@ -52,7 +52,7 @@ def marks_table(figures: Sequence[Json]) -> str:
 
 
 def markdown(data: Json) -> str:
-    """Return the page that `bench.md` holds, and docs/accuracy.md between its markers."""
+    """Return the page that `bench.md` holds, and docs/accuracy_tables.md between its markers."""
     known = '; '.join(f'{name} {version}' for name, version in data['versions'].items())
     lines = [f'Measured on {data["machine"]} with {known}; medians of {data["rounds"]} interleaved rounds (fewer of'
              ' what takes seconds), processor time.', '']

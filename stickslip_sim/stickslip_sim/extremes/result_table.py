@@ -28,15 +28,15 @@ def markdown_text(outcomes: Sequence[Outcome], quick: bool) -> str:
     """Return the page `docs/extremes.md`."""
     met = sum(outcome.passed for outcome in outcomes)
     size = ' --quick' if quick else ''
-    told = ', '.join(f'{name} {version}' for name, version in versions().items())
+    known = ', '.join(f'{name} {version}' for name, version in versions().items())
     lines = ['# The extremes', '',
-             'What breaks other simulators, what this one is asked for, and what was measured.  Written by',
-             f'`stickslip extremes{size} --out docs/extremes.md`; `make extremes` measures again and fails when a mark',
-             'is missed.',
-             '', f'{met} of {len(outcomes)} marks met; {told}.', '',
+             'See here how this engine does in the cases that break other simulators: each case has a mark and the',
+             f'measured figure.  `stickslip extremes{size} --out docs/extremes.md` writes this page; `make extremes`',
+             'measures again and fails when a mark is missed.',
+             '', f'{met} of {len(outcomes)} marks met; {known}.', '',
              'The column "elsewhere" was measured on the paper\'s data with scipy 1.17, SUNDIALS CVODE (scikit-sundae',
-             '1.2), MuJoCo 4.0 and Drake 1.51, or is taken from their documentation and issues.  From X22 on it is',
-             'what stickslip 0.1.0 did: these came of an attack, [told here](accuracy.md#what-an-attack-found).', '',
+             '1.2), MuJoCo 4.0 and Drake 1.51, or is taken from their documentation and issues.  From X22 on it has the',
+             'results of stickslip 0.1.0: [an attack on it](accuracy_method.md#what-an-attack-found) found these cases.', '',
              '| # | extreme | elsewhere | mark | measured | met |', '|---|---|---|---|---|---|']
     for outcome in outcomes:
         cells = (outcome.number, outcome.name, outcome.elsewhere, outcome.mark, outcome.finding.figure,
