@@ -15,7 +15,7 @@ from launch_ros.substitutions import FindPackageShare
 
 # Those of sim.launch.py that are not of one axis alone: it declares them too, but --show-args cannot see that.
 ARGUMENTS = {
-    'axes': ('x:positioning y:positioning', 'NAMESPACE:SCENE of each axis; SCENE is a shipped scene or a parameter file'),
+    'axes': ('x:positioning y:positioning', 'NAMESPACE:SCENE of each axis; a scene is a shipped one or a file'),
     'mode': ('', 'mode of time of all axes: realtime, lockstep or free_run; empty: as in the scene'),
     'rate': ('', 'steps per second of simulation time; empty: as in the scene'),
     'record': ('', 'true: record a bag of each axis from the start, below runs/; false: none; empty: as in the scene'),

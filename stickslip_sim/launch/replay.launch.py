@@ -12,7 +12,7 @@ from launch_ros.actions import Node
 
 ARGUMENTS = {
     'bag': (None, 'folder of the run, or its .mcap file'),
-    'mode': ('states', 'states: every recorded topic; commands: the recorded commands, faults and parameters, into a live axis'),
+    'mode': ('states', 'states: every recorded topic; commands: the recorded commands, into a live axis'),
     'rate': ('1.0', 'speed: seconds of the recording per second'),
     'loop': ('false', 'true: start again at the end'),
     'start_offset': ('0.0', 'seconds of the recording to skip at its start'),

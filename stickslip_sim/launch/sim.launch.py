@@ -23,7 +23,7 @@ ARGUMENTS = {
     'record': ('', 'true: record a bag from the start; false: none'),
     'folder': ('', 'new folder of the bag, which must not exist; empty: one below runs/'),
     'parameters': ('', "further parameters, like 'drive.velocity:=0.005 seed:=3'"),
-    'clock': ('/clock', 'topic of the clock in lockstep and free_run; without a leading slash it lies in the namespace'),
+    'clock': ('/clock', 'topic of the clock in lockstep and free_run; without a leading slash in the namespace'),
 }
 PARAMETERS = {'scene': 'scene', 'mode': 'time.mode', 'rate': 'time.rate', 'record': 'record.enabled',
               'folder': 'record.folder'}

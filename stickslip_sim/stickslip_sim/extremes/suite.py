@@ -72,8 +72,8 @@ EXTREMES = (
     Extreme('X19', 'mirror image; units scaled by powers of two', 'not tested', 'the same bits', mirrored_and_scaled),
     Extreme('X20', 'the same scene twice, in two processes; recorded commands again', 'not promised', 'the same bits',
             run_twice),
-    Extreme('X21', 'a rigid contact with two branches under sines: friction is continuous at the break-away, and the '
-            'rate of the force alone says that it slips',
+    Extreme('X21', 'a rigid contact with two branches under sinusoids: friction is continuous at the break-away, and '
+            'the rate of the force alone says that it slips',
             'this engine doubled break-aways while it took the rate of the event before: 66 of 102 wrong',
             'the events of the reference, <= 1e-12', shaken),
     Extreme('X22', 'kinetic friction that falls within 0.05 to 50 mm/s: slips grow by a factor of up to e⁶⁰⁰',
@@ -85,11 +85,11 @@ EXTREMES = (
     Extreme('X24', 'verdicts of sweep and critical: sticks and reversals by turns, sticks after long pauses, a cycle '
             'about to vanish', 'looking at the last cycle, or for two equal ones: wrong for 3 of 41 masses, and '
             'borders "to 1e-9" that do not exist or that 937 sticks contradict', 'what 10,000 s show', verdicts),
-    Extreme('X25', 'the account of energy: sines of 1 Hz to 1 MHz; stiff, over-damped, undamped, resonant contacts',
+    Extreme('X25', 'the energy account: sinusoids of 1 Hz to 1 MHz; stiff, over-damped, undamped, resonant contacts',
             'not reported; 0.1.0 of this engine: a hold of 1000 s under 1 kHz 2.3 s for 54 us of motion, 1 MHz no end',
             'the account costs at most as much again as the motion; balance <= 1e-12', cost_of_the_account),
     Extreme('X26', 'honest error estimates of all solvers, for steps of 10 µs to 10 ms and tolerances of 1e-3 to 1e-12',
-            'a repeat with half the step or a tenth of the tolerance told a millionth of the error, 5e-9 s',
+            'a repeat with half the step or a tenth of the tolerance showed a millionth of the error, 5e-9 s',
             'true error within the estimate, events those of the reference as far as it says', estimates),
     Extreme('X27', 'an undamped contact with mu_s = mu_k at rest comes back to its limit in every period',
             'stickslip 0.1.0: 21 % of such axes broke away for 1e-10 s at a touch', 'none invented, none missed',
