@@ -96,11 +96,11 @@ def by_model() -> Iterator[str]:
 
 
 SECTIONS: dict[str, Callable[[], Iterator[str]]] = {
-    'The same moves with both, from creep to full feed': by_feed,
-    'What higher and lower gains do': by_gain,
-    'What a delay does': by_delay,
-    'What encoders do that count': by_resolution,
-    'What a wrong model does, at 0.5 mm/s': by_model,
+    'The same moves with both, from low to full feed': by_feed,
+    'Higher and lower gains': by_gain,
+    'Delay': by_delay,
+    'Resolution of the encoders': by_resolution,
+    'A wrong model, at 0.5 mm/s': by_model,
 }
 
 
