@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The limits that docs/security.md tells are those of the code."""
+"""The limits in docs/security.md are those of the code."""
 
 
 import pytest
@@ -21,7 +21,7 @@ ROWS = [line for line in (ROOT / 'docs/security.md').read_text().splitlines() if
 @pytest.mark.parametrize(('what', 'limits'), [
     ('a scene, limits or other', (ros_yaml.SIZE_LIMIT, ros_yaml.MOST_NODES, ros_yaml.MOST_LEVELS)),
     ('a text in a scene', (parameter.TEXT_LIMIT,)),
-    ('knots of a friction table', (MAX_KNOTS, MAX_SINUSOIDS, MAX_FAULTS)),
+    ('breakpoints of a friction table', (MAX_KNOTS, MAX_SINUSOIDS, MAX_FAULTS)),
     ('a record of a bag', (records.SIZE_LIMIT >> 20,)),
     ('schemas, attachments', (opening.MOST_TOLD >> 20,)),
     ('a definition', (schemas.LONGEST, schemas.MOST_ELEMENTS)),
