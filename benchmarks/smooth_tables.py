@@ -28,39 +28,40 @@ CASES = [(contact, branches) for contact in (RigidContact(), CompliantContact(5e
 
 _BRANCHES = {True: 'two', False: 'one'}
 _HEAD = """\
-# Smooth friction laws, and what their tables do to the motion
+# Smooth friction laws, and the effect of their tables
 
-Made by `python3 -m benchmarks.smooth_tables > docs/smooth.md`.
+Choose here the tolerance of a smooth friction law: the tables show how far the events move.
+`python3 -m benchmarks.smooth_tables > docs/smooth.md` makes this page.
 
-The engine is exact for friction that is linear between knots.  A smooth law (`friction.kinetic.law: stribeck`,
+The engine is exact for friction that is linear between breakpoints.  A smooth law (`friction.kinetic.law: stribeck`,
 `exponential`, `hyperbolic`; `friction.excess.law: cosine`, `power`) becomes a table whose difference to the law is at
 most `tolerance` at every speed, from rest to infinity.  The bound is proven, not sampled: between inflections the
-difference has its extremes at the knots and where the law has the slope of the line, and these are computed from the
-finished table.  A tolerance that takes more than 1000 knots is refused, with one that fits.
+difference has its extremes at the breakpoints and where the law has the slope of the segment, and these are computed
+from the finished table.  A tolerance that takes more than 1000 breakpoints is refused, with one that fits.
 
-The knots lie off the curve, on its outer side, by the tolerance (less a margin for rounding); in the middle of a line
-the difference is half as much the other way.  So it has zero mean in first order, and over a line the table takes the
-same energy out of a slip as the law.  At rest and at infinite speed the table is the law.
+The breakpoints lie off the curve, on its outer side, by the tolerance (less a margin for rounding).  In the middle of a
+segment the difference is half as much, on the other side.  So it has zero mean in first order, and over a segment the
+table takes the same energy out of a slip as the law.  At rest and at infinite speed the table is the law.
 
-Measured below: the paper's axis with mu_k = 0.05 + 0.07 exp(−(w/15 mm/s)²) + (0.1 s/m) w, static friction as in
-`paper_fig8`, 3 s at 2 mm/s from prolonged rest, with acceleration dependence (two branches) and without.  Compared are
-all events with those of the smooth law, integrated without a table (`benchmarks/smooth_reference.py`: DOP853, relative
-tolerance 1e-13).  On the whole the error falls in proportion to the tolerance or faster: line by line the differences
-cancel, but the slip ends within a line, and lingers at its peak speed.  The last column is the largest error in time
-over the tolerance.
+**Measured:** the paper's axis with mu_k = 0.05 + 0.07 exp(−(w/15 mm/s)²) + (0.1 s/m) w, static friction as in
+`paper_fig8`, 3 s at 2 mm/s from prolonged rest, with acceleration dependence (two branches) and without.  All events
+are compared with those of the smooth law, integrated without a table (`benchmarks/smooth_reference.py`: DOP853,
+relative tolerance 1e-13).  On the whole the error falls in proportion to the tolerance or faster: segment by segment
+the differences cancel, but the slip ends within a segment, and lingers at its peak speed.  The last column is the
+largest error in time over the tolerance.
 
-| contact | branches | tolerance | knots | events | worst in time / s | worst in position / m | s per unit of mu |
+| contact | branches | tolerance | breakpoints | events | worst in time / s | worst in position / m | s per unit of mu |
 |---|---|---|---|---|---|---|---|
 """
 _TAIL = """
-Rows with "other" have another sequence of events than the smooth law: the table is too coarse.  Left out of the
-comparison is a coast of nanoseconds after a break-away of the compliant contact: whether there is one hangs on the last
-remains of its ring-down.
+Rows with "other" have another sequence of events than the smooth law: the table is too coarse.  The comparison leaves
+out a coast of nanoseconds after a break-away of the compliant contact: the last remains of its ring-down decide whether
+there is one.
 
-For comparison, the same with the usual table, whose knots lie on the curve (as few as the tolerance allows; rigid
+For comparison, the same with the usual table, whose breakpoints lie on the curve (as few as the tolerance allows; rigid
 contact):
 
-| branches | tolerance | knots | worst in time / s | worst in position / m | s per unit of mu |
+| branches | tolerance | breakpoints | worst in time / s | worst in position / m | s per unit of mu |
 |---|---|---|---|---|---|
 """
 
