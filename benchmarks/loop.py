@@ -251,12 +251,12 @@ def machine() -> str:
 
 
 _CHOICE = (
-    'The node steps in a thread of its own with absolute deadlines, beside an EventsExecutor for callbacks:',
+    'The node steps in a thread of its own with absolute deadlines, beside an EventsExecutor for callbacks, because:',
     '',
-    '* a timer leaves out the ticks that it is late for (achieved < rate), the thread makes them up (its p99 and p99.9',
+    '* a timer leaves out the ticks that it is late for (achieved < rate); the thread makes them up (its p99 and p99.9',
     '  hold the steps that waited behind a stall of the machine);',
     '* callbacks of commands cost least with the EventsExecutor, and disturb the steps least;',
-    '* a timer slack of 1 ns instead of the default 50 µs (`prctl`) brings the steps nearer to when they are due;',
+    '* a timer slack of 1 ns instead of the default 50 µs (`prctl`) starts the steps nearer to their due time;',
     '* a callback may keep the interpreter 0.2 ms (`sys.setswitchinterval`) instead of 5 ms before a step gets it.',
 )
 
@@ -265,11 +265,14 @@ def report(rows: list[str], options: argparse.Namespace) -> str:
     """Return the page."""
     return '\n'.join([
         '# The loop of the node, measured', '',
-        f'Written by `python3 benchmarks/loop.py --seconds {options.seconds:g} --repeats {options.repeats}` on',
+        'See here how punctual the step loop of the node is, beside other ways to write one in rclpy.',
+        f'`python3 benchmarks/loop.py --seconds {options.seconds:g} --repeats {options.repeats}` wrote this page on',
         f'{machine()}.', '',
-        f'Each case: an own process, {options.seconds:g} s, median of {options.repeats}; two messages out a step;',
-        '"commands" are drive velocities per second that came in from a further process that sends 1000.  Lateness:',
-        'from when a step was due to its beginning.  CPU: user and system time of the whole process, per step.', '',
+        f'* Each case is a process of its own, {options.seconds:g} s, median of {options.repeats}; two messages'
+        ' a step.',
+        '* Commands: drive velocities per second that arrived from a further process that sends 1000.',
+        '* Lateness: from the instant when a step was due to its start.',
+        '* CPU: user and system time of the whole process, per step.', '',
         '| loop | rate, 1/s | achieved, 1/s | commands, 1/s | lateness p50, µs | p99 | p99.9 | CPU per step, µs |',
         '|---|---|---|---|---|---|---|---|', *rows, '', *_CHOICE, ''])
 

@@ -106,15 +106,16 @@ def page(minutes: float, figures: Mapping[str, float], verdict: str) -> str:
     failures = missed(figures)
     return '\n'.join([
         '# The soak', '',
-        f'Written by `python3 -m benchmarks.soak --minutes {minutes:g}` (`make soak`) on',
+        'See here whether memory, drift and losses of a recording node stay within their limits for long.',
+        f'`python3 -m benchmarks.soak --minutes {minutes:g}` (`make soak`) wrote this page on',
         f'{machine()}.', '',
-        f'`sim_node` on `{SCENE}` at {RATE:g} steps a second with its recording, for {minutes:g} minutes; a',
-        'controller in a process of its own answers every state with a drive velocity.  What grows while the node',
-        'records is the index of the bag, which MCAP writes at its end.', '',
+        f'`sim_node` runs `{SCENE}` at {RATE:g} steps a second with its recording, for {minutes:g} minutes.  A',
+        'controller in a process of its own answers every state with a drive velocity.  The memory that grows while',
+        'the node records is the index of the bag, which MCAP writes at its end.', '',
         '| figure | measured | at most |', '|---|---|---|', *rows, '',
         'Missed: ' + '; '.join(failures) + '.' if failures else
         'Memory, drift and loss are within their limits.', '',
-        'How late steps come is a matter of the machine, and has no limit here.  The node judges it by the section',
+        'The lateness of steps depends on the machine, and has no limit here.  The node judges it by the section',
         '`timing` of its scene ([hil.md](hil.md)); its verdict on this run:', '', f'    {verdict}', ''])
 
 

@@ -44,11 +44,12 @@ COLUMNS = (
 )
 
 _LEGEND = (
-    'CPU: user and system time of the whole process of the node, per step.  Unheard: steps that the controller did not',
-    'receive.  Unrecorded: steps that are not in the bag.  Overruns: share of the steps that began more than a period',
-    'late.  Waited: how long threads of the node that could run had no core.',
-    'Latency, as the node tells on `timing`: from the arrival of a command to the first published state that it moved.',
-    'Answer to effect, as the controller sees it: from the state that it answered to the first state that moved.',
+    '* CPU: user and system time of the whole process of the node, per step.',
+    '* Unheard: steps that the controller did not receive.  Unrecorded: steps that are not in the bag.',
+    '* Overruns: share of the steps that started more than a period late.',
+    '* Waited: how long threads of the node that could run had no core.',
+    '* Latency, from `timing` of the node: from the arrival of a command to the first published state that it moved.',
+    '* Answer to effect, as the controller sees it: from the state that it answered to the first state that moved.',
 )
 
 
@@ -57,17 +58,19 @@ def page(found: Mapping[str, Any]) -> str:
     seconds, repeats = f'{found["seconds"]:g}', found['repeats']
     return '\n'.join([
         '# The bench for controllers, measured', '',
-        f'Written by `python3 -m benchmarks.hil --seconds {seconds} --repeats {repeats}` on',
+        'See here the CPU time and the latency of the node, beside a bare node, and the highest rate that it holds.',
+        f'`python3 -m benchmarks.hil --seconds {seconds} --repeats {repeats}` wrote this page on',
         f'{found["machine"]}.', '',
         '## Beside a bare node', '',
-        f'At 1 kHz, in turns, {seconds} s each, {repeats} times: `sim_node` on `{SCENE}` with its default topics',
-        'and its recording; and a node with the same loop (thread, absolute deadlines, EventsExecutor beside it) that',
-        'fills and publishes the same two messages with rclpy and simulates nothing.  A controller in a process of its',
-        'own answers every state with a drive velocity.  Medians; sums of unheard and unrecorded, the worst of maxima.',
-        '',
+        f'At 1 kHz, in turns, {seconds} s each, {repeats} times:', '',
+        f'* `sim_node` on `{SCENE}` with its default topics and its recording;',
+        '* a bare node with the same loop (thread, absolute deadlines, EventsExecutor beside it), which fills and',
+        '  publishes the same two messages with rclpy and simulates nothing.', '',
+        'A controller in a process of its own answers every state with a drive velocity.  The figures are medians; of',
+        'unheard and unrecorded steps sums, of maxima the worst.', '',
         *table('node', found['cases']), '', *_LEGEND, '', *verdict(found['cases']), '',
         '## The highest rate', '',
-        f'`sim_node` alone, {seconds} s at each rate, up to the first at which steps are lost or come behind their',
+        f'`sim_node` alone, {seconds} s at each rate, up to the first rate at which steps are lost or lag behind the',
         'clock.  The controller answers 1000 states a second.', '',
         *table('rate, 1/s', found['rates']), '', *highest(found['troubles']), ''])
 
