@@ -12,27 +12,31 @@ from .text import yaml_value
 _HEAD = """\
 # Every parameter of a scene
 
-Made from the schema by `python3 -m stickslip_sim.scene.document > docs/scene.md`; a test keeps it up to date.
+Look up here every parameter that a scene file may have: type, unit, default, range and meaning.  Made from the schema
+by `python3 -m stickslip_sim.scene.document > docs/scene.md`; a test keeps it up to date.
 
 A scene is a ROS 2 parameter file: sections below `/**:` (or `feed_axis:`) and `ros__parameters:`.  The node loads it
-with `--params-file`, the tool by its path; both refuse unknown names, wrong types and ranges, and values that
+with `--params-file`, the tool by its path.  Both refuse unknown names, wrong types and ranges, and values that
 contradict a choice, with one line.  The shipped files in `stickslip_sim/stickslip_sim/scenes/` are the models to copy.
 
-* What is left out takes the default.  Only the axis has the paper's values there; everything else that is left out is
-  not modelled: no friction, a rigid contact, a drive that stands still, no force.  (A node that gets no file runs the
-  scene `paper_fig8`.)  Every number has bounds, far beyond any machine, within which nothing overflows.
-* `scene` is a name for people.  Only a file that says nothing of an axis (but `scene`, `time`, `command`, `record`,
-  `seed`) and bears the name of a shipped scene means that scene, with what else the file says.
-* "with" says for which choice a parameter has a meaning.  Given with another choice it is refused; without a default
-  (*needed*) it must be given.
-* Write numbers with a dot, `350.0` or `6.0e5`.  A whole number is taken for a double, but inside a list ROS wants all
-  alike: `[0.0, 0.035]`.  Infinity is `.inf`.  Anchors, aliases, tags and a name given twice are refused.
-* "live" parameters may change while the node runs.  `ros2 param set`, `ros2 param load` and the service
-  `set_parameters` change one after the other, each checked with those in force, as ROS defines it.  What must change
-  together, as both lists of a friction table to another length, goes by the service `set_parameters_atomically` (in
-  newer ROS `ros2 param load --atomic`): all or none, between the same two steps.
-* `--set a.b=value` of the tool changes one value of the file.  If it changes a choice, what the file gives for the old
-  choice goes with it: `--set contact.model=rigid` needs no more.
+* **Defaults.**  A parameter that is left out takes the default.  Only the axis has the paper's values there; everything
+  else that is left out is not modelled: no friction, a rigid contact, a drive that stands still, no force.  (A node
+  without a file runs the scene `paper_fig8`.)  Every number has bounds, far beyond any machine, within which nothing
+  overflows.
+* **`scene`** is a name for people.  Only a file that has nothing of an axis (but `scene`, `time`, `command`, `record`,
+  `seed`) and bears the name of a shipped scene means that scene, with the other parameters of the file.
+* **"with"** says for which choice a parameter has a meaning.  Given with another choice it is refused; without a
+  default (*needed*) it must be given.
+* **Numbers.**  Write numbers with a dot, `350.0` or `6.0e5`.  A whole number is taken for a double, but inside a list
+  ROS wants all alike: `[0.0, 0.035]`.  Infinity is `.inf`.  Anchors, aliases, tags and a name given twice are refused.
+* **"live"** parameters may change while the node runs.  `ros2 param set`, `ros2 param load` and the service
+  `set_parameters` change one after the other, each checked with those in force, as ROS defines it.  Parameters that
+  must change together, as both lists of a friction table to another length, go by the service
+  `set_parameters_atomically` (in newer ROS `ros2 param load --atomic`): all or none, between the same two steps.
+* **`--set a.b=value`** of the tool changes one value of the file.  If it changes a choice, the values that the file
+  gives for the old choice are dropped: `--set contact.model=rigid` needs no more.
+* **Input profiles.**  `drive.course` and `force.course` choose the input profile: velocity or force over time.
+* **Tables.**  The points of a table are its breakpoints; it is linear between them.
 """
 
 

@@ -62,39 +62,39 @@ PARAMETERS: tuple[Parameter, ...] = (
            high=bounds.TIME, live=True, when=_GROWS),
     number('friction.static.exponent', None, '', "n of Kato's law exp(-(t/tau)^n)", low=bounds.KATO[0],
            high=bounds.KATO[1], live=True, when=When('friction.static.law', ('kato',))),
-    choice('friction.kinetic.law', 'table', 'kinetic coefficient mu_k over the speed: a table of knots, linear between'
-           ' them; or mu_c + (mu_0 - mu_c) g(speed/v_s) + k_v speed with g(z) = exp(-z^exponent) (stribeck), exp(-z)'
-           ' (exponential) or 1/(1 + z) (hyperbolic)', _KINETIC),
-    numbers('friction.kinetic.velocities', (0.0,), 'm/s', 'knots of the kinetic coefficient; the first is 0, each is'
-            ' higher, the last is v_gr', low=0.0, high=bounds.SPEED, live=True, when=_KNOTS),
+    choice('friction.kinetic.law', 'table', 'kinetic coefficient mu_k over the speed: a table, linear between'
+           ' breakpoints; or mu_c + (mu_0 - mu_c) g(speed/v_s) + k_v speed with g(z) = exp(-z^exponent) (stribeck),'
+           ' exp(-z) (exponential) or 1/(1 + z) (hyperbolic)', _KINETIC),
+    numbers('friction.kinetic.velocities', (0.0,), 'm/s', 'breakpoints of the kinetic coefficient; the first is 0, each'
+            ' is higher, the last is v_gr', low=0.0, high=bounds.SPEED, live=True, when=_KNOTS),
     numbers('friction.kinetic.coefficients', (0.0,), '', 'mu_k at these speeds', low=0.0,
             high=bounds.COEFFICIENT, live=True, when=_KNOTS),
-    number('friction.kinetic.end_slope', 0.0, 's/m', 'slope of mu_k beyond the last knot', low=0.0, high=bounds.SLOPE,
-           live=True, when=_KNOTS),
+    number('friction.kinetic.end_slope', 0.0, 's/m', 'slope of mu_k beyond the last breakpoint', low=0.0,
+           high=bounds.SLOPE, live=True, when=_KNOTS),
     number('friction.kinetic.initial', None, '', 'mu_0, mu_k at rest; not above friction.static.initial', low=0.0,
            high=bounds.COEFFICIENT, live=True, when=_SMOOTH),
-    number('friction.kinetic.limit', None, '', 'mu_c, what the falling part tends to at high speed', low=0.0,
+    number('friction.kinetic.limit', None, '', 'mu_c, limit of the falling part at high speed', low=0.0,
            high=bounds.COEFFICIENT, live=True, when=_SMOOTH),
     number('friction.kinetic.stribeck_velocity', None, 'm/s', 'v_s, at which the falling part has dropped to 1/e'
            ' (hyperbolic: to 1/2)', low=bounds.LOWEST_SPEED, high=bounds.SPEED, live=True, when=_SMOOTH),
-    number('friction.kinetic.exponent', 2.0, '', 'of the law stribeck; 2: Gaussian', low=MIN_EXPONENT,
+    number('friction.kinetic.exponent', 2.0, '', 'delta of the law stribeck; 2: Gaussian', low=MIN_EXPONENT,
            high=MAX_EXPONENT, live=True, when=When('friction.kinetic.law', ('stribeck',))),
-    number('friction.kinetic.viscous', 0.0, 's/m', 'k_v, what mu_k rises by with the speed', low=0.0, high=bounds.SLOPE,
+    number('friction.kinetic.viscous', 0.0, 's/m', 'k_v, rise of mu_k with the speed', low=0.0, high=bounds.SLOPE,
            live=True, when=_SMOOTH),
-    number('friction.kinetic.tolerance', 1e-4, '', 'largest difference, in mu, between the smooth law and the table'
-           ' that is computed with', low=bounds.FINEST, high=1.0, live=True, when=_SMOOTH),
+    number('friction.kinetic.tolerance', 1e-4, '', 'largest difference, in mu, between the smooth law and its'
+           ' table', low=bounds.FINEST, high=1.0, live=True, when=_SMOOTH),
     Parameter('friction.acceleration_dependence', 'bool', False, '', 'whether the accelerating branch of mu_k lies'
               ' above the decelerating one (Fig. 6) instead of one curve for both (Fig. 3)'),
     choice('friction.excess.law', 'table', 'psi over the speed, the shape of the excess of the accelerating branch: a'
-           ' table of knots; or (1 + cos(pi z))/2 (cosine) or (1 - z)^exponent (power) with z = speed/limit_velocity,'
+           ' table; or (1 + cos(pi z))/2 (cosine) or (1 - z)^exponent (power) with z = speed/limit_velocity,'
            ' 0 beyond', _EXCESS, _BRANCHES),
-    numbers('friction.excess.velocities', None, 'm/s', 'knots of psi; left out: linear to 0 at the last knot of'
-            ' mu_k (a smooth law: where its falling part has dropped to 1 %)', low=0.0, high=bounds.SPEED, live=True,
-            when=_EXCESS_KNOTS, required=False),
+    numbers('friction.excess.velocities', None, 'm/s', 'breakpoints of psi; left out: linear to 0 at the last'
+            ' breakpoint of mu_k (a smooth law: where its falling part has dropped to 1 %)', low=0.0, high=bounds.SPEED,
+            live=True, when=_EXCESS_KNOTS, required=False),
     numbers('friction.excess.fractions', None, '', 'psi at these speeds: 1 at the first, 0 at the last', low=0.0,
             high=1.0, live=True, when=_EXCESS_KNOTS, required=False),
-    Parameter('friction.excess.limit_velocity', 'double', None, 'm/s', 'where psi ends; left out: as for a table',
-              bounds.LOWEST_SPEED, bounds.SPEED, live=True, when=_EXCESS_SMOOTH),
+    Parameter('friction.excess.limit_velocity', 'double', None, 'm/s', 'speed at which psi ends; left out: as for a'
+              ' table', bounds.LOWEST_SPEED, bounds.SPEED, live=True, when=_EXCESS_SMOOTH),
     number('friction.excess.exponent', None, '', 'n of the law power', low=1.0, high=MAX_EXPONENT, above=True,
            live=True, when=When('friction.excess.law', ('power',))),
     number('friction.excess.tolerance', 1e-3, '', 'largest difference between the smooth psi and its table',
@@ -105,10 +105,10 @@ PARAMETERS: tuple[Parameter, ...] = (
     *profile('force', 'constant', 'rate', 'forces', 'N', 'external force on the slider, along +x', bounds.FORCE,
             bounds.FORCE_RATE),
 
-    number('initial.position', 0.0, 'm', 'slider and drive at the start; the spring is unstretched', low=-bounds.PLACE,
-           high=bounds.PLACE),
-    number('initial.velocity', 0.0, 'm/s', 'slider at the start', low=-bounds.SPEED, high=bounds.SPEED),
-    number('initial.rest_time', math.inf, 's', 'rest before the start (.inf: prolonged rest)', low=0.0,
+    number('initial.position', 0.0, 'm', 'position of slider and drive at the start; the spring is unstretched',
+           low=-bounds.PLACE, high=bounds.PLACE),
+    number('initial.velocity', 0.0, 'm/s', 'velocity of the slider at the start', low=-bounds.SPEED, high=bounds.SPEED),
+    number('initial.rest_time', math.inf, 's', 'rest time before the start (.inf: prolonged rest)', low=0.0,
            high=bounds.TIME, infinite=True),
 
     choice('solver.name', 'exact', 'exact: closed form, from event to event; fixed_step: the usual loop, to compare'
@@ -121,64 +121,64 @@ PARAMETERS: tuple[Parameter, ...] = (
     number('solver.atol', 1e-10, 'm, m/s', 'error of a step in travel and velocity', low=1e-300, high=1.0,
            when=_ADAPTIVE),
 
-    choice('time.mode', 'realtime', 'of the node: realtime follows the clock of the machine; lockstep moves with'
+    choice('time.mode', 'realtime', 'time of the node: realtime follows the clock of the machine; lockstep moves with'
            ' ~/step only; free_run goes at time.factor, or as fast as it can with .inf; the last two publish /clock',
            _MODES),
     number('time.rate', 1000.0, 'Hz', 'steps per second of simulation time', low=1.0, high=20_000.0),
     number('time.factor', 1.0, '', 'simulation time per real time; .inf with free_run only', low=1e-3, high=1e3,
            infinite=True),
-    Parameter('clock.rate', 'double', None, 'Hz', 'of /clock, per second of simulation time, at most time.rate; left'
-              ' out: with every step', 1e-3, 20_000.0, when=_OWN_CLOCK),
+    Parameter('clock.rate', 'double', None, 'Hz', 'rate of /clock, per second of simulation time, at most time.rate;'
+              ' left out: with every step', 1e-3, 20_000.0, when=_OWN_CLOCK),
 
-    number('command.max_velocity', 1.0, 'm/s', 'a drive_velocity beyond it, either way, is refused', low=0.0,
-           high=bounds.SPEED, above=True, live=True),
-    number('command.max_force', 1.0e5, 'N', 'an external_force beyond it, either way, is refused', low=0.0,
+    number('command.max_velocity', 1.0, 'm/s', 'largest drive_velocity, in both directions; beyond it is refused',
+           low=0.0, high=bounds.SPEED, above=True, live=True),
+    number('command.max_force', 1.0e5, 'N', 'largest external_force, in both directions; beyond it is refused', low=0.0,
            high=bounds.FORCE, above=True, live=True),
 
     number('command.timeout', 0.0, 's', 'silence after the first drive_velocity that counts as a time-out, in real'
            ' time on the steady clock, else in simulation time; 0: off', low=0.0, high=bounds.TIME),
-    choice('command.on_timeout', 'hold', 'what follows: the drive holds the velocity; stops until the next command; or'
-           ' stops and takes none until ~/clear_faults or ~/reset', _REACTIONS),
-    number('command.timeout_deceleration', 1.0, 'm/s²', 'with which the drive stops then', low=1e-9,
+    choice('command.on_timeout', 'hold', 'reaction to a time-out: the drive holds the velocity; stops until the next'
+           ' command; or stops and takes none until ~/clear_faults or ~/reset', _REACTIONS),
+    number('command.timeout_deceleration', 1.0, 'm/s²', 'deceleration with which the drive then stops', low=1e-9,
            high=bounds.ACCELERATION, when=_STOPS),
-    number('command.velocity_limit', math.inf, 'm/s', 'what the drive can do: it follows commands beyond it as far as'
-           ' this, counted as limited', low=0.0, high=bounds.SPEED, above=True, infinite=True),
-    number('command.acceleration_limit', math.inf, 'm/s²', 'with which the drive can follow commands: a ramp, counted'
-           ' as limited', low=1e-9, high=bounds.ACCELERATION, infinite=True),
+    number('command.velocity_limit', math.inf, 'm/s', 'largest velocity of the drive: commands beyond it are followed'
+           ' up to it, and counted as limited', low=0.0, high=bounds.SPEED, above=True, infinite=True),
+    number('command.acceleration_limit', math.inf, 'm/s²', 'largest acceleration of the drive: faster changes are'
+           ' followed on a ramp, and counted as limited', low=1e-9, high=bounds.ACCELERATION, infinite=True),
 
-    number('encoder.resolution', 0.0, 'm', 'of the positions on joint_states; 0: none', low=0.0, high=1.0),
+    number('encoder.resolution', 0.0, 'm', 'resolution of the positions on joint_states; 0: none', low=0.0, high=1.0),
     number('encoder.offset', 0.0, 'm', 'added to the positions before they are rounded to the resolution', low=-1e3,
            high=1e3),
     number('encoder.noise', 0.0, 'm', 'standard deviation of the noise before rounding, normal, seeded', low=0.0,
            high=1.0),
-    number('encoder.delay', 0.0, 's', 'of the measurement: whole steps', low=0.0, high=1.0),
+    number('encoder.delay', 0.0, 's', 'delay of the measurement: whole steps', low=0.0, high=1.0),
     Parameter('encoder.velocity_steps', 'integer', 1, '', 'steps over which the measured velocity is the difference of'
               ' measured positions (with all else 0: the true velocity)', 1, 1000),
 
-    Parameter('joint_interface.enabled', 'bool', False, '', 'whether the node speaks joint_states and joint_commands,'
+    Parameter('joint_interface.enabled', 'bool', False, '', 'whether the node has joint_states and joint_commands,'
               ' with the joints axis_slider and axis_drive as measured (docs/hil.md)'),
 
-    texts('faults.ids', 'of faults from the start on, as with ~/inject_fault (docs/hil.md)'),
-    texts('faults.kinds', 'of these faults, like friction_scale or force_pulse'),
-    numbers('faults.starts', None, 's', 'when they begin', low=0.0, high=MAX_TIME, required=False),
-    numbers('faults.durations', None, 's', 'how long they last', low=bounds.SHORTEST, high=MAX_TIME, infinite=True,
-            required=False),
-    numbers('faults.values', None, 'by kind', 'of these faults; left out: 0', low=-bounds.FORCE, high=bounds.FORCE,
-            required=False),
+    texts('faults.ids', 'ids of faults from the start on, as with ~/inject_fault (docs/hil.md)'),
+    texts('faults.kinds', 'kinds of these faults, like friction_scale or force_pulse'),
+    numbers('faults.starts', None, 's', 'starts of these faults', low=0.0, high=MAX_TIME, required=False),
+    numbers('faults.durations', None, 's', 'durations of these faults', low=bounds.SHORTEST, high=MAX_TIME,
+            infinite=True, required=False),
+    numbers('faults.values', None, 'by kind', 'values of these faults; left out: 0', low=-bounds.FORCE,
+            high=bounds.FORCE, required=False),
 
-    number('timing.max_lateness', 0.01, 's', 'a run is real-time valid while no step begins later than this', low=0.0,
+    number('timing.max_lateness', 0.01, 's', 'largest lateness of a step in a run that is real-time valid', low=0.0,
            high=bounds.TIME, above=True, infinite=True),
-    number('timing.max_overruns', 0.01, '', 'and no larger share of the steps begins more than a period late', low=0.0,
-           high=1.0),
-    number('timing.max_latency', math.inf, 's', 'and no command takes longer to the first state that it moved',
-           low=0.0, high=bounds.TIME, above=True, infinite=True),
+    number('timing.max_overruns', 0.01, '', 'largest share of steps that start more than a period late in such a run',
+           low=0.0, high=1.0),
+    number('timing.max_latency', math.inf, 's', 'largest time from a command to the first state that it moved, in'
+           ' such a run', low=0.0, high=bounds.TIME, above=True, infinite=True),
 
     Parameter('record.enabled', 'bool', False, '', 'whether the node records a bag from the start'),
     Parameter('record.folder', 'string', '', '', 'folder of the bag, which must not exist; empty: the node chooses;'
               ' changed live, it must lie where it lay at the start (empty: runs/), or below',
               live=True),
 
-    Parameter('seed', 'integer', 0, '', 'of everything random in the run', 0, 2**63 - 1),
+    Parameter('seed', 'integer', 0, '', 'seed of all random numbers of the run', 0, 2**63 - 1),
 )
 
 BY_NAME: dict[str, Parameter] = {entry.name: entry for entry in PARAMETERS}
