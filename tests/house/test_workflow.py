@@ -45,11 +45,11 @@ def test_every_part_is_run_in_its_order(jobs: Any) -> None:
     assert PARTS[0] == 'build'
 
 
-def test_the_recipe_is_that_of_the_readme() -> None:
-    readme = (ROOT / 'README.md').read_text(encoding='utf-8')
+def test_the_recipe_is_that_of_the_page() -> None:
+    page = (ROOT / 'docs/install.md').read_text(encoding='utf-8')
     script = (ROOT / '.ci/ros2').read_text(encoding='utf-8')
     for command in (r'rosdep install .*', r'pip install --break-system-packages .*'):
-        shown, = re.findall(command, readme)
+        shown, = re.findall(command, page)
         assert shown in script
 
 

@@ -56,7 +56,7 @@ PARAMETERS: tuple[Parameter, ...] = (
 
     choice('friction.static.law', 'constant', 'growth of the static coefficient mu_s with the rest time', _LAWS),
     number('friction.static.initial', 0.0, '', 'mu_s at zero rest time', low=0.0, high=bounds.COEFFICIENT, live=True),
-    number('friction.static.limit', None, '', 'mu_s upon infinite rest (logarithmic: initial + one unit of growth)',
+    number('friction.static.limit', None, '', 'mu_s after infinite rest (logarithmic: initial + one unit of growth)',
            low=0.0, high=bounds.COEFFICIENT, live=True, when=_GROWS),
     number('friction.static.time_constant', None, 's', 'tau of the growth of mu_s', low=bounds.SHORTEST,
            high=bounds.TIME, live=True, when=_GROWS),
