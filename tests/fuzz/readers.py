@@ -18,7 +18,8 @@ from stickslip_sim.recording import Run, read_run
 from stickslip_sim.recording.playback import Recording
 from stickslip_sim.scene import load_scene, parse_override, parse_scene
 from stickslip_sim.study import Grid, Study, variation
-from stickslip_sim.study.pictures import check_drawable, point_of
+from stickslip_sim.study.picks import point_of
+from stickslip_sim.study.pictures import check_drawable
 from stickslip_sim.study.uncertain_file import uncertain_of
 from stickslip_sim.study.variation import range_of
 from stickslip_sim.verify.original import open_original

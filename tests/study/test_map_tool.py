@@ -16,7 +16,11 @@ from stickslip_sim.scene import load_scene
 from stickslip_sim.study import Grid, Study, variation
 from stickslip_sim.study.bifurcation import bifurcation
 from stickslip_sim.study.borders import borders
-from stickslip_sim.study.folder import PARTIAL, SIDECAR, TABLE
+from stickslip_sim.study.description import study_of
+from stickslip_sim.study.folder import PARTIAL, SIDECAR, TABLE, Folder
+from stickslip_sim.study.picks import ending_at
+from stickslip_sim.study.point_figures import Numbers, Runs
+from stickslip_sim.study.table import read_columns
 from tests.support.tool import Capture, refused
 
 SMALL = ['paper_fig7', '--over', 'drive.velocity=1e-3:0.06:6:log', '--over', 'axis.drive_stiffness=1e5:1e6:4:log']
@@ -41,6 +45,28 @@ def test_a_map_with_picks(swept: Path, tmp_path: Path) -> None:
     assert run(['map', str(swept), '--out', str(tmp_path / 'again.svg'), '--pick', '0.002,6e5', '--pick', '0.05,3e5',
                 '--show', 'period']) == 0
     assert (tmp_path / 'again.svg').read_text() == text
+
+
+@pytest.mark.parametrize(('point', 'times'), [('0.001,1e5', 0), ('0.002,6e5', 1)])
+def test_only_a_picked_point_that_the_table_lacks_is_run_until_it_settles(
+        point: str, times: int, swept: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    ran, runs = [], Study.runs
+
+    def counted(study: Study, points: Numbers) -> Runs:
+        ran.append(points)
+        return runs(study, points)
+
+    monkeypatch.setattr(Study, 'runs', counted)
+    assert run(['map', str(swept), '--out', str(tmp_path / 'map.svg'), '--pick', point]) == 0
+    assert len(ran) == times
+
+
+def test_the_table_tells_the_motion_that_a_run_of_the_point_ends_in(swept: Path) -> None:
+    study = study_of(Folder(swept).described())
+    table = read_columns(swept / TABLE, study)
+    without = {name: column[:0] for name, column in table.items()}
+    for point in study.points(0, study.count)[::5]:
+        assert ending_at(study, table, point) == ending_at(study, without, point)
 
 
 def test_a_sweep_whose_steps_numpy_rounded_otherwise_is_drawn(swept: Path, tmp_path: Path) -> None:

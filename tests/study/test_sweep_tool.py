@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from stickslip_sim.cli.main import run
-from stickslip_sim.study import Study, resources
+from stickslip_sim.study import Study, resources, table
 from stickslip_sim.study.description import study_of
 from stickslip_sim.study.folder import PARQUET, PARTIAL, SIDECAR, TABLE, Folder
 from stickslip_sim.study.point_figures import FIGURES
@@ -60,6 +60,14 @@ def test_a_sweep_says_what_it_is_and_can_be_read_back(tmp_path: Path, capsys: Ca
     assert np.array_equal(columns['drive.velocity'], points[:, 0])
     for name in FIGURES:
         assert columns[name].tobytes() == getattr(figures, name).tobytes(), name
+
+
+def test_a_sweep_does_not_read_the_table_that_it_wrote(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def unexpected(*_: object) -> None:
+        raise AssertionError('a table was read')
+
+    monkeypatch.setattr(table, 'read_rows', unexpected)
+    assert run(['sweep', *SMALL, '--out', str(tmp_path / 'out')]) == 0
 
 
 def test_the_sidecar_is_the_study(tmp_path: Path) -> None:
@@ -226,7 +234,7 @@ def test_a_chunk_that_is_not_whole_is_run_again(flaw: str, tmp_path: Path, unint
     assert bad[flaw] != rows[3000]
     (out / TABLE).unlink()
     (out / PARTIAL).write_bytes(b''.join([*rows[:3000], bad[flaw], *rows[3001:]]))
-    assert Folder(out).whole_chunks(study_of(Folder(out).described())) == 1
+    assert len(Folder(out).whole_chunks(study_of(Folder(out).described()))) == 1
     assert run(['sweep', *LONG, '--out', str(out), '--resume']) == 0
     assert (out / TABLE).read_bytes() == uninterrupted
 
@@ -260,12 +268,12 @@ def test_parquet_has_the_same_table(tmp_path: Path) -> None:
     pytest.importorskip('fastparquet')
     assert run(['sweep', *SMALL, '--out', str(tmp_path / 'out')]) == 0
     study = study_of(Folder(tmp_path / 'out').described())
-    table = pandas.read_parquet(tmp_path / 'out' / PARQUET)
-    assert ','.join(table.columns) + '\n' == header(study).decode()
+    parquet = pandas.read_parquet(tmp_path / 'out' / PARQUET)
+    assert ','.join(parquet.columns) + '\n' == header(study).decode()
     columns = read_columns(tmp_path / 'out' / TABLE, study)
     for name in (*study.names, *FIGURES[1:]):
-        assert np.array_equal(table[name].to_numpy(), columns[name], equal_nan=True)
-    assert set(table['motion']) == {'stick-slip', 'smooth sliding'}
+        assert np.array_equal(parquet[name].to_numpy(), columns[name], equal_nan=True)
+    assert set(parquet['motion']) == {'stick-slip', 'smooth sliding'}
 
 
 def test_a_broken_pandas_keeps_no_study_from_its_end(tmp_path: Path) -> None:

@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING
 import click
 
 from .files import check_distinct, check_picture, whole
-from .sweeping import tell_failed
+from .sweeping import print_failed
 
 if TYPE_CHECKING:
     from ..plots.stability import Pick
     from ..study import Study
     from ..study.folder import Folder
+    from ..study.picks import Ending
+    from ..study.table import Columns
 
 _MOST_PICKS = 6
 _MOST_EVENTS = 10_000   # that a phase plane shows
@@ -33,7 +35,7 @@ def map_(folder: str, pictures: tuple[str, ...], show: str, picks: tuple[str, ..
     _check_pictures(pictures)
     from ..study import pictures as work
     from ..study.description import study_of
-    from ..study.folder import TABLE, Folder
+    from ..study.folder import Folder
     from ..study.table import read_columns
     from .progress import progress_bar
 
@@ -42,15 +44,15 @@ def map_(folder: str, pictures: tuple[str, ...], show: str, picks: tuple[str, ..
     work.check_drawable(study, show)
     _check_picks(study, picks)
     _check_complete(sweep)
-    columns = read_columns(sweep.path / TABLE, study)
+    columns = read_columns(sweep.table, study)
     with progress_bar('drawing') as progress, ExitStack() as files:
-        motions = [_pick(study, text) for text in picks]
+        motions = [_pick(study, columns, text) for text in picks]
         paths = [str(files.enter_context(whole(path))) for path in pictures]
         if len(study.names) == 1:
             work.draw_bifurcation(study, columns, paths, progress)
         else:
             work.draw_map(study, columns, show, motions, paths)
-    tell_failed(study, columns)
+    print_failed(study, columns)
 
 
 def _check_pictures(pictures: tuple[str, ...]) -> None:
@@ -75,20 +77,23 @@ def _check_complete(sweep: 'Folder') -> None:
         raise InputError('folder', str(sweep.path), 'that of a complete sweep', 'run the sweep again with --resume')
 
 
-def _pick(study: 'Study', text: str) -> 'Pick':
-    """Return a point of the map with its motion, as long as in the study, or longer where it only just swings on."""
-    from ..compare.fresh import simulate
+def _pick(study: 'Study', columns: 'Columns', text: str) -> 'Pick':
+    """Return a point of the map with its motion."""
+    from ..compare.fresh import sampled, simulate
     from ..compare.windows import motion_of
     from ..plots.stability import Pick
-    from ..study.pictures import pick, point_of
-    from ..study.point_figures import Motion, figures_of
+    from ..study.picks import ending_at, place_in_map, point_of
+    from ..study.point_figures import Motion
 
     point = point_of(study, text)
-    runs = study.runs(point[None, :])
-    figures = figures_of(runs)
-    swings = figures.motion[0] == Motion.SMOOTH_SLIDING and figures.settled[0] == 0.0
-    duration = float(runs.duration[0]) * min(_SWINGS_ON if swings and study.duration is None else 1.0,
-                                             _MOST_EVENTS / max(float(runs.events[0]), 1.0))
-    motion = motion_of(simulate(study.scene_at(point), duration))
-    sticks = figures.motion[0] == Motion.STICK_SLIP
-    return Pick(*pick(study, point), motion if sticks else motion._replace(cycle=None))
+    ending, scene = ending_at(study, columns, point), study.scene_at(point)
+    shown = _time_shown(ending)
+    is_known = shown == ending.duration
+    motion = motion_of(sampled(scene, shown, ending.events) if is_known else simulate(scene, shown))
+    sticks = ending.motion == Motion.STICK_SLIP
+    return Pick(*place_in_map(study, point), motion if sticks else motion._replace(cycle=None))
+
+
+def _time_shown(ending: 'Ending') -> float:
+    """Return how much of a motion a phase plane shows, s: all, longer where it swings on, less with many events."""
+    return ending.duration * min(_SWINGS_ON if ending.swings_on else 1.0, _MOST_EVENTS / max(len(ending.events), 1))

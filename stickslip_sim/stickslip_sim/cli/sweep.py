@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 
 import click
 
-from .sweeping import carry_out, study_options, tell_failed, workers_of
+from .sweeping import carry_out, print_failed, study_options, workers_of
 
 if TYPE_CHECKING:
     from ..study import Study
-    from ..study.folder import Folder
+    from ..study.sweep import Swept
 
 
 @click.command(short_help='Run a scene at many values of its parameters.')
@@ -25,9 +25,11 @@ def sweep(scene: str, ranges: tuple[str, ...], sobol: int | None, out: str, dura
 
     Ctrl-C keeps what is done.  `stickslip map FOLDER` draws it.
     """
-    crew = workers_of(workers, scheduler)
+    members = workers_of(workers, scheduler)
     study = _study(scene, ranges, sobol, duration, changes)
-    _tell(study, *carry_out(study, out, crew, resume))
+    folder, swept = carry_out(study, out, members, resume)
+    _print_summary(study, swept)
+    print(f'{folder.table}')
 
 
 def _study(scene: str, ranges: tuple[str, ...], sobol: int | None, duration: float | None,
@@ -41,18 +43,15 @@ def _study(scene: str, ranges: tuple[str, ...], sobol: int | None, duration: flo
     return Study(loaded.values, sample, duration)
 
 
-def _tell(study: 'Study', folder: 'Folder', ran: int) -> None:
+def _print_summary(study: 'Study', swept: 'Swept') -> None:
     from collections import Counter
 
-    from ..study.folder import TABLE
     from ..study.point_figures import MOTIONS, Motion
-    from ..study.table import read_columns
 
-    columns = read_columns(folder.path / TABLE, study)
+    columns = swept.columns
     counts = Counter(MOTIONS[Motion(int(motion))] for motion in columns['motion'])
     motions = ', '.join(f'{count} {word}' for word, count in counts.most_common())
     unsettled = int(((columns['settled'] == 0.0) & (columns['motion'] != Motion.UNDECIDED)).sum())
-    print(f'{study.scene.name}: {study.count} points, {ran} of them run now: {motions}'
+    print(f'{study.scene.name}: {study.count} points, {swept.ran} of them run now: {motions}'
           + (f'; {unsettled} had not settled' if unsettled else ''))
-    tell_failed(study, columns)
-    print(f'{folder.path / TABLE}')
+    print_failed(study, columns)

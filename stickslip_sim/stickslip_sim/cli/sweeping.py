@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""What `sweep` and `uncertainty` have in common: where the table of a study goes, and who works on it."""
+"""The common part of `sweep` and `uncertainty`: the folder of a study, and the processes that work on it."""
 
 import os
 import shlex
@@ -14,7 +14,8 @@ import click
 if TYPE_CHECKING:
     from ..study import Study
     from ..study.folder import Folder
-    from ..study.pictures import Columns
+    from ..study.sweep import Swept
+    from ..study.table import Columns
     from ..study.workers import Workers
 
 _MOST_WORKERS = 1024
@@ -37,7 +38,10 @@ def study_options(command: Command) -> Command:
 
 
 def workers_of(workers: str | None, scheduler: str | None) -> AbstractContextManager['Workers | None']:
-    """Return who works on a study: nobody else, processes, or a cluster; raises InputError and UsageError."""
+    """Return the workers on a study: none but this process, processes, or a cluster.
+
+    Raises InputError and UsageError.
+    """
     from ..study.cluster import cluster
     from ..study.workers import processes
 
@@ -49,28 +53,28 @@ def workers_of(workers: str | None, scheduler: str | None) -> AbstractContextMan
     return processes(count) if count > 1 else nullcontext()
 
 
-def carry_out(study: 'Study', out: str, crew: AbstractContextManager['Workers | None'],
-              resume: bool) -> tuple['Folder', int]:
-    """Run a study into its folder, new or resumed; return that and how many points had to be run."""
-    from ..study import sweep as work
+def carry_out(study: 'Study', out: str, workers: AbstractContextManager['Workers | None'],
+              resume: bool) -> tuple['Folder', 'Swept']:
+    """Run a study into its folder, new or resumed; return both."""
     from ..study.folder import Folder
+    from ..study.sweep import sweep
     from .progress import progress_bar
 
     folder = Folder(out)
-    with crew as members:   # who cannot be had leaves no folder behind
+    with workers as members:   # workers that cannot be had leave no folder behind
         if resume:
             folder.check_same(study)
         else:
             folder.begin(study, shlex.join(['stickslip', *sys.argv[1:]]))
         try:
             with progress_bar('sweeping') as progress:
-                return folder, work.sweep(study, folder, members, progress)
+                return folder, sweep(study, folder, members, progress)
         except KeyboardInterrupt:
             raise KeyboardInterrupt(f'interrupted; what is done is kept in {out}, --resume goes on') from None
 
 
-def tell_failed(study: 'Study', columns: 'Columns') -> None:
-    """Say how many points of a study failed, if any did."""
+def print_failed(study: 'Study', columns: 'Columns') -> None:
+    """Print how many points of a study failed, if any did."""
     from ..study.point_figures import Motion
 
     failed = int((columns['motion'] == Motion.FAILED).sum())

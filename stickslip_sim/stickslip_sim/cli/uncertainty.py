@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .files import check_picture, whole, write_text
-from .sweeping import carry_out, study_options, tell_failed, workers_of
+from .sweeping import carry_out, print_failed, study_options, workers_of
 
 if TYPE_CHECKING:
     from ..study import Saltelli
-    from ..study.pictures import Columns
+    from ..study.table import Columns
     from ..study.uncertainty import Index, Uncertainty
 
 _RESULT = 'uncertainty.json'
@@ -33,11 +33,9 @@ def uncertainty(scene: str, file: str, samples: int, plot: str | None, out: str,
     """
     if plot is not None:
         check_picture('--plot', plot)
-    crew = workers_of(workers, scheduler)
+    members = workers_of(workers, scheduler)
     from ..scene import load_scene, parse_override
     from ..study import Saltelli, Study
-    from ..study.folder import TABLE
-    from ..study.table import read_columns
     from ..study.uncertain_file import load_uncertain
     from ..study.uncertainty import uncertainty_of
 
@@ -45,15 +43,15 @@ def uncertainty(scene: str, file: str, samples: int, plot: str | None, out: str,
     sample = Saltelli(known.distributions, samples, known.seed)
     loaded = load_scene(scene, dict(parse_override(change) for change in changes))
     study = Study(loaded.values, sample, duration)
-    folder, ran = carry_out(study, out, crew, resume)
-    columns = read_columns(folder.path / TABLE, study)
-    found = uncertainty_of(sample, columns)
+    folder, swept = carry_out(study, out, members, resume)
+    found = uncertainty_of(sample, swept.columns)
     result = folder.path / _RESULT
     write_text(str(result), [json.dumps(_plain(sample, found), indent=1, allow_nan=False), '\n'])
     if plot is not None:
-        _draw(sample, columns, found, plot)
-    print(f'{loaded.name}: {samples} samples of {len(study.names)} parameters, {study.count} points, {ran} run now')
-    tell_failed(study, columns)
+        _draw(sample, swept.columns, found, plot)
+    print(f'{loaded.name}: {samples} samples of {len(study.names)} parameters, {study.count} points, '
+          f'{swept.ran} run now')
+    print_failed(study, swept.columns)
     print('\n'.join((*_laws(sample), '', *_percentiles(found), '', *_indices(sample, found), '', str(result))))
 
 

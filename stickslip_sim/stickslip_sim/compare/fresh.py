@@ -27,7 +27,11 @@ _BEFORE = 1e-9             # s: where an input jumps it is sampled that much bef
 
 def simulate(scene: Scene, duration: float) -> History:
     """Return the history of `duration` seconds of a scene; raises InputError on a time without a meaning."""
-    events = run_offline(scene, duration).events
+    return sampled(scene, duration, run_offline(scene, duration).events)
+
+
+def sampled(scene: Scene, duration: float, events: list[Event]) -> History:
+    """Return the history of `duration` seconds of a scene whose `events` are known; raises InputError on too many."""
     if len(events) > MAX_EVENTS:
         raise InputError('duration', duration, f'short enough for at most {MAX_EVENTS} events',
                          f'there are {len(events)}: simulate a shorter time')

@@ -30,7 +30,10 @@ class Bifurcation(NamedTuple):
 
 
 def bifurcation(study: Study, figures: Figures, progress: Callable[[float], None] | None = None) -> Bifurcation:
-    """Run each point of a study of one parameter again, as long as its `figures` say, and keep its last cycles."""
+    """Return the last cycles of each point of a study of one parameter that sticks and slips.
+
+    Such a point is run again, for the duration of its `figures`: the table has one round alone, without the arrest.
+    """
     cycles, sliding = [], []
     values = study.points(0, study.count)[:, 0].tolist()
     for k, value in enumerate(values):

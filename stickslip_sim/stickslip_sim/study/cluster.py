@@ -17,8 +17,8 @@ from typing import Any
 from ..core.errors import InputError
 from .description import versions_of_a_study
 from .folder import KEPT
+from .point_figures import Figures
 from .study import Study
-from .table import lines
 from .workers import WorkerError, Workers
 
 _PATIENCE = 5.0   # s for the scheduler to answer
@@ -30,7 +30,7 @@ def cluster(address: str) -> Iterator[Workers]:
     with _quietly(), closing(_client(address)) as client, _told(address):
         _check_workers(client, address)
         yield Workers(client.get_executor(), sum(client.nthreads().values()),
-                   partial(_checked_lines, versions_of_a_study()))
+                   partial(_checked_figures, versions_of_a_study()))
 
 
 @contextmanager
@@ -98,9 +98,9 @@ def _other(versions: Mapping[str, str]) -> str:
                      if versions[name] != own)
 
 
-def _checked_lines(versions: Mapping[str, str], study: Study, first: int, last: int) -> bytes:
-    """Return the lines of a stretch of points; raises WorkerError where a worker that came late has other versions."""
+def _checked_figures(versions: Mapping[str, str], study: Study, first: int, last: int) -> Figures:
+    """Return the figures of a stretch of points; raises WorkerError on a worker that came late with other versions."""
     other = _other(versions)
     if other:
         raise WorkerError(f'a worker lacks the versions of this study, {other}: its last bits might differ; {KEPT}')
-    return lines(study, first, last)
+    return study.figures(first, last)

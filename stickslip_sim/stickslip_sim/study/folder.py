@@ -19,7 +19,8 @@ from .description import FORM, description
 from .parquet import write_parquet
 from .resources import check_resources
 from .study import Study
-from .table import header, may_be_table, next_lines, numbers_of
+from .table import Columns, header, may_be_table, next_lines, read_rows, words
+from .variation import Numbers
 
 LONGEST = 1 << 24   # bytes of a description; nearly all of it is the scene
 SIDECAR, TABLE, PARTIAL, PARQUET = 'study.json', 'points.csv', 'points.partial.csv', 'points.parquet'
@@ -33,9 +34,14 @@ class Folder:
         self.path = Path(path)
 
     @property
+    def table(self) -> Path:
+        """Where the table of all points stands when it is complete."""
+        return self.path / TABLE
+
+    @property
     def is_complete(self) -> bool:
         """Whether all points are there."""
-        return (self.path / TABLE).exists()
+        return self.table.exists()
 
     def begin(self, study: Study, command: str) -> None:
         """Make the folder and say in it what will come: it is there with all of that, or not at all."""
@@ -94,20 +100,20 @@ class Folder:
                 raise InputError('--resume', str(self.path), f'the folder of this very study; its {name} is another',
                                  f'give the command that stands in its {SIDECAR}, or another folder')
 
-    def whole_chunks(self, study: Study) -> int:
-        """Return how many chunks of points are there; what a crash left behind them is taken away."""
+    def whole_chunks(self, study: Study) -> list[Numbers]:
+        """Return the rows of each whole chunk of points that is there; what a crash left behind them is taken away."""
         path, titles = self.path / PARTIAL, header(study)
         with _refusing(path), path.open('r+b') as file:
             if not may_be_table(path, study) or file.readline(len(titles)) != titles:
                 raise InputError('points', str(path), 'the table of this study', 'it was changed; sweep into a new one')
-            chunks, end = 0, len(titles)
+            chunks, end = [], len(titles)
             for first, last in study.stretches():
-                rows = next_lines(file, study, first, last)
+                found = next_lines(file, study, first, last)
                 try:
-                    numbers_of(rows, study, first, last)
+                    chunks.append(read_rows(found, study, first, last))
                 except ValueError:
                     break
-                chunks, end = chunks + 1, end + sum(map(len, rows))
+                end += sum(map(len, found))
             file.truncate(end)
         return chunks
 
@@ -123,11 +129,11 @@ class Folder:
                 file.truncate(before)
                 raise
 
-    def finish(self) -> None:
-        """Give the table its name; where pandas is installed, write it as Parquet too."""
+    def finish(self, columns: Columns) -> None:
+        """Give the table its name; where pandas is installed, write its `columns` as Parquet too."""
         with _refusing(self.path):
-            write_parquet(self.path / PARTIAL, self.path / PARQUET)
-            (self.path / PARTIAL).replace(self.path / TABLE)
+            write_parquet(columns | {'motion': words(columns['motion'])}, self.path / PARQUET)
+            (self.path / PARTIAL).replace(self.table)
 
 
 @contextmanager

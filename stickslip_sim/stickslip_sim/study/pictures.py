@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The pictures of a study: a map of two parameters, a bifurcation diagram of one, or how figures spread."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,13 +17,12 @@ from .borders import FEED, borders
 from .point_figures import Motion
 from .sample import Grid, Saltelli
 from .study import Study
-from .table import figures_in
+from .table import Columns, figures_in
 from .uncertainty import SPREAD, Index, Uncertainty, spread_of
 from .variation import Numbers, Variation
 
 UNITS = {'amplitude': 'm', 'period': 's', 'stick_share': '', 'peak_speed': 'm/s', 'break_away_force': 'N',
          'settling_time': 's', 'cycles': '', 'duration': 's'}
-Columns = Mapping[str, Numbers]
 _PLAIN = {Motion.AT_REST: 2, Motion.SMOOTH_SLIDING: 0, Motion.FAILED: 3,
           Motion.UNDECIDED: 4}
 
@@ -78,25 +77,6 @@ def draw_uncertainty(sample: Saltelli, columns: Columns, found: Uncertainty, pat
 
 def _shares(figure: str, indices: Sequence[Index]) -> Shares:
     return Shares(figure, *np.array(indices).T)
-
-
-def point_of(study: Study, text: str) -> Numbers:
-    """Return the values `A,B` of the two parameters of a study; raises InputError."""
-    try:
-        point = np.array([float(word) for word in text.split(',')])
-    except ValueError:
-        point = np.array([])
-    variations = study.ranges
-    if len(point) != len(variations) or any(not one.low <= value <= one.high for one, value in zip(variations, point)):
-        ranges = ', '.join(f'{one.name} from {one.low:g} to {one.high:g}' for one in variations)
-        raise InputError('--pick', text, f'a number for each of {ranges}', 'give them with a comma: A,B')
-    return point
-
-
-def pick(study: Study, point: Numbers) -> tuple[float, float]:
-    """Return where a point stands in the map: x, y."""
-    first, second = point.tolist()
-    return (second, first) if study.names[1] == FEED else (first, second)
 
 
 def _scale(one: Variation) -> Scale:

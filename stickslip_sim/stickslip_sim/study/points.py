@@ -67,10 +67,22 @@ def runs_alone(values: Values, names: Sequence[str], points: Numbers, duration: 
             run = run_offline(scene, duration)
         except (SolverError, InputError):   # it gave up, or found more events than can be held
             continue
-        runs.put([k], _of_a_run(run))
-        runs.stick_share[k] = run.summary.stick_share
-        runs.lasts[k] &= works_in_batches(scene)   # with anything else nothing is known of what is to come
+        runs.put([k], runs_of_run(run))
     return replace(runs, settled=runs.settled | runs.slides_on)
+
+
+def runs_of_run(run: Trajectory) -> Runs:
+    """Return what is known of a run that is complete."""
+    out = np.empty((1, many_axes.ROW_SIZE))
+    many_axes.clear(out[0])
+    out[0][many_axes.FINAL_MODE] = run.scene.make_rig().simulator.sample().mode
+    for event in run.events:
+        many_axes.book(out[0], np.array(event, dtype=float), 0.5 * run.duration)
+    out[0][many_axes.COMPLETE] = 1.0
+    found = runs_of(figures_in(out), rounds_in(out), run.duration)
+    found.stick_share[0] = run.summary.stick_share
+    found.lasts[0] &= works_in_batches(run.scene)   # with anything else nothing is known of what is to come
+    return found
 
 
 def _inputs(scene: Scene, names: Sequence[str], points: Numbers) -> dict[str, Numbers]:
@@ -80,14 +92,3 @@ def _inputs(scene: Scene, names: Sequence[str], points: Numbers) -> dict[str, Nu
     if scene.axis.friction.static.kind == StaticLawKind.CONSTANT and 'static_initial' in columns:
         columns['static_limit'] = columns['static_initial']   # as a scene has it
     return {name: np.array(np.broadcast_to(values, len(points)), dtype=float) for name, values in columns.items()}
-
-
-def _of_a_run(run: Trajectory) -> Runs:
-    """Return what is known of a run that is complete."""
-    out = np.empty((1, many_axes.ROW_SIZE))
-    many_axes.clear(out[0])
-    out[0][many_axes.FINAL_MODE] = run.scene.make_rig().simulator.sample().mode
-    for event in run.events:
-        many_axes.book(out[0], np.array(event, dtype=float), 0.5 * run.duration)
-    out[0][many_axes.COMPLETE] = 1.0
-    return runs_of(figures_in(out), rounds_in(out), run.duration)

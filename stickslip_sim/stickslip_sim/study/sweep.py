@@ -7,48 +7,70 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future
 from itertools import islice
+from typing import NamedTuple
+
+import numpy as np
 
 from .folder import Folder
+from .point_figures import Figures
 from .study import Study
-from .table import lines
+from .table import Columns, columns, lines, read_columns, rows_of
 from .workers import Workers
 
 _AHEAD = 4   # chunks that wait for each worker
+Stretch = tuple[int, int]   # the first of some points, and the one after the last of them
 
 
-def sweep(study: Study, folder: Folder, crew: Workers | None = None,
-          progress: Callable[[float], None] | None = None) -> int:
-    """Run what of a study is not in its folder yet, and finish the folder; return how many points it had to run.
+class Swept(NamedTuple):
+    """The columns of the table of a study, and how many of its points had to be run for it."""
 
-    Without a `crew` this process does it.  The table is the same whoever works and however often it was interrupted.
-    Raises InputError where the disk refuses, and what the crew does; what is done is kept.
+    columns: Columns
+    ran: int
+
+
+def sweep(study: Study, folder: Folder, workers: Workers | None = None,
+          progress: Callable[[float], None] | None = None) -> Swept:
+    """Run the points of a study that its folder does not have yet, finish the folder, and return all points.
+
+    Without `workers` this process does it.  The table is the same for any number of workers and of interruptions.
+    Raises InputError where the disk refuses, and what the workers raise; what is done is kept.
     """
     if folder.is_complete:
-        return 0
+        return Swept(read_columns(folder.table, study), 0)
     with folder.taken():
-        done = folder.whole_chunks(study)
-        chunks = ((study, first, last) for first, last in study.stretches(done))
-        results = _in_order(crew, chunks) if crew else (lines(*chunk) for chunk in chunks)
-        for (_, last), text in zip(study.stretches(done), results):
-            folder.append(text)
+        chunks = folder.whole_chunks(study)
+        done = len(chunks)
+        for (first, last), figures in zip(study.stretches(done), _figures(study, study.stretches(done), workers)):
+            rows = rows_of(study.points(first, last), figures)
+            folder.append(lines(study, rows))
+            chunks.append(rows)
             if progress:
                 progress(last / study.count)
-        folder.finish()
-    return max(study.count - done * study.chunk, 0)
+        table = columns(study, np.concatenate(chunks))
+        folder.finish(table)
+    return Swept(table, max(study.count - done * study.chunk, 0))
 
 
-def _in_order(crew: Workers, chunks: Iterator[tuple[Study, int, int]]) -> Iterator[bytes]:
-    """Yield results in the order of the chunks, with a few under way for each worker, whatever their number."""
-    waiting = deque(_submitted(crew, islice(chunks, _AHEAD * crew.size)))
+def _figures(study: Study, stretches: Iterator[Stretch], workers: Workers | None) -> Iterator[Figures]:
+    """Yield the figures of stretches of points, in their order."""
+    if workers is None:
+        yield from (study.figures(*stretch) for stretch in stretches)
+    else:
+        yield from _by_workers(study, stretches, workers)
+
+
+def _by_workers(study: Study, stretches: Iterator[Stretch], workers: Workers) -> Iterator[Figures]:
+    """Yield figures in the order of the stretches, with a few under way for each worker, whatever their number."""
+    waiting = deque(_submitted(study, islice(stretches, _AHEAD * workers.size), workers))
     while waiting:
         yield waiting.popleft().result()
-        waiting.extend(_submitted(crew, islice(chunks, 1)))
+        waiting.extend(_submitted(study, islice(stretches, 1), workers))
 
 
-def _submitted(crew: Workers, chunks: Iterable[tuple[Study, int, int]]) -> list[Future[bytes]]:
-    """Hand out chunks; workers that this starts inherit that Ctrl-C is held back, and leave it to their parent."""
+def _submitted(study: Study, stretches: Iterable[Stretch], workers: Workers) -> list[Future[Figures]]:
+    """Hand out stretches; workers that this starts inherit that Ctrl-C is held back, and leave it to their parent."""
     signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
     try:
-        return [crew.pool.submit(crew.work, *chunk) for chunk in chunks]
+        return [workers.pool.submit(workers.work, study, *stretch) for stretch in stretches]
     finally:
         signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])

@@ -1,9 +1,12 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The points of a study as lines of CSV, and those lines back as columns."""
+"""The table of a study: its numbers, a row for each point, as lines of CSV, and those lines back as numbers.
+
+Nothing here runs a point.
+"""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from itertools import islice
 from pathlib import Path
 from typing import BinaryIO
@@ -18,6 +21,7 @@ from .variation import Numbers
 _BYTES_OF_A_NUMBER = 25   # 17 digits, sign, point, exponent of three digits with its sign, comma
 _ROUNDING = 1e-13         # of a value: another version of numpy rounds steps of one ratio otherwise
 _LARGEST = 1e150          # of a cell, by far; its square, for variances, is still a number
+Columns = dict[str, Numbers]
 _CODES = {word: float(motion) for motion, word in MOTIONS.items()}
 
 
@@ -26,18 +30,32 @@ def header(study: Study) -> bytes:
     return (','.join((*study.names, *FIGURES)) + '\n').encode()
 
 
-def lines(study: Study, first: int, last: int) -> bytes:
-    """Run the points from `first` on, up to `last`, and return a line for each; what does not exist stays empty."""
-    points, figures = study.points(first, last), study.figures(first, last)
-    columns = [map(_text, column) for column in points.T.tolist()]
-    columns += [map(_word if name == 'motion' else _text, getattr(figures, name).tolist()) for name in FIGURES]
-    return ''.join(','.join(row) + '\n' for row in zip(*columns, strict=True)).encode()
+def rows_of(points: Numbers, figures: Figures) -> Numbers:
+    """Return the numbers of points and of their figures, a row for each point."""
+    return np.column_stack([points, *(getattr(figures, name) for name in FIGURES)])
 
 
-def numbers_of(rows: Sequence[bytes], study: Study, first: int, last: int) -> Numbers:
-    """Return the numbers in the lines of the points from `first` on, up to `last`; raises ValueError for any other."""
+def lines(study: Study, rows: Numbers) -> bytes:
+    """Return a line for each row of numbers; a number that does not exist stays empty."""
+    cells = [words(column) if name == 'motion' else map(_text, column.tolist())
+             for name, column in columns(study, rows).items()]
+    return ''.join(','.join(line) + '\n' for line in zip(*cells, strict=True)).encode()
+
+
+def columns(study: Study, rows: Numbers) -> Columns:
+    """Return the columns of rows of numbers by name; motions as numbers of `Motion`."""
+    return dict(zip((*study.names, *FIGURES), rows.T, strict=True))
+
+
+def words(motions: Numbers) -> list[str]:
+    """Return the words for numbers of `Motion`."""
+    return [MOTIONS[Motion(int(motion))] for motion in motions.tolist()]
+
+
+def read_rows(found: Sequence[bytes], study: Study, first: int, last: int) -> Numbers:
+    """Return the rows in the lines of the points from `first` on, up to `last`; raises ValueError for other lines."""
     place = len(study.names)
-    numbers = np.array([_numbers(row, place) for row in rows])
+    numbers = np.array([_numbers(line, place) for line in found])
     if numbers.shape != (last - first, width(study)) or not np.allclose(
             numbers[:, :place], study.points(first, last), rtol=_ROUNDING, atol=0.0):
         raise ValueError('these are the lines of other points')
@@ -66,42 +84,38 @@ def longest_line(study: Study) -> int:
     return width(study) * _BYTES_OF_A_NUMBER
 
 
-def read_columns(path: Path, study: Study) -> dict[str, Numbers]:
-    """Return the columns of the table of a study by name; motions as numbers of `Motion`.  Raises InputError."""
+def read_columns(path: Path, study: Study) -> Columns:
+    """Return the columns of the table of a study in a file; raises InputError."""
     try:
         if not may_be_table(path, study):
             raise ValueError('this is no table of so few points')
         with path.open('rb') as file:
-            columns = _columns_in(file, study)
+            rows = _rows_in(file, study)
     except (MemoryError, OSError, ValueError):
         raise InputError('points', str(path), f'the table of its study, {study.count} whole lines',
                          'it was changed or cannot be read; sweep again') from None
-    return dict(zip((*study.names, *FIGURES), columns))
+    return columns(study, rows)
 
 
-def figures_in(columns: Mapping[str, Numbers]) -> Figures:
+def figures_in(columns_of_table: Columns) -> Figures:
     """Return the figures among columns."""
-    return Figures(**{name: columns[name] for name in FIGURES})
+    return Figures(**{name: columns_of_table[name] for name in FIGURES})
 
 
 def _text(number: float) -> str:
     return '' if math.isnan(number) else repr(number)
 
 
-def _word(motion: float) -> str:
-    return MOTIONS[Motion(int(motion))]
-
-
-def _columns_in(file: BinaryIO, study: Study) -> Numbers:
-    """Return the columns of the table of a study, an array each; raises ValueError where it is another one."""
+def _rows_in(file: BinaryIO, study: Study) -> Numbers:
+    """Return the rows of the table of a study; raises ValueError where it is another one."""
     if file.readline(len(header(study))) != header(study):
         raise ValueError('this is the table of another study')
-    columns = np.empty((width(study), study.count))
+    rows = np.empty((study.count, width(study)))
     for first, last in study.stretches():
-        columns[:, first:last] = numbers_of(next_lines(file, study, first, last), study, first, last).T
+        rows[first:last] = read_rows(next_lines(file, study, first, last), study, first, last)
     if file.read(1):
         raise ValueError('there are more lines than points')
-    return columns
+    return rows
 
 
 def _numbers(row: bytes, place: int) -> list[float]:

@@ -13,8 +13,8 @@ from typing import NamedTuple, NoReturn
 
 from ..core.errors import StickslipError
 from .folder import KEPT
+from .point_figures import Figures
 from .study import Study
-from .table import lines
 
 
 class WorkerError(StickslipError):
@@ -22,11 +22,11 @@ class WorkerError(StickslipError):
 
 
 class Workers(NamedTuple):
-    """So many workers behind a `pool`, and the function that gives them the lines of a stretch of points."""
+    """So many workers behind a `pool`, and the function by which they find the figures of a stretch of points."""
 
     pool: Executor
     size: int
-    work: Callable[[Study, int, int], bytes] = lines
+    work: Callable[[Study, int, int], Figures] = Study.figures
 
 
 @contextmanager
