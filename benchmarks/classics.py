@@ -16,7 +16,7 @@ from scipy.optimize import brentq
 from stickslip_sim.axis import Axis, Friction, InitialState, RigidContact
 from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant
 from stickslip_sim.core.types import Event, EventKind, Sample
-from stickslip_sim.extremes.shared_axes import instant, make, of_kind, run
+from stickslip_sim.extremes.shared_axes import instant, make, of_kind, run_events
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind, kinetic_table
 from stickslip_sim.friction.smooth import hyperbolic
 from stickslip_sim.simulation.cycles import cycle_figures
@@ -77,7 +77,7 @@ def state_at(axis: Axis, feed: float, time: float) -> Sample:
 
 def undamped_cycle() -> list[Result]:
     """Constant friction without damping: the limit cycle."""
-    events = run(coulomb_axis(UNDAMPED, STATIC, KINETIC), FEED, 3.0)
+    events = run_events(coulomb_axis(UNDAMPED, STATIC, KINETIC), FEED, 3.0)
     expected, found = coulomb_cycle(UNDAMPED, DROP, FEED), cycle_figures(events)[-1]
     units = ('s', 's', 's', 'm/s', 'm')
     return [Result(f'undamped Coulomb cycle: {name.replace("_", " ")}', unit, value, getattr(found, name))
@@ -87,7 +87,7 @@ def undamped_cycle() -> list[Result]:
 def damped_slip() -> list[Result]:
     """The paper's damper and constant kinetic friction: the speed in the course of a slip."""
     axis = coulomb_axis(PAPER, STATIC, KINETIC)
-    start = run(axis, FEED, 1.0)[0].time
+    start = run_events(axis, FEED, 1.0)[0].time
     return [Result(f'damped slip: speed after {time * 1e3:g} ms', 'm/s', slip_speed(PAPER, DROP, FEED, time),
                    state_at(axis, FEED, start + time).velocity) for time in (0.001, 0.01, 0.03, 0.05, 0.07)]
 
@@ -105,7 +105,7 @@ def damped(zeta: float) -> Oscillator:
 
 def sticks_again(zeta: float, feed: float) -> bool:
     """Whether the slider comes to rest after the first break-away, with constant friction."""
-    events = run(coulomb_axis(damped(zeta), STATIC, KINETIC), feed, STATIC / (UNDAMPED.stiffness * feed) + 1.0)
+    events = run_events(coulomb_axis(damped(zeta), STATIC, KINETIC), feed, STATIC / (UNDAMPED.stiffness * feed) + 1.0)
     return bool(of_kind(events, EventKind.STICK))
 
 
@@ -124,7 +124,7 @@ def healing_cycles() -> list[Result]:
     for law, feed in ((HEALING, 0.0034), (HEALING, 0.0062),
                       (replace(HEALING, kind=StaticLawKind.KATO, exponent=0.5), 0.07)):
         expected = healing_stick_time(partial(grown, law), UNDAMPED.stiffness, feed)
-        found = cycle_figures(run(healing_axis(law), feed, 200.0))[-1].stick_time
+        found = cycle_figures(run_events(healing_axis(law), feed, 200.0))[-1].stick_time
         results.append(Result(f'growth at rest ({law.kind.name.lower()}), {feed * 1e3:g} mm/s: stick time', 's',
                               expected, found))
     return results
@@ -147,7 +147,7 @@ def _swing_ratio(normal_force: float) -> float:
     feed = 0.0175
     kinetic = KineticTable((0.0, 0.035), (0.12, 0.05))
     axis = axis_of(PAPER, Friction(HEALING, kinetic, None), normal_force)
-    events = run(axis, feed, 1.0, normal_force * kinetic.coefficient(feed), InitialState(velocity=feed + 1e-3))
+    events = run_events(axis, feed, 1.0, normal_force * kinetic.coefficient(feed), InitialState(velocity=feed + 1e-3))
     swings = [abs(event.velocity - feed) for event in events]
     return math.pow(swings[-1] / swings[0], 1.0 / (len(swings) - 1))
 
@@ -174,7 +174,8 @@ def shaken(ratio: float, phase: float, mean: float = 0.0) -> InputProfile:
 
 def turning_points(axis: Axis, force: InputProfile, duration: float) -> list[Event]:
     """Return where the slider stops or turns back, its drive standing still."""
-    return [event for event in run(axis, 0.0, duration, force) if event.kind in (EventKind.REVERSE, EventKind.STICK)]
+    events = run_events(axis, 0.0, duration, force)
+    return [event for event in events if event.kind in (EventKind.REVERSE, EventKind.STICK)]
 
 
 def half_range(turns: list[Event]) -> float:
@@ -191,7 +192,7 @@ def leine_axis(tolerance: float) -> Axis:
 def leine_cycle(tolerance: float = LEINE_TOLERANCE) -> list[Result]:
     """Leine et al. 1998: the first cycle is the limit cycle; it is off by no more than the table's tolerance."""
     axis = leine_axis(tolerance)
-    events = run(axis, _LEINE_SPEED, 20.0)
+    events = run_events(axis, _LEINE_SPEED, 20.0)
     cycle, peak = cycle_figures(events)[0], max(events, key=lambda event: event.velocity)
     moments = (cycle.begin + 1e-3, peak.time), (peak.time, cycle.begin + cycle.slip_time - 1e-3)
     stretches = [state_at(axis, _LEINE_SPEED, _overtaking(axis, *span)).drive_force for span in moments]

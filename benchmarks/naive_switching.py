@@ -9,7 +9,7 @@ converges to with smaller steps is not the coasting motion.  `python3 -m benchma
 from typing import NamedTuple
 
 from stickslip_sim.axis import Axis
-from stickslip_sim.extremes.shared_axes import RIGID, paper_axis, run
+from stickslip_sim.extremes.shared_axes import RIGID, paper_axis, run_events
 from stickslip_sim.simulation.cycles import cycle_figures
 
 FEED = 0.002                   # m/s
@@ -47,7 +47,7 @@ def naive_slip(step: float, axis: Axis) -> Slip:
 
 def exact_slip(axis: Axis) -> Slip:
     """Return the first slip of the engine; its branch changes once, by coasting."""
-    cycle = cycle_figures(run(axis, FEED, 2.0))[0]
+    cycle = cycle_figures(run_events(axis, FEED, 2.0))[0]
     return Slip(cycle.slip_time, cycle.slip_travel, cycle.peak_speed, 1)
 
 

@@ -14,11 +14,11 @@ from stickslip_sim.advise.absent import absent_parts
 from stickslip_sim.advise.advice import Advice
 from stickslip_sim.advise.advice_report import as_json, is_needed, text_lines
 from stickslip_sim.advise.duration import default_duration
-from stickslip_sim.advise.figure_distance import Difference, difference, event_difference
+from stickslip_sim.advise.figure_distance import Distance, distance_between, event_difference
 from stickslip_sim.advise.parts import parts_of, without_idle_sinusoids
 from stickslip_sim.advise.recommendation import best_trial, least_scene
-from stickslip_sim.advise.settings import solver_settings
-from stickslip_sim.advise.trial_runs import Reference, Trial, costs, reference_of, try_changes
+from stickslip_sim.advise.solver_settings import solver_settings
+from stickslip_sim.advise.trial_runs import ExactRun, Trial, costs, reference_of, try_changes
 from stickslip_sim.bench.measure import Cost
 from stickslip_sim.cli.main import run
 from stickslip_sim.scene import Scene, changed, load_scene, scene_from_values
@@ -77,12 +77,12 @@ def test_what_a_scene_leaves_out_is_tried_at_its_neutral_value() -> None:
 
 def test_a_run_does_not_differ_from_itself_and_by_all_from_another_motion() -> None:
     reference = reference_of(scene(), DURATION)
-    same = difference(reference.figures, reference.figures)
+    same = distance_between(reference.figures, reference.figures)
     assert same.largest == 0.0
     assert set(same.by_figure) == {'event times', 'stick share', 'end position', 'period', 'jump', 'peak speed',
                                    'break-away force'}
     other = try_changes(reference, 'no drive', {'drive.velocity': 0.0}).difference
-    assert other == Difference({'kind of motion': math.inf})
+    assert other == Distance({'kind of motion': math.inf})
 
 
 def test_relative_differences_are_those_of_the_figures() -> None:
@@ -170,7 +170,7 @@ def test_the_cheapest_solver_within_the_tolerance_is_advised() -> None:
         assert least.trial.scene.solver.name == ('exact' if chosen == 'exact' else 'fixed_step')
 
 
-def exact_trial(reference: Reference, cost: float) -> Trial:
+def exact_trial(reference: ExactRun, cost: float) -> Trial:
     return try_changes(reference, 'exact', {})._replace(cost=of(cost))
 
 

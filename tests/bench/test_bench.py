@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from stickslip_sim.axis import InitialState
+from stickslip_sim.bench.accuracy import Truth, errors_of, pair
 from stickslip_sim.bench.cases import case_names, make_case
 from stickslip_sim.bench.contestants import PEERS
-from stickslip_sim.bench.errors import Truth, errors_of, pair
 from stickslip_sim.bench.outside import FIRST_SLIP
 from stickslip_sim.bench.own_solvers import exact_solver
 from stickslip_sim.bench.peers import dop853, euler, scipy_ivp

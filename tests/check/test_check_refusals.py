@@ -106,12 +106,12 @@ class TestRefusals:
         BagWriter(tmp_path / 'other', [topics.DIAGNOSTICS, topics.TIMING], {}, {}).close()
         line = refused(capsys, tmp_path / 'other', '--limits', limits)
         assert 'no topic of type stickslip_msgs/msg/SliderState' in line
-        cells = [*topics.recorded('/a'), *topics.recorded('/b')]
+        cells = [*topics.recorded_topics('/a'), *topics.recorded_topics('/b')]
         BagWriter(tmp_path / 'two', [topic for topic in cells if topic is not topics.PARAMETER_EVENTS], {}, {}).close()
         assert 'are both of type' in refused(capsys, tmp_path / 'two', '--limits', limits)
 
     def test_a_bag_without_states(self, tmp_path: Path, capsys: Capture) -> None:
-        BagWriter(tmp_path / 'empty', topics.recorded(), {}, {}).close()
+        BagWriter(tmp_path / 'empty', topics.recorded_topics(), {}, {}).close()
         limits = limits_file(tmp_path, LIMITS)
         assert 'no state of the axis' in refused(capsys, tmp_path / 'empty', '--limits', limits)
 

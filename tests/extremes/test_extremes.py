@@ -9,7 +9,7 @@ import pytest
 
 from stickslip_sim.cli.main import run
 from stickslip_sim.extremes.outcome import Setup, Tally
-from stickslip_sim.extremes.suite import EXTREMES, chosen, judged
+from stickslip_sim.extremes.suite import EXTREMES, chosen, results
 from stickslip_sim.solvers import fixed_step
 
 STEPPED = Setup(full=False, solver=fixed_step.solver('rk4', 1e-3))
@@ -17,14 +17,14 @@ STEPPED = Setup(full=False, solver=fixed_step.solver('rk4', 1e-3))
 
 @pytest.mark.parametrize('number', [extreme.number for extreme in EXTREMES])
 def test_every_mark_is_met(number: str) -> None:
-    (outcome,) = judged(chosen([number]), Setup(full=False))
+    (outcome,) = results(chosen([number]), Setup(full=False))
     assert outcome.passed, (outcome.finding.figure, outcome.finding.examples)
     assert outcome.finding.cases > 0
 
 
 @pytest.mark.parametrize('number', ['X1', 'X2', 'X4', 'X5', 'X6', 'X16', 'X21', 'X25'])
 def test_a_solver_that_steps_misses_the_mark(number: str) -> None:
-    (outcome,) = judged(chosen([number]), STEPPED)
+    (outcome,) = results(chosen([number]), STEPPED)
     assert not outcome.passed
     assert outcome.finding.misses > 0
     assert outcome.finding.examples

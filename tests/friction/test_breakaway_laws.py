@@ -11,7 +11,7 @@ from stickslip_sim.axis import Axis, CompliantContact, Friction, InitialState
 from stickslip_sim.core.input_profile import ramp
 from stickslip_sim.core.types import EventKind
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
-from tests.support.axes import RIGID, run
+from tests.support.axes import RIGID, run_events
 
 NORMAL, STIFFNESS, DAMPING = 3432.3275, 6e5, 4000.0
 KIND = StaticLawKind
@@ -64,8 +64,8 @@ def test_break_away_from_a_rigid_contact(law: StaticLaw, rest: float, speed: flo
     with mp.workdps(50):
         expected = break_away(law, rest, speed, rate, push)
         limit = static(law, mp.mpf(rest) + expected)
-    events = run(axis, ramp(speed, rate, math.inf), float(expected) + 1e-3, ramp(0.0, push, math.inf),
-                 InitialState(rest_time=rest))
+    events = run_events(axis, ramp(speed, rate, math.inf), float(expected) + 1e-3, ramp(0.0, push, math.inf),
+                        InitialState(rest_time=rest))
     first = events[0]
     assert first.kind == EventKind.BREAKAWAY
     assert abs(mp.mpf(first.second) + mp.mpf(first.fraction) - expected) <= 1e-12 * expected
@@ -89,5 +89,5 @@ def test_a_stiff_contact_breaks_away_as_a_rigid_one(law: StaticLaw) -> None:
     times = []
     for contact in (RIGID, CompliantContact(6e14, 3e8)):
         axis = Axis(350.0, STIFFNESS, DAMPING, NORMAL, contact, friction)
-        times.append(run(axis, 0.002, 2.0, 0.0, InitialState(rest_time=0.05))[0].time)
+        times.append(run_events(axis, 0.002, 2.0, 0.0, InitialState(rest_time=0.05))[0].time)
     assert times[1] == pytest.approx(times[0], rel=1e-5)

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 from stickslip_sim.core.errors import SolverError
 from stickslip_sim.core.types import Event, EventKind, Mode, Sample
-from stickslip_sim.extremes.shared_axes import instant, scaled
+from stickslip_sim.extremes.shared_axes import instant, scaled_profile
 from stickslip_sim.simulation.simulator import Simulator
 
 from .axes import Case
@@ -82,7 +82,7 @@ def _is_the_same_in_parts(case: Case, events: Sequence[Event], end: Sample) -> N
 def _is_the_same_mirrored(case: Case, events: Sequence[Event], end: Sample) -> None:
     image = simulator(case._replace(
         initial=case.initial.__class__(-case.initial.position, -case.initial.velocity, case.initial.rest_time),
-        drive=scaled(case.drive, -1.0), force=scaled(case.force, -1.0)))
+        drive=scaled_profile(case.drive, -1.0), force=scaled_profile(case.force, -1.0)))
     seen = [_mirrored(event) for event in image.advance(instant(case.duration))]
     assert seen == list(events), _first_difference(seen, events)
     assert image.sample().position == -end.position

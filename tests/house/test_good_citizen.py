@@ -275,7 +275,7 @@ def numbers_of(topic: str) -> set[str]:
 
 
 def test_the_launch_file_names_parameters_of_the_replay() -> None:
-    from stickslip_sim.ros.replay.settings import PARAMETERS
+    from stickslip_sim.ros.replay.replay_settings import PARAMETERS
     tree = ast.parse((PACKAGE / 'launch' / 'replay.launch.py').read_text())
     arguments = next(node.value for node in tree.body if isinstance(node, ast.Assign))
     known = {entry.name: entry.default for entry in PARAMETERS}

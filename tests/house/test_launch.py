@@ -16,7 +16,7 @@ from tests.support.ros_nodes import assert_clean, client, executable, running
 from stickslip_sim.ros.controllers.controller_parameters import (  # isort: skip  # after ros_nodes, which skips
     COMMON, COMPENSATION,
 )
-from stickslip_sim.ros.replay.settings import PARAMETERS  # isort: skip
+from stickslip_sim.ros.replay.replay_settings import PARAMETERS  # isort: skip
 from tests.support.ros2_control_client import Description  # isort: skip
 
 pytestmark = pytest.mark.ros

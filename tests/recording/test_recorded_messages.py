@@ -98,7 +98,7 @@ class TestMessages:
                 node.create_publisher(ros_class(topic.type), topic.name, QoSProfile(
                     depth=topic.qos.depth, reliability=QoSReliabilityPolicy[topic.qos.reliability.upper()],
                     durability=QoSDurabilityPolicy[topic.qos.durability.upper()]))
-            for topic in topics.recorded(node.get_namespace()):
+            for topic in topics.recorded_topics(node.get_namespace()):
                 infos = wait_for(partial(node.get_publishers_info_by_topic, topic.name), 'its publisher')
                 info = next(info for info in infos if info.topic_type == topic.type)
                 assert str(info.topic_type_hash) == schema(topic.type).hash

@@ -16,7 +16,7 @@ from stickslip_sim.recording import (
     columns_of,
     events_of,
     read_run,
-    recorded,
+    recorded_topics,
     schema,
 )
 from stickslip_sim.recording.messages import Packer
@@ -28,7 +28,7 @@ from tests.support.recorded_runs import events
 def with_events(folder: Path, namespace: str, **changes: Any) -> Path:
     """Write the transitions of the made-up run, with other fields."""
     packer = Packer(MODE_EVENT)
-    writer = BagWriter(folder, recorded(namespace), {}, {})
+    writer = BagWriter(folder, recorded_topics(namespace), {}, {})
     for event in events():
         writer.write(RECORDED.index(MODE_EVENT), packer.pack(0, 1, event._replace(**changes)), 0, 0, 1)
     writer.close()

@@ -11,7 +11,7 @@ from stickslip_sim.axis import InitialState
 from stickslip_sim.core.input_profile import table
 from stickslip_sim.core.types import Event, EventKind, Mode
 from stickslip_sim.simulation.cycles import Cycle, EventTally, Span, cycle_figures, mode_spans, summary
-from tests.support.axes import COMPLIANT, RIGID, Contact, paper_axis, run
+from tests.support.axes import COMPLIANT, RIGID, Contact, paper_axis, run_events
 
 
 @pytest.mark.parametrize(('contact', 'period', 'jump', 'peak', 'break_force', 'stick_force'), [
@@ -19,7 +19,7 @@ from tests.support.axes import COMPLIANT, RIGID, Contact, paper_axis, run
     (COMPLIANT, 0.659065697, 1.31813139e-3, 1.16642823367e-2, 788.081203029, 246.606758267)])
 def test_limit_cycle_of_the_model(contact: Contact, period: float, jump: float, peak: float, break_force: float,
                                   stick_force: float) -> None:
-    figures = summary(run(paper_axis(contact), 0.002, 60.0), 60.0)
+    figures = summary(run_events(paper_axis(contact), 0.002, 60.0), 60.0)
     last = figures.last
     assert figures.motion == 'stick-slip'
     assert figures.settled
@@ -35,7 +35,7 @@ def test_limit_cycle_of_the_model(contact: Contact, period: float, jump: float, 
 
 
 def test_first_cycles_follow_the_events_of_the_model() -> None:
-    first, second, *_ = cycle_figures(run(paper_axis(RIGID), 0.002, 3.0))
+    first, second, *_ = cycle_figures(run_events(paper_axis(RIGID), 0.002, 3.0))
     assert first.begin == pytest.approx(0.67979883333333, abs=1e-14)
     assert first.rest_time == math.inf
     assert first.slip_time == pytest.approx(0.83862368925988008 - 0.67979883333333, abs=1e-14)
@@ -47,12 +47,12 @@ def test_first_cycles_follow_the_events_of_the_model() -> None:
 
 
 def test_a_compliant_contact_gives_way_in_stick() -> None:
-    last = cycle_figures(run(paper_axis(COMPLIANT), 0.002, 60.0))[-1]
+    last = cycle_figures(run_events(paper_axis(COMPLIANT), 0.002, 60.0))[-1]
     assert last.jump > last.slip_travel > 0.9 * last.jump
 
 
 def test_mean_over_the_last_cycles() -> None:
-    events = run(paper_axis(RIGID), 0.002, 20.0)
+    events = run_events(paper_axis(RIGID), 0.002, 20.0)
     figures = summary(events, 20.0)
     cycles = cycle_figures(events)[-10:]
     assert figures.mean is not None
@@ -62,7 +62,7 @@ def test_mean_over_the_last_cycles() -> None:
 
 
 def test_share_of_time_in_stick_adds_up() -> None:
-    events = run(paper_axis(RIGID), 0.002, 10.0)
+    events = run_events(paper_axis(RIGID), 0.002, 10.0)
     spans = mode_spans(events, 0.0, 10.0, Mode.STICK)
     stick = sum(span.end - span.begin for span in spans if span.mode == Mode.STICK)
     assert sum(span.end - span.begin for span in spans) == pytest.approx(10.0, rel=1e-14)
@@ -71,7 +71,7 @@ def test_share_of_time_in_stick_adds_up() -> None:
 
 
 def test_smooth_sliding_has_no_cycles() -> None:
-    events = run(paper_axis(RIGID), 0.2, 5.0)
+    events = run_events(paper_axis(RIGID), 0.2, 5.0)
     figures = summary(events, 5.0)
     assert figures.motion == 'smooth sliding'
     assert (figures.cycles, figures.last, figures.mean, figures.settled) == (0, None, None, False)
@@ -80,7 +80,7 @@ def test_smooth_sliding_has_no_cycles() -> None:
 
 def test_a_run_that_starts_sliding_counts_from_its_start() -> None:
     initial = InitialState(velocity=0.2)
-    events = run(paper_axis(RIGID), 0.2, 2.0, initial=initial)
+    events = run_events(paper_axis(RIGID), 0.2, 2.0, initial=initial)
     figures = summary(events, 2.0, Mode.DECELERATING)
     assert figures.motion == 'smooth sliding'
     assert figures.stick_share == 0.0
@@ -90,13 +90,13 @@ def test_rest_and_single_slip_are_told_apart() -> None:
     assert summary([], 1.0).motion == 'at rest'
     assert summary([], 1.0).stick_share == 1.0
     pull = table('drive', (0.0, 0.75, 0.76), (0.002, 0.002, 0.0))
-    single = summary(run(paper_axis(RIGID), pull, 5.0), 5.0)
+    single = summary(run_events(paper_axis(RIGID), pull, 5.0), 5.0)
     assert (single.motion, single.cycles, single.events[EventKind.BREAKAWAY]) == ('single slip', 0, 1)
 
 
 def test_directions_are_told() -> None:
     profile = table('drive', (0.0, 3.0, 3.01), (0.002, 0.002, -0.002))
-    cycles = cycle_figures(run(paper_axis(RIGID), profile, 12.0))
+    cycles = cycle_figures(run_events(paper_axis(RIGID), profile, 12.0))
     assert {cycle.direction for cycle in cycles} == {-1, 1}
     assert all(cycle.slip_travel > 0.0 and cycle.peak_speed > 0.0 for cycle in cycles)
 
@@ -156,7 +156,7 @@ def test_only_time_within_the_window_counts() -> None:
 
 
 def test_a_tally_knows_at_any_time_what_a_summary_says() -> None:
-    events = run(paper_axis(COMPLIANT), 0.002, 20.0)
+    events = run_events(paper_axis(COMPLIANT), 0.002, 20.0)
     tally = EventTally()
     for count, event in enumerate(events, 1):
         tally.add(event)

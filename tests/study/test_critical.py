@@ -18,8 +18,8 @@ from stickslip_sim.study import Variation
 from stickslip_sim.study.critical import Critical, critical, default_range
 from stickslip_sim.study.points import scene_at
 from stickslip_sim.study.theory import critical_drop, critical_feed, feed_of_theory, healing_critical_feed
-from stickslip_sim.study.transitions import FAILED, NO, OPEN, YES, Doubt, Findings, Verdicts, find_transitions
 from stickslip_sim.study.variation import Numbers
+from stickslip_sim.study.verdict_changes import FAILED, NO, OPEN, YES, Doubt, Findings, Verdicts, find_transitions
 from tests.support.axes import instant
 from tests.support.tool import Capture
 

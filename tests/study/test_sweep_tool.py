@@ -18,7 +18,7 @@ from stickslip_sim.study import Study, resources, table
 from stickslip_sim.study.description import study_of
 from stickslip_sim.study.folder import PARQUET, PARTIAL, SIDECAR, TABLE, Folder
 from stickslip_sim.study.point_figures import FIGURES
-from stickslip_sim.study.table import header, read_columns
+from stickslip_sim.study.table import read_columns, title_line
 from tests.support.tool import Capture, refused, restore_interrupt
 
 SMALL = ['paper_fig7', '--over', 'drive.velocity=1e-3:0.06:6:log', '--over', 'axis.drive_stiffness=1e5:1e6:4:log']
@@ -269,7 +269,7 @@ def test_parquet_has_the_same_table(tmp_path: Path) -> None:
     assert run(['sweep', *SMALL, '--out', str(tmp_path / 'out')]) == 0
     study = study_of(Folder(tmp_path / 'out').described())
     parquet = pandas.read_parquet(tmp_path / 'out' / PARQUET)
-    assert ','.join(parquet.columns) + '\n' == header(study).decode()
+    assert ','.join(parquet.columns) + '\n' == title_line(study).decode()
     columns = read_columns(tmp_path / 'out' / TABLE, study)
     for name in (*study.names, *FIGURES[1:]):
         assert np.array_equal(parquet[name].to_numpy(), columns[name], equal_nan=True)

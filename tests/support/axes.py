@@ -11,7 +11,7 @@ from stickslip_sim.extremes.shared_axes import (
     of_kind,
     paper_axis,
     random_axis,
-    run,
+    run_events,
 )
 
-__all__ = ['COMPLIANT', 'RIGID', 'Contact', 'instant', 'make', 'of_kind', 'paper_axis', 'random_axis', 'run']
+__all__ = ['COMPLIANT', 'RIGID', 'Contact', 'instant', 'make', 'of_kind', 'paper_axis', 'random_axis', 'run_events']

@@ -12,8 +12,8 @@ from ..scene import Scene
 from .absent import absent_parts
 from .parts import parts_of
 from .recommendation import Least, PartTrial, best_trial, least_scene
-from .settings import solver_settings
-from .trial_runs import Reference, Trial, costs, reference_of, try_changes, with_costs
+from .solver_settings import solver_settings
+from .trial_runs import ExactRun, Trial, costs, reference_of, try_changes, with_costs
 
 _FINER = 0.1   # of the stated error of a table, to see what that error does
 _MEASURING = 10   # items of work, about, that all costs together are
@@ -24,7 +24,7 @@ _T = TypeVar('_T')
 class Advice(NamedTuple):
     """All that was found out about a scene; costs are processor time for each simulated second, s."""
 
-    reference: Reference
+    reference: ExactRun
     cost: Cost | None
     estimate: ErrorEstimate
     tolerance: float
@@ -70,7 +70,7 @@ def advise(scene: Scene, tolerance: float, duration: float, rounds: int,
                   _finer_tables(reference), least, (side_by_side[0], side_by_side[1]))
 
 
-def _finer_tables(reference: Reference) -> list[Trial]:
+def _finer_tables(reference: ExactRun) -> list[Trial]:
     """Return the scene with each table of a smooth law ten times as fine: what is left of its error."""
     values = reference.scene.values
     return [try_changes(reference, what, {name: _FINER * float(values[name])})  # type: ignore[arg-type]

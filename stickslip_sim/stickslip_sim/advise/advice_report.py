@@ -13,7 +13,7 @@ from ..scene.text import yaml_value
 from .advice import Advice
 from .figure_distance import ANOTHER_MOTION
 from .part import Changes
-from .settings import EXACT
+from .solver_settings import EXACT
 from .trial_runs import Trial
 
 _BY_NAME = {entry.name: entry for entry in PARAMETERS}

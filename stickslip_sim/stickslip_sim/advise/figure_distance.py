@@ -18,7 +18,7 @@ _BOUNDARIES = (EventKind.BREAKAWAY, EventKind.STICK, EventKind.REVERSE)
 _OF_CYCLES = {'period': 'period', 'jump': 'jump', 'peak speed': 'peak_speed', 'break-away force': 'break_away_force'}
 
 
-class Figures(NamedTuple):
+class RunFigures(NamedTuple):
     """What of a run is compared: `events` are where slips begin and end; positions in m, `duration` in s."""
 
     motion: str
@@ -32,7 +32,7 @@ class Figures(NamedTuple):
     travel: float              # of slider or drive, whichever goes further
 
 
-class Difference(NamedTuple):
+class Distance(NamedTuple):
     """By how much runs differ: relative, by figure; those that do not exist in either run are left out."""
 
     by_figure: Mapping[str, float]
@@ -48,13 +48,13 @@ class Difference(NamedTuple):
         return max(self.by_figure, key=lambda name: self.by_figure[name])
 
 
-def figures_of(events: Sequence[Event], duration: float, start: Sample, end: Sample) -> Figures:
+def run_figures(events: Sequence[Event], duration: float, start: Sample, end: Sample) -> RunFigures:
     """Return the figures of a run of `duration` s from its events and its first and last sample."""
     outline = summary(events, duration, start.mode)
     boundaries = [event for event in events if event.kind in _BOUNDARIES]
     slips = [event for event in boundaries if event.kind == EventKind.BREAKAWAY]
     points: list[Event | Sample] = [start, *events, end]
-    return Figures(
+    return RunFigures(
         outline.motion, duration, boundaries, cycle_figures(events),
         peak_speed=max(abs(point.velocity) for point in points) if outline.motion != 'at rest' else 0.0,
         break_away_force=abs(slips[0].friction_force) if slips else 0.0,
@@ -63,10 +63,10 @@ def figures_of(events: Sequence[Event], duration: float, start: Sample, end: Sam
         travel=max(_range([point.position for point in points]), _range([point.drive_position for point in points])))
 
 
-def difference(reference: Figures, other: Figures) -> Difference:
+def distance_between(reference: RunFigures, other: RunFigures) -> Distance:
     """Compare a run with the reference, of the same duration."""
     if other.motion != reference.motion:
-        return Difference({ANOTHER_MOTION: math.inf})
+        return Distance({ANOTHER_MOTION: math.inf})
     found = {'event times': event_difference(reference.events, other.events, reference.duration),
              'stick share': abs(other.stick_share - reference.stick_share)}
     if reference.travel > 0.0:
@@ -74,7 +74,7 @@ def difference(reference: Figures, other: Figures) -> Difference:
     for name, (a, b) in _pairs(reference, other).items():
         if a != 0.0:
             found[name] = abs(b - a) / abs(a)
-    return Difference(found)
+    return Distance(found)
 
 
 def event_difference(events: Sequence[Event], others: Sequence[Event], duration: float) -> float:
@@ -92,7 +92,7 @@ def event_difference(events: Sequence[Event], others: Sequence[Event], duration:
     return max(shift, duration - alone[0].time if alone else 0.0) / duration
 
 
-def _pairs(reference: Figures, other: Figures) -> dict[str, tuple[float, float]]:
+def _pairs(reference: RunFigures, other: RunFigures) -> dict[str, tuple[float, float]]:
     """Return figures of both; cycles by their means over the last ones that both runs have."""
     common = min(len(reference.cycles), len(other.cycles))
     if common == 0:

@@ -5,7 +5,7 @@
 from collections.abc import Iterator
 
 from ..scene import Scene
-from .part import Change, Changes, Part, Values, Variant, number, switch
+from .part import Change, Changes, Part, Values, Variant, number_part, switch
 
 _KINETIC = 'friction.kinetic'
 _EXCESS = 'friction.excess'
@@ -21,8 +21,8 @@ def friction_parts(scene: Scene) -> Iterator[Part]:
     yield from _tables('psi', _EXCESS, 'fractions', values)
     yield _growth()
     yield _speed_dependence(scene)
-    yield number('viscous friction', f'{_KINETIC}.viscous')
-    yield number('rise of mu_k beyond its last knot', f'{_KINETIC}.end_slope')
+    yield number_part('viscous friction', f'{_KINETIC}.viscous')
+    yield number_part('rise of mu_k beyond its last knot', f'{_KINETIC}.end_slope')
     yield from _tables('mu_k', _KINETIC, 'coefficients', values)
 
 

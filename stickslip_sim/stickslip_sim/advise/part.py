@@ -35,7 +35,7 @@ def switch(name: str, parameter: str, there: object, without: object) -> Part:
     return Part(name, (Variant(changes),))
 
 
-def number(name: str, parameter: str) -> Part:
+def number_part(name: str, parameter: str) -> Part:
     """Return the part whose size is one number, so that 0 leaves it out."""
     def changes(values: Values) -> Changes:
         return {parameter: 0.0} if values.get(parameter, 0.0) != 0.0 else {}

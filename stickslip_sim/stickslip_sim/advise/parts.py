@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from ..scene import Scene
 from .friction_parts import friction_parts
-from .part import Change, Changes, Part, Values, Variant, number, switch
+from .part import Change, Changes, Part, Values, Variant, number_part, switch
 
 _INPUTS = (('drive', 'Hz on the drive'), ('force', 'Hz on the force'))
 
@@ -20,9 +20,9 @@ def parts_of(scene: Scene) -> list[Part]:
 def _possible_parts(scene: Scene) -> Iterator[Part]:
     values: Values = scene.values
     yield switch('contact compliance', 'contact.model', 'compliant', 'rigid')
-    yield number('contact damping', 'contact.damping')
+    yield number_part('contact damping', 'contact.damping')
     yield from friction_parts(scene)
-    yield number('drive damping', 'axis.drive_damping')
+    yield number_part('drive damping', 'axis.drive_damping')
     for section, where in _INPUTS:
         if values[f'{section}.course'] == 'sine':
             yield switch(f'sine of {values[f"{section}.frequency"]:g} {where}', f'{section}.course', 'sine', 'constant')

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 from ..scene import changed
 from .part import Changes, Part, Variant
-from .settings import EXACT
-from .trial_runs import Reference, Trial, changes_between, try_changes
+from .solver_settings import EXACT
+from .trial_runs import ExactRun, Trial, changes_between, try_changes
 
 _WORTH = 0.9   # a solver must cost less than this share of the exact one, which is right at any tolerance
 
@@ -33,14 +33,14 @@ class Least(NamedTuple):
     trial: Trial
 
 
-def best_trial(reference: Reference, part: Part) -> PartTrial:
+def best_trial(reference: ExactRun, part: Part) -> PartTrial:
     """Leave a part out in each of its ways and return the one that changes least; one that is refused comes last."""
     trials = [PartTrial(part, variant, try_changes(reference, part.name, changes, variant.how))
               for variant in part.variants if (changes := variant.changes(reference.scene.values))]
     return min(trials, key=lambda found: _size(found.trial))
 
 
-def least_scene(reference: Reference, trials: Sequence[PartTrial], solvers: Sequence[Trial],
+def least_scene(reference: ExactRun, trials: Sequence[PartTrial], solvers: Sequence[Trial],
                 tolerance: float) -> Least:
     """Leave out one part after the other, those that change least first, as long as all together stay in tolerance.
 
@@ -60,7 +60,7 @@ def least_scene(reference: Reference, trials: Sequence[PartTrial], solvers: Sequ
     return _with_solver(reference, Least(tuple(parts), EXACT, left_out.changes, left_out), solvers, tolerance)
 
 
-def _with_solver(reference: Reference, least: Least, solvers: Sequence[Trial], tolerance: float) -> Least:
+def _with_solver(reference: ExactRun, least: Least, solvers: Sequence[Trial], tolerance: float) -> Least:
     """Return the same parts with the cheapest solver that is in tolerance with them."""
     exact = next(trial for trial in solvers if trial.name == EXACT)
     if exact.cost is None:

@@ -18,7 +18,7 @@ from ..runs.offline import Trajectory, run_offline
 from ..scene import Scene, changed
 from ..simulation.simulator import Simulator
 from ..solvers import Solver
-from .figure_distance import Difference, Figures, difference, figures_of
+from .figure_distance import Distance, RunFigures, distance_between, run_figures
 from .part import Changes
 
 BY_EXACT: Changes = {'solver.name': 'exact'}
@@ -30,13 +30,13 @@ _MOST = 10              # times as many events as the reference, and
 _MOST_AT_LEAST = 1000   # these: a solver that finds more chatters
 
 
-class Reference(NamedTuple):
+class ExactRun(NamedTuple):
     """The exact run with everything on; `end` is its last sample."""
 
     scene: Scene
     run: Trajectory
     end: Sample
-    figures: Figures
+    figures: RunFigures
 
     @property
     def end_instant(self) -> Instant:
@@ -55,7 +55,7 @@ class Trial(NamedTuple):
     how: str
     changes: Changes
     scene: Scene | None
-    difference: Difference | None
+    difference: Distance | None
     identical: bool = False
     note: str = ''
     cost: Cost | None = None
@@ -66,15 +66,15 @@ def changes_between(base: Scene, other: Scene) -> Changes:
     return {name: value for name, value in other.values.items() if base.values.get(name) != value}
 
 
-def reference_of(scene: Scene, duration: float) -> Reference:
+def reference_of(scene: Scene, duration: float) -> ExactRun:
     """Run a scene with the exact solver, whichever it names."""
     exact = changed(scene, BY_EXACT)
     run = run_offline(exact, duration, duration)   # sampled at its start and its end
     start, end = run.sample_rows()
-    return Reference(exact, run, end, figures_of(run.events, duration, start, end))
+    return ExactRun(exact, run, end, run_figures(run.events, duration, start, end))
 
 
-def try_changes(reference: Reference, name: str, changes: Changes, how: str = '') -> Trial:
+def try_changes(reference: ExactRun, name: str, changes: Changes, how: str = '') -> Trial:
     """Run the scene of the reference with changes; a scene that is refused and a solver that gives up are results."""
     scene = None
     try:
@@ -82,8 +82,8 @@ def try_changes(reference: Reference, name: str, changes: Changes, how: str = ''
         events, start, end = _run(scene, reference)
     except (InputError, SolverError) as error:
         return Trial(name, how, changes, scene, None, note=' '.join(str(error).split()))
-    figures = figures_of(events, reference.run.duration, start, end)
-    return Trial(name, how, changes, scene, difference(reference.figures, figures),
+    figures = run_figures(events, reference.run.duration, start, end)
+    return Trial(name, how, changes, scene, distance_between(reference.figures, figures),
                  identical=events == reference.run.events and end == reference.end)
 
 
@@ -101,7 +101,7 @@ def costs(scenes: Sequence[Scene], duration: float, rounds: int) -> list[Cost | 
     return [_per_second(found.get(k, cost), duration) for k, cost in enumerate(first)]
 
 
-def with_costs(reference: Reference, trials: Sequence[Trial], rounds: int) -> tuple[Cost | None, list[Trial]]:
+def with_costs(reference: ExactRun, trials: Sequence[Trial], rounds: int) -> tuple[Cost | None, list[Trial]]:
     """Return what the reference costs, and the trials with their costs; those that came to nothing stay without."""
     sound = [trial for trial in trials if trial.difference is not None]
     whole, *others = costs([reference.scene, *(trial.scene or reference.scene for trial in sound)],
@@ -110,7 +110,7 @@ def with_costs(reference: Reference, trials: Sequence[Trial], rounds: int) -> tu
     return whole, [trial if trial.difference is None else trial._replace(cost=next(coming)) for trial in trials]
 
 
-def _run(scene: Scene, reference: Reference) -> tuple[list[Event], Sample, Sample]:
+def _run(scene: Scene, reference: ExactRun) -> tuple[list[Event], Sample, Sample]:
     """Return the events of a run as long as the reference, and its first and last sample."""
     duration = reference.run.duration
     if scene.solver.name != 'adaptive':

@@ -30,11 +30,11 @@ def measure(runs: Sequence[Callable[[], object]], rounds: int) -> list[Cost]:
     for _ in range(rounds):
         for run, count, costs in zip(runs, repeats, samples):
             if sum(costs) < ENOUGH:
-                costs.append(sample(run, count))
+                costs.append(cost_sample(run, count))
     return [_cost(costs) for costs in samples]
 
 
-def sample(run: Callable[[], object], count: int = 1) -> float:
+def cost_sample(run: Callable[[], object], count: int = 1) -> float:
     """Return what a run costs, the mean of `count` in a row."""
     begin = time.process_time()
     for _ in range(count):
@@ -43,7 +43,7 @@ def sample(run: Callable[[], object], count: int = 1) -> float:
 
 
 def _repeats(run: Callable[[], object]) -> int:
-    return max(1, round(SHORTEST / max(sample(run), 1e-7)))
+    return max(1, round(SHORTEST / max(cost_sample(run), 1e-7)))
 
 
 def _cost(samples: Sequence[float]) -> Cost:

@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 from ..core.errors import SolverError
 from ..reference import simulate as simulate_reference
-from .errors import Errors, Truth, errors_of
-from .measure import Cost, measure, sample
+from .accuracy import Errors, Truth, errors_of
+from .measure import Cost, cost_sample, measure
 from .peers.peer import Peer, Setting
 from .problem import Outcome, Problem
 
@@ -90,7 +90,7 @@ def _foresee(peer: Peer, problem: Problem, setting: Setting) -> float:
         run = peer.prepare(replace(problem, duration=problem.duration / part), setting)
         if part == _PARTS[0]:
             run()   # what is compiled at the first run is no part of it
-        foreseen = part * sample(run)
+        foreseen = part * cost_sample(run)
         if foreseen > PATIENCE:
             break
     return foreseen

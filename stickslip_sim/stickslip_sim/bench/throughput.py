@@ -15,7 +15,7 @@ from ..axis import Axis
 from ..core.input_profile import constant
 from ..runs.batch import run_batch
 from .cases import make_case
-from .measure import sample
+from .measure import cost_sample
 from .peers import scipy_ivp
 from .peers.peer import Setting
 from .problem import Problem
@@ -64,4 +64,4 @@ def _by_scipy(axis: Axis, grid: dict[str, Any], index: int) -> float:
     run = scipy_ivp.PEERS[0].prepare(problem, Setting(1e-12, 'tolerance'))
     if index == 0:
         run()
-    return sample(run)
+    return cost_sample(run)

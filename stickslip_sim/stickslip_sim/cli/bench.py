@@ -72,13 +72,13 @@ def _made(path: str) -> Path:
 def _write(folder: Path, data: dict[str, Any]) -> None:
     from ..bench.cases import LETTERS
     from ..bench.race_report import markdown
-    from ..plots import Line, plot_trade
+    from ..plots import SolverCurve, plot_trade
 
     write_text(str(folder / 'bench.json'), [json.dumps(data, indent=1, allow_nan=False) + '\n'])
     write_text(str(folder / 'bench.md'), [markdown(data)])
     for name, wanted in (('trade', True), ('trade_scenes', False)):
         panels = {f'{case["name"]}: {case["summary"]}' if wanted else case['name']: [
-            Line(label, *zip(*points)) for label, points in _points(case).items()]
+            SolverCurve(label, *zip(*points)) for label, points in _points(case).items()]
             for case in data['cases'] if (case['name'] in LETTERS) == wanted}
         for ending in ('png', 'svg'):
             if panels:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from .files import STDOUT, check_distinct, check_file, write_text
-from .sources import is_recorded
+from .run_or_scene import is_recorded
 
 if TYPE_CHECKING:
     from ..check.limits import Limits

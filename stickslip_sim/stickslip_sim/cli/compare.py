@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from .files import check_new_folder, new_folder
-from .sources import is_recorded
+from .run_or_scene import is_recorded
 
 if TYPE_CHECKING:
     from ..compare.history import History

@@ -10,8 +10,8 @@ import click
 if TYPE_CHECKING:
     from ..scene import Scene
     from ..study.critical import Critical
-    from ..study.transitions import Findings, Transition
     from ..study.variation import Variation
+    from ..study.verdict_changes import Findings, Transition
 
 _ACCURACY = 1e-9
 _DIGITS = 12   # of ends that are too small or large to be written out
@@ -62,7 +62,7 @@ def _lines(scene: 'Scene', found: 'Critical') -> list[str]:
 
 def _told(start: str, findings: 'Findings', unit: str, digits: int, yes: str, no: str) -> list[str]:
     """Return a line for each transition of the findings, or one that there is none, and for each stretch in doubt."""
-    from ..study.transitions import NO, YES
+    from ..study.verdict_changes import NO, YES
 
     found = [(one.low, f'{_value(one, unit, digits)}: '
               + (f'{no} below, {yes} above' if one.rises else f'{yes} below, {no} above'))

@@ -23,13 +23,13 @@ def extremes(only: str | None, quick: bool, out: str | None) -> None:
     _check_mpmath()
     from ..core.errors import VerdictError
     from ..extremes.outcome import Setup
-    from ..extremes.result_table import headline, json_text, markdown_text, row
-    from ..extremes.suite import chosen, judged
+    from ..extremes.result_table import json_text, markdown_text, row, table_head
+    from ..extremes.suite import chosen, results
 
     selected = chosen([number.strip().upper() for number in only.split(',')] if only is not None else [])
-    print(headline())
+    print(table_head())
     outcomes = []
-    coming = iter(judged(selected, Setup(full=not quick)))
+    coming = iter(results(selected, Setup(full=not quick)))
     for extreme in selected:
         _tell(f'{extreme.number} …')
         outcome = next(coming)

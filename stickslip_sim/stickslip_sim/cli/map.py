@@ -11,7 +11,7 @@ from .files import check_distinct, check_picture, whole
 from .sweeping import print_failed
 
 if TYPE_CHECKING:
-    from ..plots.stability import Pick
+    from ..plots.stability_map import Pick
     from ..study import Study
     from ..study.folder import Folder
     from ..study.picks import Ending
@@ -81,7 +81,7 @@ def _pick(study: 'Study', columns: 'Columns', text: str) -> 'Pick':
     """Return a point of the map with its motion."""
     from ..compare.fresh import sampled, simulate
     from ..compare.windows import motion_of
-    from ..plots.stability import Pick
+    from ..plots.stability_map import Pick
     from ..study.picks import ending_at, place_in_map, point_of
     from ..study.point_figures import Motion
 

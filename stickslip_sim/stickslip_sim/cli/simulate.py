@@ -116,7 +116,7 @@ def _write(wishes: _Wishes, run: 'Trajectory') -> None:
 
 def _write_bag(folder: str, run: 'Trajectory') -> None:
     """Record the run step by step; a folder that was begun vanishes on any error."""
-    from ..recording.offline import write_bag
+    from ..recording.offline_bag import write_bag
     from ..recording.run import RunFacts
 
     sampled = _sampled(run, run.scene.time.step)

@@ -5,7 +5,7 @@
 import math
 
 from ..core.types import EventKind
-from ..plots.paper_panels import Motion, Stretch
+from ..plots.paper_panels import DrawnMotion, Stretch
 from .history import History, slips
 
 _CYCLES = 5                    # that show how the motion begins
@@ -14,10 +14,10 @@ _BEFORE, _AFTER = 0.25, 0.75   # of a slip's duration: what is shown of the stic
 _BEGINNING = 0.1               # of a slip without an end: what is shown
 
 
-def motion_of(history: History) -> Motion:
+def motion_of(history: History) -> DrawnMotion:
     """Return what is drawn of a run: its first cycles, its last complete slip, its last complete cycle."""
     slip, break_away = _slip(history)
-    return Motion(history.drawn, _opening(history), slip, break_away, _orbit(history), _cycle(history))
+    return DrawnMotion(history.drawn, _opening(history), slip, break_away, _orbit(history), _cycle(history))
 
 
 def _opening(history: History) -> Stretch:

@@ -3,12 +3,22 @@
 """Controllers of the drive: cascade, compensation of friction, and the moves that they follow.  Pure; knows no ROS."""
 
 from .cascade import Cascade
-from .drive_controller import AT_REST, Command, Controller, Memory
+from .drive_controller import AT_REST, Controller, DriveCommand, Memory
 from .following import Answer, Following, Progress
 from .friction_branches import BranchCompensation, Slide
 from .moves import Moves, Setpoint
 
 __all__ = [
-    'AT_REST', 'Answer', 'BranchCompensation', 'Cascade', 'Command', 'Controller', 'Following', 'Memory', 'Moves',
-    'Progress', 'Setpoint', 'Slide',
+    'AT_REST',
+    'Answer',
+    'BranchCompensation',
+    'Cascade',
+    'Controller',
+    'DriveCommand',
+    'Following',
+    'Memory',
+    'Moves',
+    'Progress',
+    'Setpoint',
+    'Slide',
 ]

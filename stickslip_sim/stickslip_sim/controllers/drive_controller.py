@@ -18,7 +18,7 @@ class Memory(NamedTuple):
     slide: Slide
 
 
-class Command(NamedTuple):
+class DriveCommand(NamedTuple):
     """The velocity for the drive, and whether the limit of the drive holds it back."""
 
     velocity: float  # m/s
@@ -37,7 +37,7 @@ class Controller:
     max_velocity: float = 1.0
 
     def step(self, memory: Memory, setpoint: Setpoint, measured: Measured,
-             period: float) -> tuple[Memory, Command]:
+             period: float) -> tuple[Memory, DriveCommand]:
         """Return the command from now on, and what to remember; `period` (s) went by since the latest.
 
         The integral part stands still while the limit holds the command back and it would only wind up.
@@ -49,7 +49,7 @@ class Controller:
         limited = max(-self.max_velocity, min(velocity, self.max_velocity))
         if (velocity - limited) * (integral - memory.integral) > 0.0:
             integral = memory.integral
-        return Memory(integral, slide), Command(limited, limited != velocity)
+        return Memory(integral, slide), DriveCommand(limited, limited != velocity)
 
     def _compensate(self, slide: Slide, setpoint: Setpoint, wanted: float,
                     measured: Measured) -> tuple[Slide, float]:

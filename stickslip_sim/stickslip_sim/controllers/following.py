@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from ..rig import Measured
-from .drive_controller import AT_REST, Command, Controller, Memory
+from .drive_controller import AT_REST, Controller, DriveCommand, Memory
 from .moves import Moves, Setpoint
 
 _NANOSECONDS = 1e9
@@ -26,7 +26,7 @@ class Answer(NamedTuple):
 
     progress: Progress
     setpoint: Setpoint
-    command: Command
+    command: DriveCommand
     is_new: bool       # the moves begin with it
 
 

@@ -14,7 +14,7 @@ from ..core.types import Instant
 from ..scene import load_scene
 from ..simulation.simulator import Simulator
 from ..solvers import Solver
-from .outcome import Finding, Setup, Tally, check
+from .outcome import Measurement, Setup, Tally, require
 from .shared_axes import COMPLIANT, RIGID, paper_axis
 
 _ROUNDS = 11
@@ -33,7 +33,7 @@ class _Case(NamedTuple):
     velocity: float = 0.0
 
 
-def cost_of_the_account(setup: Setup) -> Finding:
+def cost_of_the_account(setup: Setup) -> Measurement:
     """X25: the residual of the balance, and the CPU time with the account over that without, less one."""
     cases = _cases(setup)
     tally = Tally(1e-12)
@@ -89,7 +89,7 @@ def _made(solver: Solver, case: _Case, accounting: bool) -> Simulator:
 
 def _residual(solver: Solver, case: _Case) -> float:
     simulator = _made(solver, case, accounting=True)
-    check(simulator.energy is not None, f'{case.name}: no account')
+    require(simulator.energy is not None, f'{case.name}: no account')
     simulator.advance(Instant(math.floor(case.duration), case.duration % 1.0))
     energy = simulator.energy
     return energy.relative_residual if energy is not None else math.inf

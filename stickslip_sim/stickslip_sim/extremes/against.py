@@ -10,7 +10,7 @@ from ..core.input_profile import InputProfile
 from ..core.types import Event
 from ..reference import simulate
 from ..solvers import Solver
-from .outcome import check
+from .outcome import require
 from .shared_axes import instant, make
 
 DIGITS = 40
@@ -30,7 +30,7 @@ def error_of_events(events: Sequence[Event], wanted: Sequence[Event], duration: 
     """Return the largest error of times over the duration and of positions over the travel; Missed as above."""
     got, want = ([(event.kind.name, event.direction) for event in run] for run in (events, wanted))
     first = next((i for i, (a, b) in enumerate(zip(got, want)) if a != b), min(len(got), len(want)))
-    check(got == want, f'{len(got)} events instead of {len(want)}; number {first} differs: '
+    require(got == want, f'{len(got)} events instead of {len(want)}; number {first} differs: '
                        f'{got[first:first + 2]} instead of {want[first:first + 2]}')
     start = wanted[0].position if wanted else 0.0
     travel = max((abs(event.position - start) for event in wanted), default=0.0) or 1.0

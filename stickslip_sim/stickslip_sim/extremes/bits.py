@@ -16,11 +16,11 @@ from ..core.types import Event, Sample
 from ..friction import ExcessTable, KineticTable, StaticLaw
 from ..simulation.simulator import Simulator
 from ..solvers import Solver, exact
-from .outcome import Finding, Setup, Tally, check
-from .shared_axes import instant, make, random_axis, random_profiles, run, scaled
+from .outcome import Measurement, Setup, Tally, require
+from .shared_axes import instant, make, random_axis, random_profiles, run_events, scaled_profile
 
 
-def mirrored_and_scaled(setup: Setup) -> Finding:
+def mirrored_and_scaled(setup: Setup) -> Measurement:
     """X19: (x, v, F) → (−x, −v, −F); the units of mass, length and time multiplied by powers of two."""
     tally = Tally(0.0)
     for seed in range(setup.count(1000, 25)):
@@ -33,8 +33,8 @@ def mirrored_and_scaled(setup: Setup) -> Finding:
 def _mirrored(solver: Solver, seed: int) -> float:
     rng = random.Random(seed)
     axis, (drive, force) = random_axis(rng), random_profiles(rng)
-    events = run(axis, drive, 3.0, force, solver=solver)
-    images = run(axis, scaled(drive, -1.0), 3.0, scaled(force, -1.0), solver=solver)
+    events = run_events(axis, drive, 3.0, force, solver=solver)
+    images = run_events(axis, scaled_profile(drive, -1.0), 3.0, scaled_profile(force, -1.0), solver=solver)
     _check_equal(images, (e._replace(
         direction=-e.direction, position=-e.position, velocity=-e.velocity, drive_position=-e.drive_position,
         drive_force=-e.drive_force, friction_force=-e.friction_force) for e in events))
@@ -43,9 +43,9 @@ def _mirrored(solver: Solver, seed: int) -> float:
 
 def _check_equal(events: list[Event], wanted: Iterable[Event]) -> None:
     wanted = list(wanted)
-    check(len(events) == len(wanted), f'{len(events)} events instead of {len(wanted)}')
+    require(len(events) == len(wanted), f'{len(events)} events instead of {len(wanted)}')
     for i, (event, other) in enumerate(zip(events, wanted)):
-        check(event == other, f'event {i}: {tuple(event)} instead of {tuple(other)}')
+        require(event == other, f'event {i}: {tuple(event)} instead of {tuple(other)}')
 
 
 def _mass_unit(solver: Solver, seed: int) -> float:
@@ -54,9 +54,9 @@ def _mass_unit(solver: Solver, seed: int) -> float:
     axis, (drive, force) = random_axis(rng), random_profiles(rng)
     k = math.ldexp(1.0, rng.choice((-40, -7, 1, 13, 60)))
     other = replace(_times(axis, k, k), mass=k * axis.mass, normal_force=k * axis.normal_force)
-    _check_equal(run(other, drive, 3.0, scaled(force, k), solver=solver), (
+    _check_equal(run_events(other, drive, 3.0, scaled_profile(force, k), solver=solver), (
         e._replace(drive_force=k * e.drive_force, friction_force=k * e.friction_force)
-        for e in run(axis, drive, 3.0, force, solver=solver)))
+        for e in run_events(axis, drive, 3.0, force, solver=solver)))
     return 0.0
 
 
@@ -85,8 +85,8 @@ def _length_unit(solver: Solver, seed: int) -> float:
     axis, (drive, force) = random_axis(rng), random_profiles(rng)
     k = math.ldexp(1.0, rng.choice((-40, -7, 1, 13, 60)))
     other = replace(_faster(axis, k), normal_force=k * axis.normal_force)
-    events = run(axis, drive, 3.0, force, solver=solver)
-    _check_equal(run(other, scaled(drive, k), 3.0, scaled(force, k), solver=solver), (
+    events = run_events(axis, drive, 3.0, force, solver=solver)
+    _check_equal(run_events(other, scaled_profile(drive, k), 3.0, scaled_profile(force, k), solver=solver), (
         e._replace(position=k * e.position, velocity=k * e.velocity, drive_position=k * e.drive_position,
                    drive_force=k * e.drive_force, friction_force=k * e.friction_force) for e in events))
     return 0.0
@@ -102,9 +102,10 @@ def _time_unit(solver: Solver, seed: int) -> float:
     law = StaticLaw(law.kind, law.initial, law.limit, k * law.time_constant, law.exponent)
     other = replace(other, normal_force=axis.normal_force / (k * k), friction=replace(other.friction, static=law))
     end = 0.999
-    events = run(axis, drive, end, force, solver=solver)
+    events = run_events(axis, drive, end, force, solver=solver)
     force_factor = 1.0 / (k * k)
-    _check_equal(run(other, _in_time(drive, k, 1.0 / k), k * end, _in_time(force, k, force_factor), solver=solver), (
+    slower = run_events(other, _in_time(drive, k, 1.0 / k), k * end, _in_time(force, k, force_factor), solver=solver)
+    _check_equal(slower, (
         e._replace(fraction=k * e.fraction, velocity=e.velocity / k, drive_force=force_factor * e.drive_force,
                    friction_force=force_factor * e.friction_force, rest_time=k * e.rest_time) for e in events))
     return 0.0
@@ -115,7 +116,7 @@ def _in_time(profile: InputProfile, k: float, factor: float) -> InputProfile:
                   tuple(factor * x / k for x in profile.rates), k * profile.period)
 
 
-def run_twice(setup: Setup) -> Finding:
+def run_twice(setup: Setup) -> Measurement:
     """X20: the same scene twice, in this process and in another; recorded commands run again."""
     tally = Tally(0.0)
     for seed in range(setup.count(100, 5)):
@@ -142,10 +143,10 @@ def _recorded_commands(solver: Solver, seed: int) -> float:
     again, repeated = make(axis, drive, force, solver=solver), list[Event]()
     for tick, velocity, pull in record:
         repeated += again.advance(instant(tick / 1000))
-        check(again.sample() == states[tick - 1], f'another state at tick {tick}')
+        require(again.sample() == states[tick - 1], f'another state at tick {tick}')
         _command(again, velocity, pull)
     repeated += again.advance(instant(2.0))
-    check(repeated == seen, f'{len(repeated)} events instead of {len(seen)}, or other bits')
+    require(repeated == seen, f'{len(repeated)} events instead of {len(seen)}, or other bits')
     return 0.0
 
 
@@ -157,7 +158,7 @@ def _command(simulator: Simulator, velocity: float, force: float) -> None:
 def _in_another_process(seeds: int) -> float:
     program = f'from {__name__} import digest; print(digest({seeds}))'
     done = subprocess.run([sys.executable, '-c', program], capture_output=True, text=True, check=False)
-    check(done.stdout.strip() == digest(seeds), f'another process gives other bits {done.stderr[-200:]}')
+    require(done.stdout.strip() == digest(seeds), f'another process gives other bits {done.stderr[-200:]}')
     return 0.0
 
 
@@ -167,6 +168,6 @@ def digest(seeds: int) -> str:
     for seed in range(seeds):
         rng = random.Random(seed)
         axis, (drive, force) = random_axis(rng), random_profiles(rng)
-        for event in run(axis, drive, 3.0, force):
+        for event in run_events(axis, drive, 3.0, force):
             total.update(' '.join(float(number).hex() for number in event).encode())
     return total.hexdigest()

@@ -12,11 +12,11 @@ from ..friction import KineticTable, StaticLaw, StaticLawKind
 from ..friction.kinetic import default_excess
 from ..solvers import Solver
 from .against import error_of_run
-from .outcome import Finding, Setup, Tally, check
-from .shared_axes import CONTACTS, Contact, instant, make, of_kind, paper_axis, run, with_static
+from .outcome import Measurement, Setup, Tally, require
+from .shared_axes import CONTACTS, Contact, instant, make, of_kind, paper_axis, run_events, with_static
 
 
-def coasting(setup: Setup) -> Finding:
+def coasting(setup: Setup) -> Measurement:
     """X4: the peak speed stays below v_gr, where the branches are apart; the run is the reference's."""
     tally = Tally(1e-12)
     for contact in CONTACTS:
@@ -29,9 +29,9 @@ def coasting(setup: Setup) -> Finding:
 
 def _below_the_limit_velocity(solver: Solver, contact: Contact, speed: float) -> float:
     axis = paper_axis(contact)
-    events = run(axis, speed, 3.0, solver=solver)
+    events = run_events(axis, speed, 3.0, solver=solver)
     coasts = [event.velocity for event in of_kind(events, EventKind.COAST)]
-    check(coasts and max(coasts) < axis.friction.kinetic.velocities[-1], 'the branches are not apart at the peak')
+    require(coasts and max(coasts) < axis.friction.kinetic.velocities[-1], 'the branches are not apart at the peak')
     _check_independent_of_steps(solver, axis, speed, events)
     return error_of_run(axis, InitialState(), constant(speed), constant(0.0), 3.0, solver)
 
@@ -45,7 +45,7 @@ def _random_branches(solver: Solver, seed: int) -> float:
     axis = replace(axis, drive_damping=rng.choice((0.0, 1000.0, 4000.0)),
                    friction=replace(axis.friction, kinetic=kinetic, excess=default_excess(kinetic)))
     speed = 10 ** rng.uniform(-3.3, -2.3)
-    _check_independent_of_steps(solver, axis, speed, run(axis, speed, 3.0, solver=solver))
+    _check_independent_of_steps(solver, axis, speed, run_events(axis, speed, 3.0, solver=solver))
     return error_of_run(axis, InitialState(), constant(speed), constant(0.0), 1.5, solver)
 
 
@@ -54,10 +54,10 @@ def _check_independent_of_steps(solver: Solver, axis: Axis, speed: float, events
         simulator = make(axis, speed, solver=solver)
         seen = [event for k in range(3 * steps_per_second)
                 for event in simulator.advance(instant((k + 1) / steps_per_second))]
-        check(seen == events, f'{steps_per_second} steps a second change the events')
+        require(seen == events, f'{steps_per_second} steps a second change the events')
 
 
-def ringing(setup: Setup) -> Finding:
+def ringing(setup: Setup) -> Measurement:
     """X5: 5 to 20 mm/s, so that the next break-away comes while the contact still rings; the reference's events."""
     tally = Tally(1e-12)
     for k in range(setup.count(31, 4)):

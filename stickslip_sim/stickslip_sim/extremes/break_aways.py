@@ -13,14 +13,14 @@ from ..core.input_profile import InputProfile, ramp, steps
 from ..core.types import Event, EventKind
 from ..friction import StaticLaw, StaticLawKind
 from ..solvers import Solver
-from .closed_form import DIGITS, Jump, Number, contact_force, exact, root_near, static_coefficient
-from .outcome import Finding, Setup, Tally, check
-from .shared_axes import CONTACTS, RIGID, Contact, paper_axis, random_axis, run, with_static
+from .closed_form import DIGITS, Jump, Number, exact, exact_contact_force, exact_static_coefficient, root_near
+from .outcome import Measurement, Setup, Tally, require
+from .shared_axes import CONTACTS, RIGID, Contact, paper_axis, random_axis, run_events, with_static
 
 _BLOW, _LENGTH = 33e3, 0.002   # N, s
 
 
-def blows(setup: Setup) -> Finding:
+def blows(setup: Setup) -> Measurement:
     """X2: 2 ms, 33 kN on a stuck axis at a random instant; rigid and compliant, pressed before or not."""
     tally = Tally(1e-12, 's')
     for seed in range(setup.count(1000, 40)):
@@ -35,13 +35,13 @@ def _blow(solver: Solver, contact: Contact, seed: int) -> float:
     axis = paper_axis(contact)
     begin, load = rng.uniform(0.0, 5.0), rng.choice((0.0, rng.uniform(-250.0, 400.0)))
     end = begin + _LENGTH
-    events = run(axis, 0.0, 6.0, steps('force', [0.0, begin, end], [load, load + _BLOW, load]), solver=solver)
-    check(events and events[0].kind == EventKind.BREAKAWAY and begin <= events[0].time <= end,
-          'no break-away within the blow')
+    events = run_events(axis, 0.0, 6.0, steps('force', [0.0, begin, end], [load, load + _BLOW, load]), solver=solver)
+    require(events and events[0].kind == EventKind.BREAKAWAY and begin <= events[0].time <= end,
+            'no break-away within the blow')
     first = events[0]
     if contact == RIGID:
         return abs(float(exact(first.second, first.fraction) - begin))
-    force = contact_force(axis, [Jump(0, 0, load), Jump(begin, 0, (load + _BLOW) - load)])
+    force = exact_contact_force(axis, [Jump(0, 0, load), Jump(begin, 0, (load + _BLOW) - load)])
     return _distance(first, force, axis.normal_force * mpf(0.24), begin, end)
 
 
@@ -51,7 +51,7 @@ def _distance(event: Event, force: Callable[[Number], Number], limit: Number, lo
         return abs(float(exact(event.second, event.fraction) - root))
 
 
-def at_the_limit(setup: Setup) -> Finding:
+def at_the_limit(setup: Setup) -> Measurement:
     """X18: the force at the first break-away over N mu_s, less one; every law, random axes, both contacts."""
     tally = Tally(1e-12)
     for seed in range(setup.count(2000, 60)):
@@ -76,11 +76,11 @@ def _first_break(solver: Solver, kind: StaticLawKind, seed: int) -> float:
     drive = ramp(speed, rate, float('inf'))
     duration = 1.0
     while duration < 1e9:
-        events = run(axis, drive, duration, initial=InitialState(rest_time=rest), solver=solver)
+        events = run_events(axis, drive, duration, initial=InitialState(rest_time=rest), solver=solver)
         if events:
             break
         duration *= 8.0
-    check(events and events[0].kind == EventKind.BREAKAWAY, 'no break-away')
+    require(events and events[0].kind == EventKind.BREAKAWAY, 'no break-away')
     return _excess_of_force(axis, events[0], rest, speed, rate)
 
 
@@ -90,10 +90,10 @@ def _excess_of_force(axis: Axis, event: Event, rest: float, speed: float, rate: 
         c, h = mpf(axis.drive_stiffness), mpf(axis.drive_damping)
         if isinstance(axis.contact, CompliantContact):
             jumps = [Jump(0, 0, h * speed), Jump(0, 1, c * speed + h * rate), Jump(0, 2, c * rate)]
-            force = contact_force(axis, jumps)(t)
+            force = exact_contact_force(axis, jumps)(t)
         else:
             force = c * (mpf(speed) + mpf(rate) * t / 2) * t + h * (mpf(speed) + mpf(rate) * t)
-        limit = axis.normal_force * static_coefficient(axis.friction.static, mpf(rest) + t)
+        limit = axis.normal_force * exact_static_coefficient(axis.friction.static, mpf(rest) + t)
         return abs(float(force / limit - 1))
 
 
@@ -106,9 +106,10 @@ def _held_at_the_limit(solver: Solver, contact: Contact, side: float) -> float:
         reach = 1e7
         for share, holds in ((1.0 - 1e-9, True), (1.0 + 1e-9, False)):
             slow = InputProfile((0.0, reach), (0.0, share * limit), (share * limit / reach, 0.0))
-            check((run(axis, 0.0, 2e7, slow, solver=solver) == []) == holds, f'wrong at {share!r} of the limit')
+            none = run_events(axis, 0.0, 2e7, slow, solver=solver) == []
+            require(none == holds, f'wrong at {share!r} of the limit')
         return 0.0
     for force, holds in ((limit * (1.0 - 1e-15), True), (limit, True), (limit * (1.0 + 1e-12), False)):
-        events = run(axis, 0.0, 10.0, force, solver=solver)
-        check((events == []) == holds, f'wrong under {force!r} N')
+        events = run_events(axis, 0.0, 10.0, force, solver=solver)
+        require((events == []) == holds, f'wrong under {force!r} N')
     return 0.0

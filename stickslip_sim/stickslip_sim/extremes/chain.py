@@ -16,8 +16,8 @@ from mpmath import mpf, workdps
 
 from ..axis import Axis, CompliantContact
 from ..core.types import Event, EventKind, Mode
-from .closed_form import DIGITS, LinearMode, Number, exact, static_coefficient
-from .outcome import check
+from .closed_form import DIGITS, LinearMode, Number, exact, exact_static_coefficient
+from .outcome import require
 
 _BESIDE = 1e-9   # a peak that is beyond the limit by less is left to the time of the event
 _PEAKS = 200_000
@@ -49,7 +49,7 @@ class _Motion(NamedTuple):
 
 def error_of_chain(axis: Axis, drive: float, events: Sequence[Event], duration: float) -> float:
     """Return the largest error of time over the duration and of position over the travel; raises Missed on a miss."""
-    check(len(events) > 1, 'no events')
+    require(len(events) > 1, 'no events')
     with workdps(DIGITS):
         zero = mpf(0)
         point = _Point(zero, Mode.STICK, 0, zero, zero, zero, zero, zero, mpf('inf'))
@@ -72,7 +72,7 @@ def _after(axis: Axis, before: _Point, event: Event) -> _Point:
     excess, rest, deflection = before.excess, mpf(0), mpf(0)
     if event.kind in (EventKind.BREAKAWAY, EventKind.REVERSE):
         coefficient, _, psi, _ = _line(axis, abs(velocity), up=True)
-        at = static_coefficient(friction.static, mpf(event.rest_time))
+        at = exact_static_coefficient(friction.static, mpf(event.rest_time))
         excess = (at - coefficient) / psi if psi > 0 and at >= coefficient else mpf(0)
     if event.mode == Mode.STICK and isinstance(axis.contact, CompliantContact):
         deflection = (event.direction * mpf(axis.normal_force) * mpf(friction.kinetic.coefficients[0])
@@ -134,7 +134,7 @@ def _guard(axis: Axis, drive: float, point: _Point, event: Event, t: Number) -> 
     motion, normal = _motion(axis, drive, point, t), mpf(axis.normal_force)
     if event.kind == EventKind.BREAKAWAY:
         side = 1 if event.friction_force > 0.0 else -1
-        return side * motion.contact - normal * static_coefficient(axis.friction.static, point.rest + t)
+        return side * motion.contact - normal * exact_static_coefficient(axis.friction.static, point.rest + t)
     if event.kind == EventKind.STICK:
         return motion.velocity
     if event.kind == EventKind.KNOT:
@@ -175,4 +175,4 @@ def _check_no_peak_before(axis: Axis, drive: float, point: _Point, end: float) -
     held = (contact.stiffness * (float(point.deflection) * (1.0 - shared) + travel) + contact.damping * velocity)
     law = axis.friction.static
     limits = law.limit - (law.limit - law.initial) * np.exp(-(float(point.rest) + t) / law.time_constant)
-    check(np.all(np.abs(held) <= axis.normal_force * limits * (1.0 + _BESIDE)), 'the limit was reached before')
+    require(np.all(np.abs(held) <= axis.normal_force * limits * (1.0 + _BESIDE)), 'the limit was reached before')

@@ -59,7 +59,7 @@ class LinearMode:
             return x, u
 
 
-def contact_force(axis: Axis, jumps: list[Jump]) -> Callable[[Number], Number]:
+def exact_contact_force(axis: Axis, jumps: list[Jump]) -> Callable[[Number], Number]:
     """Return F_c(t) of a compliant stick from rest, under the load q = c s + h v + F_e."""
     contact = axis.contact
     assert isinstance(contact, CompliantContact)
@@ -73,7 +73,7 @@ def contact_force(axis: Axis, jumps: list[Jump]) -> Callable[[Number], Number]:
     return force
 
 
-def static_coefficient(law: StaticLaw, rest: Number) -> Number:
+def exact_static_coefficient(law: StaticLaw, rest: Number) -> Number:
     """Return mu_s after a rest time, from the formulas of the laws."""
     with workdps(DIGITS):
         start, rise = mpf(law.initial), mpf(law.limit) - mpf(law.initial)

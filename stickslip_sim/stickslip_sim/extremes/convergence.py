@@ -9,7 +9,7 @@ from ..axis import InitialState
 from ..core.types import Mode
 from ..simulation.simulator import Simulator
 from ..solvers import Solver
-from .outcome import Finding, Setup, Tally, check
+from .outcome import Measurement, Setup, Tally, require
 from .shared_axes import CONTACTS, RIGID, Contact, instant, make, paper_axis
 
 # as `solvers.fixed_step` declares it: inside a mode, and across events, which it sees at the end of a step
@@ -19,7 +19,7 @@ _SHIFTS = (1.0, 0.95, 0.9, 0.85, 0.8, 0.75, 0.7, 0.65)
 _Make = Callable[[Solver], Simulator]
 
 
-def orders(setup: Setup) -> Finding:
+def orders(setup: Setup) -> Measurement:
     """X15: the order from errors at steps that halve, over a slip and over a second with all its events."""
     tally = Tally(_NEAR, 'off the declared order')
     told = []
@@ -74,5 +74,5 @@ def _error(begin: _Make, method: str, step: float, end: float) -> float:
     for simulator in (stepped, wanted):
         simulator.advance(instant(end))
     one, other = stepped.sample(), wanted.sample()
-    check(one.mode != Mode.STICK or other.mode == Mode.STICK, 'it sticks elsewhere')
+    require(one.mode != Mode.STICK or other.mode == Mode.STICK, 'it sticks elsewhere')
     return abs(one.position - other.position)

@@ -21,7 +21,7 @@ from ..runs.error_estimate import ErrorEstimate, error_estimate
 from ..runs.offline import Trajectory, run_offline
 from ..scene import Scene, SolverSettings, load_scene, scene_names
 from .against import DIGITS
-from .outcome import Finding, Setup, Tally, check
+from .outcome import Measurement, Setup, Tally, require
 from .shared_axes import random_axis, random_profiles
 
 _DURATION = 2.0   # s
@@ -41,7 +41,7 @@ class _Judged(NamedTuple):
     events: int
 
 
-def estimates(setup: Setup) -> Finding:
+def estimates(setup: Setup) -> Measurement:
     """X26: shipped and random scenes with every solver and setting; the true error over the estimate."""
     tally = Tally(1.0, 'of the estimate')
     judged: list[_Judged] = []
@@ -103,11 +103,11 @@ def _ratio(_: str, run: Trajectory, wanted: Sequence[Event], judged: list[_Judge
     estimate = error_estimate(run)
     sure = [(a, b) for a, b in zip(events, wanted) if a.time < estimate.until_s or estimate.until_s == _DURATION]
     for a, b in sure:
-        check((a.kind, a.direction) == (b.kind, b.direction), f'{a.kind.name} at {a.time} s is none')
+        require((a.kind, a.direction) == (b.kind, b.direction), f'{a.kind.name} at {a.time} s is none')
     before = [event for event in wanted if event.time < estimate.until_s - 2.0 * estimate.event_time_s]
-    check(len(before) <= len(sure), f'{len(before) - len(sure)} events missed before {estimate.until_s} s')
-    check(estimate.until_s == _DURATION or _has_reason(estimate, events, wanted),
-          f'events differ from {estimate.until_s} s, it says')
+    require(len(before) <= len(sure), f'{len(before) - len(sure)} events missed before {estimate.until_s} s')
+    require(estimate.until_s == _DURATION or _has_reason(estimate, events, wanted),
+            f'events differ from {estimate.until_s} s, it says')
     time = max((_apart(a, b) for a, b in sure), default=0.0)
     position = max((abs(a.position - b.position) for a, b in sure), default=0.0)
     if solver != 'exact':

@@ -14,13 +14,13 @@ from ..friction.kinetic import default_excess
 from ..reference import simulate
 from ..solvers import Solver
 from .against import DIGITS, error_of_events
-from .outcome import Finding, Setup, Tally, check
-from .shared_axes import RIGID, paper_axis, run
+from .outcome import Measurement, Setup, Tally, require
+from .shared_axes import RIGID, paper_axis, run_events
 
 _REST = InitialState()
 
 
-def steep_pieces(setup: Setup) -> Finding:
+def steep_pieces(setup: Setup) -> Measurement:
     """X22: kinetic friction that falls within 0.05 to 50 mm/s: slips grow by e²⁴⁰ and more."""
     tally = Tally(1e-12)
     tally.judge(_equals_the_reference, setup.solver, _blown_up(), 0.1, 0.0, 60.0)
@@ -55,7 +55,7 @@ def _steep(rng: random.Random) -> Axis:
     return Axis(mass, mass * omega * omega, damping, 9.80665 * mass, contact, Friction(static, table, excess))
 
 
-def near_critical(setup: Setup) -> Finding:
+def near_critical(setup: Setup) -> Measurement:
     """X23: slips that are critically damped to 1e-5 to 1e-13, from both sides: they die out to 1e-300 before a turn."""
     tally = Tally(1e-12)
     tally.judge(_equals_the_reference, setup.solver, _near_critical(28982.753), 0.0286, -300.0, 1.0)
@@ -75,16 +75,16 @@ def _near_critical(damping: float) -> Axis:
 
 def _equals_the_reference(solver: Solver, axis: Axis, feed: float, force: float, duration: float) -> float:
     """Compare both up to where the axis slides steadily, within rounding; the reference goes on turning below."""
-    events = run(axis, constant(feed), duration, constant(force), solver=solver)
+    events = run_events(axis, constant(feed), duration, constant(force), solver=solver)
     wanted = simulate(axis, _REST, constant(feed), constant(force), duration, DIGITS).events
     if events and events[-1].kind == EventKind.COAST and events[-1].velocity == feed:
         end = len(events) - 1
-        check(all(abs(event.velocity - feed) <= 1e-12 * feed for event in wanted[end:]), 'it does not slide steadily')
+        require(all(abs(event.velocity - feed) <= 1e-12 * feed for event in wanted[end:]), 'it does not slide steadily')
         events, wanted = events[:end], wanted[:end]
     return error_of_events(events, wanted, duration)
 
 
-def touched_limits(setup: Setup) -> Finding:
+def touched_limits(setup: Setup) -> Measurement:
     """X27: mu_s = mu_k, no damper anywhere and a drive that rests: the contact comes back to its limit for ever."""
     tally = Tally(0.0)
     for seed in range(setup.count(2000, 200)):
@@ -96,7 +96,7 @@ def _breaks_only_beyond(solver: Solver, seed: int) -> float:
     """Push the slider once; after it has come to stick, the far end of its swing alone may break it, or nothing."""
     rng = random.Random(seed)
     axis, speed = _undamped(rng), rng.choice((-1, 1)) * 10 ** rng.uniform(-4, -1)
-    events = run(axis, constant(0.0), 10.0, initial=InitialState(0.0, speed, 0.0), solver=solver)
+    events = run_events(axis, constant(0.0), 10.0, initial=InitialState(0.0, speed, 0.0), solver=solver)
     stiffness = axis.contact.stiffness if isinstance(axis.contact, CompliantContact) else 0.0
     limit = axis.normal_force * axis.friction.static.limit
     for arrest, after in zip(events, [*events[1:], None]):
@@ -105,7 +105,7 @@ def _breaks_only_beyond(solver: Solver, seed: int) -> float:
         swing = 2.0 * (arrest.drive_force - arrest.friction_force) * stiffness / (axis.drive_stiffness + stiffness)
         beyond = abs(arrest.friction_force + swing) / limit - 1.0
         if abs(beyond) > 1e-9:
-            check((after is not None) == (beyond > 0.0), f'the far end is {1.0 + beyond} of the limit; then {after}')
+            require((after is not None) == (beyond > 0.0), f'the far end is {1.0 + beyond} of the limit; then {after}')
     return 0.0
 
 

@@ -33,7 +33,7 @@ class Setup:
         return full if self.full else reduced
 
 
-class Finding(NamedTuple):
+class Measurement(NamedTuple):
     """What was measured: `figure` says it in words; `examples` hold the first miss of each kind."""
 
     figure: str
@@ -52,17 +52,17 @@ class Extreme(NamedTuple):
     name: str
     elsewhere: str
     mark: str
-    measure: Callable[[Setup], Finding]
+    measure: Callable[[Setup], Measurement]
 
 
-class Outcome(NamedTuple):
+class ExtremeResult(NamedTuple):
     """A row with its measured figure, and the seconds that took."""
 
     number: str
     name: str
     elsewhere: str
     mark: str
-    finding: Finding
+    finding: Measurement
     seconds: float
 
     @property
@@ -95,7 +95,7 @@ class Tally:
                 text = f'{case.__name__.strip("_")}: {_told(reason)}; with {shown}'
                 self._examples[case.__name__] = text if len(text) <= _SHOWN else text[:_SHOWN] + '…'
 
-    def finding(self, what: str = 'wrong', extra: str = '', *, kept: bool = True) -> Finding:
+    def finding(self, what: str = 'wrong', extra: str = '', *, kept: bool = True) -> Measurement:
         """Return the figures; `kept` is a further mark that `extra` speaks of."""
         parts = [f'{self.misses} of {self.cases} {what}']
         if self.limit > 0.0:
@@ -103,8 +103,8 @@ class Tally:
         if extra:
             parts.append(extra)
         passed = self.cases > 0 and self.misses == 0 and kept
-        return Finding('; '.join(parts), passed, self.cases, self.worst, self.limit, self.misses,
-                       tuple(self._examples.values()))
+        return Measurement('; '.join(parts), passed, self.cases, self.worst, self.limit, self.misses,
+                           tuple(self._examples.values()))
 
     @property
     def _unit(self) -> str:
@@ -115,7 +115,7 @@ def _told(reason: Exception) -> str:
     return str(reason) if isinstance(reason, Missed) else f'{type(reason).__name__}: {reason}'
 
 
-def check(condition: object, what: str) -> None:
+def require(condition: object, what: str) -> None:
     """Raise Missed unless the condition holds."""
     if not condition:
         raise Missed(what)

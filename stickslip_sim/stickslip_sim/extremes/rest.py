@@ -12,16 +12,16 @@ from ..core.types import EventKind, Mode
 from ..friction import StaticLaw, StaticLawKind
 from ..simulation.simulator import Simulator
 from ..solvers import Solver
-from .closed_form import DIGITS, Jump, contact_force, exact, root_near, static_coefficient
-from .outcome import Finding, Setup, Tally, check
-from .shared_axes import CONTACTS, RIGID, Contact, instant, make, paper_axis, run, with_static
+from .closed_form import DIGITS, Jump, exact, exact_contact_force, exact_static_coefficient, root_near
+from .outcome import Measurement, Setup, Tally, require
+from .shared_axes import CONTACTS, RIGID, Contact, instant, make, paper_axis, run_events, with_static
 
 YEAR = 3.15576e7     # s, 365.25 days
 _RAMP = 100.0        # N/s, after the year
 _SHARES = (0.1, 0.5, 0.9, 0.99)
 
 
-def year_long_hold(setup: Setup) -> Finding:
+def year_long_hold(setup: Setup) -> Measurement:
     """X7: hold a share of the limit for a year, by a force or by the drive, then pull until it breaks."""
     tally = Tally(1e-12)
     drift = [0.0]
@@ -46,13 +46,13 @@ def _held_by_force(solver: Solver, contact: Contact, share: float, drift: list[f
     jumps = [Jump(0, 1, mpf(load / reach)), Jump(reach, 1, -mpf(load / reach)), Jump(YEAR, 1, side * mpf(_RAMP)),
              Jump(reach, 0, mpf(load) - mpf(load / reach) * mpf(reach))]
     events = simulator.advance(instant(YEAR + 20.0))
-    check(events and events[0].kind == EventKind.BREAKAWAY and events[0].direction == side, 'no break-away after it')
+    require(events and events[0].kind == EventKind.BREAKAWAY and events[0].direction == side, 'no break-away after it')
     with workdps(DIGITS):
         limit = mpf(axis.normal_force) * mpf(0.24)
         if contact == RIGID:
             expected = (limit - abs(mpf(load))) / _RAMP
         else:
-            pull = contact_force(axis, jumps)
+            pull = exact_contact_force(axis, jumps)
             low = (limit - abs(mpf(load))) / _RAMP
             expected = root_near(lambda t: side * pull(mpf(YEAR) + t) - limit, low * mpf('0.9'), 2 * low + 2)
         found = exact(events[0].second, events[0].fraction) - mpf(YEAR)
@@ -69,7 +69,7 @@ def _held_by_drive(solver: Solver, contact: Contact, share: float, drift: list[f
     _hold(simulator, drift, reach)
     events = simulator.advance(instant(YEAR + 2000.0))
     side = 1.0 if v > 0.0 else -1.0
-    check(events and events[0].kind == EventKind.BREAKAWAY and events[0].direction == side, 'no break-away after it')
+    require(events and events[0].kind == EventKind.BREAKAWAY and events[0].direction == side, 'no break-away after it')
     with workdps(DIGITS):
         limit = mpf(axis.normal_force) * mpf(0.24)
         c, h, v = mpf(c), mpf(h), mpf(v)
@@ -78,7 +78,7 @@ def _held_by_drive(solver: Solver, contact: Contact, share: float, drift: list[f
         if contact != RIGID:
             jumps = [Jump(at, order, sign * size) for at, sign in ((0, 1), (mpf(reach), -1), (mpf(YEAR), 1))
                      for order, size in ((0, h * v), (1, c * v))]
-            pull = contact_force(axis, jumps)
+            pull = exact_contact_force(axis, jumps)
             expected = root_near(lambda t: side * pull(mpf(YEAR) + t) - limit, low * mpf('0.9'), low + 1)
         found = exact(events[0].second, events[0].fraction) - mpf(YEAR)
         return abs(float(found / expected - 1))
@@ -86,13 +86,13 @@ def _held_by_drive(solver: Solver, contact: Contact, share: float, drift: list[f
 
 def _hold(simulator: Simulator, drift: list[float], reach: float) -> None:
     """Go through the year month by month; note how far the slider moves once it is quiet."""
-    check(simulator.advance(instant(reach + 60.0)) == [], 'an event while it is loaded')
+    require(simulator.advance(instant(reach + 60.0)) == [], 'an event while it is loaded')
     start = simulator.sample().position
     for month in range(1, 13):
-        check(simulator.advance(instant(min(month * YEAR / 12.0, YEAR - 1.0))) == [], 'an event during the hold')
+        require(simulator.advance(instant(min(month * YEAR / 12.0, YEAR - 1.0))) == [], 'an event during the hold')
         sample = simulator.sample()
         drift.append(abs(sample.position - start))
-        check(sample.mode == Mode.STICK, 'it does not stick')
+        require(sample.mode == Mode.STICK, 'it does not stick')
 
 
 def _ageing(solver: Solver, contact: Contact) -> float:
@@ -101,13 +101,13 @@ def _ageing(solver: Solver, contact: Contact) -> float:
     axis = with_static(paper_axis(contact), law)
     force = InputProfile((0.0, YEAR), (0.0, 0.0), (0.0, _RAMP))
     events = make(axis, 0.0, force, InitialState(rest_time=0.0), solver).advance(instant(YEAR + 100.0))
-    check(events and events[0].kind == EventKind.BREAKAWAY, 'no break-away')
+    require(events and events[0].kind == EventKind.BREAKAWAY, 'no break-away')
     with workdps(DIGITS):
         rest = exact(events[0].second, events[0].fraction)
-        return abs(float(events[0].static_coefficient / static_coefficient(law, rest) - 1))
+        return abs(float(events[0].static_coefficient / exact_static_coefficient(law, rest) - 1))
 
 
-def rest_times(setup: Setup) -> Finding:
+def rest_times(setup: Setup) -> Measurement:
     """X10: mu_s over rest times 1e-9 to 1e9 s at time constants 1e-12 to 1e12 s, of every law, and in break-aways."""
     tally = Tally(1e-14)
     rests = [0.0, *(10.0 ** k for k in range(-9, 10, setup.choose(1, 3)))]
@@ -127,17 +127,17 @@ def rest_times(setup: Setup) -> Finding:
 def _coefficient(kind: StaticLawKind, tau: float, rest: float) -> float:
     law = StaticLaw(kind, 0.12, 0.24, tau, 0.7)
     with workdps(DIGITS):
-        return abs(float(law.coefficient(rest) / static_coefficient(law, mpf(rest)) - 1))
+        return abs(float(law.coefficient(rest) / exact_static_coefficient(law, mpf(rest)) - 1))
 
 
 def _of_break_away(solver: Solver, axis: Axis) -> float:
     """Return the largest relative error of mu_s over the break-aways of a run, at their rest times."""
-    events = [event for event in run(axis, 0.002, 20.0, solver=solver) if event.kind == EventKind.BREAKAWAY]
-    check(len(events) > 10, f'{len(events)} break-aways')
+    events = [event for event in run_events(axis, 0.002, 20.0, solver=solver) if event.kind == EventKind.BREAKAWAY]
+    require(len(events) > 10, f'{len(events)} break-aways')
     worst = 0.0
     for event in events:
         rest = mp.inf if event.rest_time == float('inf') else mpf(event.rest_time)
         with workdps(DIGITS):
-            wanted = static_coefficient(axis.friction.static, rest)
+            wanted = exact_static_coefficient(axis.friction.static, rest)
             worst = max(worst, abs(float(event.static_coefficient / wanted - 1)))
     return worst

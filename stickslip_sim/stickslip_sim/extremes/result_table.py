@@ -6,17 +6,17 @@ import json
 from collections.abc import Sequence
 
 from ..runs.receipt import versions
-from .outcome import Outcome
+from .outcome import ExtremeResult
 
 _MARK = 52   # columns
 
 
-def headline() -> str:
+def table_head() -> str:
     """Return the head of the table."""
     return f'{"":4} {"":6} {"mark":{_MARK}}  measured'
 
 
-def row(outcome: Outcome) -> list[str]:
+def row(outcome: ExtremeResult) -> list[str]:
     """Return the lines of an extreme: what it is, its verdict, its mark and the measured figure, and what missed it."""
     verdict = 'met' if outcome.passed else 'MISSED'
     lines = [f'{outcome.number:4} {outcome.name}',
@@ -24,7 +24,7 @@ def row(outcome: Outcome) -> list[str]:
     return lines + [f'{"":11} {example}' for example in outcome.finding.examples]
 
 
-def markdown_text(outcomes: Sequence[Outcome], quick: bool) -> str:
+def markdown_text(outcomes: Sequence[ExtremeResult], quick: bool) -> str:
     """Return the page `docs/extremes.md`."""
     met = sum(outcome.passed for outcome in outcomes)
     size = ' --quick' if quick else ''
@@ -45,7 +45,7 @@ def markdown_text(outcomes: Sequence[Outcome], quick: bool) -> str:
     return '\n'.join(lines) + '\n'
 
 
-def json_text(outcomes: Sequence[Outcome], quick: bool) -> str:
+def json_text(outcomes: Sequence[ExtremeResult], quick: bool) -> str:
     """Return the table as JSON, with the versions it holds for."""
     rows = [{'number': outcome.number, 'name': outcome.name, 'elsewhere': outcome.elsewhere, 'mark': outcome.mark,
              'passed': outcome.passed, 'seconds': outcome.seconds, 'figure': outcome.finding.figure,

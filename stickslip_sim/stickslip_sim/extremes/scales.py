@@ -13,13 +13,13 @@ from ..core.types import Event, EventKind, Instant
 from ..solvers import Solver
 from .against import error_of_events
 from .closed_form import DIGITS, exact
-from .outcome import Finding, Setup, Tally, check
+from .outcome import Measurement, Setup, Tally, require
 from .shared_axes import CONTACTS, RIGID, Contact, elapsed, make, paper_axis
 
 _LATE, _FAR = 1e9, 1e6   # s, m
 
 
-def late_far_slow_fast(setup: Setup) -> Finding:
+def late_far_slow_fast(setup: Setup) -> Measurement:
     """X11: times between events at a late clock and a far place against those at 0, and against the reference."""
     tally = Tally(1e-11, 's')
     feeds = [10.0 ** k for k in range(-9, 1)]
@@ -47,8 +47,8 @@ def _late_and_far(solver: Solver, contact: Contact, feed: float) -> float:
     at_zero = _events(solver, contact, InputProfile((0.0,), (feed,), (0.0,)), 0.0, 0.0, _length_of(feed))
     held = InputProfile((0.0, _LATE), (0.0, feed), (0.0, 0.0))
     late = _events(solver, contact, held, _FAR, _LATE, _length_of(feed))
-    check(len(at_zero) > 0 or feed > axis.friction.kinetic.velocities[-1], 'no events')
-    check([(e.kind, e.direction) for e in late] == [(e.kind, e.direction) for e in at_zero], 'other events')
+    require(len(at_zero) > 0 or feed > axis.friction.kinetic.velocities[-1], 'no events')
+    require([(e.kind, e.direction) for e in late] == [(e.kind, e.direction) for e in at_zero], 'other events')
     return max((abs(elapsed(a, b) - elapsed(c, d))
                 for (a, b), (c, d) in zip(pairwise(late), pairwise(at_zero))), default=0.0)
 
@@ -57,7 +57,7 @@ def _events(solver: Solver, contact: Contact, drive: InputProfile, place: float,
             length: float) -> list[Event]:
     simulator = make(paper_axis(contact), drive, initial=InitialState(position=place), solver=solver)
     events = simulator.advance(Instant(begin, 0.0))
-    check(all(event.instant == (begin, 0.0) for event in events), 'an event during the hold')
+    require(all(event.instant == (begin, 0.0) for event in events), 'an event during the hold')
     return events + simulator.advance(Instant(begin + length, 0.0))
 
 
@@ -70,7 +70,7 @@ def _first_break_away(solver: Solver, feed: float) -> float:
             return 0.0
         simulator = make(axis, feed, solver=solver)
         events = simulator.advance(Instant(float(int(at) + 2), 0.0))
-        check(events and events[0].kind == EventKind.BREAKAWAY, 'no break-away')
+        require(events and events[0].kind == EventKind.BREAKAWAY, 'no break-away')
         error = abs(exact(events[0].second, events[0].fraction) - at)
         return max(0.0, float(error - at * mpf(10) ** -15))
 
@@ -99,5 +99,5 @@ def _late_and_far_in_parts(solver: Solver, seed: int) -> float:
     while offset < 3.0:
         offset = min(offset + rng.choice((1e-9, 1e-3, 0.3)) * rng.random(), 3.0)
         seen += simulator.advance(Instant(_LATE + float(int(offset)), offset - int(offset)))
-    check(seen == whole, f'{len(seen)} events in parts, {len(whole)} in one call, feed {feed!r} m/s')
+    require(seen == whole, f'{len(seen)} events in parts, {len(whole)} in one call, feed {feed!r} m/s')
     return 0.0

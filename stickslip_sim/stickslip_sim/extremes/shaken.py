@@ -12,14 +12,14 @@ from ..axis import InitialState
 from ..core.input_profile import InputProfile, Sinusoid, constant
 from ..solvers import Solver
 from .against import error_of_run
-from .outcome import Finding, Setup, Tally
+from .outcome import Measurement, Setup, Tally
 from .shared_axes import RIGID, paper_axis
 
 _DURATION = 3.0   # s
 _DOUBLED = Sinusoid(900.0, 0.7, 0.3), Sinusoid(850.0, 1.1, 2.0)   # whose break-aways were doubled once
 
 
-def shaken(setup: Setup) -> Finding:
+def shaken(setup: Setup) -> Measurement:
     """X21: the paper's axis under one to three sines that pass its limit; the run is the reference's."""
     tally = Tally(1e-12)
     for sinusoid in _DOUBLED:

@@ -48,8 +48,8 @@ def make(axis: Axis, drive: float | InputProfile, force: float | InputProfile = 
                      force if isinstance(force, InputProfile) else constant(force), solver)
 
 
-def run(axis: Axis, drive: float | InputProfile, duration: float, force: float | InputProfile = 0.0,
-        initial: InitialState | None = None, solver: Solver = exact.SOLVER) -> list[Event]:
+def run_events(axis: Axis, drive: float | InputProfile, duration: float, force: float | InputProfile = 0.0,
+               initial: InitialState | None = None, solver: Solver = exact.SOLVER) -> list[Event]:
     """Return all events of a run from the start."""
     return make(axis, drive, force, initial, solver).advance(instant(duration))
 
@@ -91,7 +91,7 @@ def random_profiles(rng: random.Random) -> tuple[InputProfile, InputProfile]:
     return drive, force
 
 
-def scaled(profile: InputProfile, factor: float) -> InputProfile:
+def scaled_profile(profile: InputProfile, factor: float) -> InputProfile:
     """Return the course with all its values multiplied."""
     return InputProfile(profile.starts, tuple(factor * x for x in profile.values),
                         tuple(factor * x for x in profile.rates),

@@ -14,13 +14,13 @@ from ..core.types import Event, Instant, Mode
 from ..friction import KineticTable, StaticLaw, StaticLawKind
 from ..simulation.simulator import MAX_EVENTS_PER_ADVANCE, Simulator
 from ..solvers import Solver
-from .outcome import Finding, Setup, Tally, check
+from .outcome import Measurement, Setup, Tally, require
 from .shared_axes import COMPLIANT, CONTACTS, RIGID, Contact, instant, make, paper_axis, random_axis, random_profiles
 
 _PATIENCE = 20.0   # s for a tick full of events; a solver that spins takes for ever
 
 
-def splits(setup: Setup) -> Finding:
+def splits(setup: Setup) -> Measurement:
     """X13: one call, a million, and random ones; same events, and a position within 1e-13 m."""
     tally = Tally(1e-13, 'm')
     for contact in CONTACTS:
@@ -63,11 +63,11 @@ def _random_times(rng: random.Random, end: float) -> Iterator[float]:
 
 def _difference(events: list[Event], seen: list[Event], whole: Simulator, parts: Simulator) -> float:
     """Return the distance of the final positions, m; raises Missed unless the events are equal to the bit."""
-    check(seen == events, f'{len(seen)} events in parts, {len(events)} in one call, or other bits')
+    require(seen == events, f'{len(seen)} events in parts, {len(events)} in one call, or other bits')
     return abs(whole.sample().position - parts.sample().position)
 
 
-def events_inside_a_tick(setup: Setup) -> Finding:
+def events_inside_a_tick(setup: Setup) -> Measurement:
     """X14: more than 10^4 events in a tick: done, or refused by name with a valid state; never for ever."""
     tally = Tally(0.0)
     crowds: list[int] = []
@@ -105,17 +105,17 @@ def _crowded_tick(simulator: Simulator, crowds: list[int], tick: float) -> float
         crowds.append(len(events))
     except SolverError as error:
         crowds.append(MAX_EVENTS_PER_ADVANCE)
-        check('events' in str(error) and 't =' in str(error), f'the refusal does not say what happened: {error}')
-        check(0.0 <= simulator.time.seconds <= tick, 'the time is not one within the tick')
-    check(time.perf_counter() - begin < _PATIENCE, 'it takes too long')
+        require('events' in str(error) and 't =' in str(error), f'the refusal does not say what happened: {error}')
+        require(0.0 <= simulator.time.seconds <= tick, 'the time is not one within the tick')
+    require(time.perf_counter() - begin < _PATIENCE, 'it takes too long')
     _check_valid(simulator)
     return 0.0
 
 
 def _check_valid(simulator: Simulator) -> None:
     sample = simulator.sample()   # raises when a value is not finite
-    check(sample.time == simulator.time.seconds, 'the state is not that of its time')
-    check(sample.mode != Mode.STICK or abs(sample.friction_coefficient) < 1e3, 'a force without a meaning')
+    require(sample.time == simulator.time.seconds, 'the state is not that of its time')
+    require(sample.mode != Mode.STICK or abs(sample.friction_coefficient) < 1e3, 'a force without a meaning')
 
 
 def _goes_on_after_a_refusal(solver: Solver) -> float:
@@ -128,7 +128,7 @@ def _goes_on_after_a_refusal(solver: Solver) -> float:
             simulator.advance(instant(1.0))
         except SolverError:
             times.append(simulator.time)
-    check(len(times) == 2 and times[1] > times[0] > Instant(0.0, 0.0), 'time does not go on')
+    require(len(times) == 2 and times[1] > times[0] > Instant(0.0, 0.0), 'time does not go on')
     simulator.reset()
-    check(simulator.sample().velocity == 0.1 and simulator.time == Instant(0.0, 0.0), 'a reset does not begin anew')
+    require(simulator.sample().velocity == 0.1 and simulator.time == Instant(0.0, 0.0), 'a reset does not begin anew')
     return 0.0

@@ -12,7 +12,7 @@ from ..core.types import Event
 from ..solvers import Solver
 from .against import error_of_run
 from .chain import error_of_chain
-from .outcome import Finding, Setup, Tally
+from .outcome import Measurement, Setup, Tally
 from .shared_axes import instant, make, paper_axis
 
 _STIFFENED = (1.0, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9)
@@ -20,7 +20,7 @@ _FEED = 0.004   # m/s
 _COST = 3.0   # times the ordinary cost of an event
 
 
-def stiff_contacts(setup: Setup) -> Finding:
+def stiff_contacts(setup: Setup) -> Measurement:
     """X8: against the reference, and the median CPU time of an event over that of the paper's axis."""
     tally = Tally(1e-12)
     cases = [_axis(stiffer, damper, 350.0) for stiffer in setup.choose(_STIFFENED, (1e3, 1e9))

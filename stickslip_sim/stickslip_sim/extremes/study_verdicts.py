@@ -14,8 +14,8 @@ from ..solvers import Solver
 from ..study import Grid, Motion, Study, Variation
 from ..study.critical import critical
 from ..study.points import scene_at
-from ..study.transitions import Transition
-from .outcome import Finding, Setup, Tally, check
+from ..study.verdict_changes import Transition
+from .outcome import Measurement, Setup, Tally, require
 from .shared_axes import instant, make, of_kind
 
 _LONG, _LATE = 1e4, 5e3    # s: a run, and its last part that sticks are counted in
@@ -43,7 +43,7 @@ _BORDERS: tuple[tuple[str, Mapping[str, object], str, float, float], ...] = (
 )
 
 
-def verdicts(setup: Setup) -> Finding:
+def verdicts(setup: Setup) -> Measurement:
     """X24: sticks and reversals by turns, sticks after long pauses, cycles about to vanish; sweep and critical."""
     tally = Tally(0.0)
     for mass in np.linspace(*_HEAVY, setup.count(41, 5)).tolist():
@@ -65,9 +65,9 @@ def _motion(solver: Solver, name: str, feed: float, mass: float) -> float:
     study = Study(scene.values, Grid((Variation('axis.mass', mass, 1.1 * mass, 2),)))
     motion = study.figures(0, 1).motion[0]
     count = _sticks(solver, scene_at(scene.values, ['axis.mass'], np.array([mass])))
-    check(motion in (Motion.STICK_SLIP, Motion.SMOOTH_SLIDING, Motion.UNDECIDED), f'a motion without a run: {motion}')
-    check(motion == Motion.UNDECIDED or (motion == Motion.STICK_SLIP) == (count > 0),
-          f'called {Motion(int(motion)).name}, with {count} sticks late')
+    require(motion in (Motion.STICK_SLIP, Motion.SMOOTH_SLIDING, Motion.UNDECIDED), f'a motion without a run: {motion}')
+    require(motion == Motion.UNDECIDED or (motion == Motion.STICK_SLIP) == (count > 0),
+            f'called {Motion(int(motion)).name}, with {count} sticks late')
     return 0.0
 
 
@@ -76,10 +76,10 @@ def _border(solver: Solver, k: int, side: int, step: float) -> float:
     name, changes, parameter, low, high = _BORDERS[k]
     transition = _transition(k)
     value = transition.low * (1.0 - step) if side < 0 else transition.high * (1.0 + step)
-    check(low < value < high, 'beyond the range')
+    require(low < value < high, 'beyond the range')
     scene = load_scene(name, dict(changes))
     count = _sticks(solver, scene_at(scene.values, [parameter], np.array([value])))
-    check((count > 0) == ((side > 0) == transition.rises), f'{count} sticks late at {value!r}')
+    require((count > 0) == ((side > 0) == transition.rises), f'{count} sticks late at {value!r}')
     return 0.0
 
 
@@ -87,7 +87,7 @@ def _border(solver: Solver, k: int, side: int, step: float) -> float:
 def _transition(k: int) -> Transition:
     name, changes, parameter, low, high = _BORDERS[k]
     found = critical(load_scene(name, dict(changes)), Variation(parameter, low, high, log=True), _ACCURACY).from_rest
-    check(len(found.transitions) == 1, f'{len(found.transitions)} transitions')
+    require(len(found.transitions) == 1, f'{len(found.transitions)} transitions')
     return found.transitions[0]
 
 

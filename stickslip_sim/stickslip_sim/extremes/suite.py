@@ -7,17 +7,17 @@ from collections.abc import Collection, Iterator
 
 from ..core.errors import InputError
 from .accounting import cost_of_the_account
+from .bad_commands import bad_commands
 from .bits import mirrored_and_scaled, run_twice
 from .branches import coasting, ringing
 from .break_aways import at_the_limit, blows
-from .commands import bad_commands
 from .convergence import orders
-from .energy import energy_balance
+from .energy_integrals import energy_balance
 from .estimates import estimates
 from .false_roots import near_critical, steep_pieces, touched_limits
 from .grazing_peaks import grazing
-from .modes import edges_of_the_modes, unstable_slip
-from .outcome import Extreme, Outcome, Setup
+from .linear_modes import edges_of_the_modes, unstable_slip
+from .outcome import Extreme, ExtremeResult, Setup
 from .rest import rest_times, year_long_hold
 from .scales import late_far_slow_fast
 from .shaken import shaken
@@ -107,10 +107,10 @@ def chosen(numbers: Collection[str] = ()) -> tuple[Extreme, ...]:
     return tuple(extreme for extreme in EXTREMES if not numbers or extreme.number in numbers)
 
 
-def judged(extremes: Collection[Extreme], setup: Setup) -> Iterator[Outcome]:
+def results(extremes: Collection[Extreme], setup: Setup) -> Iterator[ExtremeResult]:
     """Yield the outcome of each, as soon as it is there."""
     for extreme in extremes:
         begin = time.perf_counter()
         finding = extreme.measure(setup)
-        yield Outcome(extreme.number, extreme.name, extreme.elsewhere, extreme.mark, finding,
-                      time.perf_counter() - begin)
+        yield ExtremeResult(extreme.number, extreme.name, extreme.elsewhere, extreme.mark, finding,
+                            time.perf_counter() - begin)

@@ -15,13 +15,13 @@ from ..friction import KineticTable
 from ..simulation.simulator import Simulator
 from ..solvers import Solver
 from .against import error_of_run
-from .outcome import Finding, Setup, Tally, check
-from .shared_axes import CONTACTS, Contact, instant, make, paper_axis, random_axis, run
+from .outcome import Measurement, Setup, Tally, require
+from .shared_axes import CONTACTS, Contact, instant, make, paper_axis, random_axis, run_events
 
 _AT_ONE_INSTANT = 3   # break-away, coast, accelerate: more of them at one instant is no progress
 
 
-def guards_at_their_limit(setup: Setup) -> Finding:
+def guards_at_their_limit(setup: Setup) -> Measurement:
     """X3: mu_s(0) = mu_k(0), so that every arrest is exactly on the static limit; progress at every event."""
     tally = Tally(1e-12)
     for seed in range(setup.count(500, 20)):
@@ -41,18 +41,18 @@ def _arrives_on_the_limit(solver: Solver, seed: int) -> float:
     at_rest = friction.static.initial
     kinetic = KineticTable(friction.kinetic.velocities, (at_rest, *friction.kinetic.coefficients[1:]))
     axis = replace(axis, friction=replace(friction, kinetic=kinetic))
-    events = run(axis, rng.choice((-1, 1)) * 10 ** rng.uniform(-3, -1.5), 5.0, solver=solver)
+    events = run_events(axis, rng.choice((-1, 1)) * 10 ** rng.uniform(-3, -1.5), 5.0, solver=solver)
     _check_progress(events)
     for event, after in pairwise(events):
         if event.kind == EventKind.STICK:
-            check(after.instant > event.instant, f'it breaks away at the instant of its arrest, t = {event.time!r} s')
+            require(after.instant > event.instant, f'it breaks away at the instant of its arrest, t = {event.time!r} s')
     return 0.0
 
 
 def _check_progress(events: list[Event]) -> None:
     for moment, group in groupby(events, key=lambda event: event.instant):
         count = sum(1 for _ in group)
-        check(count <= _AT_ONE_INSTANT, f'{count} events at t = {moment.seconds!r} s')
+        require(count <= _AT_ONE_INSTANT, f'{count} events at t = {moment.seconds!r} s')
 
 
 def _equals_the_reference(solver: Solver, contact: Contact, branches: bool, speed: float) -> float:
@@ -68,11 +68,11 @@ def _starts_on_the_limit(solver: Solver, contact: Contact, branches: bool) -> fl
     simulator = make(axis, 0.0, force, InitialState(rest_time=0.0), solver)
     events = [event for k in range(1, 21) for event in simulator.advance(instant(0.25 * k))]
     _check_progress(events)
-    check(simulator.sample().time == 5.0, 'it does not reach the end')
+    require(simulator.sample().time == 5.0, 'it does not reach the end')
     return 0.0
 
 
-def meeting_events(setup: Setup) -> Finding:
+def meeting_events(setup: Setup) -> Measurement:
     """X12: two things at one instant in either order, and ticks on an event and one ULP beside it."""
     tally = Tally(0.0)
     for contact in CONTACTS:
@@ -89,7 +89,7 @@ def meeting_events(setup: Setup) -> Finding:
 
 def _ticks_on_events(solver: Solver, axis: Axis) -> float:
     """Tick on every event, one ULP before, one after: each comes once, in the first call that reaches it."""
-    events = run(axis, 0.004, 3.0, solver=solver)
+    events = run_events(axis, 0.004, 3.0, solver=solver)
     for offset in (-1, 0, 1):
         simulator, seen = make(axis, 0.004, solver=solver), list[Event]()
         for event in events:
@@ -97,11 +97,11 @@ def _ticks_on_events(solver: Solver, axis: Axis) -> float:
             if to < simulator.time:
                 continue
             fresh = simulator.advance(to)
-            check(all(e.instant <= to for e in fresh), 'an event comes before its time')
-            check(offset < 0 or event in seen or event in fresh, 'an event comes late')
+            require(all(e.instant <= to for e in fresh), 'an event comes before its time')
+            require(offset < 0 or event in seen or event in fresh, 'an event comes late')
             seen += fresh
         seen += simulator.advance(Instant(3.0, 0.0))
-        check(seen == events, f'{len(seen)} events with ticks {offset} ULP beside them, {len(events)} without')
+        require(seen == events, f'{len(seen)} events with ticks {offset} ULP beside them, {len(events)} without')
     return 0.0
 
 
@@ -114,19 +114,19 @@ def _beside(at: Instant, offset: int) -> Instant:
 
 def _jumps_on_events(solver: Solver, axis: Axis) -> float:
     """Let the force jump at the instant of an event, or one ULP beside it: the ticks still change no bit."""
-    for event in run(axis, 0.004, 1.5, solver=solver)[:6]:
+    for event in run_events(axis, 0.004, 1.5, solver=solver)[:6]:
         if event.second:
             continue
         for offset in (-1, 0, 1):
             begin = _beside(event.instant, offset).fraction
             for size in (150.0, -150.0):
                 force = steps('force', [0.0, begin], [0.0, size])
-                events = run(axis, 0.004, 2.0, force, solver=solver)
+                events = run_events(axis, 0.004, 2.0, force, solver=solver)
                 _check_progress(events)
                 simulator, seen = make(axis, 0.004, force, solver=solver), list[Event]()
                 for k in range(1, 201):
                     seen += simulator.advance(instant(k / 100))
-                check(seen == events, f'with a jump of {size!r} N at {begin!r} s the ticks change the events')
+                require(seen == events, f'with a jump of {size!r} N at {begin!r} s the ticks change the events')
     return 0.0
 
 
@@ -144,11 +144,11 @@ def _commands_in_any_order(solver: Solver, axis: Axis, seed: int) -> float:
             apply(simulator)
         events += simulator.advance(instant(3.0))
         outcomes.append((events, simulator.sample()))
-    check(outcomes[0] == outcomes[1], f'v = {v!r} m/s and F = {f!r} N at {when.seconds!r} s')
+    require(outcomes[0] == outcomes[1], f'v = {v!r} m/s and F = {f!r} N at {when.seconds!r} s')
     profile = make(axis, _switch(0.002, v, when), _switch(0.0, f, when), solver=solver)
     events = profile.advance(instant(3.0))
-    check([(e.kind, e.direction) for e in events] == [(e.kind, e.direction) for e in outcomes[0][0]],
-          f'courses that jump together differ from commands: v = {v!r} m/s, F = {f!r} N at {when.seconds!r} s')
+    require([(e.kind, e.direction) for e in events] == [(e.kind, e.direction) for e in outcomes[0][0]],
+            f'courses that jump together differ from commands: v = {v!r} m/s, F = {f!r} N at {when.seconds!r} s')
     return 0.0
 
 

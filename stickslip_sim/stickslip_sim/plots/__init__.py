@@ -3,7 +3,7 @@
 """Pictures.  The only room that imports matplotlib."""
 
 from .run import plot_run
-from .trade import Line, plot_trade
+from .trade import SolverCurve, plot_trade
 from .what_if import plot_beside
 
-__all__ = ['Line', 'plot_beside', 'plot_run', 'plot_trade']
+__all__ = ['SolverCurve', 'plot_beside', 'plot_run', 'plot_trade']

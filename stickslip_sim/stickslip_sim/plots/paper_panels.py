@@ -41,7 +41,7 @@ _ARROWED = 0.15   # of the picture's extent: a shorter stretch gets no arrow
 Stretch = tuple[float, float]   # s, from and to
 
 
-class Motion(NamedTuple):
+class DrawnMotion(NamedTuple):
     """What of a run is drawn: columns named as in `types.Sample`, and `time`, with the state before each event."""
 
     columns: Mapping[str, Numbers]
@@ -52,7 +52,7 @@ class Motion(NamedTuple):
     cycle: Stretch | None      # that they stress
 
 
-def plot_motion(motion: Motion, path: Path | str) -> None:
+def plot_motion(motion: DrawnMotion, path: Path | str) -> None:
     """Draw forces, speed and acceleration over time, and magnified; the friction loop; the phase plane."""
     with rc_context(JOURNAL):
         figure = Figure(figsize=(DOUBLE_COLUMN, 7.8), layout=ConstrainedLayoutEngine(w_pad=0.06, h_pad=0.06))
@@ -106,7 +106,7 @@ def velocity(panel: Axes, columns: Mapping[str, Numbers], label: str) -> None:
     panel.margins(x=0.0)
 
 
-def friction_loop(panel: Axes, motion: Motion) -> None:
+def friction_loop(panel: Axes, motion: DrawnMotion) -> None:
     """Draw the friction force over the velocity: all of it, and the stressed cycle by mode."""
     _orbit(panel, motion, motion.columns['velocity'] * MILLI, motion.columns['friction_force'] * KILO)
     panel.set(xlabel='velocity / (mm/s)', ylabel='friction force / kN')
@@ -126,14 +126,14 @@ def _speed_and_acceleration(panel: Axes, columns: Mapping[str, Numbers], label: 
     panel.legend(handles=[*panel.get_lines(), *twin.get_lines()], **_ABOVE)
 
 
-def phase_plane(panel: Axes, motion: Motion) -> None:
+def phase_plane(panel: Axes, motion: DrawnMotion) -> None:
     """Draw the velocity over the stretch of the drive spring, which closes where the position would run away."""
     stretch = (motion.columns['drive_position'] - motion.columns['position']) * MILLI
     _orbit(panel, motion, stretch, motion.columns['velocity'] * MILLI)
     panel.set(xlabel='stretch of the drive spring s − x / mm', ylabel='velocity / (mm/s)')
 
 
-def _orbit(panel: Axes, motion: Motion, x: Numbers, y: Numbers) -> None:
+def _orbit(panel: Axes, motion: DrawnMotion, x: Numbers, y: Numbers) -> None:
     shown = _rows(motion, *motion.orbit)
     panel.plot(x[shown], y[shown], color=_EARLIER, linewidth=0.6, label='the run')
     if motion.cycle is None:
@@ -148,7 +148,7 @@ def _orbit(panel: Axes, motion: Motion, x: Numbers, y: Numbers) -> None:
         _arrow(panel, np.stack([x[rows], y[rows]], axis=1), extent, MODE_COLOURS[mode])
 
 
-def _stretches(motion: Motion, begin: float, end: float) -> Iterator[tuple[Mode, slice]]:
+def _stretches(motion: DrawnMotion, begin: float, end: float) -> Iterator[tuple[Mode, slice]]:
     """Yield the rows of each mode, from the last row of the mode before on, so that the line has no gap."""
     modes, rows = motion.columns['mode'], _rows(motion, begin, end)
     changes = rows.start + 1 + np.flatnonzero(np.diff(modes[rows]))
@@ -156,7 +156,7 @@ def _stretches(motion: Motion, begin: float, end: float) -> Iterator[tuple[Mode,
         yield Mode(int(modes[a])), slice(max(a - 1, rows.start), b)
 
 
-def _rows(motion: Motion, begin: float, end: float) -> slice:
+def _rows(motion: DrawnMotion, begin: float, end: float) -> slice:
     """Return the rows from just after `begin` to just before `end` (s)."""
     time = motion.columns['time']
     return slice(int(np.searchsorted(time, begin, side='right')) - 1, int(np.searchsorted(time, end)) + 1)

@@ -12,14 +12,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from .paper_panels import Motion, forces, friction_loop, legend_below, part, velocity
+from .paper_panels import DrawnMotion, forces, friction_loop, legend_below, part, velocity
 from .style import DOUBLE_COLUMN, JOURNAL, letter, save
 
 _ROW, _LEGEND = 1.9, 0.6   # in
 _ALIKE = 5.0               # so many times as large an extent, and rows do not share an axis
 
 
-def plot_side_by_side(motions: Mapping[str, Motion], path: Path | str) -> None:
+def plot_side_by_side(motions: Mapping[str, DrawnMotion], path: Path | str) -> None:
     """Draw a row for each run, by its name; runs that are alike have the same axes."""
     with rc_context(JOURNAL):
         figure = Figure(figsize=(DOUBLE_COLUMN, _ROW * len(motions) + _LEGEND),
@@ -39,14 +39,14 @@ def plot_side_by_side(motions: Mapping[str, Motion], path: Path | str) -> None:
         save(figure, path)
 
 
-def _lengths(motions: Sequence[Motion]) -> list[float]:
+def _lengths(motions: Sequence[DrawnMotion]) -> list[float]:
     """Return how long to show each run, s: all as long as the longest if they are alike."""
     lengths = [motion.opening[1] - motion.opening[0] for motion in motions]
     longest = max(lengths)
     return [longest] * len(lengths) if longest <= _ALIKE * min(lengths) else lengths
 
 
-def _draw_row(row: Sequence[Axes], name: str, motion: Motion, length: float) -> None:
+def _draw_row(row: Sequence[Axes], name: str, motion: DrawnMotion, length: float) -> None:
     begin = motion.opening[0]
     columns = part(motion.columns, begin, begin + length)
     columns['time'] = columns['time'] - begin

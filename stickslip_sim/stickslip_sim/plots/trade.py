@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from .style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, legend_outside, save
 
 
-class Line(NamedTuple):
+class SolverCurve(NamedTuple):
     """A solver in a picture of errors and costs: one point for each setting."""
 
     label: str
@@ -23,7 +23,7 @@ class Line(NamedTuple):
     flawed: Sequence[bool]    # events missed or invented
 
 
-def plot_trade(panels: Mapping[str, Sequence[Line]], title: str, path: Path | str) -> None:
+def plot_trade(panels: Mapping[str, Sequence[SolverCurve]], title: str, path: Path | str) -> None:
     """Draw cost over error, a panel for each case (its name is the heading), into `path` (.png or .svg).
 
     Both axes are logarithmic.  An error below LEAST_ERROR is drawn there, as the axis says.
@@ -59,7 +59,8 @@ _TRADE_LOOKS: tuple[dict[str, Any], ...] = tuple(
         (SKY, 'v', '--', 7.0), (GREY, 'o', ':', 6.0)))
 
 
-def _trade_panel(panel: Axes, heading: str, lines: Sequence[Line], looks: Mapping[str, Mapping[str, Any]]) -> None:
+def _trade_panel(panel: Axes, heading: str, lines: Sequence[SolverCurve],
+                 looks: Mapping[str, Mapping[str, Any]]) -> None:
     for line in lines:
         errors = [max(error, LEAST_ERROR) for error in line.errors]
         costs = [1e6 * cost for cost in line.costs]

@@ -12,7 +12,7 @@ from mcap.writer import CompressionType, Writer
 from .. import __version__
 from ..core.errors import RecordingError
 from .blocks import to_yaml
-from .metadata import Tally, information, write_metadata
+from .metadata import MessageTally, information, write_metadata
 from .schemas import schema
 from .topics import Topic
 
@@ -38,7 +38,7 @@ class BagWriter:
         self._topics = list(topics)
         self._schemas = {topic.type: schema(topic.type) for topic in topics}
         self._metadata = dict(metadata)
-        self._tally = Tally([0] * len(topics))
+        self._tally = MessageTally([0] * len(topics))
         self._size = self._on_disk = 0
         _make(self.folder)
         try:

@@ -12,7 +12,7 @@ from .topics import Topic, Yaml
 
 
 @dataclass(slots=True)
-class Tally:
+class MessageTally:
     """How many messages a bag holds, and of which span of time (ns)."""
 
     counts: list[int]
@@ -34,7 +34,7 @@ def ros_distro() -> str:
 
 
 def information(
-    file: str, topics: Sequence[Topic], hashes: Mapping[str, str], tally: Tally, custom: Mapping[str, str],
+    file: str, topics: Sequence[Topic], hashes: Mapping[str, str], tally: MessageTally, custom: Mapping[str, str],
 ) -> Yaml:
     """Return the body of metadata.yaml; `hashes` by type name."""
     duration = {'nanoseconds': tally.last - tally.first}

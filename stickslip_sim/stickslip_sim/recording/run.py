@@ -15,7 +15,7 @@ from .. import __version__
 from ..runs.receipt import plain
 from .bag import BagWriter
 from .metadata import ros_distro
-from .topics import recorded
+from .topics import recorded_topics
 
 if TYPE_CHECKING:
     from ..scene import Scene
@@ -73,7 +73,7 @@ class RunFacts:
 
 def open_run(folder: Path | str, facts: RunFacts, namespace: str = '/') -> BagWriter:
     """Make a run folder with the recorded topics of a node in `namespace`; raises RecordingError if it exists."""
-    return BagWriter(folder, recorded(namespace), {SCENE_FILE: facts.scene_text.encode()}, facts.as_metadata())
+    return BagWriter(folder, recorded_topics(namespace), {SCENE_FILE: facts.scene_text.encode()}, facts.as_metadata())
 
 
 def receipt_file(receipt: Mapping[str, object]) -> dict[str, bytes]:

@@ -70,6 +70,6 @@ RECORDED = (
 )
 
 
-def recorded(namespace: str = '/') -> list[Topic]:
+def recorded_topics(namespace: str = '/') -> list[Topic]:
     """Return the topics of a bag with their names resolved in a namespace."""
     return [topic.resolved(namespace) for topic in RECORDED]

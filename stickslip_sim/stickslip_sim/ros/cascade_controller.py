@@ -5,7 +5,7 @@
 import sys
 from collections.abc import Sequence
 
-from .process.signals import Signals
+from .process.stop_signals import Signals
 
 
 def main(args: Sequence[str] | None = None) -> int:

@@ -24,7 +24,7 @@ _FIGURES = (
 def report(folder: Path) -> list[str]:
     """Draw the picture of a run into its folder; return what to tell about the run, in lines."""
     run = read_run(folder)
-    samples, events = samples_of(run), events_of(run)
+    samples, events = sample_columns(run), events_of(run)
     figures = summary(events, float(samples['time'][-1]), Mode(int(samples['mode'][0])))
     scene = run.metadata['stickslip']['scene']
     plot_run(samples, events, f'{scene} in real time\n{headline(figures)}', folder / PICTURE)
@@ -32,7 +32,7 @@ def report(folder: Path) -> list[str]:
             *cycle_lines(figures), *timing_lines(run.columns('/timing'))]
 
 
-def samples_of(run: Run) -> dict[str, NDArray[Any]]:
+def sample_columns(run: Run) -> dict[str, NDArray[Any]]:
     """Return the states of a run by the columns of `types.Sample`, and `time`."""
     states, friction = run.columns('/slider_state'), run.columns('/friction_force')
     force = np.zeros(len(states['step']))

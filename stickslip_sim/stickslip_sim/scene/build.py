@@ -24,7 +24,7 @@ from ..friction import (
 )
 from ..friction.kinetic import default_excess
 from .model import CommandSettings, RecordSettings, Scene, TimingSettings
-from .rig import rig_settings, time_settings
+from .rig_settings import rig_settings, time_settings
 from .scaled_friction import check_scaled_friction
 from .solver import SolverSettings, method_of
 from .text import scene_text

@@ -15,11 +15,11 @@ import numpy as np
 
 from ..core.errors import InputError
 from ..scene import Scene
-from .point_figures import Motion, Numbers, figures_of
+from .point_figures import Motion, Numbers, figures_of_runs
 from .points import runs_in_batches, scene_at, works_in_batches
 from .steady import sliding_slope
-from .transitions import FAILED, NO, OPEN, YES, Findings, Verdicts, find_transitions
 from .variation import Variation, checked, parameter_of
+from .verdict_changes import FAILED, NO, OPEN, YES, Findings, Verdicts, find_transitions
 
 _PATIENCE = 20_000   # cycles that a motion is given to settle
 _DOUBLINGS = 20      # of its first run
@@ -83,7 +83,7 @@ class _Judge:
     def sticks(self, numbers: Numbers) -> Verdicts:
         """Whether stick-slip goes on, from the start of the scene."""
         runs = runs_in_batches(self.values, [self.name], numbers[:, None], None, _PATIENCE, _DOUBLINGS)
-        figures = figures_of(runs)
+        figures = figures_of_runs(runs)
         verdicts = np.where(figures.motion == Motion.STICK_SLIP, YES, NO)
         verdicts[(figures.motion == Motion.UNDECIDED) | runs.late] = OPEN   # where late, a neighbour may never slide
         verdicts[figures.motion == Motion.FAILED] = FAILED

@@ -19,7 +19,7 @@ from .description import FORM, description
 from .parquet import write_parquet
 from .resources import check_resources
 from .study import Study
-from .table import Columns, header, may_be_table, next_lines, read_rows, words
+from .table import Columns, may_be_table, next_lines, read_rows, title_line, words
 from .variation import Numbers
 
 LONGEST = 1 << 24   # bytes of a description; nearly all of it is the scene
@@ -58,7 +58,7 @@ class Folder:
                 check_resources(study, temporary)
                 (temporary / SIDECAR).write_text(json.dumps(description(study, command), indent=1) + '\n',
                                                  encoding='utf-8')
-                (temporary / PARTIAL).write_bytes(header(study))
+                (temporary / PARTIAL).write_bytes(title_line(study))
                 temporary.rename(self.path)
             finally:
                 shutil.rmtree(temporary, ignore_errors=True)
@@ -102,7 +102,7 @@ class Folder:
 
     def whole_chunks(self, study: Study) -> list[Numbers]:
         """Return the rows of each whole chunk of points that is there; what a crash left behind them is taken away."""
-        path, titles = self.path / PARTIAL, header(study)
+        path, titles = self.path / PARTIAL, title_line(study)
         with _refusing(path), path.open('r+b') as file:
             if not may_be_table(path, study) or file.readline(len(titles)) != titles:
                 raise InputError('points', str(path), 'the table of this study', 'it was changed; sweep into a new one')

@@ -10,7 +10,7 @@ from ..core.errors import InputError
 from ..core.types import Event
 from ..runs.offline import run_offline
 from .borders import FEED
-from .point_figures import Motion, figures_of
+from .point_figures import Motion, figures_of_runs
 from .points import runs_of_run
 from .study import Study
 from .table import Columns
@@ -55,11 +55,12 @@ def ending_at(study: Study, columns: Columns, point: Numbers) -> Ending:
     known = np.flatnonzero(stands & (columns['motion'] != Motion.FAILED))
     if not len(known) and study.duration is not None:
         run = run_offline(scene, study.duration)
-        return Ending(Motion(int(figures_of(runs_of_run(run)).motion[0])), False, run.duration, run.events)
+        return Ending(Motion(int(figures_of_runs(runs_of_run(run)).motion[0])), False, run.duration, run.events)
     if len(known):
         motion, settled, duration = (float(columns[name][known[0]]) for name in ('motion', 'settled', 'duration'))
     else:
         runs = study.runs(point[None, :])
-        motion, settled, duration = float(figures_of(runs).motion[0]), float(runs.settled[0]), float(runs.duration[0])
+        motion = float(figures_of_runs(runs).motion[0])
+        settled, duration = float(runs.settled[0]), float(runs.duration[0])
     swings_on = study.duration is None and motion == Motion.SMOOTH_SLIDING and settled == 0.0
     return Ending(Motion(int(motion)), swings_on, duration, run_offline(scene, duration).events)

@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 from ..core.errors import InputError
 from ..plots.bifurcation import plot_bifurcation
 from ..plots.scale import Scale
-from ..plots.stability import Field, Lines, Pick, plot_stability
+from ..plots.stability_map import Field, Lines, Pick, plot_stability
 from ..plots.uncertainty import Shares, Spread, plot_uncertainty
 from .bifurcation import bifurcation
 from .borders import FEED, borders
 from .point_figures import Motion
 from .sample import Grid, Saltelli
 from .study import Study
-from .table import Columns, figures_in
+from .table import Columns, figures_among
 from .uncertainty import SPREAD, Index, Uncertainty, spread_of
 from .variation import Numbers, Variation
 
@@ -39,7 +39,7 @@ def check_drawable(study: Study, shown: str) -> None:
 def draw_bifurcation(study: Study, columns: Columns, paths: Sequence[str],
                      progress: Callable[[float], None] | None = None) -> None:
     """Draw the last cycles over the one parameter of a study into each of `paths`."""
-    found = bifurcation(study, figures_in(columns), progress)
+    found = bifurcation(study, figures_among(columns), progress)
     (over,) = study.ranges
     for path in paths:
         plot_bifurcation(_scale(over), found.cycles, found.sliding, path)
@@ -84,7 +84,7 @@ def _scale(one: Variation) -> Scale:
 
 
 def _plain(motion: Numbers, settled: Numbers) -> NDArray[np.int64]:
-    """Return what stands in the map where no stick-slip does, as places in `plots.stability.PLAIN`."""
+    """Return what stands in the map where no stick-slip does, as places in `plots.stability_map.PLAIN`."""
     plain = np.zeros(motion.shape, dtype=np.int64)
     for code, place in _PLAIN.items():
         plain[motion == code] = place

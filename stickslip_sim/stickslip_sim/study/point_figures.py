@@ -34,7 +34,7 @@ from ..core.types import Mode
 from ..solvers.exact.many_axes import LEAST_STICK
 
 __all__ = ['FIGURES', 'LEAST_STICK', 'MOTIONS', 'RUN_FIELDS', 'Figures', 'Flags', 'Motion', 'Numbers', 'Runs',
-           'figures_of', 'no_runs']
+           'figures_of_runs', 'no_runs']
 
 Numbers = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -149,7 +149,7 @@ _OF_A_ROUND = {'amplitude': 'round_travel', 'period': 'round_period', 'peak_spee
                'break_away_force': 'round_force'}
 
 
-def figures_of(runs: Runs) -> Figures:
+def figures_of_runs(runs: Runs) -> Figures:
     """Return the figures of runs."""
     motion = _motions(runs)
     slips, slides = motion == Motion.STICK_SLIP, motion == Motion.SMOOTH_SLIDING

@@ -13,7 +13,7 @@ from ..core.errors import InputError
 from ..runs.offline import check_times
 from ..scene import Scene, scene_from_values
 from ..scene.load import named
-from .point_figures import Figures, Runs, figures_of
+from .point_figures import Figures, Runs, figures_of_runs
 from .points import runs_alone, runs_in_batches, scene_at, works_in_batches
 from .sample import Sample
 from .variation import Numbers, Variation
@@ -90,7 +90,7 @@ class Study:
 
     def figures(self, first: int, last: int) -> Figures:
         """Return the figures of the points from `first` on, up to `last`."""
-        return figures_of(self.runs(self.points(first, last)))
+        return figures_of_runs(self.runs(self.points(first, last)))
 
     def runs(self, points: Numbers) -> Runs:
         """Run the scenes of points."""

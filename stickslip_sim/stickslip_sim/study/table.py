@@ -25,7 +25,7 @@ Columns = dict[str, Numbers]
 _CODES = {word: float(motion) for motion, word in MOTIONS.items()}
 
 
-def header(study: Study) -> bytes:
+def title_line(study: Study) -> bytes:
     """Return the line of names."""
     return (','.join((*study.names, *FIGURES)) + '\n').encode()
 
@@ -76,7 +76,7 @@ def width(study: Study) -> int:
 
 def may_be_table(path: Path, study: Study) -> bool:
     """Whether a file, whoever made it, is worth reading: an ordinary one, no longer than all lines; raises OSError."""
-    return path.is_file() and path.stat().st_size <= len(header(study)) + study.count * longest_line(study)
+    return path.is_file() and path.stat().st_size <= len(title_line(study)) + study.count * longest_line(study)
 
 
 def longest_line(study: Study) -> int:
@@ -97,7 +97,7 @@ def read_columns(path: Path, study: Study) -> Columns:
     return columns(study, rows)
 
 
-def figures_in(columns_of_table: Columns) -> Figures:
+def figures_among(columns_of_table: Columns) -> Figures:
     """Return the figures among columns."""
     return Figures(**{name: columns_of_table[name] for name in FIGURES})
 
@@ -108,7 +108,7 @@ def _text(number: float) -> str:
 
 def _rows_in(file: BinaryIO, study: Study) -> Numbers:
     """Return the rows of the table of a study; raises ValueError where it is another one."""
-    if file.readline(len(header(study))) != header(study):
+    if file.readline(len(title_line(study))) != title_line(study):
         raise ValueError('this is the table of another study')
     rows = np.empty((study.count, width(study)))
     for first, last in study.stretches():

@@ -11,7 +11,7 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from stickslip_sim.core.errors import StickslipError
 from tests.support.ros_nodes import client, executable, running
 
-from stickslip_sim.ros.diagnostics.health_node import judge  # isort: skip  # after ros_nodes, which skips without ROS
+from stickslip_sim.ros.diagnostics.health_node import health_of  # isort: skip  # after ros_nodes, which skips without ROS
 
 pytestmark = pytest.mark.ros
 
@@ -71,7 +71,7 @@ class TestJudge:
     def test_by_the_worst(self) -> None:
         fine, slow, full = (DiagnosticStatus(name=name, level=level, message=f'{name} told')
                             for name, level in (('loop', b'\0'), ('command', b'\1'), ('recorder', b'\2')))
-        assert judge('/a', [fine]) == '/a is well: loop: loop told'
-        assert judge('/a', [fine, slow]) == '/a is well, with warnings: command: command told'
+        assert health_of('/a', [fine]) == '/a is well: loop: loop told'
+        assert health_of('/a', [fine, slow]) == '/a is well, with warnings: command: command told'
         with pytest.raises(StickslipError, match=r'not well: recorder: recorder told$'):
-            judge('/a', [slow, full, fine])
+            health_of('/a', [slow, full, fine])

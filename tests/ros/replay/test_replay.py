@@ -25,7 +25,7 @@ from rosgraph_msgs.msg import Clock  # isort: skip
 from std_srvs.srv import SetBool, Trigger  # isort: skip
 
 from stickslip_msgs.msg import SliderState  # isort: skip
-from stickslip_sim.ros.replay.settings import PARAMETERS  # isort: skip
+from stickslip_sim.ros.replay.replay_settings import PARAMETERS  # isort: skip
 from stickslip_sim.ros.node.topics import message_type, qos  # isort: skip
 
 pytestmark = pytest.mark.ros

@@ -40,7 +40,7 @@ from stickslip_sim.core.types import EventKind
 from stickslip_sim.friction import StaticLawKind
 from stickslip_sim.simulation.cycles import cycle_figures
 from stickslip_sim.study.theory import critical_drop, critical_feed, healing_critical_feed
-from tests.support.axes import RIGID, of_kind, paper_axis, run
+from tests.support.axes import RIGID, of_kind, paper_axis, run_events
 
 HEALING_FEED = healing_critical_feed(UNDAMPED.stiffness, NORMAL * 0.12 / HEALING.time_constant)   # m/s
 
@@ -79,7 +79,7 @@ def test_growth_at_rest_keeps_stick_slip_up_below_its_critical_feed_only(kind: S
     A slip after a drop D ends with ẋ falling by D/m only: rounding of the speed, ε v, is worth ε c m v²/D of force.
     """
     law, feed = replace(HEALING, kind=kind), share * HEALING_FEED
-    cycles = cycle_figures(run(healing_axis(law), feed, 100.0))
+    cycles = cycle_figures(run_events(healing_axis(law), feed, 100.0))
     drops = [cycle.break_away_force - 0.12 * NORMAL for cycle in cycles]
     scale = feed * UNDAMPED.impedance   # N
     for (before, after), cycle in zip(pairwise(drops), cycles):
@@ -100,7 +100,7 @@ def test_steady_sliding_is_unstable_where_friction_falls_faster_than_the_damper_
     axis = paper_axis(RIGID, branches=False)
     axis = replace(axis, normal_force=normal_force)
     balance = normal_force * axis.friction.kinetic.coefficient(0.0175)
-    events = run(axis, 0.0175, 100.0, balance, InitialState(velocity=0.0175 + 1e-3))
+    events = run_events(axis, 0.0175, 100.0, balance, InitialState(velocity=0.0175 + 1e-3))
     assert bool(of_kind(events, EventKind.STICK)) == grows
 
 
@@ -130,8 +130,8 @@ def test_forced_oscillations_with_stops_are_those_of_the_reference(ratio: float,
     pytest.importorskip('mpmath')
     from stickslip_sim.reference import simulate
     axis, force, duration = forced_axis(friction), shaken(ratio, 0.7), 8.0 * math.pi / ratio
-    events, expected = run(axis, 0.0, duration, force), simulate(axis, InitialState(), constant(0.0), force,
-                                                                 duration).events
+    events, expected = run_events(axis, 0.0, duration, force), simulate(axis, InitialState(), constant(0.0), force,
+                                                                        duration).events
     assert [(e.kind, e.mode, e.direction) for e in events] == [(e.kind, e.mode, e.direction) for e in expected]
     assert of_kind(events, EventKind.STICK)
     for event, other in zip(events, expected):
@@ -148,7 +148,7 @@ def test_leines_figures_are_off_by_no_more_than_the_table(tolerance: float) -> N
 
 def test_a_coast_lasts_as_long_as_the_force_takes_through_the_band() -> None:
     """B/(c (w − v)), B = N E (1 − w/v_gr), in every slip of the paper's axis."""
-    events = run(paper_axis(RIGID), 0.002, 10.0)
+    events = run_events(paper_axis(RIGID), 0.002, 10.0)
     band, coasts = 0.0, 0
     for event, following in pairwise(events):
         if event.kind == EventKind.BREAKAWAY:

@@ -15,7 +15,7 @@ from stickslip_sim.core.input_profile import InputProfile, ramp, steps, table
 from stickslip_sim.core.types import Event, EventKind, Instant, Mode
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
 from tests.conftest import Program
-from tests.support.axes import COMPLIANT, RIGID, Contact, instant, make, of_kind, paper_axis, run
+from tests.support.axes import COMPLIANT, RIGID, Contact, instant, make, of_kind, paper_axis, run_events
 
 
 def test_smooth_sliding_ends_in_steady_coasting() -> None:
@@ -59,13 +59,13 @@ def test_state_is_continuous_and_forces_balance() -> None:
 def test_reverses_at_once_where_a_rigid_contact_cannot_hold() -> None:
     """A frictionless slider swings for ever; a lightly braked one reverses until it stays."""
     free = replace(paper_axis(RIGID), normal_force=0.0, drive_damping=0.0)
-    events = run(free, 0.0, 2.0, initial=InitialState(velocity=0.1))
+    events = run_events(free, 0.0, 2.0, initial=InitialState(velocity=0.1))
     turns = of_kind(events, EventKind.REVERSE)
     half_period = math.pi / math.sqrt(6e5 / 350.0)
     assert len(turns) == 26
     assert turns[-1].time == pytest.approx((len(turns) - 0.5) * half_period, rel=1e-13)
     light = replace(paper_axis(RIGID), normal_force=300.0, drive_damping=0.0)
-    events = run(light, 0.0, 5.0, initial=InitialState(velocity=0.05))
+    events = run_events(light, 0.0, 5.0, initial=InitialState(velocity=0.05))
     assert len(of_kind(events, EventKind.REVERSE)) > 2
     assert events[-1].kind == EventKind.STICK
     amplitudes = [abs(e.position) for e in of_kind(events, EventKind.REVERSE)]
@@ -99,7 +99,7 @@ def test_grazing_the_limit_is_neither_missed_nor_invented() -> None:
             peak = c * (v + 0.5 * rate * t) * t + h * (v + rate * t)
             held = replace(axis, normal_force=peak / 0.24 / (1.0 + margin))
             drive = InputProfile((0.0, delay), (0.0, v), (0.0, rate))
-            events = run(held, drive, delay + 1.9 * t)
+            events = run_events(held, drive, delay + 1.9 * t)
             broke = bool(events) and events[0].time < delay + 1.1 * t
             assert broke == (margin > 0.0), (margin, v, rate)
 
@@ -149,8 +149,8 @@ def test_parameters_may_change_on_the_way() -> None:
     deflection = simulator.sample().contact_deflection
     assert deflection == pytest.approx(simulator.sample().drive_force / 5e6, rel=1e-14)
     simulator.change_axis(paper_axis(RIGID))
-    assert run(paper_axis(RIGID), 0.002, 2.0)[1:] != []
-    for event, other in zip(simulator.advance(instant(2.0)), run(paper_axis(RIGID), 0.002, 2.0), strict=True):
+    assert run_events(paper_axis(RIGID), 0.002, 2.0)[1:] != []
+    for event, other in zip(simulator.advance(instant(2.0)), run_events(paper_axis(RIGID), 0.002, 2.0), strict=True):
         assert (event.kind, event.direction) == (other.kind, other.direction)
         assert event.time == pytest.approx(other.time, abs=1e-14)
 
@@ -166,7 +166,7 @@ def test_a_state_that_is_not_finite_is_an_error() -> None:
 def test_without_friction_the_drive_takes_the_slider_along_either_way(sign: float) -> None:
     for contact in (RIGID, COMPLIANT):
         free = replace(paper_axis(contact), normal_force=0.0)
-        events = run(free, ramp(0.0, sign * 0.01, 1.0), 1.0)
+        events = run_events(free, ramp(0.0, sign * 0.01, 1.0), 1.0)
         assert (events[0].kind, events[0].direction) == (EventKind.BREAKAWAY, sign)
 
 

@@ -9,7 +9,7 @@ import pytest
 from stickslip_sim.axis import Axis, Friction
 from stickslip_sim.core.types import EventKind
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
-from tests.support.axes import COMPLIANT, RIGID, Contact, of_kind, paper_axis, run
+from tests.support.axes import COMPLIANT, RIGID, Contact, of_kind, paper_axis, run_events
 
 # model.md: kind, t / s, x / m, ẋ / (m/s), F_d / N, from 40-digit arithmetic
 RIGID_EVENTS = [
@@ -41,7 +41,7 @@ CONVENTIONAL_EVENTS = [
 @pytest.mark.parametrize(('contact', 'branches', 'expected'), [
     (RIGID, True, RIGID_EVENTS), (COMPLIANT, True, COMPLIANT_EVENTS), (RIGID, False, CONVENTIONAL_EVENTS)])
 def test_check_values_of_the_model(contact: Contact, branches: bool, expected: list[tuple[object, ...]]) -> None:
-    events = run(paper_axis(contact, branches=branches), 0.002, 1.6)
+    events = run_events(paper_axis(contact, branches=branches), 0.002, 1.6)
     assert [e.kind for e in events[:len(expected)]] == [row[0] for row in expected]
     for event, (_, *values) in zip(events, expected):
         got = (event.time, event.position, event.velocity, event.drive_force)
@@ -55,7 +55,7 @@ def test_check_values_of_the_model(contact: Contact, branches: bool, expected: l
     (COMPLIANT, 0.659065697, 1.31813139e-3, 1.16642823367e-2, 788.081203029, 246.606758267)])
 def test_limit_cycle_of_the_model(contact: Contact, period: float, jump: float, peak: float, break_force: float,
                                   stick_force: float) -> None:
-    events = run(paper_axis(contact), 0.002, 60.0)
+    events = run_events(paper_axis(contact), 0.002, 60.0)
     first, second = of_kind(events, EventKind.BREAKAWAY)[-2:]
     assert second.time - first.time == pytest.approx(period, abs=6e-10)
     assert second.position - first.position == pytest.approx(jump, abs=6e-12)
@@ -67,7 +67,7 @@ def test_limit_cycle_of_the_model(contact: Contact, period: float, jump: float, 
 def test_second_static_coefficients_of_the_model() -> None:
     for contact, branches, value, digit in ((RIGID, True, 0.2297848, 1e-7), (COMPLIANT, True, 0.23103882, 1e-8),
                                             (RIGID, False, 0.2379712, 1e-7)):
-        events = run(paper_axis(contact, branches=branches), 0.002, 1.6)
+        events = run_events(paper_axis(contact, branches=branches), 0.002, 1.6)
         assert of_kind(events, EventKind.BREAKAWAY)[1].static_coefficient == pytest.approx(value, abs=0.5 * digit)
 
 
@@ -75,7 +75,7 @@ def test_undamped_coulomb_cycle_in_closed_form() -> None:
     """m u′ = c w − F with F_s = 824 N, F_k = 412 N, no damping, v = 5 mm/s: docs of the classical cycle."""
     v, c, m = 0.005, 6e5, 350.0
     friction = Friction(StaticLaw(StaticLawKind.CONSTANT, 0.24, 0.24), KineticTable((0.0,), (0.12,)), None)
-    events = run(Axis(m, c, 0.0, 412.0 / 0.12, RIGID, friction), v, 20.0)
+    events = run_events(Axis(m, c, 0.0, 412.0 / 0.12, RIGID, friction), v, 20.0)
     omega, a = math.sqrt(c / m), 412.0 / (v * math.sqrt(c * m))
     breaks, sticks = of_kind(events, EventKind.BREAKAWAY)[5:], of_kind(events, EventKind.STICK)[5:]
     assert sticks[0].time - breaks[0].time == pytest.approx(2.0 / omega * (math.pi - math.atan(a)), rel=1e-12)

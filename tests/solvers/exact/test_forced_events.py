@@ -16,7 +16,7 @@ from stickslip_sim.extremes.grazing_drive import FREQUENCIES, PHASES, grazing_dr
 from stickslip_sim.friction import StaticLaw, StaticLawKind
 from stickslip_sim.reference import simulate
 from tests.conftest import Program
-from tests.support.axes import COMPLIANT, RIGID, instant, make, paper_axis, random_axis, run
+from tests.support.axes import COMPLIANT, RIGID, instant, make, paper_axis, random_axis, run_events
 from tests.support.forced_courses import random_profiles, with_waves
 
 LIMIT = 0.24 * 350 * 9.80665
@@ -30,7 +30,7 @@ def test_a_grazing_peak_is_found_and_a_peak_below_the_limit_holds(contact: Any, 
     for _ in range(500):
         frequency, phase = rng.uniform(*FREQUENCIES), rng.uniform(*PHASES)
         drive = grazing_drive(axis, overshoot, frequency, phase)
-        events = run(axis, drive, 0.95 / frequency)
+        events = run_events(axis, drive, 0.95 / frequency)
         assert bool(events) == (overshoot > 0.0)
         if events:
             assert events[0].kind is EventKind.BREAKAWAY
@@ -44,7 +44,7 @@ def test_a_blow_on_top_of_a_sine_is_not_missed(contact: Any) -> None:
     for _ in range(100):
         t = rng.uniform(0.0, 5.0)
         blow = with_waves(steps('force', [0.0, t, t + 0.002], [0.0, 33e3, 0.0]), (100.0, 10 ** rng.uniform(-1, 2), t))
-        events = run(paper_axis(contact), 0.0, 6.0, blow)
+        events = run_events(paper_axis(contact), 0.0, 6.0, blow)
         assert events[0].kind is EventKind.BREAKAWAY
         assert t <= events[0].time <= t + 0.002
 
@@ -55,7 +55,7 @@ def test_a_slip_that_begins_where_friction_is_continuous_goes_the_way_the_force_
     """At such a break-away nothing but the force's rate at that very instant says that the slider slips."""
     pytest.importorskip('mpmath')
     axis, push = paper_axis(RIGID), with_waves(constant(0.0), (amplitude, frequency, phase))
-    events, expected = run(axis, 0.0, 4.0, push), simulate(axis, InitialState(), constant(0.0), push, 4.0).events
+    events, expected = run_events(axis, 0.0, 4.0, push), simulate(axis, InitialState(), constant(0.0), push, 4.0).events
     assert [(e.kind, e.mode, e.direction) for e in events] == [(e.kind, e.mode, e.direction) for e in expected]
     assert all(abs(a.time - b.time) <= 1e-12 for a, b in zip(events, expected))
     assert len(events) > 15
@@ -68,7 +68,7 @@ def test_a_short_wave_on_a_slow_one_is_found_where_their_peaks_meet() -> None:
         profile = with_waves(constant(0.0), (LIMIT * 0.49, rng.uniform(0.2, 1.0), rng.uniform(-1, 1)),
                             (LIMIT * 0.525, rng.uniform(5, 9), rng.uniform(-0.2, 0.2)))
         scan = next((k / 2000 for k in range(40000) if abs(profile.value_at(k / 2000)) > LIMIT), math.inf)
-        events = run(paper_axis(RIGID), 0.0, 20.0, profile)
+        events = run_events(paper_axis(RIGID), 0.0, 20.0, profile)
         first = events[0].time if events else math.inf
         assert scan - 1.0 / 2000 <= first <= scan or (scan == math.inf and first > 0.0)
         if events:
@@ -97,7 +97,7 @@ def test_a_year_under_a_sine_below_the_limit(contact: Any) -> None:
 def test_a_force_whose_peak_is_the_limit_holds() -> None:
     for amplitude in (0.25 * LIMIT, 0.5 * LIMIT):
         force = with_waves(constant(LIMIT - amplitude), (amplitude, 3.0, 0.1))
-        assert run(paper_axis(RIGID), 0.0, 100.0, force) == []
+        assert run_events(paper_axis(RIGID), 0.0, 100.0, force) == []
 
 
 @pytest.mark.parametrize('seed', range(12))
@@ -122,8 +122,8 @@ def test_mirror_and_units_of_a_power_of_two_are_bit_identical(seed: int) -> None
     rng = random.Random(seed)
     axis = random_axis(rng)
     drive, force = random_profiles(rng, axis)
-    events = run(axis, drive, 2.0, force)
-    mirrored = run(axis, _scaled(drive, -1.0), 2.0, _scaled(force, -1.0))
+    events = run_events(axis, drive, 2.0, force)
+    mirrored = run_events(axis, _scaled(drive, -1.0), 2.0, _scaled(force, -1.0))
     for e, image in zip(events, mirrored, strict=True):
         assert image == _mirrored(e)
     contact = axis.contact
@@ -131,7 +131,7 @@ def test_mirror_and_units_of_a_power_of_two_are_bit_identical(seed: int) -> None
         contact = CompliantContact(contact.stiffness * 0.5, contact.damping * 0.5)
     half = replace(axis, mass=axis.mass * 0.5, drive_stiffness=axis.drive_stiffness * 0.5, contact=contact,
                    drive_damping=axis.drive_damping * 0.5, normal_force=axis.normal_force * 0.5)
-    for e, other in zip(events, run(half, drive, 2.0, _scaled(force, 0.5)), strict=True):
+    for e, other in zip(events, run_events(half, drive, 2.0, _scaled(force, 0.5)), strict=True):
         assert other == e._replace(drive_force=0.5 * e.drive_force, friction_force=0.5 * e.friction_force)
 
 
@@ -140,7 +140,8 @@ def test_a_leap_to_either_limit_is_as_long(speed: float) -> None:
     """The room between envelope and limit, rounded alike on both sides, or the first root differs by an ULP."""
     axis = paper_axis(RIGID)
     axis = replace(axis, friction=replace(axis.friction, static=StaticLaw(StaticLawKind.CONSTANT, 0.24, 0.24)))
-    up, down = (run(axis, way * speed, 2.0, with_waves(constant(0.0), (-way * 100.0, 5.0, 1.0))) for way in (1.0, -1.0))
+    up, down = (run_events(axis, way * speed, 2.0, with_waves(constant(0.0), (-way * 100.0, 5.0, 1.0)))
+                for way in (1.0, -1.0))
     assert [_mirrored(event) for event in up] == down
     assert len(up) > 10
 

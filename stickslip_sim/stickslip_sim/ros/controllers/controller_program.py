@@ -8,7 +8,7 @@ from ..process.params_files import check_params_files
 from ..process.program import Program, spin
 
 if TYPE_CHECKING:
-    from ..process.signals import Signals
+    from ..process.stop_signals import Signals
 
 _USAGE = """\
 usage: {0} [--help] [--ros-args [-p NAME:=VALUE]... [-r __ns:=/NAMESPACE]]

@@ -48,10 +48,10 @@ class Listener(ListedNode):
         if not self.statuses:
             raise StickslipError(f'{self.axis} said nothing on {DIAGNOSTICS.name} within {self.patience:g} s; does it'
                                  ' run, in this namespace and ROS_DOMAIN_ID?')
-        return judge(self.axis, self.statuses)
+        return health_of(self.axis, self.statuses)
 
 
-def judge(axis: str, statuses: Sequence[DiagnosticStatus]) -> str:
+def health_of(axis: str, statuses: Sequence[DiagnosticStatus]) -> str:
     """Return how an axis is in one line, by the worst of its statuses; raises StickslipError when it is not well."""
     worst = max(status.level for status in statuses)
     told = '; '.join(f'{status.name}: {status.message}' for status in statuses if status.level == worst)

@@ -9,7 +9,7 @@ from ..process.params_files import check_params_files
 from ..process.program import Program, spin
 
 if TYPE_CHECKING:
-    from ..process.signals import Signals
+    from ..process.stop_signals import Signals
 
 _USAGE = """\
 usage: health [--help] [--ros-args [-p patience:=S] [-r __ns:=/NAMESPACE]]

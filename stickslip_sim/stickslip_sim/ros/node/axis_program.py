@@ -9,7 +9,7 @@ from ..process.params_files import params_files
 from ..process.program import Program, spin
 
 if TYPE_CHECKING:
-    from ..process.signals import Signals
+    from ..process.stop_signals import Signals
     from .parameters import FileParameters
 
 _USAGE = """\

@@ -22,7 +22,7 @@ def set_stamp(stamp: Time, nanoseconds: int) -> None:
     stamp.sec, stamp.nanosec = divmod(nanoseconds, _NANOSECONDS)
 
 
-def run_info(fields: Mapping[str, Any]) -> RunInfo:
+def run_info_message(fields: Mapping[str, Any]) -> RunInfo:
     """Return the message with these fields (`recording.RunFacts.as_message`)."""
     message = RunInfo()
     for name, value in fields.items():

@@ -145,7 +145,7 @@ class FeedAxis(SceneNode):
             return {'failure': str(error)}
 
     def _publish_run_info(self) -> None:
-        message = conversion.run_info(messages.run_info(
+        message = conversion.run_info_message(messages.run_info(
             RunFacts.of(self.scene), self._now_ns(), self._outputs.start_ns, self._record_service.recordings.folder))
         self._run_info_out.publish(message)
         self._outputs.record_message(names.RUN_INFO, message, self.loop.time_ns, max(self.loop.step, 0))

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
-    from .signals import Signals
+    from .stop_signals import Signals
 
 _POLL = 0.1                # s: how soon a signal is acted on
 _SWITCH_INTERVAL = 2e-4    # s that a callback may keep the interpreter from a step loop (the default is 5 ms)

@@ -10,13 +10,13 @@ from rclpy.node import Node
 from ...core.errors import InputError
 from ...recording.playback import Recording
 from ...scene.sections import NODE
-from .axis import Axis
+from .live_axis import LiveAxis
 from .lockstep import InLockStep
 from .orders import COMMANDS, order_topics
 from .player import Act, Script
 from .realtime import InRealTime
-from .settings import Settings
-from .span import Span, chosen_topics
+from .replay_settings import Settings
+from .span import PlayedSpan, chosen_topics
 
 _STRIDE = 0.02    # s of the steady clock that pass with one call of ~/step
 
@@ -24,11 +24,11 @@ _STRIDE = 0.02    # s of the steady clock that pass with one call of ~/step
 class Commands:
     """The script of all orders."""
 
-    def __init__(self, node: Node, recording: Recording, settings: Settings, span: Span, stop: Event) -> None:
+    def __init__(self, node: Node, recording: Recording, settings: Settings, span: PlayedSpan, stop: Event) -> None:
         self.begin = span.begin
         self._node, self._recording, self._settings, self._span, self._stop = node, recording, settings, span, stop
         self._orders = order_topics(recording, chosen_topics(recording, settings.topics))
-        self._axis = Axis(node, settings.axis or self._recorded_axis(), stop)
+        self._axis = LiveAxis(node, settings.axis or self._recorded_axis(), stop)
         self._script: Script | None = None
 
     def prepare(self) -> None:

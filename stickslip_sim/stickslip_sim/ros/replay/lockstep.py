@@ -17,10 +17,10 @@ from ...core.time_grid import Grid
 from ...recording import RecordedMessage, Topic
 from ...recording.playback import Recording
 from ...recording.topics import DRIVE_VELOCITY, EXTERNAL_FORCE
-from .axis import Axis
+from .live_axis import LiveAxis
 from .orders import COMMANDS, Request, is_timeout, order_of, refusal_in, request_of, state_topic
 from .player import Act
-from .span import Span
+from .span import PlayedSpan
 
 _MOST = 1000    # steps at a time, so that a call takes no longer than people wait
 
@@ -28,7 +28,7 @@ _MOST = 1000    # steps at a time, so that a call takes no longer than people wa
 class InLockStep:
     """The script of orders by step; `stride` is the simulation time, s, that passes with one call of ~/step."""
 
-    def __init__(self, node: Node, axis: Axis, recording: Recording, orders: Mapping[str, Topic], span: Span,
+    def __init__(self, node: Node, axis: LiveAxis, recording: Recording, orders: Mapping[str, Topic], span: PlayedSpan,
                  rate: float, stride: float) -> None:
         self.begin = span.begin
         self._log = node.get_logger()

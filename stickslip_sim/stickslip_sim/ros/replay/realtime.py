@@ -12,10 +12,10 @@ from ...core.errors import InputError
 from ...recording import RecordedMessage, Topic
 from ...recording.playback import Recording
 from ..node.topics import publisher
-from .axis import Axis
+from .live_axis import LiveAxis
 from .orders import COMMANDS, refusal_in, request_of
 from .player import Act, nothing, wait_until
-from .span import Span
+from .span import PlayedSpan
 
 _PATIENCE = 10.0    # s for the axis to hear
 
@@ -23,7 +23,7 @@ _PATIENCE = 10.0    # s for the axis to hear
 class InRealTime:
     """The script of orders by time.  The commands in force at the begin of the span are given first."""
 
-    def __init__(self, node: Node, axis: Axis, recording: Recording, orders: Mapping[str, Topic], span: Span,
+    def __init__(self, node: Node, axis: LiveAxis, recording: Recording, orders: Mapping[str, Topic], span: PlayedSpan,
                  stop: Event) -> None:
         self.begin = span.begin
         self._log = node.get_logger()

@@ -19,7 +19,7 @@ from ..node.topics import publisher
 from .commands import Commands
 from .player import Player, Script
 from .player_services import Services
-from .settings import PARAMETERS, STATES, Settings
+from .replay_settings import PARAMETERS, STATES, Settings
 from .span import chosen_topics, span_of
 from .states import States
 from .timeline import Timeline

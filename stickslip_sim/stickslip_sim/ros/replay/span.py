@@ -8,17 +8,17 @@ from typing import NamedTuple
 from ...core.errors import InputError
 from ...realtime.pacing import NANOSECONDS
 from ...recording.playback import Recording
-from .settings import Settings
+from .replay_settings import Settings
 
 
-class Span(NamedTuple):
+class PlayedSpan(NamedTuple):
     """Log times, ns; both belong to it."""
 
     begin: int
     end: int
 
 
-def span_of(recording: Recording, settings: Settings) -> Span:
+def span_of(recording: Recording, settings: Settings) -> PlayedSpan:
     """Return the span that the settings ask for; raises InputError when there is nothing in it."""
     begin = recording.begin + round(settings.start_offset * NANOSECONDS)
     if begin > recording.end:
@@ -26,8 +26,8 @@ def span_of(recording: Recording, settings: Settings) -> Span:
         raise InputError('start_offset', settings.start_offset, f'at most {length:g} s, the length of the recording',
                          'begin earlier')
     if settings.playback_duration < 0.0:
-        return Span(begin, recording.end)
-    return Span(begin, min(recording.end, begin + round(settings.playback_duration * NANOSECONDS)))
+        return PlayedSpan(begin, recording.end)
+    return PlayedSpan(begin, min(recording.end, begin + round(settings.playback_duration * NANOSECONDS)))
 
 
 def chosen_topics(recording: Recording, wanted: Sequence[str]) -> list[str]:

@@ -10,13 +10,13 @@ from rclpy.node import Node
 from ...recording.playback import Recording
 from .player import Act, nothing
 from .recorded_topics import publisher_of
-from .span import Span
+from .span import PlayedSpan
 
 
 class States:
     """The script of recorded topics, within a span of the recording."""
 
-    def __init__(self, node: Node, recording: Recording, topics: Sequence[str], span: Span) -> None:
+    def __init__(self, node: Node, recording: Recording, topics: Sequence[str], span: PlayedSpan) -> None:
         self.begin = span.begin
         self._recording, self._span = recording, span
         self._out = {name: publisher_of(node, recording.topics[name]) for name in topics}

@@ -16,7 +16,7 @@ from ..realtime.command_slot import CommandSlot
 from ..scene import load_scene
 from ..simulation.simulator import Simulator
 from ..solvers import Solver
-from .outcome import Finding, Setup, Tally, check
+from .outcome import Measurement, Setup, Tally, require
 from .shared_axes import CONTACTS, RIGID, Contact, instant, make, paper_axis
 
 _BAD = (math.nan, math.inf, -math.inf)
@@ -26,7 +26,7 @@ _PARAMETERS = (
     'drive.velocity', 'force.constant', 'initial.position', 'initial.velocity', 'time.rate')
 
 
-def bad_commands(setup: Setup) -> Finding:
+def bad_commands(setup: Setup) -> Measurement:
     """X17: refused by name at every door, the state untouched; the latest good command wins."""
     tally = Tally(0.0)
     for contact in CONTACTS:
@@ -53,8 +53,8 @@ def _refused_by_the_simulator(solver: Solver, contact: Contact, given: str, bad:
     twin.advance(instant(0.5))
     command = simulator.command_drive if given == 'velocity' else simulator.command_force
     _check_refused(lambda: command(bad), given)
-    check(simulator.sample() == twin.sample(), 'the state is another one')
-    check(simulator.advance(instant(2.0)) == twin.advance(instant(2.0)), 'the events are other ones')
+    require(simulator.sample() == twin.sample(), 'the state is another one')
+    require(simulator.advance(instant(2.0)) == twin.advance(instant(2.0)), 'the events are other ones')
     return 0.0
 
 
@@ -62,9 +62,9 @@ def _check_refused(act: Callable[[], object], name: str) -> None:
     try:
         act()
     except InputError as error:
-        check(name in error.name and str(error.value) in str(error), f'the refusal does not name {name}: {error}')
+        require(name in error.name and str(error.value) in str(error), f'the refusal does not name {name}: {error}')
         return
-    check(False, f'{name} is accepted')
+    require(False, f'{name} is accepted')
 
 
 def _refused_time(solver: Solver, contact: Contact, bad: float) -> float:
@@ -73,7 +73,7 @@ def _refused_time(solver: Solver, contact: Contact, bad: float) -> float:
     simulator.advance(instant(0.5))
     before = simulator.sample()
     _check_refused(lambda: simulator.advance(Instant(bad, 0.0)), 'time')
-    check(simulator.sample() == before, 'the state is another one')
+    require(simulator.sample() == before, 'the state is another one')
     return 0.0
 
 
@@ -83,7 +83,7 @@ def _refused_past(solver: Solver, contact: Contact) -> float:
     simulator.advance(instant(1.0))
     before = simulator.sample()
     _check_refused(lambda: simulator.advance(instant(0.2)), 'time')
-    check(simulator.sample() == before, 'the state is another one')
+    require(simulator.sample() == before, 'the state is another one')
     return 0.0
 
 
@@ -99,7 +99,7 @@ def _burst(solver: Solver, contact: Contact, seed: int) -> float:
         for _ in range(rng.choice((0, 1, 50))):
             value = rng.choice((rng.uniform(-0.05, 0.05), math.nan, 1e9))
             refusal = slot.offer(value, step)
-            check(('velocity' in refusal) == (not abs(value) <= 0.1), 'not refused by name')
+            require(('velocity' in refusal) == (not abs(value) <= 0.1), 'not refused by name')
             if rng.random() < 0.3:
                 slot.offer(value, step)   # twice
         if slot.latest is not None:
@@ -107,8 +107,8 @@ def _burst(solver: Solver, contact: Contact, seed: int) -> float:
                 busy.command_drive(slot.latest.value)
             busy.command_drive(slot.latest.value)
             quiet.command_drive(slot.latest.value)
-        check(busy.sample() == quiet.sample(), f'another state at step {step}')
-    check(seen == wanted, f'{len(seen)} events instead of {len(wanted)}, or other bits')
+        require(busy.sample() == quiet.sample(), f'another state at step {step}')
+    require(seen == wanted, f'{len(seen)} events instead of {len(wanted)}, or other bits')
     return 0.0
 
 
@@ -122,10 +122,10 @@ def _huge(solver: Solver, contact: Contact, huge: float) -> float:
             simulator.advance(Instant(simulator.time.second + 1.0, 0.0))
             simulator.sample()
         except StickslipError as error:
-            check(len(str(error)) > 20, 'no reason is given')
+            require(len(str(error)) > 20, 'no reason is given')
     simulator.reset()
-    check(simulator.advance(instant(1.0)) == make(paper_axis(contact), 0.002, solver=solver).advance(instant(1.0)),
-          'a reset does not begin anew')
+    require(simulator.advance(instant(1.0)) == make(paper_axis(contact), 0.002, solver=solver).advance(instant(1.0)),
+            'a reset does not begin anew')
     return 0.0
 
 
@@ -138,8 +138,8 @@ def _refused_by_the_slot(bad: float) -> float:
     slot = CommandSlot('drive_velocity', 'm/s', 10.0)
     slot.offer(0.003, 1)
     for value in (bad, 10.000001, -1e300):
-        check('drive_velocity' in slot.offer(value, 2), 'not refused by name')
-    check(slot.latest == (0.003, 1) and slot.refused == 3, 'the good command before is lost')
+        require('drive_velocity' in slot.offer(value, 2), 'not refused by name')
+    require(slot.latest == (0.003, 1) and slot.refused == 3, 'the good command before is lost')
     return 0.0
 
 

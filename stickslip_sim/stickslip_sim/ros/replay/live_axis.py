@@ -33,7 +33,7 @@ _SERVICES = {
 _QUESTION = 'get_parameters'    # changes nothing, however often it is put
 
 
-class Axis:
+class LiveAxis:
     """The services of a node, by the last part of their names; `name` is that of the node, `namespace` where it is.
 
     The methods raise StoppedError when the player is to stop, and InputError when the axis is not there.

@@ -13,14 +13,14 @@ from ..core.types import EventKind, Instant, Mode, Sample
 from ..friction import KineticTable, StaticLaw, StaticLawKind
 from ..solvers import Solver
 from .closed_form import DIGITS, LinearMode, exact
-from .outcome import Finding, Setup, Tally, check
+from .outcome import Measurement, Setup, Tally, require
 from .shared_axes import RIGID, instant, make, paper_axis
 
 _STEPS = (0.02, 0.01, 0.0048, 0.001, 1e-4, 1e-5)   # s
 _FREE = Friction(StaticLaw(StaticLawKind.CONSTANT, 0.0, 0.0), KineticTable((0.0,), (0.0,)), None)
 
 
-def unstable_slip(setup: Setup) -> Finding:
+def unstable_slip(setup: Setup) -> Measurement:
     """X6: the slip modes with net damping −2867 and −14639 N s/m, read at steps of 10 µs to 20 ms."""
     tally = Tally(1e-12)
     for step in setup.choose(_STEPS, _STEPS[:-1]):
@@ -44,7 +44,7 @@ def _grows_on_the_falling_branch(solver: Solver, step: float) -> float:
         worst = 0.0
         for k in range(1, round(0.5 / step) + 1):
             events = simulator.advance(instant(k * step))
-            check(all(event.mode != Mode.STICK and event.kind != EventKind.KNOT for event in events), 'it stops')
+            require(all(event.mode != Mode.STICK and event.kind != EventKind.KNOT for event in events), 'it stops')
             if k % max(1, round(0.02 / step)) == 0:
                 t = exact(*simulator.time)
                 swing = push * mode.integral(0, t) + pull * mode.integral(1, t)
@@ -65,18 +65,18 @@ def _grows_after_a_break_away(solver: Solver, step: float) -> float:
         worst, checked = 0.0, 0
         for k in range(1, round(0.76 / step) + 1):
             events = simulator.advance(instant(k * step))
-            check(all(event.kind == EventKind.BREAKAWAY for event in events), 'it coasts too soon')
+            require(all(event.kind == EventKind.BREAKAWAY for event in events), 'it coasts too soon')
             t = exact(*simulator.time) - begin
             sample = simulator.sample()
             if t > mpf('0.01') and k % max(1, round(0.01 / step)) == 0:
-                check(sample.mode == Mode.ACCELERATING, 'it does not accelerate')
+                require(sample.mode == Mode.ACCELERATING, 'it does not accelerate')
                 wanted = mpf(c) * mpf(v) / axis.mass * mode.integral(1, t)
                 worst, checked = max(worst, abs(float(mpf(sample.velocity) / wanted - 1))), checked + 1
-    check(checked, 'nothing was read')
+    require(checked, 'nothing was read')
     return worst
 
 
-def edges_of_the_modes(setup: Setup) -> Finding:
+def edges_of_the_modes(setup: Setup) -> Measurement:
     """X9: critical to 1e-15, no spring, no damper, strongly over-damped, negative damping; slip and stick."""
     tally = Tally(1e-12)
     for seed in range(setup.count(400, 12)):
@@ -171,7 +171,7 @@ def _rings(solver: Solver, kind: str, seed: int) -> float:
     for _ in range(4):
         simulator.reset()
         to = instant(10 ** rng.uniform(-2, 1) / rate)
-        check(simulator.advance(to) == [], 'it does not hold')
+        require(simulator.advance(to) == [], 'it does not hold')
         sample = simulator.sample()
         with workdps(DIGITS):
             mode, t = LinearMode(mass, damping, stiffness), exact(*to)

@@ -19,14 +19,14 @@ from ..core.input_profile import InputProfile, constant, ramp
 from ..core.types import Instant, Mode, Sample
 from ..simulation.simulator import Simulator
 from ..solvers import Solver
-from .outcome import Finding, Setup, Tally, check
+from .outcome import Measurement, Setup, Tally, require
 from .shared_axes import COMPLIANT, CONTACTS, instant, make, paper_axis, random_axis
 
 _NODES, _WEIGHTS = (tuple(map(float, part)) for part in np.polynomial.legendre.leggauss(12))
 _PANEL = 1.2   # rad of the fastest motion
 
 
-def energy_balance(setup: Setup) -> Finding:
+def energy_balance(setup: Setup) -> Measurement:
     """X16: what is left of the balance over its throughput, for each cycle and over the run; friction only takes."""
     tally = Tally(1e-12)
     for contact in CONTACTS:
@@ -95,7 +95,7 @@ def _works(simulator: Simulator, axis: Axis, low: Instant, high: Instant) -> tup
             sample, step = simulator.sample(), 0.5 * weight * width
             slip = sample.drive_velocity - sample.velocity
             lost = sample.friction_force * sample.velocity
-            check(sample.mode == Mode.STICK or lost >= 0.0, f'friction gives energy at {sample.time!r} s')
+            require(sample.mode == Mode.STICK or lost >= 0.0, f'friction gives energy at {sample.time!r} s')
             terms[0] += step * sample.drive_force * sample.drive_velocity
             terms[1] -= step * lost
             terms[2] -= step * axis.drive_damping * slip * slip

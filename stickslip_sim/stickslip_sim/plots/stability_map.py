@@ -20,7 +20,7 @@ from matplotlib.patheffects import Normal, Stroke
 from matplotlib.ticker import LogLocator
 from numpy.typing import NDArray
 
-from .paper_panels import Motion, phase_plane
+from .paper_panels import DrawnMotion, phase_plane
 from .scale import Scale
 from .style import BLACK, DOUBLE_COLUMN, GREY, JOURNAL, RED, SINGLE_COLUMN, Numbers, legend_outside, save
 
@@ -58,7 +58,7 @@ class Pick(NamedTuple):
 
     x: float
     y: float
-    motion: Motion
+    motion: DrawnMotion
 
 
 def plot_stability(scales: tuple[Scale, Scale, Scale], field: Field, lines: Lines | None, picks: Sequence[Pick],

@@ -1,0 +1,95 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""One name, one thing: no two rooms have a public class, a function or a file of one name, but those listed here."""
+
+import ast
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+
+import pytest
+
+import stickslip_sim
+
+PACKAGE = Path(stickslip_sim.__file__).parent
+
+VERB = 'the command of that name, and the work that it does'
+PICTURE = 'the numbers, and the picture of them'
+JUDGE = 'the same thing, written again by the independent judge, which may import nothing of it'
+RIVAL = 'the same thing, written again by a rival of the race'
+
+SAME_NAMES = {
+    'Event': JUDGE, 'Piece': JUDGE, 'Sample': JUDGE, 'StaticLaw': JUDGE,
+    'choose_slip': RIVAL, 'static_coefficient': RIVAL, 'step': RIVAL, 'start': RIVAL,
+    'sample': JUDGE,
+    'advise': VERB, 'critical': VERB, 'simulate': f'{VERB}; the judge has it too', 'sweep': VERB, 'verify': VERB,
+    'check': 'the command, and the check of a fault as given',
+    'main': 'the start of an executable',
+    'run': 'the run of the tool; of a rival; of the judge',
+    'as_json': 'a result as values for JSON',
+    'headline': 'the last cycle in one line, for the tool and for the demonstration on topics',
+    'Grid': 'even times of steps; the points of a study on an even grid',
+    'Problem': 'the task of the contestants of a race; that of the judge',
+}
+BEING_REBUILT = {   # names to be given up with the run types and the flat arrays of the solvers; some may be gone
+    'Inputs': 'the inputs of a simulator; of a stage of the adaptive solver; those of a run that do not change',
+    'Measured': 'the measurement of an encoder; that of a check',
+    'Motion': 'the ending of a point of a study; the motion of a stage of the adaptive solver; the one that is checked',
+    'Outcome': 'of a contestant; of a limit that is checked; of a statement of the paper',
+    'Run': 'a recorded run; the run of the judge',
+    'Step': 'a step of the judge on its way to a root; a step of a run that is simulated again',
+    'Verdict': 'whether a run kept its times; whether two runs agree',
+    'inputs_at': 'the inputs at a time, with sinusoids and without',
+    'judge': 'a check of limits; of the statements of the paper',
+    'motion_of': 'the motion of a rival between two events; the drawn motion of a run',
+    'state_of': 'the state of random numbers; of a simulator',
+    'sticks': 'the sticks of a run, from its states and from its events',
+}
+SAME_FILES = {
+    'critical.py': VERB, 'sweep.py': VERB, 'uncertainty.py': f'{VERB}; {PICTURE}',
+    'bifurcation.py': PICTURE, 'characteristics.py': PICTURE, 'what_if.py': PICTURE,
+    'run.py': f'{PICTURE}: of a run, and its folder',
+    'pictures.py': 'all pictures of a room',
+    'automaton.py': f'{RIVAL}; {JUDGE}', 'problem.py': 'see `Problem`',
+    'inputs.py': JUDGE, 'roots.py': JUDGE, 'search.py': JUDGE,
+    'layout.py': 'the numbers of an axis; the bytes of a message',
+    'orders.py': 'commands and calls of a recorded run: given to a node, and to a rig',
+    'parameters.py': 'the numbers of the axis; the parameters of the node, as ROS has them',
+    'steps.py': 'the steps of a fixed-step solver; those of a run that is simulated again',
+    'tables.py': 'tables of friction; of messages',
+    'topics.py': 'topics as they are recorded; as the node has them',
+    'waves.py': 'the sinusoids of the inputs; the answer of a linear mode to them',
+}
+
+
+def definitions() -> Iterator[tuple[str, str]]:
+    """Yield each public class and function of a module with its room."""
+    for path in sorted(PACKAGE.rglob('*.py')):
+        for node in ast.parse(path.read_text(encoding='utf-8')).body:
+            if isinstance(node, ast.ClassDef | ast.FunctionDef) and not node.name.startswith('_'):
+                yield node.name, room_of(path)
+
+
+def files() -> Iterator[tuple[str, str]]:
+    """Yield each file with its room."""
+    return ((path.name, room_of(path)) for path in PACKAGE.rglob('*.py') if not path.name.startswith('_'))
+
+
+def room_of(path: Path) -> str:
+    return path.relative_to(PACKAGE).parts[0]
+
+
+def in_several_rooms(named: Iterator[tuple[str, str]]) -> dict[str, set[str]]:
+    rooms = defaultdict(set)
+    for name, room in named:
+        rooms[name].add(room)
+    return {name: found for name, found in rooms.items() if len(found) > 1}
+
+
+@pytest.mark.parametrize(('named', 'listed'), [(definitions, SAME_NAMES), (files, SAME_FILES)])
+def test_a_name_stands_for_one_thing(named: Callable[[], Iterator[tuple[str, str]]],
+                                     listed: Mapping[str, str]) -> None:
+    """No listed name is gone, either: the list does not grow old."""
+    found = in_several_rooms(named())
+    assert {name: rooms for name, rooms in found.items() if name not in {**listed, **BEING_REBUILT}} == {}
+    assert set(listed) - set(found) == set()
