@@ -126,14 +126,14 @@ def test_the_run_is_as_long_as_twenty_cycles_take() -> None:
 
 def test_a_part_that_changes_nothing_is_left_out_and_the_others_stay(advised: Advice) -> None:
     needed = {found.part.name: is_needed(advised, k) for k, found in enumerate(advised.parts)}
-    assert needed['knot of mu_k at 17.5 mm/s'] is False
+    assert needed['breakpoint of mu_k at 17.5 mm/s'] is False
     assert needed['acceleration dependence'] is True
     assert needed['rest-time growth of mu_s'] is True
     sizes = {found.part.name: found.trial.difference for found in advised.parts}
-    knot, growth = sizes['knot of mu_k at 17.5 mm/s'], sizes['rest-time growth of mu_s']
-    assert knot is not None
+    inner, growth = sizes['breakpoint of mu_k at 17.5 mm/s'], sizes['rest-time growth of mu_s']
+    assert inner is not None
     assert growth is not None
-    assert knot.largest < 1e-12 < 1e-3 < growth.largest
+    assert inner.largest < 1e-12 < 1e-3 < growth.largest
     assert advised.least.trial.difference is not None
     assert advised.least.trial.difference.largest <= 1e-3
     assert all(trial.identical for trial in advised.absent)
@@ -202,7 +202,8 @@ def test_a_part_of_what_is_left_out_goes_with_it() -> None:
 
 def test_advice_as_text_and_json(advised: Advice) -> None:
     text = '\n'.join(text_lines(advised))
-    for words in ('paper_fig7: stick-slip', 'knot of mu_k at 17.5 mm/s', 'not in the scene', 'identical to the bit',
+    for words in ('paper_fig7: stick-slip', 'breakpoint of mu_k at 17.5 mm/s', 'not in the scene',
+                  'identical to the bit',
                   'fixed_step euler, step 1 ms'):
         assert words in text
     data = json.loads(json.dumps(as_json(advised, advised.least.changes), allow_nan=False))

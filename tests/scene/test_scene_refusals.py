@@ -110,7 +110,8 @@ def test_yaml_that_ros_refuses_or_passes_over(text: str, hint: str) -> None:
     (f'    friction: {{static: {{initial: 0.1}}, kinetic: {{{EXPONENTIAL}, tolerance: 1.0e-9}}}}\n',
      'friction.kinetic.tolerance', 'fits'),
     ('    friction: {excess: {law: cosine}}\n', 'friction.excess.law', 'acceleration_dependence: false'),
-    ('    friction: {acceleration_dependence: true, excess: {law: cosine}}\n', 'friction.excess', 'one knot only'),
+    ('    friction: {acceleration_dependence: true, excess: {law: cosine}}\n', 'friction.excess',
+     'one breakpoint only'),
     ('    friction: {acceleration_dependence: true, excess: {law: power, limit_velocity: 0.1}}\n',
      'friction.excess.exponent', 'add it'),
     ('    friction: {acceleration_dependence: true, excess: {law: cosine, fractions: [1.0]}}\n',
@@ -179,7 +180,7 @@ def test_an_unknown_name_lists_the_scenes() -> None:
 def test_a_table_longer_than_a_step_can_walk_is_refused() -> None:
     values = {'friction.kinetic.velocities': [float(i) for i in range(1001)],
               'friction.kinetic.coefficients': [0.0] * 1001}
-    assert 'at most 1000 knots' in str(refusal(scene_from_values, values))
+    assert 'at most 1000 breakpoints' in str(refusal(scene_from_values, values))
 
 
 @pytest.mark.parametrize('entry', [entry for entry in PARAMETERS if entry.type.startswith('double')],

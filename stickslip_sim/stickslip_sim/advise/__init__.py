@@ -1,3 +1,3 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Advice: what each part of a scene changes and costs, and the least scene and solver for a tolerance."""
+"""Advice: the effect and the cost of each part of a scene, and the least scene and solver for a tolerance."""

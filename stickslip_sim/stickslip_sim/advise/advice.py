@@ -15,7 +15,7 @@ from .recommendation import Least, PartTrial, best_trial, least_scene
 from .solver_settings import solver_settings
 from .trial_runs import ExactRun, Trial, costs, reference_of, try_changes, with_costs
 
-_FINER = 0.1   # of the stated error of a table, to see what that error does
+_FINER = 0.1   # of the stated error of a table, to see its effect
 _MEASURING = 10   # items of work, about, that all costs together are
 
 _T = TypeVar('_T')
@@ -52,15 +52,15 @@ def advise(scene: Scene, tolerance: float, duration: float, rounds: int,
     check_tolerance(tolerance)
     if scene.rig.faults:
         raise InputError('faults.ids', [fault.id for fault in scene.rig.faults], 'left out for advice',
-                         'what faults do belongs to no part of the model')
+                         'the effect of faults belongs to no part of the model')
     reference = reference_of(scene, duration)
     parts, absent, settings = parts_of(reference.scene), absent_parts(reference.scene), solver_settings(scene)
-    tell = _Teller(len(parts) + len(absent) + len(settings) + _MEASURING, progress)
-    found = [best_trial(reference, part) for part in tell.through(parts)]
-    given = [try_changes(reference, part.name, part.changes) for part in tell.through(absent)]
-    solved = [try_changes(reference, name, settings[name]) for name in tell.through(settings)]
+    report = _Progress(len(parts) + len(absent) + len(settings) + _MEASURING, progress)
+    found = [best_trial(reference, part) for part in report.through(parts)]
+    given = [try_changes(reference, part.name, part.changes) for part in report.through(absent)]
+    solved = [try_changes(reference, name, settings[name]) for name in report.through(settings)]
     cost, trials = with_costs(reference, [*(part.trial for part in found), *given, *solved], rounds)
-    tell.done(_MEASURING)
+    report.done(_MEASURING)
     coming = iter(trials)
     found = [part._replace(trial=next(coming)) for part in found]
     given, solved = [next(coming) for _ in given], list(coming)
@@ -71,14 +71,14 @@ def advise(scene: Scene, tolerance: float, duration: float, rounds: int,
 
 
 def _finer_tables(reference: ExactRun) -> list[Trial]:
-    """Return the scene with each table of a smooth law ten times as fine: what is left of its error."""
+    """Return the scene with each table of a smooth law ten times as fine, to see the rest of its error."""
     values = reference.scene.values
     return [try_changes(reference, what, {name: _FINER * float(values[name])})  # type: ignore[arg-type]
             for what, name in (('table of mu_k', 'friction.kinetic.tolerance'),
                                ('table of psi', 'friction.excess.tolerance')) if name in values]
 
 
-class _Teller:
+class _Progress:
     """Tells how far the work has come."""
 
     def __init__(self, count: int, progress: Callable[[float], None] | None) -> None:

@@ -21,7 +21,7 @@ _Row = tuple[str, ...]
 
 
 def text_lines(advice: Advice) -> Iterator[str]:
-    """Yield the tables of parts, of what the scene leaves out, and of solvers."""
+    """Yield the tables of parts, of parts that the scene leaves out, and of solvers."""
     yield _headline(advice)
     parts = [(_named(found.trial), *_outcome(advice, found.trial), _need(advice, k))
              for k, found in enumerate(advice.parts)]
@@ -37,10 +37,10 @@ def text_lines(advice: Advice) -> Iterator[str]:
 
 
 def notes(advice: Advice) -> Iterator[str]:
-    """Yield a sentence for everything that limits what the tables say, and why a trial came to nothing."""
+    """Yield a sentence for each limit of the tables, and for each trial without a result."""
     run, estimate = advice.reference.run, advice.estimate
     if run.summary.motion == 'at rest':
-        yield f'note: nothing slips within {run.duration:g} s; a longer --duration may tell more'
+        yield f'note: nothing slips within {run.duration:g} s; a longer --duration may show more'
     if estimate.until_s < run.duration:
         yield (f'note: this motion is decided by rounding from t = {estimate.until_s:.4g} s on; '
                'choose a shorter --duration')
@@ -57,7 +57,7 @@ def notes(advice: Advice) -> Iterator[str]:
 
 
 def verdict_lines(advice: Advice, overrides: Changes) -> Iterator[str]:
-    """Yield the least scene and its solver in words; `overrides` are what changes the scene into it."""
+    """Yield the least scene and its solver in words; `overrides` change the scene into it."""
     least, (whole, reduced) = advice.least, advice.least_cost
     change = least.trial.difference
     parts = f'without {", ".join(least.parts)}' if least.parts else 'all of it'

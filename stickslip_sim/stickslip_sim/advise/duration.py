@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""How long to simulate: what may be asked for, and what is enough when nobody says."""
+"""The duration of the runs: the longest allowed one, and one that is enough when none is given."""
 
 from ..core.errors import InputError
 from ..runs.offline import run_offline

@@ -19,13 +19,13 @@ _OF_CYCLES = {'period': 'period', 'jump': 'jump', 'peak speed': 'peak_speed', 'b
 
 
 class RunFigures(NamedTuple):
-    """What of a run is compared: `events` are where slips begin and end; positions in m, `duration` in s."""
+    """The compared figures of a run: `events` are where slips begin and end; positions in m, `duration` in s."""
 
     motion: str
     duration: float
     events: list[Event]
     cycles: list[Cycle]
-    peak_speed: float          # m/s, of the whole run; 0 without a slip, however the contact creeps
+    peak_speed: float          # m/s, of the whole run; 0 without a slip, even if the contact drifts
     break_away_force: float    # N, of the first break-away; 0 without one
     stick_share: float
     end_position: float

@@ -14,7 +14,7 @@ _COARSER = (10.0, 100.0)
 
 
 def friction_parts(scene: Scene) -> Iterator[Part]:
-    """Yield every part that the friction of a scene might have, whether it has it or not, and all its inner knots."""
+    """Yield every part that the friction of a scene might have, present or not, and all its inner breakpoints."""
     values: Values = scene.values
     yield switch('acceleration dependence', 'friction.acceleration_dependence', True, False)
     yield _excess_shape(scene)
@@ -22,19 +22,20 @@ def friction_parts(scene: Scene) -> Iterator[Part]:
     yield _growth()
     yield _speed_dependence(scene)
     yield number_part('viscous friction', f'{_KINETIC}.viscous')
-    yield number_part('rise of mu_k beyond its last knot', f'{_KINETIC}.end_slope')
+    yield number_part('rise of mu_k beyond its last breakpoint', f'{_KINETIC}.end_slope')
     yield from _tables('mu_k', _KINETIC, 'coefficients', values)
 
 
 def _tables(what: str, section: str, ordinates: str, values: Values) -> Iterator[Part]:
-    """Yield the inner knots of a table, or how fine the table of a smooth law is."""
+    """Yield the inner breakpoints of a table, or how fine the table of a smooth law is."""
     for speed in values.get(f'{section}.velocities', ())[1:-1]:
-        yield Part(f'knot of {what} at {speed * 1e3:.6g} mm/s', (Variant(_without_knot(section, ordinates, speed)),))
+        without = Variant(_without_breakpoint(section, ordinates, speed))
+        yield Part(f'breakpoint of {what} at {speed * 1e3:.6g} mm/s', (without,))
     for factor in _COARSER:
         yield Part(f'table of {what}: error {factor:g} times as large', (Variant(_coarser(section, factor, values)),))
 
 
-def _without_knot(section: str, ordinates: str, speed: float) -> Change:
+def _without_breakpoint(section: str, ordinates: str, speed: float) -> Change:
     def changes(values: Values) -> Changes:
         speeds = values.get(f'{section}.velocities', ())
         if speed not in speeds[1:-1]:

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a part of a scene is: a name, and one or more ways to leave it out."""
+"""A part of a scene: a name, and one or more ways to leave it out."""
 
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
@@ -11,7 +11,7 @@ Change = Callable[[Values], Changes]
 
 
 class Variant(NamedTuple):
-    """One way to leave a part out: `changes` returns what to change in values that may lack the part already (none).
+    """One way to leave a part out: `changes` returns the changes to values that may lack the part already (none).
 
     `how` says it in words where there is more than one way.
     """

@@ -32,7 +32,7 @@ def _possible_parts(scene: Scene) -> Iterator[Part]:
 
 
 def _without_sinusoid(section: str, k: int) -> Change:
-    """Return the change of the amplitude of a wave to 0, which is as good as none, and which `--set` can do."""
+    """Return the change of the amplitude of a sinusoid to 0, which is as good as none, and which `--set` can do."""
     name = f'{section}.amplitudes'
 
     def changes(values: Values) -> Changes:

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The least scene for a tolerance, and the solver for it: from trials, and confirmed by runs of what is advised."""
+"""The least scene for a tolerance, and the solver for it: from trials, and confirmed by runs of the advised scene."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -14,7 +14,7 @@ _WORTH = 0.9   # a solver must cost less than this share of the exact one, which
 
 
 class PartTrial(NamedTuple):
-    """A part, the best way to leave it out, and what came of that."""
+    """A part, the best way to leave it out, and the result."""
 
     part: Part
     variant: Variant
@@ -22,7 +22,7 @@ class PartTrial(NamedTuple):
 
 
 class Least(NamedTuple):
-    """What is left of a scene: `parts` are out, `trial` is what remains, with the solver `solver`.
+    """The least scene: `parts` are out, `trial` is the rest, with the solver `solver`.
 
     `changes` turn the scene into it.
     """

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Runs of changed scenes beside the reference: what comes of them, and what they cost."""
+"""Runs of changed scenes beside the reference: their results and their costs."""
 
 import time
 from collections.abc import Callable, Sequence
@@ -47,7 +47,7 @@ class ExactRun(NamedTuple):
 class Trial(NamedTuple):
     """A run of the scene with changes; without a difference `note` says why there is none.
 
-    `identical`: its events and its end are those of the reference to the last bit.  `how` says what the changes are
+    `identical`: its events and its end are those of the reference to the last bit.  `how` says how the changes are
     where the name does not.  `cost` is processor time for each simulated second, s.
     """
 
@@ -62,7 +62,7 @@ class Trial(NamedTuple):
 
 
 def changes_between(base: Scene, other: Scene) -> Changes:
-    """Return the changes that make the other scene of the base; what a changed choice takes with it needs none."""
+    """Return the changes that make the other scene of the base; parameters that a changed choice drops need none."""
     return {name: value for name, value in other.values.items() if base.values.get(name) != value}
 
 
@@ -91,18 +91,18 @@ def costs(scenes: Sequence[Scene], duration: float, rounds: int) -> list[Cost | 
     """Return the processor time of each scene per simulated second, interleaved; None where the solver gives up."""
     duration = min(duration, _LONGEST)
     for scene in scenes:
-        _cost_of_one(_prepared(scene, _MOMENT))   # compiles what is not
+        _cost_of_one(_prepared(scene, _MOMENT))   # compile first
     runs = [_prepared(scene, duration) for scene in scenes]
     first = [_cost_of_one(run) for run in runs]
     quick = [k for k, cost in enumerate(first) if cost is not None and cost.median < _SLOW]
-    # whoever comes first in a round finds the caches full of the last one's data: a run that does not count does
+    # the first run of a round finds the caches full of the last one's data: a run that does not count does
     _, *measured = measure([runs[k] for k in (*quick[:1], *quick)], rounds) if quick else [None]
     found = dict(zip(quick, measured))
     return [_per_second(found.get(k, cost), duration) for k, cost in enumerate(first)]
 
 
 def with_costs(reference: ExactRun, trials: Sequence[Trial], rounds: int) -> tuple[Cost | None, list[Trial]]:
-    """Return what the reference costs, and the trials with their costs; those that came to nothing stay without."""
+    """Return the cost of the reference, and the trials with their costs; failed trials have none."""
     sound = [trial for trial in trials if trial.difference is not None]
     whole, *others = costs([reference.scene, *(trial.scene or reference.scene for trial in sound)],
                            reference.run.duration, rounds)

@@ -37,7 +37,7 @@ class Errors(NamedTuple):
 
 
 class Truth(NamedTuple):
-    """What the reference found: events, and the position at the end, m."""
+    """The result of the reference: events, and the position at the end, m."""
 
     events: list[Event]
     position: float
@@ -85,7 +85,7 @@ def pair(want: Sequence[_Point], got: Sequence[_Point], apart: float) -> list[tu
     """Return the pairs of least total distance in time, in order, none further apart than `apart`."""
     if len(want) == len(got) and all(abs(a[0] - b[0]) <= apart for a, b in zip(want, got)):
         return list(zip(want, got))
-    # cost of the best pairing of what follows; leaving one out on either side costs half of `apart`
+    # cost of the best pairing of the rest; leaving one out on either side costs half of `apart`
     alone = 0.5 * apart
     n = len(got)
     rows = [[alone * (n - j) for j in range(n + 1)]]

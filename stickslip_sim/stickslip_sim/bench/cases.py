@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""What is raced: four cases A to D that span what an axis does, and every shipped scene."""
+"""The cases of the race: A to D, which span the motions of an axis, and every shipped scene."""
 
 import math
 

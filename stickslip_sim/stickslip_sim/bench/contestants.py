@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Who races: the solvers of this product, and the peers."""
+"""The contestants of the race: the solvers of stickslip, and the peers."""
 
 from .own_solvers import own_solvers
 from .peers import dop853, euler, mujoco, scipy_ivp, sksundae, sundials

@@ -35,7 +35,7 @@ def measure(runs: Sequence[Callable[[], object]], rounds: int) -> list[Cost]:
 
 
 def cost_sample(run: Callable[[], object], count: int = 1) -> float:
-    """Return what a run costs, the mean of `count` in a row."""
+    """Return the cost of a run, the mean of `count` in a row."""
     begin = time.process_time()
     for _ in range(count):
         run()

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""What can only be measured in a process of its own: plain Python, the first start, a start with cached code."""
+"""Measurements in processes of their own: plain Python, the first start, a start with cached code."""
 
 import json
 import os
@@ -37,8 +37,8 @@ _PLAIN = 'from stickslip_sim.bench.outside import tell_plain_ratios; tell_plain_
 
 def outside_ratios() -> Iterator[Ratio]:
     """Yield the figures of plain Python and the times of a start."""
-    told = json.loads(_run(_PLAIN, STICKSLIP_COMPILED='0'))
-    for case, ratio in told.items():
+    ratios = json.loads(_run(_PLAIN, STICKSLIP_COMPILED='0'))
+    for case, ratio in ratios.items():
         yield at_least('cost of scipy DOP853, 1e-12 / exact, plain Python', case, ratio, _PLAIN_MARK, _PLAIN_AIM)
     yield from start_ratios()
 

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The solvers of this product as contestants: no Python between two events where they are compiled."""
+"""The solvers of stickslip as contestants: no Python between two events where they are compiled."""
 
 import math
 from collections.abc import Callable
@@ -40,7 +40,7 @@ def own_solver(name: str, settings: tuple[Setting, ...], make: Callable[[Setting
 
 
 def own_solvers() -> list[Peer]:
-    """Return all solvers of this product as contestants."""
+    """Return all solvers of stickslip as contestants."""
     found = [exact_solver()]
     for method, steps in (('euler', time_steps(1e-3, 1e-4, 1e-5)), ('rk4', time_steps(1e-3, 1e-4, 1e-5))):
         found.append(own_solver(f'fixed_step {method}', steps, partial(_by_step, fixed_step.solver, method)))
@@ -65,7 +65,7 @@ def exact_solver() -> Peer:
 
 
 def state_for(problem: Problem) -> Numbers:
-    """Return an empty state with room for the waves of a problem."""
+    """Return an empty state with space for the sinusoids of a problem."""
     return np.zeros(STATE_SIZE + WAVE_SIZE * (len(problem.sinusoids) // WAVE_INPUTS))
 
 

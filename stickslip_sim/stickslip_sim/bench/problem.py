@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""One problem for every contestant: an axis, its courses and a duration; and what a contestant gives back."""
+"""One problem for every contestant: an axis, its input profiles and a duration; and the result of a contestant."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ def _as_it_is(table: Any) -> Any:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a run gave: a table of events that `read` understands, and the position at the end, m.
+    """The result of a run: a table of events that `read` understands, and the position at the end, m.
 
     Reading is not part of the run that is timed, and must be done before the next one.
     """
@@ -41,7 +41,7 @@ class Outcome:
 
 @dataclass(frozen=True)
 class Problem:
-    """What is simulated, and for how long (s)."""
+    """An axis with its inputs, and a duration (s)."""
 
     name: str
     summary: str
@@ -63,7 +63,7 @@ class Problem:
 
     @cached_property
     def pieces(self) -> Numbers:
-        """One row for each stretch on which both inputs are linear: begin, v, its rate, F_e, its rate (waves apart)."""
+        """One row for each stretch on which both inputs are linear: start, v, its rate, F_e, its rate; no sinusoids."""
         rows, time = [], 0.0
         while time < self.duration:
             v, f = self.drive.piece_at(time), self.force.piece_at(time)
@@ -74,7 +74,7 @@ class Problem:
 
     @cached_property
     def sinusoids(self) -> Numbers:
-        """Four numbers for each wave that is not 0, see `solvers.Solver`: frequency Hz, phase in turns, m/s, N."""
+        """Four numbers for each sinusoid that is not 0, see `solvers.Solver`: frequency Hz, phase in turns, m/s, N."""
         rows: list[tuple[float, ...]] = [(w.frequency, 0.5 * w.phase / np.pi, w.amplitude, 0.0)
                                          for w in self.drive.sinusoids]
         rows += [(w.frequency, 0.5 * w.phase / np.pi, 0.0, w.amplitude) for w in self.force.sinusoids]
@@ -82,7 +82,7 @@ class Problem:
 
     @cached_property
     def longest_step(self) -> float:
-        """A quarter of the shortest wave, so that no adaptive step jumps over one, s."""
+        """A quarter of the shortest period, s, so that no adaptive step jumps over one."""
         return min((0.25 / frequency for frequency in self.sinusoids[::4]), default=np.inf)
 
     def event_rows(self) -> Any:

@@ -14,7 +14,7 @@ from .peers.peer import Peer, Setting
 from .problem import Outcome, Problem
 
 DIGITS = 30        # of the reference
-PATIENCE = 30.0    # s of processor time: a run that would take longer is told as such, and not waited for
+PATIENCE = 30.0    # s of processor time: a run that would take longer is marked as such, and not waited for
 _PARTS = (64, 8)   # of the duration that is run first, to foresee the cost of all of it
 
 
@@ -49,7 +49,7 @@ def race(problems: Sequence[Problem], contestants: Sequence[Peer], rounds: int,
 
 
 def truth_of(problem: Problem) -> Truth:
-    """Return what the reference says, right to DIGITS digits."""
+    """Return the result of the reference, right to DIGITS digits."""
     run = simulate_reference(problem.axis, problem.initial, problem.drive, problem.force, problem.duration, DIGITS)
     return Truth(list(run.events), run.final.position)
 
@@ -84,12 +84,12 @@ def _race_case(problem: Problem, contestants: Sequence[Peer], rounds: int) -> Ca
 
 
 def _foresee(peer: Peer, problem: Problem, setting: Setting) -> float:
-    """Return what a run would take, judged by its beginning, s of processor time."""
+    """Return the expected cost of a run, from its beginning, s of processor time."""
     foreseen = 0.0
     for part in _PARTS:
         run = peer.prepare(replace(problem, duration=problem.duration / part), setting)
         if part == _PARTS[0]:
-            run()   # what is compiled at the first run is no part of it
+            run()   # compilation at the first run does not count
         foreseen = part * cost_sample(run)
         if foreseen > PATIENCE:
             break

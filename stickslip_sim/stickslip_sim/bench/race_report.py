@@ -34,7 +34,7 @@ def as_case(result: CaseResult) -> Json:
 
 
 def machine() -> str:
-    """Return what was measured on."""
+    """Return the machine of the measurement."""
     info = pathlib.Path('/proc/cpuinfo')
     lines = info.read_text().splitlines() if info.is_file() else []
     model = next((line.split(':')[1].strip() for line in lines if line.startswith('model name')), platform.machine())

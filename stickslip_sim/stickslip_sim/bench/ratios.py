@@ -10,7 +10,7 @@ from .race import DIGITS, CaseResult, Row
 
 _FINEST = Setting(1e-12, 'tolerance')
 _MILLISECOND = Setting(1e-3, 'step')
-# (rival, setting, case, mark: at least that many times the exact engine's cost, aim; None: told without a mark)
+# (rival, setting, case, mark: at least that many times the exact engine's cost, aim; None: reported without a mark)
 _MARKS: tuple[tuple[str, Setting, str, float | None, float | None], ...] = (
     *(('scipy DOP853', _FINEST, case, 3000.0, 6000.0) for case in 'ABC'), ('scipy DOP853', _FINEST, 'D', None, None),
     *(('CVODE (Adams), as from C', _FINEST, case, 250.0, 400.0) for case in 'ABC'),
@@ -25,7 +25,7 @@ _ERROR_MARK, _ERROR_AIM = 1e-12, 2e-14   # s, of event times
 
 
 class Ratio(NamedTuple):
-    """What was measured, beside what must be reached (`mark`) and what is striven for (`aim`), where they are set."""
+    """A measured figure beside the limit to reach (`mark`) and the goal (`aim`), where they are set."""
 
     what: str
     case: str

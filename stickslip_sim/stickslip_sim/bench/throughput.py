@@ -56,7 +56,7 @@ def _wall(axis: Axis, grid: dict[str, Any], cores: int) -> float:
 
 
 def _by_scipy(axis: Axis, grid: dict[str, Any], index: int) -> float:
-    """Return what scipy takes for one axis of the grid, s of processor time."""
+    """Return the cost of one axis of the grid by scipy, s of processor time."""
     mass, stiffness, feed = (float(grid[name][index]) for name in ('mass', 'drive_stiffness', 'drive_velocity'))
     case = make_case('A')
     problem = Problem('one of many', '', replace(axis, mass=mass, drive_stiffness=stiffness), case.initial,

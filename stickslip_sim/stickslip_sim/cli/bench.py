@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""`stickslip bench`: what every solver costs and how wrong it is, against the reference and beside its peers."""
+"""`stickslip bench`: cost and error of every solver, against the reference and beside its peers."""
 
 import json
 import os

@@ -13,7 +13,7 @@ _NUMBERS = (1, 2, 3)   # columns to the right
 
 
 def table_lines(evidence: Evidence, outcomes: Sequence[Outcome]) -> Iterator[str]:
-    """Yield what was checked, what is missing of it, and a line for each limit."""
+    """Yield the checked run, its missing parts, and a line for each limit."""
     motion = evidence.motion
     yield (f'{evidence.name}: {motion.begin:g} to {motion.end:g} s, {len(motion.time)} states, '
            f'{len(motion.events)} transitions')

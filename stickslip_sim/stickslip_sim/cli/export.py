@@ -33,10 +33,10 @@ def export(run: str, csv_file: str | None, parquet: str | None, topic: str) -> N
     _check(csv_file, parquet)
     from ..recording import read_run
 
-    with warnings.catch_warnings(record=True) as told:
+    with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter('always')
         recorded = read_run(run)
-    for warning in told:
+    for warning in caught:
         print(f'note: {warning.message}', file=sys.stderr)
     if parquet is not None:
         with whole(parquet) as temporary:

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""`stickslip extremes`: judge the engine by what breaks other simulators, and print the figures beside their marks."""
+"""`stickslip extremes`: judge the engine by cases that break other simulators; print the figures and their marks."""
 
 import sys
 from pathlib import Path
@@ -60,6 +60,6 @@ def _check_mpmath() -> None:
 
 
 def _tell(text: str) -> None:
-    """Say on a terminal what is going on; an empty text takes it away."""
+    """Show the present step on a terminal; an empty text removes it."""
     if sys.stderr.isatty():
         print(f'\r\x1b[K{text}', end='', file=sys.stderr, flush=True)

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Where results go: checked before the work begins, and written whole or not at all."""
+"""The files of results: checked before the work begins, and written whole or not at all."""
 
 import os
 import shutil
@@ -92,7 +92,7 @@ def write_text(path: str, lines: Iterable[str]) -> None:
     """Write lines to a file, or to standard output for '-'."""
     if path == STDOUT:
         if sys.stdout is None:
-            raise InputError('output', 'standard output', 'open', 'it was closed by what started this')
+            raise InputError('output', 'standard output', 'open', 'the process that started this closed it')
         with _refusing('standard output'):
             sys.stdout.writelines(lines)
             sys.stdout.flush()
@@ -103,7 +103,7 @@ def write_text(path: str, lines: Iterable[str]) -> None:
 
 @contextmanager
 def _refusing(path: str) -> Iterator[None]:
-    """Turn what the disk says into an InputError; a reader who left is no error of the output."""
+    """Turn an error of the disk into an InputError; a reader that left is no error of the output."""
     try:
         yield
     except BrokenPipeError:

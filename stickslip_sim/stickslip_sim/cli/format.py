@@ -26,7 +26,7 @@ def quantity(value: float, unit: str, digits: int = 5) -> str:
 
 
 def headline(figures: Summary) -> str:
-    """Return the figures of the last cycle in one line, or what happened instead."""
+    """Return the figures of the last cycle in one line, or the motion where there is no cycle."""
     cycle = figures.last
     if cycle is None:
         return f'{figures.motion}; {100.0 * figures.stick_share:.3g} % of the time in stick'

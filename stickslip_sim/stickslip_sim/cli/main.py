@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The command `stickslip`: its verbs, and what becomes of errors.
+"""The command `stickslip`: its verbs, and the exit code of each error.
 
 Exit codes: 0 done; 1 internal error; 2 wrong use, scene, parameter or file; 3 the verdict is "failed" or "differs";
 4 the solver gave up; 130 interrupted.  One line on standard error says why; STICKSLIP_DEBUG=1 shows the traceback.
@@ -45,7 +45,7 @@ _TERMINATED = 143
 @click.pass_context
 def stickslip(context: click.Context) -> None:
     """Stick-slip motion of a feed axis, simulated exactly."""
-    if context.invoked_subcommand is None:   # what click does by itself depends on its version
+    if context.invoked_subcommand is None:   # the behaviour of click depends on its version
         click.echo(context.get_help(), err=True)
         context.exit(2)
 
@@ -67,7 +67,7 @@ def run(arguments: Sequence[str]) -> int:
         code = _invoked(arguments)
         _flush()
         return code
-    except BrokenPipeError:     # whoever reads has seen enough
+    except BrokenPipeError:     # the reader has seen enough
         _give_up_output()
         return 0
     except OSError as error:
@@ -108,17 +108,17 @@ def _usage(error: click.ClickException) -> str:
 
 
 def _is_of_output(error: Exception) -> bool:
-    """Return whether standard output failed: what is written to files is refused by their name (`files`)."""
+    """Return whether standard output failed; a file that fails is refused by its name (`files`)."""
     return isinstance(error, OSError) and error.filename is None and error.errno in _UNWRITABLE
 
 
 def _flush() -> None:
-    if sys.stdout is not None:    # None: closed by whoever started this
+    if sys.stdout is not None:    # None: closed by the process that started this
         sys.stdout.flush()
 
 
 def _give_up_output() -> None:
-    """Let what is still on its way to standard output go nowhere: Python would fail to write it at its end."""
+    """Drop the rest of the standard output: Python would fail to write it at its end."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""What RUN_OR_SCENE names."""
+"""The argument RUN_OR_SCENE."""
 
 from pathlib import Path
 

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""`stickslip scenes`: what can be simulated without writing a file."""
+"""`stickslip scenes`: the scenes that come with the package."""
 
 import click
 

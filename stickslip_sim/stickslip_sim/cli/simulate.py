@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""`stickslip simulate`: run a scene as fast as possible and write what is asked for."""
+"""`stickslip simulate`: run a scene as fast as possible and write the outputs that are asked for."""
 
 import json
 import shutil
@@ -20,7 +20,7 @@ _PLOT_POINTS = 20_000
 
 
 class _Wishes(NamedTuple):
-    """What the user asked for."""
+    """The options of the user."""
 
     duration: float
     events: str | None
@@ -97,7 +97,7 @@ def _with_estimate(run: 'Trajectory') -> 'Trajectory':
 
 
 def _write(wishes: _Wishes, run: 'Trajectory') -> None:
-    """Write the outputs, standard output last: whoever reads it may leave early."""
+    """Write the outputs, standard output last: its reader may leave early."""
     from .csv_tables import event_lines, sample_lines
 
     if wishes.bag is not None:

@@ -23,7 +23,7 @@ def sweep(scene: str, ranges: tuple[str, ...], sobol: int | None, out: str, dura
           workers: str | None, scheduler: str | None, resume: bool, changes: tuple[str, ...]) -> None:
     """Run SCENE at many values of its parameters; write motion, amplitude, period and more of each.
 
-    Ctrl-C keeps what is done.  `stickslip map FOLDER` draws it.
+    Ctrl-C keeps the finished points.  `stickslip map FOLDER` draws it.
     """
     members = workers_of(workers, scheduler)
     study = _study(scene, ranges, sobol, duration, changes)

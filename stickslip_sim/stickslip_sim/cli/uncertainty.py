@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""`stickslip uncertainty`: how sure the motion of a scene is whose numbers are known only roughly."""
+"""`stickslip uncertainty`: the spread of the motion of a scene with parameters that are known only roughly."""
 
 import json
 from typing import TYPE_CHECKING, Any
@@ -29,7 +29,7 @@ def uncertainty(scene: str, file: str, samples: int, plot: str | None, out: str,
                 workers: str | None, scheduler: str | None, resume: bool, changes: tuple[str, ...]) -> None:
     """Run SCENE with parameters drawn from distributions: percentiles, and which parameter decides.
 
-    FOLDER gets uncertainty.json beside the table of all points.  Ctrl-C keeps what is done.
+    FOLDER gets uncertainty.json beside the table of all points.  Ctrl-C keeps the finished points.
     """
     if plot is not None:
         check_picture('--plot', plot)
@@ -79,7 +79,7 @@ def _plain(sample: 'Saltelli', found: 'Uncertainty') -> dict[str, Any]:
 
 
 def _laws(sample: 'Saltelli') -> list[str]:
-    """Return a line for each parameter: its distribution, and what was cut off."""
+    """Return a line for each parameter: its distribution, and the share that was cut off."""
     from ..study.distribution import LAWS
 
     lines = []
@@ -114,12 +114,12 @@ def _indices(sample: 'Saltelli', found: 'Uncertainty') -> list[str]:
     lines = ['share of the variance that one parameter explains by itself (and with its interactions)']
     for figure, of in found.indices.items():
         if of is None:
-            lines.append(f'{figure:22} not told: not every point has it, or all have the same')
+            lines.append(f'{figure:22} none: not every point has it, or all have the same')
             continue
         lines.append(figure)
-        lines += [f'  {name:{width}}{_told(of[name])}' for name in sorted(names, key=lambda n: -of[n].first_order)]
+        lines += [f'  {name:{width}}{_cell(of[name])}' for name in sorted(names, key=lambda n: -of[n].first_order)]
     return lines
 
 
-def _told(index: 'Index') -> str:
+def _cell(index: 'Index') -> str:
     return f'{index.first_order:6.3f} ± {index.error:.3f}  ({index.total:.3f} ± {index.total_error:.3f})'

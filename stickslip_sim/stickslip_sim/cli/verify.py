@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""`stickslip verify`: run a recorded run again, and compare; or ask what would have been."""
+"""`stickslip verify`: run a recorded run again and compare, as it was or with changes (what if)."""
 
 import json
 from pathlib import Path
@@ -94,8 +94,8 @@ def _write(folder: Path, scene: 'Scene', changes: dict[str, object], recorded: '
     from ..plots import plot_beside
     from ..runs.receipt import plain
 
-    told = ', '.join(f'{name} = {value}' for name, value in changes.items())
-    plot_beside(recorded.columns, other.columns, f'{scene.name}\nwhat if {told}', folder / 'what_if.png')
+    changed = ', '.join(f'{name} = {value}' for name, value in changes.items())
+    plot_beside(recorded.columns, other.columns, f'{scene.name}\nwhat if {changed}', folder / 'what_if.png')
     figures = {'scene': scene.name, 'changes': changes, 'recorded': recorded.figures, 'what_if': other.figures}
     text = json.dumps(plain(figures), indent=2, allow_nan=False) + '\n'
     (folder / 'what_if.json').write_text(text, encoding='utf-8')

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""One parameter of a scene: what it is called, what it may be, and the check of a value against that."""
+"""One parameter of a scene: its name, its range, and the check of a value."""
 
 import math
 import sys
@@ -72,7 +72,7 @@ class Parameter:
 
     @property
     def allowed(self) -> str:
-        """What a value must be, in words."""
+        """The range of a value, in words."""
         if self.choices:
             return 'one of ' + ', '.join(self.choices)
         bounds = f', {self.range}' if self.range else ''

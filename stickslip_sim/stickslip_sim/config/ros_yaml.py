@@ -3,7 +3,7 @@
 """YAML as ROS 2 reads it, and nothing more: the only place that imports a YAML library.
 
 ROS has its own typing of plain words (6e5 is a number, 1:30 and null are texts), knows no aliases and no tags, and this
-reader refuses what ROS would pass over in silence (a key given twice, a second document).
+reader refuses mistakes that ROS would pass over in silence (a key given twice, a second document).
 """
 
 import math

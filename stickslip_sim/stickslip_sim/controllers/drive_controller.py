@@ -12,7 +12,7 @@ from .moves import Setpoint
 
 
 class Memory(NamedTuple):
-    """What a controller remembers from one step to the next."""
+    """The memory of a controller from one step to the next."""
 
     integral: float  # m/s, of the velocity loop
     slide: Slide
@@ -30,7 +30,7 @@ AT_REST = Memory(0.0, Slide())
 
 @dataclass(frozen=True, slots=True)
 class Controller:
-    """`compensation` may be None; `max_velocity` (m/s) is what the drive can do."""
+    """`compensation` may be None; `max_velocity` (m/s) is the limit of the drive."""
 
     cascade: Cascade
     compensation: BranchCompensation | None = None
@@ -38,7 +38,7 @@ class Controller:
 
     def step(self, memory: Memory, setpoint: Setpoint, measured: Measured,
              period: float) -> tuple[Memory, DriveCommand]:
-        """Return the command from now on, and what to remember; `period` (s) went by since the latest.
+        """Return the command from now on, and the new memory; `period` (s) went by since the latest.
 
         The integral part stands still while the limit holds the command back and it would only wind up.
         """

@@ -22,7 +22,7 @@ class Progress(NamedTuple):
 
 
 class Answer(NamedTuple):
-    """What one measurement leads to."""
+    """The command and the memory after one measurement."""
 
     progress: Progress
     setpoint: Setpoint

@@ -8,7 +8,7 @@ a cascade crosses this gap by summing up an error, overshoots, and ends in stick
 measure the spring's force, so that the gap can be crossed at once, as backlash is in a gear.  A reversal is the same:
 the spring is brought over to the friction of the new direction.
 
-Only a share of the gap is crossed: what overcompensates friction makes limit cycles of its own.  (Friction measured
+Only a share of the gap is crossed: overcompensation makes limit cycles of its own.  (Friction measured
 behind an elastic joint: Le Tien, Albu-Schäffer, De Luca and Hirzinger 2008, IROS; compensation in general and the risk
 of too much: Armstrong-Hélouvry, Dupont and Canudas de Wit 1994, Automatica 30; inverse of a hysteresis: Tao and
 Kokotović 1996, Adaptive Control of Systems with Actuator and Sensor Nonlinearities.)
@@ -53,7 +53,7 @@ class BranchCompensation:
                 + self.axis.drive_damping * (measured.drive_velocity - measured.slider_velocity))
 
     def drive_velocity(self, slide: Slide, wanted: float, measured: Measured) -> float:
-        """Return the velocity to add to the drive's, m/s, when the slider shall move with `wanted` (m/s)."""
+        """Return the velocity to add to the drive's, m/s, when the slider should move with `wanted` (m/s)."""
         if slide.direction == 0 or self.axis.drive_stiffness == 0.0:
             return 0.0
         error = slide.direction * (wanted - measured.slider_velocity)

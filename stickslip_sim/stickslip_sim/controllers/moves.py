@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 
 class Setpoint(NamedTuple):
-    """Where the slider shall be, and how fast."""
+    """Where the slider should be, and how fast."""
 
     position: float  # m
     velocity: float  # m/s

@@ -148,7 +148,7 @@ def _simulator_on(make_course: Callable[[], InputProfile]) -> Simulator:
 
 
 def _refused_profiles(bad: float) -> float:
-    """See that a course or an axis made in Python is as strict as a scene."""
+    """See that an input profile or an axis made in Python is as strict as a scene."""
     for make_course in (lambda: steps('drive', [0.0, bad], [0.0, 0.0]), lambda: table('drive', [0.0, bad], [0.0, 0.0])):
         _check_refused(make_course, 'drive')
     friction = paper_axis(RIGID).friction

@@ -37,7 +37,7 @@ def _below_the_limit_velocity(solver: Solver, contact: Contact, speed: float) ->
 
 
 def _random_branches(solver: Solver, seed: int) -> float:
-    """Both branches fall by random amounts, so that the coasting band is wide, narrow or bent by a knot."""
+    """Both branches fall by random amounts, so that the coasting band is wide, narrow or bent by a breakpoint."""
     rng = random.Random(seed)
     top = rng.uniform(0.01, 0.05)
     kinetic = KineticTable((0.0, rng.uniform(0.2, 0.8) * top, top), (0.12, rng.uniform(0.07, 0.12), 0.05))

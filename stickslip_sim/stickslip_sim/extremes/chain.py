@@ -82,7 +82,7 @@ def _after(axis: Axis, before: _Point, event: Event) -> _Point:
 
 
 def _line(axis: Axis, speed: Number, *, up: bool) -> tuple[Number, Number, Number, Number]:
-    """Return mu_k, its slope, psi and its slope at a speed, on the piece that goes up or down from there."""
+    """Return mu_k, its slope, psi and its slope at a speed, on the segment that goes up or down from there."""
     table, excess = axis.friction.kinetic, axis.friction.excess
     assert excess is not None
     assert table.velocities == excess.velocities
@@ -130,7 +130,7 @@ def _lateness(axis: Axis, drive: float, point: _Point, event: Event, t: Number) 
 
 
 def _guard(axis: Axis, drive: float, point: _Point, event: Event, t: Number) -> Number:
-    """Return what vanishes at an event of this kind."""
+    """Return the quantity that vanishes at an event of this kind."""
     motion, normal = _motion(axis, drive, point, t), mpf(axis.normal_force)
     if event.kind == EventKind.BREAKAWAY:
         side = 1 if event.friction_force > 0.0 else -1
@@ -157,18 +157,18 @@ def _check_no_peak_before(axis: Axis, drive: float, point: _Point, end: float) -
     gamma = 0.5 * (axis.drive_damping + contact.damping) / axis.mass
     frequency = stiffness / axis.mass - gamma * gamma
     if frequency <= 0.0:
-        return   # it creeps up to the limit once
-    nu, creep = math.sqrt(frequency), axis.drive_stiffness * drive / stiffness
+        return   # it drifts up to the limit once
+    nu, drift = math.sqrt(frequency), axis.drive_stiffness * drive / stiffness
     step = 0.05 * 2.0 * math.pi / nu
     t = np.arange(max(0.0, end - _PEAKS * step), end - 5.0 * step, step)
     start = float(_motion(axis, drive, point, mpf(0)).acceleration)
-    # y″ is a free motion: y = steady + creep t + (free part), all from y″(0) and y″′(0)
+    # y″ is a free motion: y = steady + drift t + (free part), all from y″(0) and y″′(0)
     jerk = (axis.drive_stiffness * drive - stiffness * float(point.velocity)) / axis.mass - 2.0 * gamma * start
     decay, sine, cosine = np.exp(-gamma * t), np.sin(nu * t), np.cos(nu * t)
     acceleration = decay * (start * cosine + (jerk + gamma * start) / nu * sine)
     slope = decay * (jerk * cosine - (gamma * jerk + (frequency + gamma * gamma) * start) / nu * sine)
     omega2 = frequency + gamma * gamma
-    velocity = creep - (slope + 2.0 * gamma * acceleration) / omega2
+    velocity = drift - (slope + 2.0 * gamma * acceleration) / omega2
     load = axis.drive_stiffness * (float(point.stretch) + drive * t) + axis.drive_damping * drive
     shared = contact.stiffness / stiffness
     travel = (load - axis.mass * acceleration - 2.0 * gamma * axis.mass * velocity) / stiffness

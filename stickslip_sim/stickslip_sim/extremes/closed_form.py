@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Linear motions and break-away instants in closed form, in mpmath's arithmetic: what the figures are measured against.
+"""Linear motions and break-away instants in closed form, in mpmath's arithmetic: the figures are measured against them.
 
 m x″ + D x′ + K x = q(t) from rest is x = Σ Δ_i G_(k+1)(t − t_i)/m, where q's k-th derivative jumps by Δ_i at t_i, and
 G_k is the k-fold integral of the impulse response (exp(λ₁t) − exp(λ₂t))/(λ₁ − λ₂).

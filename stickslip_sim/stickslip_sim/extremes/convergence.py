@@ -22,14 +22,14 @@ _Make = Callable[[Solver], Simulator]
 def orders(setup: Setup) -> Measurement:
     """X15: the order from errors at steps that halve, over a slip and over a second with all its events."""
     tally = Tally(_NEAR, 'off the declared order')
-    told = []
+    shown = []
     for method, (inside, across) in DECLARED.items():
         measured: list[float] = []
         tally.judge(_order_inside, method, inside, measured)
         for contact in CONTACTS:
             tally.judge(_order_across, method, across, contact, setup.choose(8, 6), measured)
-        told.append(f'{method} ' + ', '.join(f'{order:.2f}' for order in measured))
-    return tally.finding('with another order', 'measured in a mode and across events: ' + '; '.join(told))
+        shown.append(f'{method} ' + ', '.join(f'{order:.2f}' for order in measured))
+    return tally.finding('with another order', 'measured in a mode and across events: ' + '; '.join(shown))
 
 
 def _order_inside(method: str, declared: int, measured: list[float]) -> float:

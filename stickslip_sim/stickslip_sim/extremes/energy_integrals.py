@@ -27,7 +27,7 @@ _PANEL = 1.2   # rad of the fastest motion
 
 
 def energy_balance(setup: Setup) -> Measurement:
-    """X16: what is left of the balance over its throughput, for each cycle and over the run; friction only takes."""
+    """X16: the residual of the balance over its throughput, for each cycle and over the run; friction only takes."""
     tally = Tally(1e-12)
     for contact in CONTACTS:
         for branches in (True, False):
@@ -52,7 +52,7 @@ class _Account:
         self.terms += terms
 
     def balance(self, before: float, stored: float) -> float:
-        """Return | given − taken − stored | over the sum of magnitudes, or over what is stored where that is more."""
+        """Return | given − taken − stored | over the sum of magnitudes, or the stored energy where that is more."""
         size = max(math.fsum(map(abs, self.terms)), before, before + stored)
         return abs(math.fsum(self.terms) - stored) / size if size > 0.0 else 0.0
 

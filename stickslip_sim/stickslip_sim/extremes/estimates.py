@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""X26: what a run says about its own error, for every solver, against the true error.
+"""X26: the error estimate of a run, for every solver, against the true error.
 
 The truth is that of the reference.  Judged are the events up to the time `until_s` that the estimate speaks of: they
 must be those of the reference, and no further off than it says.  An `until_s` before the end must have its reason.
@@ -34,10 +34,10 @@ _FEW = ('paper_fig7', 'paper_fig8')
 
 
 class _Judged(NamedTuple):
-    """What an estimate told of steps was worth: the error over it, and how many of the events it spoke of."""
+    """The worth of an estimate of steps: the error over it, and how many of the events it covered."""
 
     ratio: float
-    told: int
+    covered: int
     events: int
 
 
@@ -53,8 +53,8 @@ def estimates(setup: Setup) -> Measurement:
             run = _run(replace(scene, solver=solver))
             if run:
                 tally.judge(_ratio, f'{scene.name} with {solver.name} {solver.settings}', run, wanted, judged)
-    half = median(case.ratio for case in judged if case.told)
-    share = sum(case.told for case in judged) / sum(case.events for case in judged)
+    half = median(case.ratio for case in judged if case.covered)
+    share = sum(case.covered for case in judged) / sum(case.events for case in judged)
     return tally.finding('with an error beyond the estimate', f'of steps half are at least {half:.3g} of it, for '
                          f'{share:.0%} of the events', kept=half >= _TIGHT and share >= _TOLD)
 
@@ -127,7 +127,7 @@ def _lasting(events: Sequence[Event]) -> list[Event]:
 
 
 def _has_reason(estimate: ErrorEstimate, events: Sequence[Event], wanted: Sequence[Event]) -> bool:
-    """Whether two runs differ by more than an estimate tells."""
+    """Whether two runs differ by more than an estimate says."""
     return len(events) != len(wanted) or any(
         (a.kind, a.direction) != (b.kind, b.direction) or _apart(a, b) > estimate.event_time_s
         for a, b in zip(events, wanted))

@@ -18,7 +18,7 @@ PHASES = -0.45 * math.pi, 0.45 * math.pi   # rad: the first extreme is the peak
 
 
 def grazing_drive(axis: Axis, overshoot: float, frequency: float, phase: float) -> InputProfile:
-    """Return a drive course (m/s) whose contact force peaks at N mu_inf (1 + overshoot), from prolonged rest.
+    """Return a drive profile (m/s) whose contact force peaks at N mu_inf (1 + overshoot), from prolonged rest.
 
     The peak comes at (π − phase)/(2π frequency), or a little later through the damper; it is the only way to the limit.
     Raises InputError without a drive spring or a finite limit, or for a phase (rad) whose first extreme is no peak.

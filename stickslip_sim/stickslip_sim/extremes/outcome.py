@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""What the suite is made of: an extreme, the setup it is judged in, the tally of its cases, and its outcome."""
+"""The elements of the suite: an extreme, its setup, the tally of its cases, and its result."""
 
 import math
 from collections.abc import Callable
@@ -14,7 +14,7 @@ _SHOWN = 300   # characters of a missed case
 
 
 class Missed(Exception):  # noqa: N818
-    """A case went wrong, and how: a finding of the judge, no error of the product."""
+    """A case went wrong, and how: a finding of the judge, no error of the package."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,12 +29,12 @@ class Setup:
         return full if self.full else reduced
 
     def choose(self, full: _T, reduced: _T) -> _T:
-        """Return what belongs to the size."""
+        """Return the value for the size."""
         return full if self.full else reduced
 
 
 class Measurement(NamedTuple):
-    """What was measured: `figure` says it in words; `examples` hold the first miss of each kind."""
+    """The result of a measurement: `figure` says it in words; `examples` hold the first miss of each kind."""
 
     figure: str
     passed: bool
@@ -46,7 +46,7 @@ class Measurement(NamedTuple):
 
 
 class Extreme(NamedTuple):
-    """One row of the table: what breaks others, the mark for this one, and the function that measures."""
+    """One row of the table: a case that breaks others, the mark for this one, and the function that measures."""
 
     number: str
     name: str
@@ -92,7 +92,7 @@ class Tally:
             self.misses += 1
             if case.__name__ not in self._examples:
                 shown = ', '.join(repr(value) for value in given if not isinstance(value, Solver))
-                text = f'{case.__name__.strip("_")}: {_told(reason)}; with {shown}'
+                text = f'{case.__name__.strip("_")}: {_reason(reason)}; with {shown}'
                 self._examples[case.__name__] = text if len(text) <= _SHOWN else text[:_SHOWN] + '…'
 
     def finding(self, what: str = 'wrong', extra: str = '', *, kept: bool = True) -> Measurement:
@@ -111,7 +111,7 @@ class Tally:
         return f' {self.unit}' if self.unit else ''
 
 
-def _told(reason: Exception) -> str:
+def _reason(reason: Exception) -> str:
     return str(reason) if isinstance(reason, Missed) else f'{type(reason).__name__}: {reason}'
 
 

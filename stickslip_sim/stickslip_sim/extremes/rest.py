@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""X7 and X10: rest that lasts, without creep, and the static coefficient over any rest time."""
+"""X7 and X10: rest that lasts, without drift, and the static coefficient over any rest time."""
 
 import random
 
@@ -35,7 +35,7 @@ def year_long_hold(setup: Setup) -> Measurement:
 
 
 def _held_by_force(solver: Solver, contact: Contact, share: float, drift: list[float]) -> float:
-    """Return the relative error of the time from the begin of the ramp to the break-away."""
+    """Return the relative error of the time from the start of the ramp to the break-away."""
     axis = paper_axis(contact)
     load = share * 0.24 * axis.normal_force
     side = 1.0 if share > 0.0 else -1.0

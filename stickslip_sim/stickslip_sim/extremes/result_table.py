@@ -17,7 +17,7 @@ def table_head() -> str:
 
 
 def row(outcome: ExtremeResult) -> list[str]:
-    """Return the lines of an extreme: what it is, its verdict, its mark and the measured figure, and what missed it."""
+    """Return the lines of an extreme: its name, verdict, mark and measured figure, and the cases that missed."""
     verdict = 'met' if outcome.passed else 'MISSED'
     lines = [f'{outcome.number:4} {outcome.name}',
              f'{"":4} {verdict:6} {outcome.mark:{_MARK}}  {outcome.finding.figure}  ({outcome.seconds:.1f} s)']

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Axes, courses and runs that the extremes share."""
+"""Axes, input profiles and runs that the extremes share."""
 
 import math
 import random
@@ -43,7 +43,7 @@ def instant(seconds: float) -> Instant:
 def make(axis: Axis, drive: float | InputProfile, force: float | InputProfile = 0.0,
          initial: InitialState | None = None,
          solver: Solver = exact.SOLVER) -> Simulator:
-    """Return a simulator at time 0; a number is a constant course."""
+    """Return a simulator at time 0; a number is a constant input profile."""
     return Simulator(axis, initial or InitialState(), drive if isinstance(drive, InputProfile) else constant(drive),
                      force if isinstance(force, InputProfile) else constant(force), solver)
 
@@ -65,7 +65,7 @@ def elapsed(begin: Event, end: Event) -> float:
 
 
 def random_axis(rng: random.Random) -> Axis:
-    """Return a valid axis: stiff or soft, damped or not, either contact, either characteristics, one to five knots."""
+    """Return a valid axis: stiff or soft, damped or not, either contact, either law, one to five breakpoints."""
     n = rng.randint(2, 5)
     speeds = (0.0, *sorted(rng.uniform(0.001, 0.06) for _ in range(n - 1)))
     at_rest = rng.uniform(0.05, 0.2)
@@ -92,7 +92,7 @@ def random_profiles(rng: random.Random) -> tuple[InputProfile, InputProfile]:
 
 
 def scaled_profile(profile: InputProfile, factor: float) -> InputProfile:
-    """Return the course with all its values multiplied."""
+    """Return the input profile with all its values multiplied."""
     return InputProfile(profile.starts, tuple(factor * x for x in profile.values),
                         tuple(factor * x for x in profile.rates),
                   profile.period, tuple(one._replace(amplitude=factor * one.amplitude) for one in profile.sinusoids))

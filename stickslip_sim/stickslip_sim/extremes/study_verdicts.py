@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""X24: what the studies call stick-slip, and where they say it begins and ends, against long runs."""
+"""X24: the stick-slip that studies report, and the values where it begins and ends, against long runs."""
 
 import random
 from collections.abc import Mapping
@@ -21,7 +21,7 @@ from .shared_axes import instant, make, of_kind
 _LONG, _LATE = 1e4, 5e3    # s: a run, and its last part that sticks are counted in
 _AT_ONCE = 200             # parts of a run: the events of one fit in a call
 _ACCURACY = 1e-9
-_STEPS = (0.0, 1e-7, 1e-4, 1e-2)   # beyond what is told, of the value
+_STEPS = (0.0, 1e-7, 1e-4, 1e-2)   # beyond the reported end, of the value
 _HEAVY = 20000.0, 32000.0          # kg, on which a slip reverses before it sticks
 _CONVENTIONAL = {'contact.model': 'compliant', 'contact.stiffness': 5e6, 'contact.damping': 15000.0}
 _BORDERS: tuple[tuple[str, Mapping[str, object], str, float, float], ...] = (
@@ -60,7 +60,7 @@ def verdicts(setup: Setup) -> Measurement:
 
 
 def _motion(solver: Solver, name: str, feed: float, mass: float) -> float:
-    """Run a scene as a point of a sweep; what it is called is what goes on."""
+    """Run a scene as a point of a sweep; the reported motion should go on."""
     scene = load_scene(name, {'drive.velocity': feed})
     study = Study(scene.values, Grid((Variation('axis.mass', mass, 1.1 * mass, 2),)))
     motion = study.figures(0, 1).motion[0]
@@ -72,7 +72,7 @@ def _motion(solver: Solver, name: str, feed: float, mass: float) -> float:
 
 
 def _border(solver: Solver, k: int, side: int, step: float) -> float:
-    """Run a scene beside, or a share of the value beyond, an end of what `critical` tells."""
+    """Run a scene beside, or a share of the value beyond, an end that `critical` reports."""
     name, changes, parameter, low, high = _BORDERS[k]
     transition = _transition(k)
     value = transition.low * (1.0 - step) if side < 0 else transition.high * (1.0 + step)

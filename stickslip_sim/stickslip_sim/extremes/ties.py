@@ -148,7 +148,7 @@ def _commands_in_any_order(solver: Solver, axis: Axis, seed: int) -> float:
     profile = make(axis, _switch(0.002, v, when), _switch(0.0, f, when), solver=solver)
     events = profile.advance(instant(3.0))
     require([(e.kind, e.direction) for e in events] == [(e.kind, e.direction) for e in outcomes[0][0]],
-            f'courses that jump together differ from commands: v = {v!r} m/s, F = {f!r} N at {when.seconds!r} s')
+            f'input profiles that jump together differ from commands: v = {v!r} m/s, F = {f!r} N at {when.seconds!r} s')
     return 0.0
 
 

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Kinetic friction over speed, and the excess of its accelerating branch, as piecewise-linear tables.
 
-Both start at speed 0.  The kinetic coefficient continues beyond its last knot with `end_slope`; the excess shape psi
-(Fig. 6 of the paper) falls from 1 to 0 and stays there.
+Both start at speed 0.  The kinetic coefficient continues beyond its last breakpoint with `end_slope`; the excess shape
+psi (Fig. 6 of the paper) falls from 1 to 0 and stays there.
 """
 
 import math
@@ -20,7 +20,7 @@ MAX_KNOTS = 1000   # a table is walked at every break-away, within a step
 
 @dataclass(frozen=True, slots=True)
 class KineticTable:
-    """mu_k(|ẋ|): knots `velocities` in m/s and `coefficients`; `end_slope` in s/m beyond the last knot.
+    """mu_k(|ẋ|): breakpoints `velocities` in m/s and `coefficients`; `end_slope` in s/m beyond the last breakpoint.
 
     A table made by `tables.kinetic_table` carries the smooth `law` that it stands for, and its `error`, the largest
     difference to that law at any speed.
@@ -40,11 +40,11 @@ class KineticTable:
                 raise InputError(f'{name}.coefficients', value, 'finite and >= 0', 'friction opposes the motion')
         if not 0.0 <= self.end_slope < math.inf:
             raise InputError(f'{name}.end_slope', self.end_slope, 'finite and >= 0 s/m',
-                             'a coefficient that fell for ever would become negative; add a knot instead')
+                             'a coefficient that fell for ever would become negative; add a breakpoint instead')
 
     @property
     def limit_velocity(self) -> float:
-        """Where the falling branch ends, v_gr in m/s: the last knot, or what the smooth law says."""
+        """The end of the falling branch, v_gr in m/s: the last breakpoint, or that of the smooth law."""
         return self.velocities[-1] if self.law is None else self.law.limit_velocity
 
     def coefficient(self, speed: float) -> float:
@@ -52,7 +52,7 @@ class KineticTable:
         return _interpolate(self.velocities, self.coefficients, speed, self.end_slope)
 
     def slope(self, speed: float) -> float:
-        """Return dmu_k/dw in s/m at a speed >= 0 m/s, at a knot that above it; of the smooth law if there is one."""
+        """Return dmu_k/dw in s/m at a speed >= 0 m/s, at a breakpoint the one above it; of the smooth law if any."""
         if self.law is not None:
             return self.law.slope(speed)
         return _slope_above(self.velocities, self.coefficients, speed, self.end_slope)
@@ -60,7 +60,7 @@ class KineticTable:
 
 @dataclass(frozen=True, slots=True)
 class ExcessTable:
-    """psi(|ẋ|), the shape of the excess of the accelerating branch: 1 at rest, falling to 0 at the last knot.
+    """psi(|ẋ|), the shape of the excess of the accelerating branch: 1 at rest, falling to 0 at the last breakpoint.
 
     A table made by `tables.excess_table` carries the smooth `law` that it stands for, and its `error`.
     """
@@ -74,7 +74,7 @@ class ExcessTable:
         name = 'friction.excess'
         _check_knots(name, self.velocities, 'fractions', self.fractions)
         if self.fractions[0] != 1.0 or self.fractions[-1] != 0.0:
-            raise InputError(f'{name}.fractions', self.fractions, '1 at the first and 0 at the last knot',
+            raise InputError(f'{name}.fractions', self.fractions, '1 at the first and 0 at the last breakpoint',
                              'psi is relative to the excess at the break-away')
         if any(b > a for a, b in pairwise(self.fractions)):
             raise InputError(f'{name}.fractions', self.fractions, 'falling from 1 to 0', 'sort them')
@@ -87,9 +87,9 @@ class ExcessTable:
 def merged_knots(
     kinetic: KineticTable, excess: ExcessTable | None
 ) -> list[tuple[float, float, float, float, float]]:
-    """Return (velocity, mu_k, psi) at every knot of the two tables, and the slopes of mu_k and psi above it, in s/m.
+    """Return (velocity, mu_k, psi) at every breakpoint of the two tables, and the slopes of mu_k and psi above, s/m.
 
-    The slopes are those of the given tables: between knots of both, close together, the difference of two rounded
+    The slopes are those of the given tables: between breakpoints of both, close together, the difference of two rounded
     coefficients would have few digits.  psi is 0 without an excess.
     """
     speeds = sorted({*kinetic.velocities, *(excess.velocities if excess else ())})
@@ -101,10 +101,10 @@ def merged_knots(
 def default_excess(kinetic: KineticTable) -> ExcessTable:
     """Return the linear psi from 1 at standstill to 0 at the limit velocity of mu_k.
 
-    Raises InputError when a given table has one knot only, and so no limit velocity.
+    Raises InputError when a given table has one breakpoint only, and so no limit velocity.
     """
     if kinetic.limit_velocity == 0.0:
-        raise InputError('friction.excess', None, 'a table when friction.kinetic has one knot only',
+        raise InputError('friction.excess', None, 'a table when friction.kinetic has one breakpoint only',
                          'give friction.excess.velocities and fractions, or acceleration_dependence: false')
     return ExcessTable((0.0, kinetic.limit_velocity), (1.0, 0.0))
 
@@ -122,14 +122,14 @@ def _slope_above(xs: Sequence[float], ys: Sequence[float], x: float, end_slope: 
 def _check_knots(name: str, velocities: Sequence[float], other: str, values: Sequence[float]) -> None:
     if not velocities or len(velocities) != len(values):
         raise InputError(f'{name}.velocities', list(velocities), f'as many numbers as {name}.{other} ({len(values)})',
-                         'give one value for every knot')
+                         'give one value for every breakpoint')
     if len(velocities) > MAX_KNOTS:
-        raise InputError(f'{name}.velocities', f'{len(velocities)} knots', f'at most {MAX_KNOTS} knots',
+        raise InputError(f'{name}.velocities', f'{len(velocities)} breakpoints', f'at most {MAX_KNOTS} breakpoints',
                          'leave out those that hardly bend the table')
     if velocities[0] != 0.0:
-        raise InputError(f'{name}.velocities', velocities[0], '0 m/s at the first knot',
+        raise InputError(f'{name}.velocities', velocities[0], '0 m/s at the first breakpoint',
                          'the table starts at standstill')
     for before, after in pairwise(velocities):
         if not before < after < math.inf:
             raise InputError(f'{name}.velocities', list(velocities), 'finite and strictly increasing, in m/s',
-                             f'{after!r} follows {before!r}; sort the knots and drop double ones')
+                             f'{after!r} follows {before!r}; sort the breakpoints and drop double ones')

@@ -1,16 +1,16 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""A smooth falling shape as a piecewise-linear table: few knots, an error that is proven, and no bias to speak of.
+"""A smooth falling shape as a piecewise-linear table: few breakpoints, a proven error, and next to no bias.
 
 The table p stays within `tolerance` of the shape g for every z >= 0; p(0) = g(0) = 1, and p ends at 0, the limit of g.
-One walk from z = 0 on lays each line as far as it goes.  Where g is convex a knot lies one tolerance below g and the
-line touches g + tolerance/2 (where g is concave, above and below change places): so the error of each line,
+One walk from z = 0 on lays each line as far as it goes.  Where g is convex a breakpoint lies one tolerance below g and
+the line touches g + tolerance/2 (where g is concave, above and below change places): so the error of each line,
 a parabola in first order, has zero mean.  Friction that is too high in the middle of a line and too low at its ends
-takes the same energy out of a slip, and the motion is off by much less than with knots on the curve.
+takes the same energy out of a slip, and the motion is off by much less than with breakpoints on the curve.
 
-The line from a knot that touches the edge of that band has a closed condition with one root, since its left side is
-monotone; where it leaves the band is another.  No sampling: between inflections p − g has its extremes at the knots
-and where the slope of g is that of the line, and `table_error` finds them anew from the finished table.
+The line from a breakpoint that touches the edge of that band has a closed condition with one root, since its left side
+is monotone; where it leaves the band is another.  No sampling: between inflections p − g has its extremes at the
+breakpoints and where the slope of g is that of the line, and `table_error` finds them anew from the finished table.
 """
 
 import math
@@ -24,30 +24,30 @@ _BEND_FIRST = 1 / 3   # the same for the first line, which begins on the curve
 _COARSEST = 0.25   # a tolerance beyond it asks for nothing: the table is as for this one
 _MARGIN = 0.999    # of the tolerance is used; the rest is for rounding, also of a viscous part at high speed
 
-Knot = tuple[float, float]
+Breakpoint = tuple[float, float]
 
 
-def shape_table(shape: Shape, tolerance: float, most: int) -> list[Knot] | None:
-    """Return knots (z, p) with |p − g| <= `tolerance` for all z, p(0) = 1 and p = 0 at the last and beyond.
+def shape_table(shape: Shape, tolerance: float, most: int) -> list[Breakpoint] | None:
+    """Return breakpoints (z, p) with |p − g| <= `tolerance` for all z, p(0) = 1 and p = 0 at the last and beyond.
 
-    None when it takes more than `most` knots.
+    None when it takes more than `most` breakpoints.
     """
     allowed = min(tolerance, _COARSEST) * _MARGIN
-    knots = [(0.0, 1.0)]
+    breakpoints = [(0.0, 1.0)]
     bend = _BEND_FIRST
-    while knots[-1][1] > 0.0:
-        if len(knots) == most:
+    while breakpoints[-1][1] > 0.0:
+        if len(breakpoints) == most:
             return None
-        knots.append(_next_knot(shape, knots[-1], allowed, bend * allowed))
+        breakpoints.append(_next_breakpoint(shape, breakpoints[-1], allowed, bend * allowed))
         bend = _BEND
-    return knots
+    return breakpoints
 
 
 def table_error(value: Callable[[float], float], slope: Callable[[float], float], inflection: float,
-                knots: Sequence[Knot]) -> float:
-    """Return max |p − f| of a curve f up to the last knot, from its value, slope and inflection (0: none)."""
+                breakpoints: Sequence[Breakpoint]) -> float:
+    """Return max |p − f| of a curve f up to the last breakpoint, from its value, slope and inflection (0: none)."""
     worst = 0.0
-    for (x0, y0), (x1, y1) in pairwise(knots):
+    for (x0, y0), (x1, y1) in pairwise(breakpoints):
         rise = (y1 - y0) / (x1 - x0)
 
         def excess(x: float, rise: float = rise) -> float:
@@ -81,13 +81,13 @@ def root(f: Callable[[float], float], a: float, fa: float, b: float, fb: float) 
     return b
 
 
-def _next_knot(shape: Shape, knot: Knot, allowed: float, bend: float) -> Knot:
-    """Return the end of the longest line from a knot."""
-    z, p = knot
+def _next_breakpoint(shape: Shape, breakpoint: Breakpoint, allowed: float, bend: float) -> Breakpoint:
+    """Return the end of the longest line from a breakpoint."""
+    z, p = breakpoint
     concave = z < shape.inflection
     if not concave and p <= allowed:   # the tail: a line to 0 that ends where g < allowed stays in the band
         return shape.reach(0.25 * allowed), 0.0
-    touch, rise = _tangent(shape, knot, bend, concave)
+    touch, rise = _tangent(shape, breakpoint, bend, concave)
 
     def above(x: float) -> float:
         return p + rise * (x - z) - shape.value(x)
@@ -103,12 +103,12 @@ def _next_knot(shape: Shape, knot: Knot, allowed: float, bend: float) -> Knot:
     return (fall, 0.0) if fall <= end else (end, p + rise * (end - z))
 
 
-def _tangent(shape: Shape, knot: Knot, bend: float, concave: bool) -> tuple[float, float]:
-    """Return where the line from a knot touches the edge g ± bend of its inner side, and its slope.
+def _tangent(shape: Shape, breakpoint: Breakpoint, bend: float, concave: bool) -> tuple[float, float]:
+    """Return where the line from a breakpoint touches the edge g ± bend of its inner side, and its slope.
 
-    A knot that lies beyond that edge (the first one after the inflection may) takes the tangent of g at its place.
+    A breakpoint beyond that edge (the first one after the inflection may be) takes the tangent of g at its place.
     """
-    z, p = knot
+    z, p = breakpoint
     sign = -1.0 if concave else 1.0
 
     def gap(x: float) -> float:

@@ -8,7 +8,7 @@
 | exponential | the same with δ = 1                              | Bo and Pavelescu 1982                               |
 | hyperbolic  | mu_c + (mu_0 − mu_c)/(1 + w/v_s) + k_v w         | Leine, van Campen, de Kraker, van den Steen 1998    |
 
-The engine works on tables of them (`tables`); the laws are what the error of a table is measured against.
+The engine works on tables of them (`tables`); the error of a table is measured against the laws.
 """
 
 import math

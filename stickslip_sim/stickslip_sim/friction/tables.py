@@ -7,7 +7,7 @@ from functools import lru_cache
 
 from ..core.errors import InputError
 from .kinetic import MAX_KNOTS, ExcessTable, KineticTable
-from .refine import Knot, shape_table, table_error
+from .refine import Breakpoint, shape_table, table_error
 from .shapes import Shape
 from .smooth import SmoothExcess, SmoothKinetic
 
@@ -16,16 +16,16 @@ def kinetic_table(law: SmoothKinetic, tolerance: float) -> KineticTable:
     """Return the table of a law with |table − law| <= `tolerance` at every speed; it carries law and error.
 
     The viscous part is linear, and so exact; at rest and at infinite speed the table is that of the law.  Raises
-    InputError when it takes more than MAX_KNOTS knots.
+    InputError when it takes more than MAX_KNOTS breakpoints.
     """
     name = 'friction.kinetic'
     scale = law.initial - law.limit
-    knots = _knots(name, law.shape, tolerance, abs(scale)) if scale else [(0.0, 0.0)]
-    speeds = _speeds(f'{name}.stribeck_velocity', law.stribeck_velocity, knots)
-    values = [law.limit + scale * p + law.viscous * w for w, (_, p) in zip(speeds, knots)]
+    breakpoints = _breakpoints(name, law.shape, tolerance, abs(scale)) if scale else [(0.0, 0.0)]
+    speeds = _speeds(f'{name}.stribeck_velocity', law.stribeck_velocity, breakpoints)
+    values = [law.limit + scale * p + law.viscous * w for w, (_, p) in zip(speeds, breakpoints)]
     values[0] = law.initial
     error = table_error(law.coefficient, law.slope, law.inflection, list(zip(speeds, values)))
-    tail = abs(scale) * law.shape.value(knots[-1][0]) if scale else 0.0
+    tail = abs(scale) * law.shape.value(breakpoints[-1][0]) if scale else 0.0
     return KineticTable(tuple(speeds), tuple(values), law.viscous, law,
                         _checked(name, tolerance, max(error, tail)))
 
@@ -33,42 +33,42 @@ def kinetic_table(law: SmoothKinetic, tolerance: float) -> KineticTable:
 def excess_table(law: SmoothExcess, tolerance: float) -> ExcessTable:
     """Return the table of a psi with |table − psi| <= `tolerance`; it carries law and error.  Raises InputError."""
     name = 'friction.excess'
-    knots = _knots(name, law.shape, tolerance, 1.0)
-    speeds = _speeds(f'{name}.limit_velocity', law.limit_velocity, knots)
-    values = [p for _, p in knots]
+    breakpoints = _breakpoints(name, law.shape, tolerance, 1.0)
+    speeds = _speeds(f'{name}.limit_velocity', law.limit_velocity, breakpoints)
+    values = [p for _, p in breakpoints]
     error = max(table_error(law.fraction, law.slope, law.inflection, list(zip(speeds, values))),
                 law.fraction(speeds[-1]))
     return ExcessTable(tuple(speeds), tuple(values), law, _checked(name, tolerance, error))
 
 
-def _knots(name: str, shape: Shape, tolerance: float, scale: float) -> list[Knot]:
+def _breakpoints(name: str, shape: Shape, tolerance: float, scale: float) -> list[Breakpoint]:
     if not 0.0 < tolerance < math.inf:
         raise InputError(f'{name}.tolerance', tolerance, 'finite and > 0', 'give the error that the table may have')
-    knots = _cached_shape_table(shape, tolerance / scale)
-    if knots is None:
-        raise InputError(f'{name}.tolerance', tolerance, f'large enough for at most {MAX_KNOTS} knots',
+    breakpoints = _cached_shape_table(shape, tolerance / scale)
+    if breakpoints is None:
+        raise InputError(f'{name}.tolerance', tolerance, f'large enough for at most {MAX_KNOTS} breakpoints',
                          f'{_fitting(shape, scale):.1e} fits')
-    return knots
+    return breakpoints
 
 
 @lru_cache(maxsize=64)
-def _cached_shape_table(shape: Shape, tolerance: float) -> list[Knot] | None:
+def _cached_shape_table(shape: Shape, tolerance: float) -> list[Breakpoint] | None:
     """Return `shape_table`; a change of the scale of the speed, as in a sweep, asks for the same one again."""
     return shape_table(shape, tolerance, MAX_KNOTS)
 
 
 def _fitting(shape: Shape, scale: float) -> float:
-    """Return a tolerance of two digits that fits; little more than the smallest, since knots go with 1/√tolerance."""
+    """Return a tolerance of two digits that fits, near the smallest; breakpoints go with 1/√tolerance."""
     sample = 1e-3
-    knots = _cached_shape_table(shape, sample) or []
-    tolerance = sample * (len(knots) / MAX_KNOTS) ** 2
+    breakpoints = _cached_shape_table(shape, sample) or []
+    tolerance = sample * (len(breakpoints) / MAX_KNOTS) ** 2
     while _cached_shape_table(shape, float(f'{tolerance * scale:.1e}') / scale) is None:
         tolerance *= 1.1
     return float(f'{tolerance * scale:.1e}')
 
 
-def _speeds(name: str, scale: float, knots: list[Knot]) -> list[float]:
-    speeds = [scale * z for z, _ in knots]
+def _speeds(name: str, scale: float, breakpoints: list[Breakpoint]) -> list[float]:
+    speeds = [scale * z for z, _ in breakpoints]
     if math.isinf(speeds[-1]) or len(set(speeds)) < len(speeds):
         raise InputError(name, scale, 'within the range of speeds', 'give it in m/s')
     return speeds

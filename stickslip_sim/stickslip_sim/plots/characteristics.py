@@ -27,7 +27,7 @@ class Characteristics(NamedTuple):
     """The friction of an axis and where a run touched it; velocities in m/s, times in s, coefficients without unit."""
 
     decelerating: Curve
-    accelerating: Mapping[str, Curve]   # by what the branch belongs to
+    accelerating: Mapping[str, Curve]   # by the name of the branch
     static: Curve
     static_limit: float | None          # upon prolonged rest
     break_aways: Curve                  # rest time (finite) and coefficient of those of the run

@@ -42,7 +42,7 @@ Stretch = tuple[float, float]   # s, from and to
 
 
 class DrawnMotion(NamedTuple):
-    """What of a run is drawn: columns named as in `types.Sample`, and `time`, with the state before each event."""
+    """The drawn part of a run: columns named as in `types.Sample`, and `time`, with the state before each event."""
 
     columns: Mapping[str, Numbers]
     opening: Stretch           # of panels a and b

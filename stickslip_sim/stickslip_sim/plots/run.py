@@ -17,7 +17,7 @@ from ..simulation.cycles import mode_spans
 from .style import BLACK, BLUE, GREEN, GREY, MILLI, MODE_COLOURS, RED, Numbers, save, thinned
 
 _CROWD = 50          # break-aways that are marked smaller
-KILO_FROM = 1e4     # N: forces beyond are told in kN
+KILO_FROM = 1e4     # N: larger forces are shown in kN
 
 
 def plot_run(samples: Mapping[str, Numbers], events: Sequence[Event], title: str, path: Path | str) -> None:

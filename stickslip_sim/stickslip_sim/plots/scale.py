@@ -39,7 +39,7 @@ class Scale(NamedTuple):
 
     @property
     def label(self) -> str:
-        """What stands at the axis."""
+        """The text at the axis."""
         unit = _SHOWN.get(self.unit, (1.0, self.unit))[1]
         words = in_words(self.name.removeprefix('axis.'))
         return f'{words} / ({unit})' if '/' in unit or ' ' in unit else f'{words} / {unit}' if unit else words

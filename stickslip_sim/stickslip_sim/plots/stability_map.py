@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""A map of the motion over two parameters, with what the theory says, and the phase planes of points picked from it."""
+"""A map of the motion over two parameters, with the lines of the theory and the phase planes of picked points."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -26,7 +26,7 @@ from .style import BLACK, DOUBLE_COLUMN, GREY, JOURNAL, RED, SINGLE_COLUMN, Numb
 
 PLAIN = ('smooth sliding', 'sliding that swings on', 'at rest', 'failed', 'undecided')
 _PLAIN_COLOURS = ('#f2f2f2', '#c4c4c4', '#56B4E9', '#ffffff', '#ffffff')
-_HATCHES = {3: ('xxxxxx', RED), 4: ('//////', BLACK)}   # what is not known is no colour
+_HATCHES = {3: ('xxxxxx', RED), 4: ('//////', BLACK)}   # unknown motions have no colour
 _LOST = (0, (4.0, 2.0))
 _DECADE = 10.0
 _HEIGHT, _PORTRAIT_HEIGHT = 3.3, 1.6   # in
@@ -45,7 +45,7 @@ class Field(NamedTuple):
 
 
 class Lines(NamedTuple):
-    """What the theory says, over y: the critical feed; and for each x of `feeds` 1 where sliding is lost, or NaN."""
+    """The lines of the theory, over y: the critical feed; and for each x of `feeds` 1 where sliding is lost, or NaN."""
 
     y: Numbers
     critical_feed: Numbers
@@ -105,7 +105,7 @@ def _map(panel: Axes, scales: tuple[Scale, Scale, Scale], field: Field, lines: L
 
 
 def _patch(place: int) -> Patch:
-    """Return what explains a place in `PLAIN`."""
+    """Return the entry of a place in `PLAIN` in the legend."""
     hatch, ink = _HATCHES.get(place, ('', GREY))
     return Patch(facecolor=_PLAIN_COLOURS[place], edgecolor=ink, hatch=hatch, linewidth=0.4, label=PLAIN[place])
 
@@ -120,7 +120,7 @@ def _norm(values: Numbers, scale: Scale) -> Normalize:
 
 
 def _theory(panel: Axes, x: Scale, y: Scale, lines: Lines) -> Iterator[Artist]:
-    """Draw the lines of the theory and yield what explains them."""
+    """Draw the lines of the theory and yield their entries in the legend."""
     known = np.isfinite(lines.critical_feed) & (lines.critical_feed > 0.0)
     if known.any():
         feed = np.where(known, lines.critical_feed, np.nan)

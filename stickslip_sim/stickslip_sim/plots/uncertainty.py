@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""What becomes of an axis that is known only roughly: how its figures spread, and which parameter decides them."""
+"""The motion of an axis that is known only roughly: the spread of its figures, and the parameters that decide them."""
 
 import math
 from collections.abc import Sequence
@@ -37,7 +37,7 @@ class Spread(NamedTuple):
 
 
 class Shares(NamedTuple):
-    """Of the variance of a `figure`: what each parameter explains by itself, and with others; with standard errors."""
+    """Shares of the variance of a `figure`: of each parameter by itself, and with others; with standard errors."""
 
     figure: str
     first_order: Numbers

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""A recorded run and what would have been, one over the other."""
+"""A recorded run and its what-if run, one over the other."""
 
 from collections.abc import Mapping
 from pathlib import Path

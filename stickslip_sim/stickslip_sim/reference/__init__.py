@@ -6,7 +6,7 @@ It shares no equation and no line of numerics with the engine: power series of t
 Bernstein coefficients (Descartes' rule of signs), in mpmath's arithmetic of any number of digits.
 
     run = simulate(axis, initial, drive, force, duration=60.0, digits=30)
-    run.events, run.final         # in the words of the product, floats correctly rounded
+    run.events, run.final         # in the words of the package, floats correctly rounded
     run.exact.state_at([0.5])     # and in multiple precision
 """
 

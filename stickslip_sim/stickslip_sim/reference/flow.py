@@ -40,7 +40,7 @@ class State(NamedTuple):
 
 
 class Expansion(NamedTuple):
-    """Power series in τ of what moves: travel y, velocity u, drive travel ∫v, and the inputs."""
+    """Power series in τ of the motion: travel y, velocity u, drive travel ∫v, and the inputs."""
 
     travel: Series
     velocity: Series

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""An input course in multiple precision: its pieces one after the other, periods included, with its waves on top."""
+"""An input profile in multiple precision: its pieces one after the other, with periods and sinusoids."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Segment(NamedTuple):
 
 
 class Turn(NamedTuple):
-    """A wave seen from an instant: amplitude sin(φ + ω τ), kept as sine and cosine of φ."""
+    """A sinusoid seen from an instant: amplitude sin(φ + ω τ), kept as sine and cosine of φ."""
 
     amplitude: mpf
     omega: mpf
@@ -31,7 +31,7 @@ class Turn(NamedTuple):
     cosine: mpf
 
     def add_to(self, series: Series) -> None:
-        """Add the terms of the wave to a power series in τ, as many as it has."""
+        """Add the terms of the sinusoid to a power series in τ, as many as it has."""
         size = self.amplitude
         cycle = (self.sine, self.cosine, -self.sine, -self.cosine)
         for k in range(len(series)):
@@ -48,7 +48,7 @@ class Signal(NamedTuple):
     turns: tuple[Turn, ...]
 
     def series(self, order: int) -> Series:
-        """Return its power series in the time since that instant: two terms, and up to `order` with waves."""
+        """Return its power series in the time since that instant: two terms, and up to `order` with sinusoids."""
         series = [self.offset, self.slope]
         if self.turns:
             series += [mpf(0)] * max(order - 1, 0)
@@ -68,7 +68,7 @@ class Signal(NamedTuple):
 
 
 class Input:
-    """A course v(t) or F(t), followed in time; right-continuous.
+    """An input profile v(t) or F(t), followed in time; right-continuous.
 
     `until` is the instant at which the next piece begins (infinite behind the last).
     """
@@ -90,7 +90,7 @@ class Input:
             self._here, self._next = self._next, next(self._segments, None)
 
     def at(self, t: mpf) -> Signal:
-        """Return the input from an instant of the present piece on; waves run over absolute time."""
+        """Return the input from an instant of the present piece on; sinusoids run over absolute time."""
         here = self._here
         offset = here.value + here.slope * (t - here.start)
         turns = tuple(_turn(t, *map(mpf, sinusoid)) for sinusoid in self._sinusoids)
@@ -105,7 +105,7 @@ def _turn(t: mpf, amplitude: mpf, frequency: mpf, phase: mpf) -> Turn:
 
 
 def _segments(profile: InputProfile) -> Iterator[Segment]:
-    """Yield the pieces in the order of time, without end when the course is periodic."""
+    """Yield the pieces in the order of time, without end when the input profile is periodic."""
     turn = 0
     pieces = [Segment(*map(mpf, piece)) for piece in zip(profile.starts, profile.values, profile.rates)]
     while True:

@@ -41,7 +41,7 @@ _WORDS = {ACCELERATE: types.Mode.ACCELERATING, COAST: types.Mode.COASTING, DECEL
 
 
 def word(mode: Mode) -> types.Mode:
-    """Return the product's name of a mode."""
+    """Return the package's name of a mode."""
     if isinstance(mode, Stick):
         return types.Mode.STICK
     return types.Mode.ACCELERATING if mode.silent else _WORDS[mode.phase]

@@ -20,7 +20,7 @@ from .problem import Line, Problem
 from .series import Series, combine, integral
 
 _ONE = mpf(1)
-_TIE_ORDER = 6  # derivatives that may decide a tie under waves
+_TIE_ORDER = 6  # derivatives that may decide a tie under sinusoids
 
 
 @dataclass
@@ -138,7 +138,7 @@ class Physics:
     def surplus_rate(self, direction: int, state: State) -> mpf:
         """First non-vanishing coefficient of R in time at constant speed; 0 when all vanish.
 
-        R' = σ (c (v - u) + h v' + F'), and so on: with waves the higher ones matter too.
+        R' = σ (c (v - u) + h v' + F'), and so on: with sinusoids the higher ones matter too.
         """
         a, time = self.axis, self.time_scale(state)
         drive = state.drive.series(_TIE_ORDER)

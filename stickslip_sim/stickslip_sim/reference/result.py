@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a run of the reference returns: the words of the product, floats, each the one nearest to the exact value."""
+"""The result of a run of the reference: the words of the package, floats, each the one nearest to the exact value."""
 
 from __future__ import annotations
 

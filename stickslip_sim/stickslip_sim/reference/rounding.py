@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""From multiple precision to the floats of the product."""
+"""From multiple precision to the floats of the package."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""From effective values to a scene: each section becomes the object that the lower rooms know, which checks it."""
+"""From effective values to a scene: each section becomes an object of a room below, which checks it."""
 
 import hashlib
 import math
@@ -133,7 +133,7 @@ def _pieces(given: Mapping[str, Any], section: str, value: str, rate: str, knots
         name = f'{section}.{knots}'
     for number in (*profile.values, *profile.rates):
         if not math.isfinite(number):
-            raise InputError(name, given[name.rpartition('.')[2]], 'a course of finite values and rates',
+            raise InputError(name, given[name.rpartition('.')[2]], 'an input profile of finite values and rates',
                              'make it smaller or the times longer')
     return profile
 

@@ -27,7 +27,7 @@ def scene_names() -> list[str]:
 def load_scene(name_or_path: str, overrides: Mapping[str, object] | None = None) -> Scene:
     """Return a shipped scene or one from a file, with other values by dotted name.
 
-    An override of a choice (contact.model) drops what the file gives for the old one (contact.stiffness).  Raises
+    An override of a choice (contact.model) drops the values of the file for the old one (contact.stiffness).  Raises
     InputError, whose text begins with the file.
     """
     with named(name_or_path):
@@ -72,7 +72,7 @@ def scene_from_values(values: Mapping[str, object], name: str = 'unnamed') -> Sc
 
 
 def changed(scene: Scene, changes: Mapping[str, object]) -> Scene:
-    """Return a scene with changes by dotted name; what belonged to a changed choice goes.  Raises InputError."""
+    """Return a scene with changes by dotted name; the parameters of a changed choice go.  Raises InputError."""
     return scene_from_values(overridden(scene.values, changes)) if changes else scene
 
 
@@ -103,7 +103,7 @@ def _find(name: str) -> pathlib.Path:
 
 
 def read_text(path: pathlib.Path, what: str = 'scene') -> str:
-    """Return the text of a file that is to be a scene, or `what`; raises InputError."""
+    """Return the text of a file of a scene, or of `what`; raises InputError."""
     try:
         with path.open('rb') as file:
             data = file.read(SIZE_LIMIT + 1)
@@ -119,7 +119,7 @@ def read_text(path: pathlib.Path, what: str = 'scene') -> str:
 
 
 def _first_comment(text: str) -> str:
-    """Return the comment in the first line, which says what a scene shows; empty without one."""
+    """Return the comment in the first line, the description of the scene; empty without one."""
     first = text.partition('\n')[0].strip()
     return first.lstrip('#').strip() if first.startswith('#') else ''
 

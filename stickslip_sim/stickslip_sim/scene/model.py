@@ -47,7 +47,7 @@ class CommandSettings:
 
 @dataclass(frozen=True, slots=True)
 class TimingSettings:
-    """What a real-time valid run keeps within: `max_lateness` and `max_latency` in s, `max_overruns` a share."""
+    """The limits of a real-time valid run: `max_lateness` and `max_latency` in s, `max_overruns` a share."""
 
     max_lateness: float
     max_overruns: float

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a scene says of the rig around the axis and of time, checked together."""
+"""The settings of the rig around the axis and of time in a scene, checked together."""
 
 import math
 from collections.abc import Mapping

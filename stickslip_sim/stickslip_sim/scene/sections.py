@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""What of a ROS 2 parameter file belongs to the axis: node sections in, parameters by dotted name out."""
+"""The parameters of the axis in a ROS 2 parameter file: node sections in, parameters by dotted name out."""
 
 from collections.abc import Iterator, Mapping
 

@@ -16,7 +16,7 @@ _DEFAULT_METHODS = {'fixed_step': 'euler', 'adaptive': 'DOP853'}
 
 @dataclass(frozen=True, slots=True)
 class SolverSettings:
-    """`name` of the solver; what it has no use for is None: `method`, `step` (s), `rtol`, `atol` (m, m/s).
+    """`name` of the solver; settings that it does not have are None: `method`, `step` (s), `rtol`, `atol` (m, m/s).
 
     Raises InputError when the method is not one of this solver.
     """
@@ -35,7 +35,7 @@ class SolverSettings:
 
     @property
     def settings(self) -> dict[str, Any]:
-        """What was chosen beside the name."""
+        """The settings beside the name."""
         return {key: value for key, value in asdict(self).items() if key != 'name' and value is not None}
 
     def check(self, axis: Axis) -> None:

@@ -13,14 +13,14 @@ from .schema import BY_NAME, PARAMETERS
 def effective_values(given: Mapping[str, object]) -> dict[str, object]:
     """Return the value of every parameter that has a meaning, in the order of the schema; None counts as not given.
 
-    Raises InputError on unknown names, wrong types and ranges, what is missing, and what contradicts a choice.
+    Raises InputError on unknown names, wrong types and ranges, missing parameters, and those that contradict a choice.
     """
     given = {name: value for name, value in given.items() if value is not None}
     for name, value in given.items():
         if name not in BY_NAME:
             raise _unknown(name, value)
     values: dict[str, object] = {}
-    for entry in PARAMETERS:   # what a choice decides about stands after it
+    for entry in PARAMETERS:   # a choice stands before the parameters that depend on it
         value = given.get(entry.name)
         if value is not None:
             values[entry.name] = _given(entry, value, values)
@@ -30,7 +30,7 @@ def effective_values(given: Mapping[str, object]) -> dict[str, object]:
 
 
 def overridden(base: Mapping[str, object], changes: Mapping[str, object]) -> dict[str, object]:
-    """Return base values with changes; a changed choice takes with it what belonged to the old one in the base."""
+    """Return base values with changes; a changed choice drops the parameters of the old one in the base."""
     kept = {name: value for name, value in base.items() if not _outlived(name, changes)}
     return {**kept, **changes}
 
@@ -67,7 +67,7 @@ def _leave_out(entry: Parameter, values: dict[str, object]) -> None:
 
 
 def _unknown(name: str, value: object) -> InputError:
-    """Return the error for a name that no parameter has: what there is, and which is meant perhaps."""
+    """Return the error for a name that no parameter has, with the names there are and the most likely one."""
     section = name
     while section and not any(known.startswith(f'{section}.') for known in BY_NAME):
         section = section.rpartition('.')[0]

@@ -27,15 +27,15 @@ _PATIENCE = 5.0   # s for the scheduler to answer
 @contextmanager
 def cluster(address: str) -> Iterator[Workers]:
     """Yield the workers of the scheduler at an address; raises InputError when there are none, and WorkerError."""
-    with _quietly(), closing(_client(address)) as client, _told(address):
+    with _quietly(), closing(_client(address)) as client, _reported(address):
         _check_workers(client, address)
         yield Workers(client.get_executor(), sum(client.nthreads().values()),
                    partial(_checked_figures, versions_of_a_study()))
 
 
 @contextmanager
-def _told(address: str) -> Iterator[None]:
-    """Turn what goes wrong in a cluster into a WorkerError."""
+def _reported(address: str) -> Iterator[None]:
+    """Turn an error of the cluster into a WorkerError."""
     from distributed import KilledWorker
     from distributed.comm import CommClosedError
 
@@ -49,7 +49,7 @@ def _told(address: str) -> Iterator[None]:
 
 @contextmanager
 def _quietly() -> Iterator[None]:
-    """Keep Dask from logging: what matters is raised."""
+    """Keep Dask from logging: its errors are raised."""
     logging.disable(logging.CRITICAL)
     try:
         yield
@@ -67,13 +67,13 @@ def _client(address: str) -> Any:
         asyncio.run(asyncio.wait_for(_greet(address), _PATIENCE))
         return Client(address, timeout=_PATIENCE, set_as_default=False)
     except (OSError, ValueError, TypeError, MemoryError, asyncio.TimeoutError) as error:
-        # MemoryError from what speaks another language; the time-out is an OSError from Python 3.11 on only
+        # MemoryError from a server that speaks another protocol; the time-out is an OSError from Python 3.11 on only
         raise InputError('--scheduler', address, 'the address of a Dask scheduler that runs, as tcp://HOST:8786',
                          f'{str(error) or "there is no answer"}; start one: dask scheduler') from None
 
 
 async def _greet(address: str) -> None:
-    """Come back when a scheduler has answered: a client would wait for ever for what listens and says nothing."""
+    """Return when a scheduler has answered: a client would wait for ever for a silent server."""
     from distributed.comm import connect
 
     comm = await connect(address, timeout=_PATIENCE)

@@ -85,7 +85,7 @@ class _Judge:
         runs = runs_in_batches(self.values, [self.name], numbers[:, None], None, _PATIENCE, _DOUBLINGS)
         figures = figures_of_runs(runs)
         verdicts = np.where(figures.motion == Motion.STICK_SLIP, YES, NO)
-        verdicts[(figures.motion == Motion.UNDECIDED) | runs.late] = OPEN   # where late, a neighbour may never slide
+        verdicts[(figures.motion == Motion.UNDECIDED) | runs.late] = OPEN   # late: a value beside it may never slide
         verdicts[figures.motion == Motion.FAILED] = FAILED
         return verdicts
 

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""A study as JSON values, and back: what stands beside its table."""
+"""A study as JSON values, and back: the file beside its table."""
 
 import json
 from collections.abc import Mapping
@@ -40,29 +40,29 @@ def versions_of_a_study() -> dict[str, str]:
     return {**versions(), 'scipy': metadata.version('scipy')}
 
 
-def study_of(told: Mapping[str, Any]) -> Study:
+def study_of(found: Mapping[str, Any]) -> Study:
     """Return the study that a description is of; raises InputError."""
     try:
-        scene = scene_of_parameters(parameters_of(read_yaml(told['scene_text'])), {})
-        study = Study(scene.values, _sample_of(told), told['duration'])
+        scene = scene_of_parameters(parameters_of(read_yaml(found['scene_text'])), {})
+        study = Study(scene.values, _sample_of(found), found['duration'])
         described = description(study)
-        if all(json.dumps(told[name]) == json.dumps(described[name]) for name in _OF_THE_SAMPLE):
+        if all(json.dumps(found[name]) == json.dumps(described[name]) for name in _OF_THE_SAMPLE):
             return study
     except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError):
         pass
-    raise InputError('study', str(told.get('scene')), 'as a sweep describes it', 'it was changed; sweep again')
+    raise InputError('study', str(found.get('scene')), 'as a sweep describes it', 'it was changed; sweep again')
 
 
 def _json(values: Mapping[str, Any]) -> dict[str, Any]:
     return {name: list(value) if isinstance(value, tuple) else value for name, value in values.items()}
 
 
-def _sample_of(told: Mapping[str, Any]) -> Sample:
-    uncertain, drawn = told['uncertain'], told['sobol']
+def _sample_of(found: Mapping[str, Any]) -> Sample:
+    uncertain, drawn = found['uncertain'], found['sobol']
     if uncertain:
         laws = tuple(Distribution(one['name'], one['law'], tuple(one['numbers']), one['low'], one['high'])
-                     for one in told['over'])
+                     for one in found['over'])
         return Saltelli(laws, uncertain['samples'], uncertain['seed'])
     variations = tuple(checked(Variation(one['name'], float(one['low']), float(one['high']), int(one['count']),
-                                         bool(one['log']))) for one in told['over'])
+                                         bool(one['log']))) for one in found['over'])
     return Sobol(variations, drawn['points'], drawn['seed']) if drawn else Grid(variations)

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""What is known of a number of a scene that is not known exactly: a distribution, cut where the user cuts it."""
+"""The distribution of a parameter that is not known exactly, cut where the user cuts it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ _WIDEST = 1e6    # times the median, one standard deviation away
 
 
 class Rule(NamedTuple):
-    """What one of the numbers of a law must be, in words and as a test of all of them."""
+    """The condition on one number of a law, in words and as a test of all numbers."""
 
     number: str
     allowed: str
@@ -24,7 +24,7 @@ class Rule(NamedTuple):
 
 
 class Law(NamedTuple):
-    """A family of distributions: the `numbers` that choose one, what they must be, and that one as scipy has it.
+    """A family of distributions: the `numbers` that choose one, their conditions, and that one as scipy has it.
 
     `ends`: where tails without an end may be cut; None where there are none.
     """

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""A sweep on disk: `study.json` says what it is, and its table grows by whole chunks of lines.
+"""A sweep on disk: `study.json` describes it, and its table grows by whole chunks of lines.
 
 Until all points are there the table is `points.partial.csv`; then it becomes `points.csv`.
 """
@@ -44,7 +44,7 @@ class Folder:
         return self.table.exists()
 
     def begin(self, study: Study, command: str) -> None:
-        """Make the folder and say in it what will come: it is there with all of that, or not at all."""
+        """Make the folder with the description of the study and an empty table: whole, or not at all."""
         if os.path.lexists(self.path):
             raise InputError('--out', str(self.path), 'a folder that does not exist',
                              'choose another name, or add --resume to go on with it')
@@ -81,27 +81,27 @@ class Folder:
             yield
 
     def described(self) -> dict[str, Any]:
-        """Return what the folder says it is; raises InputError when it is not of a sweep."""
+        """Return the description in the folder; raises InputError when it is not of a sweep."""
         path = self.path / SIDECAR
         try:
             if path.is_file() and path.stat().st_size <= LONGEST:
-                told = json.loads(path.read_text(encoding='utf-8'))
-                if told['form'] == FORM:
-                    return dict(told)
+                found = json.loads(path.read_text(encoding='utf-8'))
+                if found['form'] == FORM:
+                    return dict(found)
         except (OSError, ValueError, KeyError, TypeError, RecursionError):
             pass
         raise InputError('folder', str(self.path), f'that of a sweep, with {SIDECAR} in it', 'sweep into a new one')
 
     def check_same(self, study: Study) -> None:
-        """Raise InputError unless what stands in the folder is of this study, by the same versions."""
-        told = self.described()
+        """Raise InputError unless the folder is of this study, by the same versions."""
+        found = self.described()
         for name, value in description(study).items():
-            if name != 'command' and told.get(name) != value:
+            if name != 'command' and found.get(name) != value:
                 raise InputError('--resume', str(self.path), f'the folder of this very study; its {name} is another',
                                  f'give the command that stands in its {SIDECAR}, or another folder')
 
     def whole_chunks(self, study: Study) -> list[Numbers]:
-        """Return the rows of each whole chunk of points that is there; what a crash left behind them is taken away."""
+        """Return the rows of each whole chunk of points that is there; the remains of a crash are cut off."""
         path, titles = self.path / PARTIAL, title_line(study)
         with _refusing(path), path.open('r+b') as file:
             if not may_be_table(path, study) or file.readline(len(titles)) != titles:
@@ -138,7 +138,7 @@ class Folder:
 
 @contextmanager
 def _refusing(path: Path, comfort: str = KEPT) -> Iterator[None]:
-    """Turn what the disk says into an InputError."""
+    """Turn an error of the disk into an InputError."""
     try:
         yield
     except OSError as error:

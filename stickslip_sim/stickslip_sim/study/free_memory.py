@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 
 class _Hierarchy(NamedTuple):
-    """Where a version of Linux' control groups keeps what one may take and takes."""
+    """The files in which a version of Linux' control groups keeps the limit and the use of memory."""
 
     root: str
     limit: str
@@ -37,7 +37,7 @@ def _of_the_machine(machine: Path) -> int:
 
 
 def _of_the_groups(machine: Path) -> Iterator[int]:
-    """Yield what the groups of this process leave it, from its own up to the root, which is a container's own."""
+    """Yield the bytes left to this process by its groups, from its own up to the root, which is a container's own."""
     try:
         lines = (machine / 'proc/self/cgroup').read_text(encoding='utf-8').splitlines()
     except OSError:

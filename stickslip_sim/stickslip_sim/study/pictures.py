@@ -84,7 +84,7 @@ def _scale(one: Variation) -> Scale:
 
 
 def _plain(motion: Numbers, settled: Numbers) -> NDArray[np.int64]:
-    """Return what stands in the map where no stick-slip does, as places in `plots.stability_map.PLAIN`."""
+    """Return the kind of motion where there is no stick-slip, as places in `plots.stability_map.PLAIN`."""
     plain = np.zeros(motion.shape, dtype=np.int64)
     for code, place in _PLAIN.items():
         plain[motion == code] = place

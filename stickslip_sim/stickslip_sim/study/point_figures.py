@@ -1,12 +1,12 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""What becomes of each point of a study, in numbers: the motion it ends in and the last round of that.
+"""The figures of each point of a study: the motion that it ends in, and the last round of that motion.
 
 A round of stick-slip goes from one break-away out of stick to the next; a slip that reverses at once is part of it.
 
 | figure | unit | meaning |
 |---|---|---|
-| motion | | what the point ends in: one of `MOTIONS` |
+| motion | | the motion that the point ends in: one of `MOTIONS` |
 | stick_slip | | 1 or 0 |
 | amplitude | m | travel of one slip, from break-away to standstill, the longest of a round; 0 without stick-slip |
 | period | s | from break-away to break-away, both out of stick |
@@ -40,7 +40,7 @@ Numbers = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 class Motion(IntEnum):
-    """What a point ends in."""
+    """The motion that a point ends in."""
 
     AT_REST = 0
     SMOOTH_SLIDING = 1
@@ -55,9 +55,9 @@ MOTIONS = {Motion.AT_REST: 'at rest', Motion.SMOOTH_SLIDING: 'smooth sliding', M
 
 @dataclass(frozen=True)
 class Runs:
-    """What is known of the run of each point, one entry each; named as in `batch.BatchFigures` and `batch.Rounds`.
+    """The run of each point, one entry each; named as in `batch.BatchFigures` and `batch.Rounds`.
 
-    `settled`: the motion is as it stays.  `undecided`: it cannot be told whether it goes on to stick and slip.  `late`:
+    `settled`: the motion is as it stays.  `undecided`: it may or may not go on to stick and slip.  `late`:
     it slides after sticks that went on for long, as by chance.
     """
 
@@ -169,7 +169,7 @@ def figures_of_runs(runs: Runs) -> Figures:
 def _motions(runs: Runs) -> NDArray[np.int64]:
     """Return the motion of each run.
 
-    It may have stuck for a while and slide now: what it ends in counts.  A slip that just began is one of a cycle.
+    It may have stuck for a while and slide now: the last motion counts.  A slip that just began is one of a cycle.
     """
     moves = (runs.final_mode != Mode.STICK) | (runs.cycles > 0)
     found = np.where(runs.sticks_on, Motion.STICK_SLIP, np.where(moves, Motion.SMOOTH_SLIDING, Motion.AT_REST))

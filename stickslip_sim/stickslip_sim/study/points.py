@@ -72,7 +72,7 @@ def runs_alone(values: Values, names: Sequence[str], points: Numbers, duration: 
 
 
 def runs_of_run(run: Trajectory) -> Runs:
-    """Return what is known of a run that is complete."""
+    """Return a complete run as one entry of `Runs`."""
     out = np.empty((1, many_axes.ROW_SIZE))
     many_axes.clear(out[0])
     out[0][many_axes.FINAL_MODE] = run.scene.make_rig().simulator.sample().mode
@@ -81,7 +81,7 @@ def runs_of_run(run: Trajectory) -> Runs:
     out[0][many_axes.COMPLETE] = 1.0
     found = runs_of(figures_in(out), rounds_in(out), run.duration)
     found.stick_share[0] = run.summary.stick_share
-    found.lasts[0] &= works_in_batches(run.scene)   # with anything else nothing is known of what is to come
+    found.lasts[0] &= works_in_batches(run.scene)   # with other inputs and solvers a slip may still end
     return found
 
 

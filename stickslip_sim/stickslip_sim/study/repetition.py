@@ -4,8 +4,8 @@
 
 A round is known by its stick time, its period, and drive force and speed at the break-away that ends it; the last two
 and the friction law decide all that follows.  A group of n rounds repeats when every one of the rounds that are judged
-is the one n before it to REPEATED, and in the later half of them the differences have come down to what rounding
-leaves (_STILL).  Small alone is not enough: just beyond the border at which a cycle vanishes, rounds change ever less
+is the one n before it to REPEATED, and in the later half of them the differences have come down to those of rounding
+(_STILL).  Small alone is not enough: just beyond the border at which a cycle vanishes, rounds change ever less
 for thousands of times, as if they settled, and then leave.
 """
 
@@ -15,7 +15,7 @@ import numpy as np
 
 from .point_figures import LEAST_STICK, Flags, Numbers
 
-REPEATED = 1e-6      # of what each number is compared with
+REPEATED = 1e-6      # of the scale of each number
 _STILL = 1e-11       # of the period, for stick times, and of the same for the others
 _TURNS = 3           # so often a group has to be there
 _NEARLY = 1e-2       # the same
@@ -26,7 +26,7 @@ def group_size(window: Numbers, judged: Numbers, force: Numbers) -> Numbers:
     """Return of how many rounds the shortest group is that repeats, 0 without one.
 
     `window` has the latest rounds of each axis, as `batch.Rounds`; so many of them as `judged` says count, and `force`
-    (N) is what drive forces are compared with.
+    (N) is the scale of drive forces.
     """
     found: Numbers = np.zeros(len(window))
     some = np.flatnonzero(judged >= _TURNS)
@@ -43,7 +43,7 @@ def group_size(window: Numbers, judged: Numbers, force: Numbers) -> Numbers:
 
 
 def drifts(window: Numbers, judged: Numbers, force: Numbers) -> Flags:
-    """Return whether rounds are nearly those before them, one by one, so that who has not settled drifts slowly."""
+    """Return whether rounds are nearly those before them, one by one: an axis that has not settled drifts."""
     counted = (np.arange(window.shape[1]) >= window.shape[1] - judged[:, None])[:, :-1]
     return (judged >= _TURNS) & _agree(window / _sizes(window, force), 1, counted, _NEARLY)
 
@@ -68,7 +68,7 @@ def ends_alike(before: Numbers, now: Numbers, size: Numbers, force: Numbers) -> 
 
 
 def _sizes(window: Numbers, force: Numbers) -> Numbers:
-    """Return what the numbers of each axis are compared with, so that a short stick counts, but not a mere touch."""
+    """Return the scales of the numbers of each axis, so that a short stick counts, but not a mere touch."""
     stick, period, _, speed = np.moveaxis(window[:, -1:], 2, 0)
     least = np.finfo(float).tiny
     sizes = (np.maximum(stick, LEAST_STICK * period), period, np.broadcast_to(force[:, None], stick.shape),

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a study takes of memory and disk: asked before it begins."""
+"""The memory and disk space of a study, checked before it begins."""
 
 import shutil
 from pathlib import Path

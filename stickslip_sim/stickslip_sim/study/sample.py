@@ -12,7 +12,7 @@ from ..core.errors import InputError
 from .distribution import Distribution
 from .variation import Numbers, Variation
 
-MOST_DRAWN = 1 << 30   # what a Sobol sequence of scipy has
+MOST_DRAWN = 1 << 30   # points of a Sobol sequence of scipy
 LEAST_SAMPLES, MOST_SAMPLES = 16, 1 << 24
 
 

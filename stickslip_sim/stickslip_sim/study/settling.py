@@ -93,7 +93,7 @@ class _Stage(NamedTuple):
 
 
 def _known(before: _Stage, now: _Stage, axis: Axis, inputs: Mapping[str, Numbers]) -> tuple[Flags, Flags]:
-    """Return of which runs it is known what they end in, beside those half as long, and which are there, or near it."""
+    """Return which runs have a known ending, by those half as long, and which have reached it, or nearly."""
     runs = now.runs
     is_stable = sliding_slope(axis, inputs) >= 0.0
     swings_on, wanes, calms = _swings(before.runs, runs, np.abs(inputs['drive_velocity']))
@@ -145,7 +145,7 @@ def _drifts(before: _Stage, now: _Stage, axis: Axis, inputs: Mapping[str, Number
 
 
 def _is_open(before: Runs, now: Runs) -> Flags:
-    """Return of which runs that did not settle it cannot be told whether they go on to stick and slip."""
+    """Return which runs that did not settle may or may not go on to stick and slip."""
     late = now.sticks - before.sticks
     with np.errstate(divide='ignore', invalid='ignore'):
         pause = np.maximum(now.longest_pause, now.duration - now.last_stick)
@@ -178,7 +178,7 @@ def _static_force(axis: Axis, inputs: Mapping[str, Numbers]) -> Numbers:
 
 
 def _number(axis: Axis, inputs: Mapping[str, Numbers], name: str) -> Numbers:
-    """Return what each axis has for a number that may be among the inputs."""
+    """Return a number of each axis; it may be among the inputs."""
     if name in inputs:
         return inputs[name]
     static = axis.friction.static
@@ -187,7 +187,7 @@ def _number(axis: Axis, inputs: Mapping[str, Numbers], name: str) -> Numbers:
 
 
 def runs_of(figures: BatchFigures, rounds: Rounds, duration: float) -> Runs:
-    """Return what is known of runs of one length."""
+    """Return runs of one length from their figures and rounds."""
     no = np.zeros((2, len(figures.cycles)), dtype=bool)
     known = {name: getattr(one, name) for one in (figures, rounds) for name in one.__slots__ if name in RUN_FIELDS}
     return Runs(np.full(len(figures.cycles), duration), **known, undecided=no[0], late=no[1])

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""A study: variants of one scene, and what becomes of each."""
+"""A study: variants of one scene, and the figures of each."""
 
 import itertools
 from collections.abc import Iterator, Mapping
@@ -52,7 +52,7 @@ class Study:
 
     @property
     def ranges(self) -> tuple[Variation, ...]:
-        """What varies between two ends; nothing of a sample of distributions."""
+        """The parameters that vary between two ends; none in a sample of distributions."""
         return tuple(one for one in self.sample.variations if isinstance(one, Variation))
 
     @property

@@ -33,7 +33,7 @@ def sweep(study: Study, folder: Folder, workers: Workers | None = None,
     """Run the points of a study that its folder does not have yet, finish the folder, and return all points.
 
     Without `workers` this process does it.  The table is the same for any number of workers and of interruptions.
-    Raises InputError where the disk refuses, and what the workers raise; what is done is kept.
+    Raises InputError where the disk refuses, and the errors of the workers; finished chunks are kept.
     """
     if folder.is_complete:
         return Swept(read_columns(folder.table, study), 0)

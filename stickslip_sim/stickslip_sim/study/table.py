@@ -65,7 +65,7 @@ def read_rows(found: Sequence[bytes], study: Study, first: int, last: int) -> Nu
 
 
 def next_lines(file: BinaryIO, study: Study, first: int, last: int) -> list[bytes]:
-    """Return the next lines of a file, of which nobody knows whether it has ends of lines."""
+    """Return the next lines of a file, which may lack ends of lines."""
     return list(islice(iter(lambda: file.readline(longest_line(study)), b''), last - first))
 
 
@@ -75,7 +75,7 @@ def width(study: Study) -> int:
 
 
 def may_be_table(path: Path, study: Study) -> bool:
-    """Whether a file, whoever made it, is worth reading: an ordinary one, no longer than all lines; raises OSError."""
+    """Whether a file of any origin is worth reading: an ordinary one, no longer than all lines; raises OSError."""
     return path.is_file() and path.stat().st_size <= len(title_line(study)) + study.count * longest_line(study)
 
 

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""What is not known exactly, in a file: read strictly, so that nothing misspelt passes unseen.
+"""The file of parameters that are not known exactly: read strictly, so that no misspelling passes unseen.
 
 seed: 0
 parameters:
@@ -35,13 +35,13 @@ class Uncertain(NamedTuple):
 
 
 def load_uncertain(path: str) -> Uncertain:
-    """Return what a file says; raises InputError, whose text begins with the file."""
+    """Return the content of a file; raises InputError, whose text begins with the file."""
     with named(path):
         return uncertain_of(read_yaml(read_text(Path(path), 'file of distributions')))
 
 
 def uncertain_of(document: object) -> Uncertain:
-    """Return what a document says, as YAML gives it; raises InputError."""
+    """Return the content of a document, as YAML gives it; raises InputError."""
     given = section('file', document, ('parameters', 'seed'), _PAGE)
     entries = given.get('parameters')
     if not isinstance(entries, Mapping) or not 1 <= len(entries) <= MOST_VARIATIONS:

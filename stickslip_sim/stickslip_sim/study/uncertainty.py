@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""What becomes of an axis that is known only roughly: percentiles of its figures, and which number decides them.
+"""The motion of an axis that is known only roughly: percentiles of its figures, and the parameters that decide them.
 
 Percentiles are over the independent points A and B of a sample, 2 N of them.  Sobol' indices are those of scipy
 (Saltelli et al., 2010, with Jansen's total index):
@@ -54,7 +54,7 @@ class Uncertainty(NamedTuple):
 
 
 def uncertainty_of(sample: Saltelli, columns: Mapping[str, Numbers]) -> Uncertainty:
-    """Return what the columns of the table of a sample say."""
+    """Return percentiles and indices from the columns of the table of a sample."""
     known = {name: columns[name].reshape(sample.samples, sample.each) for name in SPREAD}
     slips = _slips(sample, columns)
     drawn = slips[:, :2]

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Where the verdict on a number changes: a scan, then nested sections of each stretch in which it does.
 
-Where verdicts cannot be told, or come by turns however closely one looks, the change lies in between; beyond both ends
+Where there is no verdict, or verdicts alternate however close the values, the change lies in between; beyond both ends
 of such a stretch more values are judged, until none of them contradicts.
 """
 
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from .point_figures import Numbers
 
-NO, YES, OPEN, FAILED = 0, 1, -1, -2   # verdicts; OPEN: it cannot be told; FAILED: the run went wrong
+NO, YES, OPEN, FAILED = 0, 1, -1, -2   # verdicts; OPEN: there is none; FAILED: the run went wrong
 Verdicts = NDArray[np.int64]
 Judge = Callable[[Numbers], Verdicts]
 
@@ -75,7 +75,7 @@ class Findings(NamedTuple):
 
     @property
     def marks(self) -> list[float]:
-        """The values at which what `at` returns may change."""
+        """The values at which the result of `at` may change."""
         ends = [end for one in self.transitions for end in ((one.value,) if one.resolved else (one.low, one.high))]
         return [*ends, *(end for one in self.doubts for end in (one.low, one.high))]
 
@@ -91,7 +91,7 @@ class _Scan(NamedTuple):
         return [int(place) for place in np.flatnonzero(self.verdicts >= NO)]
 
     def changes(self) -> list[tuple[int, int]]:
-        """Return the places of neighbours among those whose verdicts differ."""
+        """Return the places of adjacent values with verdicts that differ."""
         return [(a, b) for a, b in pairwise(self.known()) if self.verdicts[a] != self.verdicts[b]]
 
     def has_failed(self, first: int, last: int) -> bool:
@@ -103,7 +103,7 @@ def find_transitions(judge: Judge, low: float, high: float, log: bool, accuracy:
                      progress: Callable[[float], None] | None = None) -> Findings:
     """Return how the verdict goes from `low` to `high`, each change within a relative `accuracy`.
 
-    Two changes between neighbours of the scan, 65 values, even or in steps of one ratio (`log`), cancel each other.
+    Two changes between adjacent values of the scan (65, even or in steps of one ratio with `log`) cancel each other.
     """
     values = np.asarray((np.geomspace if log else np.linspace)(low, high, _SCAN), dtype=np.float64)
     scan = _Scan(values, judge(values))
@@ -185,5 +185,5 @@ def _widened(judge: Judge, scan: _Scan, first: int, last: int, whole: _Scan) -> 
 
 
 def _part(scan: _Scan, first: int, last: int) -> _Scan:
-    """Return what lies between two places, with both."""
+    """Return the values from one place to another, with both."""
     return _Scan(scan.values[first:last + 1], scan.verdicts[first:last + 1])

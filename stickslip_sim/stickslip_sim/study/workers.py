@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Who works on the chunks of a study beside this process: other processes of this machine."""
+"""The workers on the chunks of a study beside this process: other processes of this machine."""
 
 import os
 import threading
@@ -31,7 +31,7 @@ class Workers(NamedTuple):
 
 @contextmanager
 def processes(count: int) -> Iterator[Workers]:
-    """Yield processes; on any error what waits for them is dropped and what they are at is waited for."""
+    """Yield processes; on any error waiting chunks are dropped and those under way are waited for."""
     pool = ProcessPoolExecutor(count, get_context('spawn'), _watch_the_parent)
     try:
         yield Workers(pool, count)
