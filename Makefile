@@ -6,6 +6,7 @@
 
 DISTRO ?= jazzy
 MINUTES ?= 10
+PROCESSES ?= 2
 export DISTRO
 
 SHELL := /bin/bash
@@ -23,8 +24,8 @@ build:  ## set up ros2_ws: ROS 2 from wheels, both packages with colcon
 run: build  ## run the node on the paper's scene, drive it, record it, show what happened
 	@$(HERE) python3 -m stickslip_sim.ros.demo
 
-test: tools  ## all tests, in a ROS domain of their own
-	@$(HERE) --own-domain python3 -m pytest tests
+test: tools  ## all tests, PROCESSES=2 at once, each in a ROS domain of its own
+	@$(HERE) python3 -m pytest tests --dist loadfile --tx '$(PROCESSES)*popen//python=$(HERE) --own-domain python3'
 
 check: tools  ## style, types, architecture, dead code, spelling, words and links
 	@$(TOOLS)/ruff check .
