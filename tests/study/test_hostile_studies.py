@@ -25,9 +25,11 @@ def swept(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def folder(swept: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Path:
+def folder(swept: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Path:
+    """Return a copy below the working directory: messages shorten long paths."""
     capsys.readouterr()
-    return Path(shutil.copytree(swept, tmp_path / 'other'))
+    monkeypatch.chdir(tmp_path)
+    return Path(shutil.copytree(swept, 'other'))
 
 
 def refusal(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
@@ -111,7 +113,7 @@ def test_nobody_goes_on_with_what_has_no_end(make: Callable[[Path], None], folde
 
 
 def test_nothing_that_a_link_leads_to_is_changed(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    diary = folder.parent / 'diary'
+    diary = folder.parent.absolute() / 'diary'
     diary.write_text('dear diary\n')
     (folder / TABLE).unlink()
     (folder / PARTIAL).symlink_to(diary)
