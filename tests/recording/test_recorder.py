@@ -19,6 +19,7 @@ from stickslip_sim.recording import (
     receipt_file,
     write_bag,
 )
+from tests.support.busy_machine import CoreWaits, judged_by_time
 from tests.support.recorded_runs import FACTS, events, samples
 from tests.support.repository import ROOT
 from tests.support.waiting import wait_for
@@ -157,17 +158,19 @@ except RecordingError as error:
         program = subprocess.Popen([sys.executable, '-m', 'tests.support.record_until_killed', str(tmp_path / 'run')],
                                    cwd=ROOT, stdout=subprocess.PIPE, text=True)
         assert program.stdout is not None
-        with program, program.stdout:
+        waits = CoreWaits(program.pid)
+        with program, program.stdout, judged_by_time(0.5, waits):
             put = next(step for step in map(int, program.stdout) if step >= 1700)
+            waits.look()
             program.send_signal(signal.SIGKILL)
             put = max([put, *map(int, program.stdout)])
-        with pytest.warns(RecordingWarning, match='no end'):
-            run = read_run(tmp_path / 'run')
-        steps = [message.sequence for message in run.messages()]
+            with pytest.warns(RecordingWarning, match='no end'):
+                run = read_run(tmp_path / 'run')
+            steps = [message.sequence for message in run.messages()]
+            assert put - len(steps) < 1000  # one a millisecond
         assert not run.is_complete
         assert run.attachments['scene.yaml'].decode() == FACTS.scene_text
         assert steps == list(range(1, len(steps) + 1))
-        assert put - len(steps) < 1000  # one a millisecond
 
 
 def test_a_file_cut_anywhere_gives_what_is_whole(tmp_path: Path) -> None:

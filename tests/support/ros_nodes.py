@@ -8,8 +8,10 @@ import signal
 import subprocess
 import threading
 import warnings
+from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +25,7 @@ with warnings.catch_warnings():   # rclpy loads it at the first message, and it 
 from diagnostic_msgs.msg import DiagnosticArray  # noqa: E402
 from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParametersAtomically  # noqa: E402
 from rclpy.context import Context  # noqa: E402
+from rclpy.event_handler import SubscriptionEventCallbacks  # noqa: E402
 from rclpy.executors import SingleThreadedExecutor  # noqa: E402
 from rclpy.node import Node  # noqa: E402
 from rclpy.parameter import Parameter  # noqa: E402
@@ -38,6 +41,7 @@ from stickslip_msgs.msg import (  # noqa: E402
     SliderState,
     StepTiming,
 )
+from tests.support.busy_machine import CoreWaits  # noqa: E402
 from tests.support.tool import restore_interrupt  # noqa: E402
 from tests.support.waiting import DEADLINE, wait_for  # noqa: E402
 
@@ -81,12 +85,14 @@ class NodeProcess:
         self._process = subprocess.Popen(
             [executable(program), '--ros-args', *ros_args], cwd=folder, stderr=subprocess.PIPE, text=True,
             start_new_session=True, preexec_fn=prepare or restore_interrupt)
+        self.waits = CoreWaits(self.pid)
 
     @property
     def pid(self) -> int:
         return self._process.pid
 
     def send(self, number: int) -> None:
+        self.waits.look()    # it may end
         self._process.send_signal(number)
 
     def wait(self) -> tuple[int, str]:
@@ -104,6 +110,7 @@ class NodeProcess:
 
     def kill(self) -> None:
         if self._process.poll() is None:
+            self.waits.look()
             self._process.kill()
             print(self._process.communicate()[1])    # what it had to say, for the report of a test that failed
 
@@ -126,15 +133,19 @@ def running(*ros_args: str, folder: Path | None = None, prepare: Callable[[], No
 
 
 class Client:
-    """Hears all topics of a node, sends commands, calls services; its callbacks run in a thread."""
+    """Hears all topics of a node, sends commands, calls services; its callbacks run in a thread.
+
+    `lost` counts by topic what DDS reports as lost: a node keeps its last ten states for those that are slow to listen.
+    """
 
     def __init__(self, namespace: str = '/') -> None:
         self._context = Context()
         rclpy.init(context=self._context)
         self.node = Node('client', context=self._context, namespace=namespace)
         self.heard: dict[str, list[Any]] = {name: [] for name in _HEARD}
+        self.lost: Counter[str] = Counter()
         for name, (kind, qos) in _HEARD.items():
-            self.node.create_subscription(kind, name, self.heard[name].append, qos)
+            self.hear(kind, name, self.heard[name].append, qos)
         self._velocity = self.node.create_publisher(DriveVelocity, 'drive_velocity', _COMMAND)
         self._force = self.node.create_publisher(ExternalForce, 'external_force', _COMMAND)
         self._services: dict[str, Any] = {}
@@ -159,6 +170,34 @@ class Client:
         """Wait until a node hears the commands and is heard; without states while its time stands still."""
         wait_for(lambda: self._velocity.get_subscription_count() and self._force.get_subscription_count()
                  and (self.heard['slider_state'] or not is_moving) and self.heard['run_info'], 'the node')
+
+    def hear(self, kind: Any, name: str, take: Callable[[Any], object], qos: QoSProfile, raw: bool = False) -> None:
+        """Let `take` have the messages of a topic, and count what is lost of them."""
+        def lose(report: Any) -> None:
+            self.lost[name] += report.total_count_change
+
+        self.node.create_subscription(kind, name, take, qos, raw=raw,
+                                      event_callbacks=SubscriptionEventCallbacks(message_lost=lose))
+
+    def wait_for_lost(self, name: str, count: int, before: int = 0) -> None:
+        """Wait until so many messages of a topic are reported as lost since there were `before`."""
+        wait_for(lambda: self.lost[name] - before >= count, f'a report of {count} lost messages on {name}')
+
+    def states_of_run(self) -> list[Any]:
+        """Return the states that were heard of the latest run, each one later than the one before.
+
+        Those that are missing among them are waited for to be reported as lost.
+        """
+        start = nanoseconds(self.latest('run_info').start_time)
+        states = [state for state in self.heard['slider_state'] if nanoseconds(state.header.stamp) >= start]
+        gaps = [later.step - earlier.step - 1 for earlier, later in pairwise(states)]
+        assert not gaps or min(gaps) >= 0
+        self.wait_for_lost('slider_state', sum(gaps))
+        return states
+
+    def stop_commanding(self) -> None:
+        """Leave the velocity to others."""
+        self.node.destroy_publisher(self._velocity)
 
     def add(self, node: Node) -> None:
         """Let the callbacks of another node of this context run too."""

@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-DEADLINE = 20.0   # s
+DEADLINE = 60.0   # s, of which a quiet machine needs a few
 
 
 def wait_for(look: Callable[[], Any], what: str, deadline: float = DEADLINE) -> Any:

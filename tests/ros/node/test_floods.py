@@ -8,8 +8,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -41,19 +40,27 @@ begin, count = time.monotonic(), 0
 while True:
     out.publish(DriveVelocity(velocity=value))
     count += 1
+    print(count, flush=count % 100 == 0)
     time.sleep(max(begin + count / rate - time.monotonic(), 0.0))
 """
 
 
-@contextmanager
-def controller(rate: float, value: float) -> Iterator[None]:
-    """Run a process that sends a velocity at a rate, Hz, and is killed at the end."""
-    process = subprocess.Popen([sys.executable, '-c', _SENDER, str(rate), str(value)])
-    try:
-        yield
-    finally:
-        process.kill()
-        process.wait()
+class Controller:
+    """A process that sends a velocity at a rate, Hz, and is killed at the end; then `sent` is the most that it sent."""
+
+    def __init__(self, rate: float, value: float, out: Path) -> None:
+        self.sent = 0
+        self._out = out
+        with out.open('w') as stream:
+            self._process = subprocess.Popen([sys.executable, '-c', _SENDER, str(rate), str(value)], stdout=stream)
+
+    def __enter__(self) -> 'Controller':
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._process.kill()
+        self._process.wait()
+        self.sent = len(self._out.read_text().splitlines()) + 100    # it says so by the hundred
 
 
 def memory_of(pid: int) -> float:
@@ -64,22 +71,24 @@ def memory_of(pid: int) -> float:
 
 class TestFlood:
     def test_of_commands_is_counted_and_costs_no_memory(self, tmp_path: Path) -> None:
-        with node_and_client(tmp_path, 'realtime') as (process, axis), controller(10_000.0, 0.003):
-            first = axis.next('timing', lambda timing: timing.total_received > 1000)
-            before = memory_of(process.pid)
-            timing = axis.next('timing', lambda timing: timing.total_received > first.total_received + 8000)
+        with node_and_client(tmp_path, 'realtime') as (process, axis):
+            with Controller(10_000.0, 0.003, tmp_path / 'sent') as controller:
+                first = axis.next('timing', lambda timing: timing.total_received > 1000)
+                before = memory_of(process.pid)
+                timing = axis.next('timing', lambda timing: timing.total_received > first.total_received + 8000)
+                assert timing.step - first.step > 200
+                assert axis.next('slider_state').drive_velocity == 0.003
+                assert memory_of(process.pid) - before < 5.0
             assert timing.total_refused == 0
-            assert timing.step - first.step > 200
-            assert axis.next('slider_state').drive_velocity == 0.003
-            assert memory_of(process.pid) - before < 5.0
+            assert timing.total_received <= controller.sent
 
-    def test_of_what_is_no_number_is_refused_counted_and_told_once_a_second(self) -> None:
+    def test_of_what_is_no_number_is_refused_counted_and_told_once_a_second(self, tmp_path: Path) -> None:
         with running('-p', 'drive.velocity:=0.001') as process, client() as axis:
             axis.connect()
             begin = time.monotonic()
-            with controller(2000.0, math.nan):
+            with Controller(2000.0, math.nan, tmp_path / 'sent') as controller:
                 timing = axis.next('timing', lambda timing: timing.total_refused > 2000)
-            assert timing.total_refused == timing.total_received
+            assert timing.total_refused == timing.total_received <= controller.sent
             assert axis.next('slider_state').drive_velocity == 0.001
             lasted = time.monotonic() - begin
             code, errors = process.end()
@@ -93,10 +102,10 @@ class TestController:
                   'command.timeout_deceleration:=0.1']
         with node_and_client(tmp_path, 'realtime', *wanted, *recording_into(tmp_path / 'run')) as (_, axis):
             for count, velocity in enumerate((0.004, 0.006), 1):
-                with controller(200.0, velocity):
+                with Controller(200.0, velocity, tmp_path / 'sent'):
                     axis.next('slider_state', runs_at(velocity))
                 axis.next('slider_state', runs_at(0.0))
-                timing = axis.next('timing', lambda timing: timing.total_timed_out > 0)
+                timing = axis.next('timing', has_timed_out(count))
                 assert timing.total_timed_out == count
                 assert axis.status('command')[0].message.startswith('timed out: no drive velocity comes')
         recorded = read_run(tmp_path / 'run')
@@ -108,6 +117,10 @@ class TestController:
 
 def runs_at(velocity: float) -> Callable[[Any], bool]:
     return lambda state: state.drive_velocity == velocity
+
+
+def has_timed_out(count: int) -> Callable[[Any], bool]:
+    return lambda timing: timing.total_timed_out >= count
 
 
 def scene_with(arguments: list[str]) -> Scene:

@@ -16,11 +16,13 @@ from mcap.writer import Writer
 from stickslip_sim.core.errors import RecordingWarning
 from stickslip_sim.recording import open_run, read_run, schema, write_bag
 from stickslip_sim.recording.topics import CLOCK, PARAMETER_EVENTS, RECORDED, SLIDER_STATE, Topic
+from tests.support.busy_machine import judged_by_time
 from tests.support.recorded_runs import FACTS, damage, events, samples
 from tests.support.ros_nodes import Client, assert_clean, client, executable, running
 from tests.support.waiting import wait_for
 
 from rcl_interfaces.srv import DescribeParameters  # isort: skip
+from rclpy.qos import QoSProfile  # isort: skip
 from rosgraph_msgs.msg import Clock  # isort: skip
 from std_srvs.srv import SetBool, Trigger  # isort: skip
 
@@ -62,9 +64,10 @@ class Ears:
 
     def __init__(self, viewer: Client, *topics: Topic) -> None:
         self.heard: list[tuple[str, bytes]] = []
+        self._lost = viewer.lost
         for topic in topics:
-            viewer.node.create_subscription(message_type(topic), topic.name, self._note(topic.name),
-                                            qos(topic.qos._replace(depth=5000)), raw=True)
+            viewer.hear(message_type(topic), topic.name, self._note(topic.name), qos(topic.qos._replace(depth=5000)),
+                        raw=True)
 
     def _note(self, name: str) -> Callable[[bytes], None]:
         return lambda data: self.heard.append((name, data))
@@ -73,9 +76,13 @@ class Ears:
         return [data for topic, data in self.heard if topic == name]
 
     def wait_for(self, name: str, wanted: list[bytes]) -> None:
-        """Wait until as many messages came as are wanted, and compare them; DDS pads them to a multiple of 4 bytes."""
-        wait_for(lambda: len(self.of(name)) >= len(wanted), name)
-        assert self.of(name) == [data + bytes(-len(data) % 4) for data in wanted]
+        """Wait until the wanted messages came, but for those that DDS reports as lost, and compare them in order.
+
+        It pads them to a multiple of 4 bytes.
+        """
+        wait_for(lambda: len(self.of(name)) + self._lost[name] >= len(wanted), name)
+        rest = iter([data + bytes(-len(data) % 4) for data in wanted])
+        assert all(data in rest for data in self.of(name))
 
 
 def recorded(bag: Path, name: str, since: float = 0.0, until: float = 1e9) -> list[bytes]:
@@ -108,13 +115,12 @@ class TestStates:
             assert {name for name, _ in ears.heard} == {'/seen'}
 
     def test_again_and_again(self, bag: Path) -> None:
-        arguments = ('-p', 'loop:=true', '-p', 'topics:=[friction_force]')   # no more than a busy machine can hear
+        """Transitions, of which none is lost: the publisher keeps more of them than come in these rounds."""
+        arguments = ('-p', 'loop:=true', '-p', 'topics:=[mode_event]')
         with client() as viewer, replaying(bag, *arguments, *PAUSED) as process:
             ears = Ears(viewer, *TOPICS)
             assert call(viewer, 'toggle_paused').message.startswith('running')
-            once = len(recorded(bag, '/friction_force'))
-            heard = wait_for(lambda: (all_of := ears.of('/friction_force'))[3 * once:] and all_of, 'three rounds')
-            assert heard[:once] == heard[once:2 * once] == heard[2 * once:3 * once]
+            ears.wait_for('/mode_event', 3 * recorded(bag, '/mode_event'))
             assert call(viewer, 'stop').success
             assert_clean(*process.wait())
 
@@ -131,14 +137,17 @@ class TestTime:
     def test_each_message_in_its_time(self, bag: Path) -> None:
         """0.3 s at a third of the speed: 301 states, one in 3 ms; the host may be late now and then."""
         with client() as viewer, replaying(bag, *PAUSED, '-p', 'rate:=0.3333333333333333') as process:
-            times: list[float] = []
-            viewer.node.create_subscription(SliderState, 'slider_state', lambda _: times.append(time.monotonic()), 500)
-            assert call(viewer, 'resume').success
+            times: dict[int, float] = {}
+            viewer.hear(SliderState, '/slider_state', lambda state: times.setdefault(state.step, time.monotonic()),
+                        QoSProfile(depth=500))
+            with judged_by_time(0.05, process.waits):
+                assert call(viewer, 'resume').success
+                wait_for(lambda: len(times) + viewer.lost['/slider_state'] == 301, 'all states')
+                first, last = min(times), max(times)
+                delays = [at - times[first] - 0.003 * (step - first) for step, at in times.items()]
+                assert abs(statistics.median(delays)) < 0.05
+                assert times[last] - times[first] > 0.85 / 300 * (last - first)
             assert_clean(*process.wait())
-            wait_for(lambda: len(times) == 301, 'all states')
-        delays = [at - times[0] - 0.003 * number for number, at in enumerate(times)]
-        assert abs(statistics.median(delays)) < 0.05
-        assert times[-1] - times[0] > 0.85
 
     def test_clock_is_that_of_the_stamps(self, tmp_path: Path) -> None:
         start = 1_700_000_000 * SECOND
@@ -153,9 +162,11 @@ class TestTime:
             wait_for(lambda: len(clocks) > 3, 'a clock that stands still')
             assert set(clocks) == {start}
             assert call(viewer, 'resume').success
+            with judged_by_time(0.04, process.waits):
+                wait_for(lambda: clocks[-1] > start + 150_000_000, 'a tick of its end', 5.0)
             assert_clean(*process.wait())
         assert clocks == sorted(clocks)
-        assert start + 150_000_000 < clocks[-1] < start + SECOND
+        assert clocks[-1] < start + SECOND
 
     def test_paused_message_by_message(self, bag: Path) -> None:
         slowly = ('-p', 'rate:=0.02', '-p', 'topics:=[/slider_state]')   # 15 s
