@@ -9,7 +9,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from stickslip_sim.runs.offline import Trajectory, run_offline
+from stickslip_sim.runs import SimulatedRun, simulate_events
 from stickslip_sim.scene import load_scene
 
 Changes = Mapping[str, object]
@@ -70,11 +70,11 @@ def table() -> str:
     return head + ''.join(f'| {choice.what} | {choice.value} | {_figures(_run(choice))} |\n' for choice in CHOICES)
 
 
-def _run(choice: Choice) -> Trajectory:
-    return run_offline(load_scene(BASE, choice.changes), DURATION)
+def _run(choice: Choice) -> SimulatedRun:
+    return simulate_events(load_scene(BASE, choice.changes), DURATION)
 
 
-def _figures(run: Trajectory) -> str:
+def _figures(run: SimulatedRun) -> str:
     last, cycle = run.summary.last, run.summary.mean
     if last is None or cycle is None or DURATION - last.begin > 3.0 * last.period:
         return f'{run.summary.cycles} cycles, then smooth sliding | | | | |'

@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stickslip_sim.recording import read_run
+from stickslip_sim.recording import open_bag
 
 from .hil.measure import bag_figures, node_figures
 from .hil.process import SCENE, control, node_command, resident, running
@@ -87,7 +87,7 @@ def soak(minutes: float) -> tuple[dict[str, float], str]:
         with running(node_command(RATE, folder)) as process, MemoryWatch(process.pid) as memory:
             figures = control(process.pid, minutes * 60.0)
         figures |= {**node_figures(folder), **bag_figures(folder)}
-        verdict = str(read_run(folder).receipt['timing']['verdict'])
+        verdict = str(open_bag(folder).receipt['timing']['verdict'])
     figures = {**figures, 'growth': memory.growth(), 'resident': memory.samples[-1] / 2**20,
                'drift_ms': figures['drift'] * 1e3, 'overruns_percent': figures['overruns'] * 1e2,
                'lateness_p99_ms': figures['lateness_p99'] * 1e3, 'lateness_max_ms': figures['lateness_max'] * 1e3}

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from stickslip_sim.recording import read_run
+from stickslip_sim.recording import open_bag
 
 from .process import COMMANDS, control, running
 
@@ -34,7 +34,7 @@ def node_figures(folder: Path) -> dict[str, float]:
 
     Of the quantiles the median over the seconds; `overruns` is their share of the steps.
     """
-    run = read_run(folder)
+    run = open_bag(folder)
     table = {name: column[1:-1] for name, column in run.columns('/timing').items()}
     figures = {name: float(np.nanmedian(table[name])) for name in table if name.endswith(('_p50', '_p99'))}
     return {**figures, 'dropped': float(run.receipt['dropped_messages']),
@@ -44,7 +44,7 @@ def node_figures(folder: Path) -> dict[str, float]:
 
 def bag_figures(folder: Path) -> dict[str, float]:
     """Return how many steps of the run are not in its bag."""
-    steps = read_run(folder).columns('/slider_state')['step']
+    steps = open_bag(folder).columns('/slider_state')['step']
     return {'unrecorded': int(steps[-1]) + 1 - len(np.unique(steps))}
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from stickslip_sim.core.types import Sample
 from stickslip_sim.recording import BagWriter, RunFacts, topics, write_bag
-from stickslip_sim.runs.offline import run_offline
+from stickslip_sim.runs import simulate
 from stickslip_sim.scene import load_scene
 from tests.support.check_files import DURATION, LIMITS, limits_file, node_bag, refused
 from tests.support.tool import Capture
@@ -117,7 +117,7 @@ class TestRefusals:
 
     def test_a_bag_of_two_runs(self, tmp_path: Path, capsys: Capture) -> None:
         scene = load_scene('paper_fig7')
-        rows: list[Sample] = [*run_offline(scene, 0.01, scene.time.step).sample_rows()]
+        rows: list[Sample] = [*simulate(scene, 0.01, scene.time.step).sample_rows()]
         write_bag(tmp_path / 'two', RunFacts.of(scene), rows + rows, [], {})
         assert 'time goes back' in refused(capsys, tmp_path / 'two', '--limits', limits_file(tmp_path, LIMITS))
 

@@ -12,8 +12,8 @@ import pytest
 
 from stickslip_sim.check.kinds import KINDS
 from stickslip_sim.cli.main import run
-from stickslip_sim.recording import OfflineBag, RunFacts, read_run
-from stickslip_sim.runs.offline import run_offline
+from stickslip_sim.recording import OfflineBag, RunFacts, open_bag
+from stickslip_sim.runs import simulate
 from stickslip_sim.scene import load_scene
 from tests.support.check_files import DURATION, LIMITS, checked, cut, limits_file, node_bag, refused
 from tests.support.repository import ROOT
@@ -134,7 +134,7 @@ class TestRuns:
     def test_missing_steps_are_told(self, tmp_path: Path, capsys: Capture) -> None:
         scene = load_scene('paper_fig7')
         bag = OfflineBag(tmp_path / 'bag', RunFacts.of(scene))
-        for step, sample in enumerate(run_offline(scene, 0.2, scene.time.step).sample_rows()):
+        for step, sample in enumerate(simulate(scene, 0.2, scene.time.step).sample_rows()):
             if not 50 <= step < 53:
                 bag.sample(step, sample)
         bag.close({})
@@ -181,6 +181,6 @@ def test_a_run_of_the_node_has_the_figures_of_the_simulation(tmp_path: Path, cap
     assert found[0] == found[1]
     (tmp_path / 'timing.yaml').write_text('limits: {timing: valid}')
     code, out, _ = checked(capsys, folder, '--limits', tmp_path / 'timing.yaml')
-    receipt = read_run(folder).receipt['timing']
+    receipt = open_bag(folder).receipt['timing']
     assert code == (0 if receipt['valid'] else 3)
     assert receipt['verdict'] in out

@@ -16,8 +16,8 @@ import pytest
 from stickslip_sim import __version__
 from stickslip_sim.cli.main import run
 from stickslip_sim.core.types import EventKind, Mode
+from stickslip_sim.runs import simulate, simulate_events
 from stickslip_sim.runs.error_estimate import error_estimate
-from stickslip_sim.runs.offline import run_offline
 from stickslip_sim.scene import load_scene, scene_names
 from tests.support.repository import ROOT
 from tests.support.tool import Capture, tool
@@ -66,7 +66,7 @@ def test_events_to_standard_output_are_exact() -> None:
     assert (done.returncode, done.stderr) == (0, '')
     assert done.stdout.splitlines()[0] == EVENT_HEADER
     rows = list(csv.DictReader(io.StringIO(done.stdout)))
-    events = [e for e in run_offline(load_scene('paper_fig8'), 3.0).events if e.kind != EventKind.KNOT]
+    events = [e for e in simulate_events(load_scene('paper_fig8'), 3.0).events if e.kind != EventKind.KNOT]
     assert len(rows) == len(events) > 10
     for row, event in zip(rows, events):
         assert row['kind'] == event.kind.name.lower()
@@ -89,7 +89,7 @@ def test_samples(tmp_path: Path) -> None:
     assert run(['simulate', 'paper_fig7', '--duration', '2', '--samples', str(path), '--sample-period', '0.01']) == 0
     assert path.read_text().splitlines()[0] == SAMPLE_HEADER
     rows = list(csv.DictReader(path.read_text().splitlines()))
-    expected = run_offline(load_scene('paper_fig7'), 2.0, 0.01).samples
+    expected = simulate(load_scene('paper_fig7'), 2.0, 0.01).samples
     assert len(rows) == 201
     for k, row in enumerate(rows):
         assert float(row['time']) == k / 100
@@ -163,15 +163,15 @@ def test_special_files_are_written_to_and_stay(capsys: Capture) -> None:
 
 @pytest.mark.ros
 def test_bag(tmp_path: Path) -> None:
-    from stickslip_sim.recording import read_run
+    from stickslip_sim.recording import open_bag
 
     assert run(['simulate', 'paper_fig8', '--duration', '2', '--bag', str(tmp_path / 'bag'), '--samples',
                 str(tmp_path / 's.csv'), '--sample-period', '0.5']) == 0
     assert len((tmp_path / 's.csv').read_text().splitlines()) == 1 + 5
-    recorded = read_run(tmp_path / 'bag')
+    recorded = open_bag(tmp_path / 'bag')
     assert recorded.is_complete
     assert recorded.counts['/slider_state'] == 2001
-    assert recorded.counts['/mode_event'] == len(run_offline(load_scene('paper_fig8'), 2.0).events)
+    assert recorded.counts['/mode_event'] == len(simulate_events(load_scene('paper_fig8'), 2.0).events)
     assert recorded.receipt['scene'] == 'paper_fig8'
     assert recorded.receipt['sample_period'] == 0.001
     assert recorded.receipt['energy']['drive_work'] > 0.0
@@ -182,14 +182,14 @@ def test_bag(tmp_path: Path) -> None:
 @pytest.mark.ros
 def test_the_estimate_in_a_bag_is_of_the_run_in_the_bag(tmp_path: Path) -> None:
     """A run of adaptive steps depends on its samples, which are others in the bag than those asked for."""
-    from stickslip_sim.recording import read_run
+    from stickslip_sim.recording import open_bag
 
     adaptive = {'solver.name': 'adaptive', 'solver.rtol': 1e-4, 'time.rate': 300.0}
     changes = [word for name, value in adaptive.items() for word in ('--set', f'{name}={value}')]
     assert run(['simulate', 'paper_fig7', '--duration', '1', *changes, '--bag', str(tmp_path / 'bag'), '--samples',
                 str(tmp_path / 's.csv'), '--sample-period', '0.5']) == 0
-    in_bag = run_offline(load_scene('paper_fig7', adaptive), 1.0, Fraction(1, 300))
-    assert read_run(tmp_path / 'bag').receipt['error_estimate'] == error_estimate(in_bag)._asdict()
+    in_bag = simulate(load_scene('paper_fig7', adaptive), 1.0, Fraction(1, 300))
+    assert open_bag(tmp_path / 'bag').receipt['error_estimate'] == error_estimate(in_bag)._asdict()
 
 
 def test_no_ros_and_no_plots_unless_asked_for() -> None:

@@ -99,7 +99,7 @@ def test_internal_errors_get_one_line(monkeypatch: pytest.MonkeyPatch, capsys: C
     def fail(*_: object) -> None:
         raise ZeroDivisionError('first\nsecond')
 
-    monkeypatch.setattr('stickslip_sim.runs.offline.run_offline', fail)
+    monkeypatch.setattr('stickslip_sim.runs.simulate_events', fail)
     assert 'ZeroDivisionError: first' in refused(capsys, 'simulate', 'paper_fig7', '--duration', '1', code=1)
     monkeypatch.setenv('STICKSLIP_DEBUG', '1')
     with pytest.raises(ZeroDivisionError):

@@ -14,8 +14,8 @@ import pytest
 from stickslip_sim.cli.main import run
 from stickslip_sim.core.errors import RecordingError
 from stickslip_sim.core.types import EventKind
-from stickslip_sim.recording import read_run
-from stickslip_sim.runs.offline import run_offline
+from stickslip_sim.recording import open_bag
+from stickslip_sim.runs import simulate_events
 from stickslip_sim.scene import load_scene
 from tests.support.repository import ROOT
 from tests.support.rewritten_bags import rewritten
@@ -26,7 +26,7 @@ class TestCsv:
     def test_the_same_floats_come_back(self, fig8_bag: Path, tmp_path: Path) -> None:
         file = tmp_path / 'states.csv'
         assert run(['export', str(fig8_bag), '--csv', str(file)]) == 0
-        columns = read_run(fig8_bag).columns('slider_state')
+        columns = open_bag(fig8_bag).columns('slider_state')
         with file.open(newline='') as lines:
             rows = list(csv.DictReader(lines))
         assert len(rows) == 3001
@@ -72,7 +72,7 @@ class TestParquet:
         for topic in ('slider_state', 'mode_event', 'run_info', 'rig_event'):
             file = tmp_path / f'{topic}.parquet'
             assert run(['export', str(fig8_bag), '--parquet', str(file), '--topic', topic]) == 0
-            found, columns = pandas.read_parquet(file), read_run(fig8_bag).columns(topic)
+            found, columns = pandas.read_parquet(file), open_bag(fig8_bag).columns(topic)
             assert list(found) == list(columns)
             for name, column in columns.items():
                 assert found[name].tolist() == column.tolist(), name
@@ -84,16 +84,16 @@ class TestParquet:
         assert 'pip install pandas fastparquet' in told
         assert list(tmp_path.iterdir()) == []
         with pytest.raises(RecordingError, match='pip install pandas'):
-            read_run(fig8_bag).frame('slider_state')
+            open_bag(fig8_bag).frame('slider_state')
 
 
 class TestInPython:
     def test_names_without_a_slash(self, fig8_bag: Path, tmp_path: Path) -> None:
-        recorded = read_run(fig8_bag)
+        recorded = open_bag(fig8_bag)
         assert (recorded.columns('slider_state')['time'] == recorded.columns('/slider_state')['time']).all()
-        cell = read_run(rewritten(fig8_bag, tmp_path / 'cell', lambda name: f'/cell/press{name}'))
+        cell = open_bag(rewritten(fig8_bag, tmp_path / 'cell', lambda name: f'/cell/press{name}'))
         assert len(cell.columns('slider_state')['time']) == len(cell.columns('press/slider_state')['time']) == 3001
-        two = read_run(rewritten(fig8_bag, tmp_path / 'two', lambda name: (
+        two = open_bag(rewritten(fig8_bag, tmp_path / 'two', lambda name: (
             '/b/slider_state' if name == '/friction_force' else f'/a{name}')))
         with pytest.raises(RecordingError, match='2 topics slider_state; there are '):
             two.columns('slider_state')
@@ -101,21 +101,21 @@ class TestInPython:
             two.columns('state')
 
     def test_scene_and_events(self, fig8_bag: Path) -> None:
-        recorded, scene = read_run(fig8_bag), load_scene('paper_fig8')
+        recorded, scene = open_bag(fig8_bag), load_scene('paper_fig8')
         assert recorded.scene == scene
-        expected = [event for event in run_offline(scene, 3.0).events if event.kind != EventKind.KNOT]
+        expected = [event for event in simulate_events(scene, 3.0).events if event.kind != EventKind.KNOT]
         assert [(event.kind, event.time, event.position) for event in recorded.events] == [
             (event.kind, event.time, event.position) for event in expected]
 
     def test_no_scene(self, fig8_bag: Path, tmp_path: Path) -> None:
-        bare = read_run(rewritten(fig8_bag, tmp_path / 'bare', attachment=lambda name: None))
+        bare = open_bag(rewritten(fig8_bag, tmp_path / 'bare', attachment=lambda name: None))
         with pytest.raises(RecordingError, match=r'no scene\.yaml travels in it'):
             _ = bare.scene
 
     def test_frame(self, fig8_bag: Path) -> None:
         pytest.importorskip('pandas')
-        frame = read_run(fig8_bag).frame('slider_state')
-        assert frame['velocity'].max() == np.max(read_run(fig8_bag).columns('slider_state')['velocity'])
+        frame = open_bag(fig8_bag).frame('slider_state')
+        assert frame['velocity'].max() == np.max(open_bag(fig8_bag).columns('slider_state')['velocity'])
         assert json.loads(frame.dtypes.astype(str).to_json())['mode'] == 'uint8'
 
 

@@ -17,8 +17,8 @@ from stickslip_sim.cli.compare import _named_apart
 from stickslip_sim.cli.main import run
 from stickslip_sim.compare.characteristics import characteristics_of
 from stickslip_sim.compare.conventional import characteristics_beside
-from stickslip_sim.compare.fresh import simulate
-from stickslip_sim.compare.recorded import history_of_run
+from stickslip_sim.compare.drawn import drawn, steady_inputs
+from stickslip_sim.compare.fresh import simulate_densely
 from stickslip_sim.compare.ring_down import closed_form, identified
 from stickslip_sim.compare.statement import Outcome
 from stickslip_sim.compare.statements import judged
@@ -26,7 +26,8 @@ from stickslip_sim.compare.windows import motion_of
 from stickslip_sim.core.types import EventKind
 from stickslip_sim.plots.characteristics import plot_characteristics
 from stickslip_sim.plots.paper_panels import plot_motion
-from stickslip_sim.runs.offline import run_offline
+from stickslip_sim.recording import read_run
+from stickslip_sim.runs import simulate_events
 from stickslip_sim.scene import load_scene
 from tests.support.rewritten_bags import rewritten
 from tests.support.tool import Capture
@@ -140,40 +141,40 @@ def test_ring_down_is_that_of_the_closed_form(report: Path) -> None:
 @pytest.mark.parametrize('damping', [0.0, 15000.0, 60000.0, 2e5])
 def test_ring_down_is_identified_from_the_motion(damping: float) -> None:
     """Also where nothing swings: a damping ratio of 1.93."""
-    history = simulate(load_scene('paper_fig8', {'contact.damping': damping}), 3.0)
-    form, found = closed_form(history.scene.axis), identified(history)
+    moving = simulate_densely(load_scene('paper_fig8', {'contact.damping': damping}), 3.0)
+    form, found = closed_form(moving.scene.axis), identified(moving)
     assert form is not None
     assert found is not None
     assert tuple(found) == pytest.approx(tuple(form), rel=1e-6)
 
 
 def test_a_bag_gives_the_figures_of_the_scene(bag: Path) -> None:
-    recorded, fresh = history_of_run(bag), simulate(load_scene('paper_fig8'), 4.0)
+    recorded, fresh = read_run(bag), simulate_densely(load_scene('paper_fig8'), 4.0)
     assert recorded.notes == ()
-    assert [cycle.begin for cycle in recorded.cycles] == pytest.approx([cycle.begin for cycle in fresh.cycles])
+    assert [cycle.begin for cycle in recorded.cycles()] == pytest.approx([cycle.begin for cycle in fresh.cycles()])
     assert recorded.summary.stick_share == pytest.approx(fresh.summary.stick_share, abs=1e-12)
     assert recorded.scene.axis == fresh.scene.axis
     one, other = identified(recorded), identified(fresh)
     assert one is not None
     assert other is not None
     assert tuple(one) == pytest.approx(tuple(other), rel=1e-9)
-    inputs = recorded.steady_inputs()
+    inputs = steady_inputs(recorded)
     assert inputs is not None
     assert tuple(inputs) == (DRIVE, 0.0)
 
 
 def test_a_bag_in_a_namespace_and_without_the_other_topics(bag: Path, tmp_path: Path) -> None:
     keep = ('/slider_state', '/friction_force', '/mode_event')
-    history = history_of_run(rewritten(bag, tmp_path / 'cell', lambda name: f'/cell{name}' if name in keep else None))
-    assert history.name == 'cell'
-    assert len(history.cycles) == len(history_of_run(bag).cycles)
+    moving = read_run(rewritten(bag, tmp_path / 'cell', lambda name: f'/cell{name}' if name in keep else None))
+    assert moving.name == 'cell'
+    assert len(moving.cycles()) == len(read_run(bag).cycles())
 
 
 def test_a_recording_that_began_later(bag: Path, tmp_path: Path) -> None:
-    late, whole = history_of_run(rewritten(bag, tmp_path / 'late', since=1.5)), history_of_run(bag)
+    late, whole = read_run(rewritten(bag, tmp_path / 'late', since=1.5)), read_run(bag)
     assert late.begin == pytest.approx(1.5)
-    assert late.cycles == whole.cycles[-len(late.cycles):]
-    assert 0 < len(late.cycles) < len(whole.cycles)
+    assert late.cycles() == whole.cycles()[-len(late.cycles()):]
+    assert 0 < len(late.cycles()) < len(whole.cycles())
     assert 0.6 < late.summary.stick_share < 0.9
     verdicts = {statement.name: finding for statement, finding in judged(late)}
     assert verdicts['long rest'].outcome == Outcome.NOT_APPLICABLE
@@ -182,24 +183,24 @@ def test_a_recording_that_began_later(bag: Path, tmp_path: Path) -> None:
 
 def test_corners_are_where_they_are() -> None:
     """At each event there is a sample just before and one just after it, whatever the sample rate."""
-    history = simulate(load_scene('paper_fig7'), 2.0)
-    drawn = history.drawn
-    for event in history.events:
-        at = np.flatnonzero(drawn['time'] == event.time)
+    moving = simulate_densely(load_scene('paper_fig7'), 2.0)
+    columns = drawn(moving)
+    for event in moving.events:
+        at = np.flatnonzero(columns['time'] == event.time)
         assert len(at) == 2
-        assert drawn['friction_force'][at[0]] == event.friction_force
-    stop = next(event for event in history.events if event.kind == EventKind.STICK)
-    before, after = np.flatnonzero(drawn['time'] == stop.time)
-    assert drawn['friction_force'][before] == pytest.approx(0.12 * 3432.3275)
-    assert drawn['friction_force'][after] == pytest.approx(stop.drive_force)
-    assert drawn['acceleration'][before] == pytest.approx((stop.drive_force - 0.12 * 3432.3275) / 350.0)
-    assert drawn['acceleration'][after] == 0.0
+        assert columns['friction_force'][at[0]] == event.friction_force
+    stop = next(event for event in moving.events if event.kind == EventKind.STICK)
+    before, after = np.flatnonzero(columns['time'] == stop.time)
+    assert columns['friction_force'][before] == pytest.approx(0.12 * 3432.3275)
+    assert columns['friction_force'][after] == pytest.approx(stop.drive_force)
+    assert columns['acceleration'][before] == pytest.approx((stop.drive_force - 0.12 * 3432.3275) / 350.0)
+    assert columns['acceleration'][after] == 0.0
 
 
 def test_a_jump_of_the_drive_is_sampled_on_both_sides() -> None:
     scene = load_scene('paper_fig7', {'drive.course': 'steps', 'drive.times': (0.0, 0.3),
                                       'drive.velocities': (0.0, 0.1)})
-    samples = simulate(scene, 0.5).samples
+    samples = simulate_densely(scene, 0.5).samples
     at = int(np.flatnonzero(samples['time'] == 0.3)[0])
     assert samples['time'][at - 1] == pytest.approx(0.3, abs=2e-9)
     assert samples['drive_force'][at - 1:at + 1].tolist() == pytest.approx([0.0, 400.0])
@@ -210,7 +211,7 @@ def test_a_jump_of_the_drive_is_sampled_on_both_sides() -> None:
                                                ('acceleration-dependent friction', 'paper_fig7')])
 def test_characteristics_beside_are_those_of_the_paper(name: str, shipped: str) -> None:
     other = characteristics_beside(load_scene('paper_fig7'))[name]
-    assert run_offline(other, 3.0).events == run_offline(load_scene(shipped), 3.0).events
+    assert simulate_events(other, 3.0).events == simulate_events(load_scene(shipped), 3.0).events
 
 
 def test_a_scene_has_only_the_characteristics_it_can_have() -> None:
@@ -222,14 +223,14 @@ def test_a_scene_has_only_the_characteristics_it_can_have() -> None:
     {'drive.course': 'sine', 'drive.amplitude': 0.01, 'drive.frequency': 3.0}])
 def test_any_motion_can_be_drawn(changes: dict[str, object], tmp_path: Path) -> None:
     """Nothing moves, or backwards, without friction, smoothly, or to and fro; a warning would be an error here."""
-    history = simulate(load_scene('paper_fig7', changes), 1.0)
-    plot_motion(motion_of(history), tmp_path / 'motion.svg')
-    plot_characteristics(characteristics_of(history), tmp_path / 'friction.svg')
+    moving = simulate_densely(load_scene('paper_fig7', changes), 1.0)
+    plot_motion(motion_of(moving), tmp_path / 'motion.svg')
+    plot_characteristics(characteristics_of(moving), tmp_path / 'friction.svg')
 
 
 def test_runs_of_one_name_get_files_of_their_own(bag: Path) -> None:
-    recorded, fresh = history_of_run(bag), simulate(load_scene('paper_fig7', {'scene': '../a b'}), 1.0)
-    assert [history.name for history in _named_apart([recorded, recorded, fresh])] == ['eight', 'eight_2', '.._a_b']
+    recorded, fresh = read_run(bag), simulate_densely(load_scene('paper_fig7', {'scene': '../a b'}), 1.0)
+    assert list(_named_apart([recorded, recorded, fresh])) == ['eight', 'eight_2', '.._a_b']
 
 
 def test_exit_code_when_a_statement_does_not_hold(tmp_path: Path, capsys: Capture) -> None:

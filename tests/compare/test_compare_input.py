@@ -12,8 +12,7 @@ from rosbags.rosbag2 import Writer as BagWriter
 from rosbags.typesys import Stores, get_typestore
 
 from stickslip_sim.cli.main import run
-from stickslip_sim.compare.recorded import history_of_run
-from stickslip_sim.recording import read_run
+from stickslip_sim.recording import open_bag, read_run
 from tests.support import tool
 from tests.support.rewritten_bags import rewritten
 from tests.support.tool import Capture
@@ -71,7 +70,7 @@ def test_a_missing_topic(topic: str, fig8_bag: Path, tmp_path: Path, capsys: Cap
 def test_two_axes(fig8_bag: Path, tmp_path: Path, capsys: Capture) -> None:
     names = {'/slider_state': '/left/slider_state', '/friction_force': '/right/friction_force'}
     both = rewritten(fig8_bag, tmp_path / 'both', lambda name: names.get(name, name))
-    assert len(history_of_run(both).cycles) > 0    # in any one namespace, but not in two of the same kind
+    assert len(read_run(both).cycles()) > 0    # in any one namespace, but not in two of the same kind
     with (tmp_path / 'two.mcap').open('wb') as out:
         writer = Writer(out)
         writer.start()
@@ -107,7 +106,7 @@ def test_a_cut_file_is_used_as_far_as_it_goes(fig8_bag: Path, tmp_path: Path, ca
 @pytest.mark.parametrize('compression', [CompressionType.LZ4, CompressionType.NONE])
 def test_other_compressions(compression: CompressionType, fig8_bag: Path, tmp_path: Path) -> None:
     other = rewritten(fig8_bag, tmp_path / 'other', compression=compression)
-    assert read_run(other).counts['/slider_state'] == read_run(fig8_bag).counts['/slider_state']
+    assert open_bag(other).counts['/slider_state'] == open_bag(fig8_bag).counts['/slider_state']
 
 
 def test_unreadable_compressions(fig8_bag: Path, tmp_path: Path, capsys: Capture) -> None:

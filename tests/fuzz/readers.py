@@ -9,12 +9,11 @@ from pathlib import Path
 from typing import Any
 
 from stickslip_sim.check.limits import limits_of
-from stickslip_sim.check.sources import recorded
+from stickslip_sim.check.observed_run import gaps_in, motion_of, timing_of
 from stickslip_sim.cli.export import csv_lines
-from stickslip_sim.compare.recorded import history_of_run
 from stickslip_sim.config.ros_yaml import read_yaml
 from stickslip_sim.core.errors import LINE_LIMIT, RecordingWarning, StickslipError
-from stickslip_sim.recording import Run, read_run
+from stickslip_sim.recording import Bag, RecordedRun, open_bag, read_run
 from stickslip_sim.recording.playback import Recording
 from stickslip_sim.scene import load_scene, parse_override, parse_scene
 from stickslip_sim.study import Grid, Study, variation
@@ -22,7 +21,7 @@ from stickslip_sim.study.picks import point_of
 from stickslip_sim.study.pictures import check_drawable
 from stickslip_sim.study.uncertain_file import uncertain_of
 from stickslip_sim.study.variation import range_of
-from stickslip_sim.verify.original import open_original
+from stickslip_sim.verify.origin import doubts_about
 from stickslip_sim.verify.verification import verify
 
 from .studies import Edited
@@ -88,15 +87,17 @@ def bag(path: Path) -> None:
     """Read a bag in every way that there is."""
     with warnings.catch_warnings():
         warnings.simplefilter('ignore', RecordingWarning)
-        run = accepts_or_refuses(read_run, path)
-        if isinstance(run, Run):
+        run = accepts_or_refuses(open_bag, path)
+        if isinstance(run, Bag):
             for look in (lambda run: run.scene, lambda run: run.receipt, lambda run: run.events):
                 accepts_or_refuses(look, run)
             for topic in run.topics:
                 accepts_or_refuses(lambda run, topic: list(csv_lines(run.columns(topic))), run, topic)
-        for read in (recorded, history_of_run):
-            accepts_or_refuses(read, str(path))
-        accepts_or_refuses(lambda: verify(open_original(path)))
+        recorded = accepts_or_refuses(read_run, path)
+        if isinstance(recorded, RecordedRun):
+            for use in (motion_of, timing_of, lambda run: list(gaps_in(run)), lambda run: (run.samples, run.events),
+                        lambda run: (run.summary, run.cycles()), doubts_about, verify):
+                accepts_or_refuses(use, recorded)
         accepts_or_refuses(_play, path)
 
 

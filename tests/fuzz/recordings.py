@@ -13,7 +13,7 @@ from stickslip_sim.recording import MessageCodec, RunFacts, checkpoint_file, ope
 from stickslip_sim.recording.bag import BagWriter
 from stickslip_sim.recording.messages import Packer, header, time_message
 from stickslip_sim.rig import Fault, Rig, RigEvent
-from stickslip_sim.runs.offline import run_offline
+from stickslip_sim.runs import simulate
 from stickslip_sim.scene import Scene, changed, load_scene
 
 _STEPS = 12
@@ -30,7 +30,7 @@ def files(folder: Path) -> list[bytes]:
 
 def _of_the_tool(folder: Path) -> Path:
     scene = load_scene('paper_fig8', _SCENE)
-    run = run_offline(scene, _STEPS / scene.time.rate, scene.time.step)
+    run = simulate(scene, _STEPS / scene.time.rate, scene.time.step)
     write_bag(folder, RunFacts.of(scene, run.duration, scene.time.step), run.sample_rows(), run.events, run.receipt)
     return folder
 

@@ -27,10 +27,10 @@ def test_an_installed_package_starts_without_a_compiler(in_a_process: Program) -
     program = '''
 import sys
 from stickslip_sim.core.jit import hot_path
-from stickslip_sim.runs.offline import run_offline
+
 from stickslip_sim.scene import load_scene
 from tests.support.repository import ROOT
-run_offline(load_scene('paper_fig8'), 1.0)
+simulate_events(load_scene('paper_fig8'), 1.0)
 print(hot_path(), 'numba' in sys.modules)
 '''
     assert in_a_process(program, compiled=True).strip() == 'compiled ahead False'

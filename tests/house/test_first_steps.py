@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from stickslip_sim.recording import read_run
+from stickslip_sim.recording import open_bag
 from tests.support.repository import ROOT
 from tests.support.ros_nodes import Client, client, running
 from tests.support.tool import restore_interrupt
@@ -40,7 +40,7 @@ def test_the_demonstration_records_and_has_nothing_to_complain_of(tmp_path: Path
     assert (done.returncode, done.stderr) == (0, '')
     [folder] = tmp_path.iterdir()
     assert (folder / 'run.png').stat().st_size > 10_000
-    assert read_run(folder).receipt is not None    # it was closed
+    assert open_bag(folder).receipt is not None    # it was closed
 
 
 def test_what_is_sent_holds(axis: Client) -> None:

@@ -17,7 +17,7 @@ from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 
 from stickslip_sim.core.errors import RecordingWarning
-from stickslip_sim.recording import RecordedMessage, Run, read_run, schema
+from stickslip_sim.recording import Bag, RecordedMessage, open_bag, schema
 from stickslip_sim.recording.schemas import store_of
 from stickslip_sim.recording.topics import RECORDED, Topic
 
@@ -96,12 +96,12 @@ class TestReaders:
     """Every message of every topic, read by others as rclpy reads it."""
 
     def test_all_topics_have_messages(self, recorded: Recorded) -> None:
-        assert all(count > 0 for count in read_run(recorded.folder).counts.values())
+        assert all(count > 0 for count in open_bag(recorded.folder).counts.values())
 
     @pytest.mark.parametrize('as_file', [False, True])
     def test_rosbags(self, recorded: Recorded, as_file: bool) -> None:
         with AnyReader([file_of(recorded.folder) if as_file else recorded.folder]) as reader:
-            assert {name: topic.msgcount for name, topic in reader.topics.items()} == read_run(recorded.folder).counts
+            assert {name: topic.msgcount for name, topic in reader.topics.items()} == open_bag(recorded.folder).counts
             found = [Message(connection.topic, time, reader.deserialize(data, connection.msgtype))
                      for connection, time, data in reader.messages()]
         assert_as_rclpy_reads(found, recorded.folder)
@@ -124,7 +124,7 @@ class Message(NamedTuple):
 
 def assert_as_rclpy_reads(found: list[Message], folder: Path) -> None:
     kinds = {topic.name: message_type(topic) for topic in TOPICS}
-    run = read_run(folder)
+    run = open_bag(folder)
     assert len(found) == sum(run.counts.values())
     for topic, kind in kinds.items():
         of_topic = [message for message in found if message.topic == topic]
@@ -134,13 +134,13 @@ def assert_as_rclpy_reads(found: list[Message], folder: Path) -> None:
             assert repr(plain(message.content, wanted)) == repr(plain(wanted, wanted))
 
 
-def in_time(run: Run, topic: str) -> list[RecordedMessage]:
+def in_time(run: Bag, topic: str) -> list[RecordedMessage]:
     return sorted(run.messages([topic]), key=lambda message: message.log_time)
 
 
 class TestGraph:
     def test_type_hashes_and_quality_are_those_of_the_graph(self, recorded: Recorded) -> None:
-        run = read_run(recorded.folder)
+        run = open_bag(recorded.folder)
         for topic in TOPICS:
             channel, offered = run.channel_metadata[topic.name], recorded.offers[topic.name]
             quality, = yaml.safe_load(channel['offered_qos_profiles'])
@@ -159,7 +159,7 @@ class TestFilesOfRosbag2:
         assert names_and_counts(body) == {topic.name: 0 for topic in TOPICS}
 
     def test_at_the_end(self, recorded: Recorded) -> None:
-        body, run = information(recorded.folder), read_run(recorded.folder)
+        body, run = information(recorded.folder), open_bag(recorded.folder)
         times = [message.log_time for message in run.messages()]
         assert body['message_count'] == len(times)
         assert body['starting_time'] == {'nanoseconds_since_epoch': min(times)}
@@ -211,9 +211,9 @@ class TestFilesOfRosbag2:
         data = file_of(recorded.folder).read_bytes()
         (tmp_path / 'cut.mcap').write_bytes(data[:len(data) // 2])
         with pytest.warns(RecordingWarning, match='no end'):
-            cut = read_run(tmp_path / 'cut.mcap')
+            cut = open_bag(tmp_path / 'cut.mcap')
         assert said_in(cut) == recorded.metadata
-        assert said_in(read_run(recorded.folder)) == information(recorded.folder)
+        assert said_in(open_bag(recorded.folder)) == information(recorded.folder)
 
     def test_a_schema_is_what_rosbag2_would_store(self) -> None:
         """Depth first, sorted by name, each definition once (docs/message_definition_encoding.md of rosbag2)."""
@@ -227,7 +227,7 @@ def names_and_counts(body: Mapping[str, Any]) -> dict[str, int]:
     return {entry['topic_metadata']['name']: entry['message_count'] for entry in body['topics_with_message_count']}
 
 
-def said_in(run: Run) -> Any:
+def said_in(run: Bag) -> Any:
     return yaml.safe_load(run.metadata['rosbag2']['serialized_metadata'])
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from stickslip_sim.recording import read_run
+from stickslip_sim.recording import open_bag
 from stickslip_sim.scene.schema import BY_NAME
 from tests.support.launch_files import FILES, LAUNCH, Started, launched
 from tests.support.ros_nodes import assert_clean, client, executable, running
@@ -87,7 +87,7 @@ class TestSim:
             code, errors = process.end()
         assert code == 0, errors
         assert (values[0].double_value, values[1].integer_value) == (500.0, 3)
-        facts = read_run(folder).metadata['stickslip']
+        facts = open_bag(folder).metadata['stickslip']
         assert (facts['scene'], facts['rate']) == ('cutting_force', '500.0')
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from stickslip_sim.recording import read_run
+from stickslip_sim.recording import open_bag
 from tests.support.launch_files import FILES
 from tests.support.ros_nodes import client
 from tests.support.tool import restore_interrupt
@@ -59,7 +59,7 @@ def test_two_axes_record_until_interrupted(tmp_path: Path) -> None:
         output, _ = process.communicate(timeout=DEADLINE)
     assert process.returncode == 0, output
     assert output.count('process has finished cleanly') == 2, output
-    scenes = [read_run(folder).metadata['stickslip']['scene'] for folder in sorted((tmp_path / 'runs').iterdir())]
+    scenes = [open_bag(folder).metadata['stickslip']['scene'] for folder in sorted((tmp_path / 'runs').iterdir())]
     assert scenes == ['positioning', 'cutting_force']
 
 

@@ -15,7 +15,7 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from stickslip_sim.plots import plot_run
 from stickslip_sim.plots.style import Numbers, legend_outside, thinned
-from stickslip_sim.runs.offline import Columns, run_offline
+from stickslip_sim.runs import Columns, simulate
 from stickslip_sim.scene import load_scene
 
 PNG = b'\x89PNG\r\n\x1a\n'
@@ -23,14 +23,14 @@ PNG = b'\x89PNG\r\n\x1a\n'
 
 @pytest.mark.parametrize('scene', ['paper_fig7', 'paper_fig8', 'positioning', 'fast_feed', 'cutting_force'])
 def test_png(scene: str, tmp_path: Path) -> None:
-    run = run_offline(load_scene(scene), 3.0, 0.01)
+    run = simulate(load_scene(scene), 3.0, 0.01)
     plot_run(run.samples, run.events, f'{scene}\nfigures', tmp_path / 'run.png')
     assert (tmp_path / 'run.png').read_bytes().startswith(PNG)
     assert (tmp_path / 'run.png').stat().st_size > 20_000
 
 
 def test_svg_names_what_it_shows_and_is_reproducible(tmp_path: Path) -> None:
-    run = run_offline(load_scene('paper_fig8'), 3.0, 0.01)
+    run = simulate(load_scene('paper_fig8'), 3.0, 0.01)
     for name in ('a.svg', 'b.svg'):
         plot_run(run.samples, run.events, 'paper_fig8', tmp_path / name)
     ElementTree.parse(tmp_path / 'a.svg')
@@ -41,7 +41,7 @@ def test_svg_names_what_it_shows_and_is_reproducible(tmp_path: Path) -> None:
 
 
 def test_external_force_is_shown_only_where_there_is_one(tmp_path: Path) -> None:
-    run = run_offline(load_scene('paper_fig8'), 1.0, 0.01)
+    run = simulate(load_scene('paper_fig8'), 1.0, 0.01)
     plot_run(run.samples, run.events, 'none', tmp_path / 'none.svg')
     pushed: Columns = {**run.samples, 'external_force': run.samples['external_force'] - 2e4}
     plot_run(pushed, run.events, 'some', tmp_path / 'some.svg')
@@ -51,7 +51,7 @@ def test_external_force_is_shown_only_where_there_is_one(tmp_path: Path) -> None
 
 
 def test_one_sample_and_no_event_can_be_drawn(tmp_path: Path) -> None:
-    run = run_offline(load_scene('paper_fig7'), 0.1, 1.0)
+    run = simulate(load_scene('paper_fig7'), 0.1, 1.0)
     plot_run(run.samples, run.events, 'one', tmp_path / 'one.png')
     assert (tmp_path / 'one.png').read_bytes().startswith(PNG)
 

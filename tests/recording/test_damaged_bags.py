@@ -12,7 +12,7 @@ import pytest
 from mcap.writer import CompressionType
 
 from stickslip_sim.core.errors import RecordingError, RecordingWarning
-from stickslip_sim.recording import RecordedMessage, read_run
+from stickslip_sim.recording import RecordedMessage, open_bag
 from stickslip_sim.recording.playback import Recording
 from tests.support.check_files import LIMITS, limits_file
 from tests.support.rewritten_bags import rewritten
@@ -54,13 +54,13 @@ def test_python_refuses_it(compression: CompressionType, fig8_bag: Path, tmp_pat
     data = path.read_bytes()
     path.write_bytes(flipped(data, len(data) // 2))
     with pytest.raises(RecordingError, match=TOLD):
-        read_run(path)
+        open_bag(path)
 
 
 def test_damaged_after_it_was_opened(fig8_bag: Path, damaged: Path, tmp_path: Path) -> None:
     path = tmp_path / 'run.mcap'
     path.write_bytes(data_of(fig8_bag))
-    run = read_run(path)
+    run = open_bag(path)
     damaged.replace(path)
     with pytest.raises(RecordingError, match=TOLD):
         run.columns('slider_state')
@@ -70,7 +70,7 @@ def test_a_damaged_file_without_an_end_is_read_up_to_the_damage(damaged: Path) -
     """Nobody can tell: a computer that lost its power leaves such a file, too."""
     damaged.write_bytes(damaged.read_bytes()[:-8])
     with pytest.warns(RecordingWarning, match='has no end: cut off'):
-        run = read_run(damaged)
+        run = open_bag(damaged)
     assert not run.is_complete
     steps = run.columns('slider_state')['step'].tolist()
     assert steps == list(range(len(steps)))
@@ -78,7 +78,7 @@ def test_a_damaged_file_without_an_end_is_read_up_to_the_damage(damaged: Path) -
 
 
 def read(path: Path) -> list[RecordedMessage]:
-    return sorted(read_run(path).messages())
+    return sorted(open_bag(path).messages())
 
 
 def played(path: Path) -> list[RecordedMessage]:

@@ -15,7 +15,7 @@ import zstandard
 from mcap.opcode import Opcode
 
 from stickslip_sim.core.errors import RecordingError
-from stickslip_sim.recording import read_run
+from stickslip_sim.recording import open_bag
 from tests.fuzz.bags import Record, file_of
 
 HUGE = 1 << 30          # bytes
@@ -79,33 +79,33 @@ def cheaply() -> Iterator[None]:
 def test_a_chunk_that_unpacks_to_far_more_than_it_says(compression: str, tmp_path: Path) -> None:
     path = written(tmp_path, HEADER, chunk(compression, bomb(compression), 1000))
     with cheaply(), pytest.raises(RecordingError, match='damaged'):
-        read_run(path)
+        open_bag(path)
 
 
 def test_a_chunk_that_says_it_is_huge(tmp_path: Path) -> None:
     path = written(tmp_path, HEADER, chunk('zstd', bomb('zstd'), HUGE))
     with cheaply(), pytest.raises(RecordingError, match='a chunk of 1073741824 bytes; at most'):
-        read_run(path)
+        open_bag(path)
 
 
 @pytest.mark.parametrize('length', [HUGE, 1 << 62, (1 << 64) - 1])
 def test_a_record_that_says_it_is_huge(length: int, tmp_path: Path) -> None:
     path = written(tmp_path, HEADER, Record(Opcode.MESSAGE, MESSAGE, length))
     with cheaply(), pytest.raises(RecordingError, match='damaged'):
-        read_run(path)
+        open_bag(path)
 
 
 def test_attachments_without_end(tmp_path: Path) -> None:
     path = written(tmp_path, HEADER, *(attachment(f'{k}', bytes(30 << 20)) for k in range(3)))
     with cheaply(), pytest.raises(RecordingError, match='more than 64 MiB beside its messages'):
-        read_run(path)
+        open_bag(path)
 
 
 @pytest.mark.parametrize('definition', [
     'string[100000000] x\n', 'C[100000000] x\n' + '=' * 80 + '\nMSG: a/C\nfloat64 x\n', 'float64 x\n' * 20_000,
 ])
 def test_a_definition_that_becomes_endless_code(definition: str, tmp_path: Path) -> None:
-    run = read_run(written(tmp_path, *defined(definition)))
+    run = open_bag(written(tmp_path, *defined(definition)))
     with cheaply(), pytest.raises(RecordingError, match='are read'):
         run.columns('/b')
 
@@ -114,7 +114,7 @@ def test_a_definition_that_becomes_endless_code(definition: str, tmp_path: Path)
     'B x\n', 'float64 x\nfloat64 x\n', 'Nowhere x\n', 'float32 INF=1e999\n', 'string def\nbool class\n', 'int8 x = \n',
 ])
 def test_definitions_that_rosbags_stumbles_over(definition: str, tmp_path: Path) -> None:
-    run = read_run(written(tmp_path, *defined(definition)))
+    run = open_bag(written(tmp_path, *defined(definition)))
     (message,) = run.messages()
     with pytest.raises(RecordingError, match=r'run_0\.mcap: '):
         run.decode(message)
@@ -125,7 +125,7 @@ def test_no_code_in_a_definition_runs(tmp_path: Path) -> None:
     trap = f'__import__("pathlib").Path({str(tmp_path / "trap")!r}).touch()'
     for definition in (f'string X={trap}\n', f'float64 x {trap}\n', f'string A="\'\'\'\\n{trap}"\nfloat64 x\n',
                        f'{trap} x\n', f'float64 x\n{"=" * 80}\nMSG: a/C:\n {trap}\nfloat64 y\n'):
-        run = read_run(written(tmp_path, *defined(definition)))
+        run = open_bag(written(tmp_path, *defined(definition)))
         with suppress(RecordingError):
             run.columns('/b')
     assert not (tmp_path / 'trap').exists()
@@ -141,6 +141,6 @@ def test_names_lead_nowhere(tmp_path: Path) -> None:
     before = sorted(tmp_path.rglob('*'))
     with warnings.catch_warnings():
         warnings.simplefilter('error')
-        run = read_run(inside)
+        run = open_bag(inside)
     assert (run.path, run.topics) == (inside / 'run_0.mcap', {})
     assert sorted(tmp_path.rglob('*')) == before

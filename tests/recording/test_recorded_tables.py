@@ -13,9 +13,7 @@ from stickslip_sim.core.types import EventKind
 from stickslip_sim.recording import (
     RECORDED,
     BagWriter,
-    columns_of,
-    events_of,
-    read_run,
+    open_bag,
     recorded_topics,
     schema,
 )
@@ -36,7 +34,7 @@ def with_events(folder: Path, namespace: str, **changes: Any) -> Path:
 
 
 def test_transitions_come_back_as_they_were(tmp_path: Path) -> None:
-    found = events_of(read_run(with_events(tmp_path / 'run', '/cell/press')))
+    found = open_bag(with_events(tmp_path / 'run', '/cell/press')).events
     for event, expected in zip(found, events(), strict=True):
         assert event.kind is expected.kind
         for name in set(event._fields) - {'drive_position'}:
@@ -46,14 +44,14 @@ def test_transitions_come_back_as_they_were(tmp_path: Path) -> None:
 @pytest.mark.parametrize('changes', [{'kind': len(EventKind)}, {'mode': 4}])
 def test_transitions_of_unknown_kinds(changes: dict[str, int], tmp_path: Path) -> None:
     with pytest.raises(RecordingError, match='unknown kinds; recorded by another version'):
-        events_of(read_run(with_events(tmp_path / 'run', '/', **changes)))
+        _ = open_bag(with_events(tmp_path / 'run', '/', **changes)).events
 
 
 def test_messages_of_another_version(tmp_path: Path) -> None:
     text = schema(SLIDER_STATE.type).text.replace('float64 drive_position', 'float64 spindle_position')
     with Writer(tmp_path / 'old', version=9, storage_plugin=StoragePlugin.MCAP) as writer:
         writer.add_connection('/slider_state', SLIDER_STATE.type, typestore=store_of({SLIDER_STATE.type: text}))
-    run = read_run(tmp_path / 'old')
-    assert columns_of(run, SLIDER_STATE, ['time'])['time'].size == 0
+    run = open_bag(tmp_path / 'old')
+    assert run.columns_of(SLIDER_STATE, ['time'])['time'].size == 0
     with pytest.raises(RecordingError, match='/slider_state has no drive_position; recorded by another version'):
-        columns_of(run, SLIDER_STATE, ['time', 'drive_position'])
+        run.columns_of(SLIDER_STATE, ['time', 'drive_position'])

@@ -14,8 +14,8 @@ import pytest
 from stickslip_sim.core.errors import RecordingError, RecordingWarning
 from stickslip_sim.recording import (
     RecorderThread,
+    open_bag,
     open_run,
-    read_run,
     receipt_file,
     write_bag,
 )
@@ -52,7 +52,7 @@ class TestRefusals:
         (tmp_path / 'empty').mkdir()
         (tmp_path / 'text.mcap').write_text('not a bag, but long enough to be one')
         with pytest.raises(RecordingError, match=name):
-            read_run(tmp_path / name)
+            open_bag(tmp_path / name)
 
 
 class TestThread:
@@ -62,7 +62,7 @@ class TestThread:
             recorder.put(step % 2, step.to_bytes(4, 'little'), step, step, step)
         assert recorder.close(receipt_file({'steps': 5000}))
         assert (recorder.written, recorder.dropped, recorder.failure) == (5000, 0, None)
-        run = read_run(tmp_path / 'run')
+        run = open_bag(tmp_path / 'run')
         assert [int.from_bytes(message.data, 'little') for message in run.messages()] == list(range(5000))
         assert run.receipt == {'steps': 5000}
 
@@ -82,7 +82,7 @@ class TestThread:
         gate.set()
         assert recorder.close()
         assert (recorder.written, recorder.dropped) == (10, 90)
-        assert [message.sequence for message in read_run(tmp_path / 'run').messages()] == list(range(10))
+        assert [message.sequence for message in open_bag(tmp_path / 'run').messages()] == list(range(10))
 
     def test_a_late_message_is_dropped_and_counted(self, tmp_path: Path) -> None:
         recorder = RecorderThread(open_run(tmp_path / 'run', FACTS))
@@ -94,7 +94,7 @@ class TestThread:
     def test_few_messages_reach_the_disk_within_a_second(self, tmp_path: Path) -> None:
         recorder = RecorderThread(open_run(tmp_path / 'run', FACTS))
         recorder.put(0, b'only one', 0, 0, 0)
-        (first,) = wait_for(lambda: list(read_run(tmp_path / 'run').messages()), 'the message in the file')
+        (first,) = wait_for(lambda: list(open_bag(tmp_path / 'run').messages()), 'the message in the file')
         assert first.data == b'only one'
         recorder.close()
 
@@ -132,7 +132,7 @@ print(recorder.failure, recorder.written, sep='|')
         failure, written = done.stdout.strip().split('|')
         assert failure == f'{tmp_path / "run" / "run_0.mcap"}: File too large; the recording ends here'
         with pytest.warns(RecordingWarning, match='no end'):
-            run = read_run(tmp_path / 'run')
+            run = open_bag(tmp_path / 'run')
         steps = [message.sequence for message in run.messages()]
         assert not run.is_complete
         assert steps == list(range(len(steps)))
@@ -165,7 +165,7 @@ except RecordingError as error:
             program.send_signal(signal.SIGKILL)
             put = max([put, *map(int, program.stdout)])
             with pytest.warns(RecordingWarning, match='no end'):
-                run = read_run(tmp_path / 'run')
+                run = open_bag(tmp_path / 'run')
             steps = [message.sequence for message in run.messages()]
             assert put - len(steps) < 1000  # one a millisecond
         assert not run.is_complete
@@ -177,12 +177,12 @@ def test_a_file_cut_anywhere_gives_what_is_whole(tmp_path: Path) -> None:
     bag = tmp_path / 'first'
     write_bag(bag, FACTS, samples(120), events(), {})
     whole = (bag / 'first_0.mcap').read_bytes()
-    steps = [message.sequence for message in read_run(bag).messages()]
+    steps = [message.sequence for message in open_bag(bag).messages()]
     file = tmp_path / 'cut.mcap'
     for size in range(60, len(whole), 97):
         file.write_bytes(whole[:size])
         with pytest.warns(RecordingWarning, match='no end'):
-            run = read_run(file)
+            run = open_bag(file)
         found = [message.sequence for message in run.messages()]
         assert not run.is_complete
         assert found == steps[:len(found)]

@@ -16,8 +16,8 @@ from stickslip_sim.core.errors import RecordingError, RecordingWarning
 from stickslip_sim.core.types import Sample
 from stickslip_sim.recording import (
     messages,
+    open_bag,
     open_run,
-    read_run,
     receipt_file,
     samples_of,
     write_bag,
@@ -95,7 +95,7 @@ class TestReaders:
         same(found, bag)
 
     def test_ours(self, bag: Path) -> None:
-        run = read_run(bag)
+        run = open_bag(bag)
         found: dict[str, list[Any]] = {}
         for message in run.messages():
             found.setdefault(message.topic, []).append(run.decode(message))
@@ -108,24 +108,24 @@ class TestReaders:
         assert run.metadata['stickslip']['numba']
 
     def test_columns(self, bag: Path) -> None:
-        columns = read_run(bag).columns('/slider_state')
+        columns = open_bag(bag).columns('/slider_state')
         wanted = [slider_state(k, sample, 0) for k, sample in enumerate(samples(120))]
         for name in ('step', 'time', 'position', 'drive_force', 'rest_time', 'mode', 'direction'):
             assert columns[name].tolist() == [values[name] for values in wanted]
         assert columns['log_time'].tolist() == [k * 1_000_000 for k in range(120)]
         assert columns['sequence'].tolist() == list(range(120))
-        assert read_run(bag).columns('/timing')['lateness_max'].size == 0
+        assert open_bag(bag).columns('/timing')['lateness_max'].size == 0
 
     def test_columns_of_a_message_with_text(self, bag: Path) -> None:
-        columns = read_run(bag).columns('/run_info')
+        columns = open_bag(bag).columns('/run_info')
         assert (columns['seed'].tolist(), columns['rate'].tolist()) == ([7], [1000.0])
 
     def test_columns_of_nothing(self, bag: Path) -> None:
         with pytest.raises(RecordingError, match=r'no topic /nothing; there are /slider_state, '):
-            read_run(bag).columns('/nothing')
+            open_bag(bag).columns('/nothing')
 
     def test_commands_bear_the_first_step_they_act_on(self, bag: Path) -> None:
-        run = read_run(bag)
+        run = open_bag(bag)
         assert [m.sequence for m in run.messages(['/drive_velocity'])] == [1, 51]
         assert [m.sequence for m in run.messages(['/external_force'])] == [1, 21, 31]
 
@@ -139,7 +139,7 @@ class TestLayout:
         assert body['starting_time'] == {'nanoseconds_since_epoch': 0}
         assert body['custom_data']['scene_hash'] == FACTS.scene_hash
         assert body['custom_data']['seed'] == '7'  # a text: rosbag2 reads nothing else there
-        run = read_run(bag)
+        run = open_bag(bag)
         assert yaml.safe_load(run.metadata['rosbag2']['serialized_metadata']) == body
         for entry in body['topics_with_message_count']:
             topic, channel = entry['topic_metadata'], run.channel_metadata[entry['topic_metadata']['name']]
@@ -165,7 +165,7 @@ class TestLayout:
         assert [topic['topic_metadata']['name'] for topic in body['topics_with_message_count']][:2] == [
             '/cell/slider_state', '/cell/friction_force']
         with pytest.warns(RecordingWarning, match='no end'):
-            run = read_run(tmp_path / 'new')
+            run = open_bag(tmp_path / 'new')
         assert not run.is_complete
         assert run.attachments['scene.yaml'].decode() == FACTS.scene_text
         assert run.metadata['stickslip']['scene_hash'] == FACTS.scene_hash
@@ -189,4 +189,4 @@ class TestLayout:
         writer = open_run(tmp_path / 'long', FACTS)
         writer.write(0, b'\0\1\0\0', 1, 1, 2**32 + 5)
         writer.close()
-        assert [message.sequence for message in read_run(tmp_path / 'long').messages()] == [5]
+        assert [message.sequence for message in open_bag(tmp_path / 'long').messages()] == [5]

@@ -17,8 +17,8 @@ from stickslip_sim.axis import InitialState
 from stickslip_sim.core.input_profile import steps
 from stickslip_sim.core.types import EventKind
 from stickslip_sim.reference import simulate
+from stickslip_sim.runs import simulate_events
 from stickslip_sim.runs.error_estimate import error_estimate
-from stickslip_sim.runs.offline import run_offline
 from stickslip_sim.runs.perturbation import ROUNDING_UNIT, perturbed
 from stickslip_sim.scene import Scene, SolverSettings, load_scene
 from tests.reference.objects import axis_of, profile_of
@@ -33,7 +33,7 @@ def scene_of(values: dict[str, Any]) -> Scene:
 def test_the_true_error_is_within_the_estimate_and_not_far_below() -> None:
     times, positions = [], []
     for run in RUNS.values():
-        done = run_offline(scene_of(run['parameters']), run['duration'])
+        done = simulate_events(scene_of(run['parameters']), run['duration'])
         estimate, want = error_estimate(done), run['events']
         assert estimate.until_s == run['duration']
         times.append(_worst([event.instant for event in done.events], want['time']) / estimate.event_time_s)
@@ -55,7 +55,7 @@ def test_the_true_error_is_within_the_estimate_and_not_far_below() -> None:
 def test_the_error_of_steps_is_within_the_estimate_too(name: str, settings: SolverSettings) -> None:
     """Where the calls bound the steps of an adaptive solver, a tenth of the tolerance takes the same steps again."""
     scene, duration = dataclasses.replace(load_scene(name), solver=settings), 1.5
-    run = run_offline(scene, duration)
+    run = simulate_events(scene, duration)
     estimate = error_estimate(run)
     want = [event for event in simulate(scene.axis, scene.initial, scene.drive, scene.force, duration, 30).events
             if settings.name == 'adaptive' or event.kind != EventKind.KNOT]
@@ -69,7 +69,7 @@ def test_the_error_of_steps_is_within_the_estimate_too(name: str, settings: Solv
 
 def test_steps_that_pass_over_an_event_say_from_when_on() -> None:
     """The first peak coasts for 11 µs, which a grid of 1 ms passes over."""
-    estimate = error_estimate(run_offline(load_scene('positioning', {'solver.name': 'fixed_step'}), 1.0))
+    estimate = error_estimate(simulate_events(load_scene('positioning', {'solver.name': 'fixed_step'}), 1.0))
     assert estimate.until_s == pytest.approx(0.5481986133899266, abs=1e-12)
     assert 'missed, invented' in estimate.how
 
@@ -77,7 +77,8 @@ def test_steps_that_pass_over_an_event_say_from_when_on() -> None:
 def test_a_coast_of_nanoseconds_does_not_end_what_is_known() -> None:
     """The second break-away coasts for 4 ns before it accelerates, which every grid passes over."""
     scene = load_scene('paper_fig8', {'solver.name': 'fixed_step', 'solver.method': 'rk4'})
-    run, want = run_offline(scene, 3.0), simulate(scene.axis, scene.initial, scene.drive, scene.force, 3.0, 30).events
+    run = simulate_events(scene, 3.0)
+    want = simulate(scene.axis, scene.initial, scene.drive, scene.force, 3.0, 30).events
     assert (len(run.events), len(want)) == (16, 17)
     lasting = [event for event in want if not 1.446303213 < event.time < 1.446303214]
     estimate = error_estimate(run)
@@ -90,7 +91,7 @@ def test_a_coast_of_nanoseconds_does_not_end_what_is_known() -> None:
 @pytest.mark.parametrize('missing', [1, 2])
 def test_a_missed_cycle_is_no_late_one(missing: int) -> None:
     """The kinds and directions of the events are those of a run in which each cycle after it comes late."""
-    run = run_offline(load_scene('paper_fig4_constant'), 5.0)
+    run = simulate_events(load_scene('paper_fig4_constant'), 5.0)
     away = [i for i, event in enumerate(run.events) if event.kind == EventKind.BREAKAWAY]
     stepped = dataclasses.replace(run.scene, solver=SolverSettings('fixed_step', 'euler', 1e-3))
     left = run.events[:away[2]] + run.events[away[2 + missing]:]
@@ -104,7 +105,7 @@ def test_a_smooth_law_itself_is_not_judged_by_its_table() -> None:
     scene = load_scene('stribeck', {'solver.name': 'adaptive', 'friction.kinetic.tolerance': 1e-3})
     kinetic = scene.axis.friction.kinetic
     assert kinetic.law is not None
-    run = run_offline(scene, 1.2)
+    run = simulate_events(scene, 1.2)
     estimate = error_estimate(run)
     want = SmoothRun(scene.axis, scene.drive.values[0], kinetic.law.coefficient, psi_of(scene)).advance(1.2)
     assert [event.kind for event in run.events] == [event.kind for event in want]
@@ -120,7 +121,7 @@ def psi_of(scene: Scene) -> Callable[[float], float] | None:
 
 def test_a_run_without_events_has_an_estimate_too() -> None:
     scene = load_scene('paper_fig7', {'drive.velocity': 0.0})
-    estimate = error_estimate(run_offline(scene, 10.0))
+    estimate = error_estimate(simulate_events(scene, 10.0))
     assert 0.0 < estimate.event_time_s <= 1e-16
     assert estimate.position_m == 0.0
     assert estimate.until_s == 10.0
@@ -129,15 +130,15 @@ def test_a_run_without_events_has_an_estimate_too() -> None:
 def test_a_run_that_nobody_can_know_says_from_when_on() -> None:
     """The drive stops within rounding of the instant at which the force reaches the limit."""
     scene = load_scene('paper_fig4_constant')
-    (first, *_) = run_offline(scene, 1.0).events
+    (first, *_) = simulate_events(scene, 1.0).events
     grazing = dataclasses.replace(scene, drive=steps('drive', (0.0, first.time), (scene.drive.values[0], 0.0)))
-    estimate = error_estimate(run_offline(grazing, 1.0))
+    estimate = error_estimate(simulate_events(grazing, 1.0))
     assert estimate.until_s == pytest.approx(first.time, abs=1e-12)
     assert 'the events differ' in estimate.how
 
 
 def test_the_estimate_is_the_same_every_time() -> None:
-    run = run_offline(load_scene('paper_fig8'), 3.0)
+    run = simulate_events(load_scene('paper_fig8'), 3.0)
     assert error_estimate(run) == error_estimate(run)
 
 
@@ -179,7 +180,7 @@ def test_a_slip_that_ends_without_deceleration_is_known_to_the_root_of_rounding_
         'axis.normal_force': 9.80665, 'friction.static.law': 'constant',
         'friction.static.initial': 0.9102081478452411, 'friction.kinetic.velocities': [0.0, 7.488383618872175e-07],
         'friction.kinetic.coefficients': [0.9102081478452411] * 2, 'drive.velocity': 0.016676163303787093})
-    run = run_offline(scene, 1.2)
+    run = simulate_events(scene, 1.2)
     wanted = simulate(scene.axis, scene.initial, scene.drive, scene.force, 1.2, 40).events
     stop, other = (next(e for e in events if e.kind == EventKind.STICK) for events in (run.events, wanted))
     off = abs(stop.fraction - other.fraction)

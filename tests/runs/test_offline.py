@@ -12,16 +12,17 @@ import pytest
 from stickslip_sim.core.energy import EnergyBalance
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.types import Event, EventKind, Sample
-from stickslip_sim.runs.offline import MAX_SAMPLES, Trajectory, check_times, run_offline
+from stickslip_sim.runs import SimulatedRun, simulate, simulate_events
+from stickslip_sim.runs.simulated import MAX_SAMPLES, check_times
 from stickslip_sim.scene import load_scene
 
 
 @pytest.fixture(scope='module')
-def run() -> Trajectory:
-    return run_offline(load_scene('paper_fig8'), 5.0, 0.001)
+def run() -> SimulatedRun:
+    return simulate(load_scene('paper_fig8'), 5.0, 0.001)
 
 
-def test_samples_are_at_exact_instants(run: Trajectory) -> None:
+def test_samples_are_at_exact_instants(run: SimulatedRun) -> None:
     assert len(run.samples['time']) == 5001
     assert run.samples['time'].tolist() == [k / 1000 for k in range(5001)]
     for k, (second, fraction) in enumerate(zip(run.samples['second'], run.samples['fraction'])):
@@ -29,7 +30,7 @@ def test_samples_are_at_exact_instants(run: Trajectory) -> None:
         assert (second, fraction) == (float(whole), float(rest))
 
 
-def test_columns_are_those_of_a_sample(run: Trajectory) -> None:
+def test_columns_are_those_of_a_sample(run: SimulatedRun) -> None:
     assert set(run.samples) == {*Sample._fields, 'time'}
     last = list(run.sample_rows())[-1]
     assert last.time == 5.0
@@ -37,11 +38,11 @@ def test_columns_are_those_of_a_sample(run: Trajectory) -> None:
     assert last.mode.name == run.receipt['results']['final_state']['mode']
 
 
-def test_events_do_not_depend_on_the_samples(run: Trajectory) -> None:
-    other = run_offline(load_scene('paper_fig8'), 5.0)
+def test_events_do_not_depend_on_the_samples(run: SimulatedRun) -> None:
+    other = simulate_events(load_scene('paper_fig8'), 5.0)
     _assert_same(other.events, run.events)
     assert len(other.samples['time']) == 0
-    coarse = run_offline(load_scene('paper_fig8'), 5.0, 0.5)
+    coarse = simulate(load_scene('paper_fig8'), 5.0, 0.5)
     _assert_same(coarse.events, run.events)
     np.testing.assert_allclose(coarse.samples['position'], run.samples['position'][::500], rtol=0, atol=1e-14)
 
@@ -54,14 +55,14 @@ def _assert_same(some: list[Event], others: list[Event]) -> None:
 
 
 def test_a_period_that_does_not_divide_the_duration_ends_before_it() -> None:
-    run = run_offline(load_scene('paper_fig7'), 1.0, Fraction(3, 10))
+    run = simulate(load_scene('paper_fig7'), 1.0, Fraction(3, 10))
     assert run.samples['time'].tolist() == [0.0, 0.3, 0.6, 0.9]
     assert run.receipt['results']['final_state']['second'] == 1.0
-    assert len(run_offline(load_scene('paper_fig7'), 1.0, 7.0).samples['time']) == 1
+    assert len(simulate(load_scene('paper_fig7'), 1.0, 7.0).samples['time']) == 1
 
 
-def test_same_run_twice_is_bit_identical(run: Trajectory) -> None:
-    again = run_offline(load_scene('paper_fig8'), 5.0, 0.001)
+def test_same_run_twice_is_bit_identical(run: SimulatedRun) -> None:
+    again = simulate(load_scene('paper_fig8'), 5.0, 0.001)
     assert again.events == run.events
     assert all(np.array_equal(again.samples[name], run.samples[name]) for name in run.samples)
     assert again.receipt['results'] == run.receipt['results']
@@ -70,12 +71,12 @@ def test_same_run_twice_is_bit_identical(run: Trajectory) -> None:
 def test_a_receipt_tells_the_settings_of_the_solver() -> None:
     for solver, settings in (('fixed_step', {'method': 'euler', 'step': 1e-3}),
                              ('adaptive', {'method': 'DOP853', 'rtol': 1e-8, 'atol': 1e-10})):
-        receipt = run_offline(load_scene('paper_fig7', {'solver.name': solver}), 0.7).receipt
+        receipt = simulate_events(load_scene('paper_fig7', {'solver.name': solver}), 0.7).receipt
         assert (receipt['solver'], receipt['solver_settings']) == (solver, settings)
         assert receipt['results']['events']['breakaway'] == 1
 
 
-def test_receipt_says_what_ran_and_what_came_out(run: Trajectory) -> None:
+def test_receipt_says_what_ran_and_what_came_out(run: SimulatedRun) -> None:
     receipt = json.loads(json.dumps(run.receipt, allow_nan=False))
     assert receipt['scene'] == 'paper_fig8'
     assert receipt['scene_hash'] == run.scene.hash
@@ -89,7 +90,7 @@ def test_receipt_says_what_ran_and_what_came_out(run: Trajectory) -> None:
     assert set(receipt['cost']) == {'cpu_time_s', 'cpu_time_per_simulated_second', 'wall_time_s'}
 
 
-def test_receipt_carries_the_energy_balance(run: Trajectory) -> None:
+def test_receipt_carries_the_energy_balance(run: SimulatedRun) -> None:
     energy = run.receipt['energy']
     assert set(energy) == {*EnergyBalance._fields, 'residual', 'relative_residual'}
     assert energy['relative_residual'] <= 1e-14
@@ -100,14 +101,14 @@ def test_receipt_carries_the_energy_balance(run: Trajectory) -> None:
 
 
 def test_smooth_sliding_gets_a_receipt_too() -> None:
-    run = run_offline(load_scene('fast_feed'), 3.0)
+    run = simulate_events(load_scene('fast_feed'), 3.0)
     assert run.receipt['results']['motion'] == 'smooth sliding'
     assert run.receipt['results']['last'] is None
 
 
 def test_progress_reaches_the_end() -> None:
     seen: list[float] = []
-    run_offline(load_scene('paper_fig7'), 1.0, 0.01, seen.append)
+    simulate(load_scene('paper_fig7'), 1.0, 0.01, seen.append)
     assert seen == sorted(seen)
     assert seen[-1] == 1.0
 
@@ -115,13 +116,13 @@ def test_progress_reaches_the_end() -> None:
 @pytest.mark.parametrize('duration', [0.0, -1.0, math.nan, math.inf, 1e12])
 def test_refused_durations(duration: float) -> None:
     with pytest.raises(InputError, match='duration'):
-        run_offline(load_scene('paper_fig7'), duration)
+        simulate_events(load_scene('paper_fig7'), duration)
 
 
 @pytest.mark.parametrize('period', [0.0, -0.001, math.nan, math.inf])
 def test_refused_sample_periods(period: float) -> None:
     with pytest.raises(InputError, match='sample period'):
-        run_offline(load_scene('paper_fig7'), 1.0, period)
+        simulate(load_scene('paper_fig7'), 1.0, period)
 
 
 def test_too_many_samples_are_refused_with_their_number() -> None:
@@ -131,6 +132,6 @@ def test_too_many_samples_are_refused_with_their_number() -> None:
 
 
 def test_too_many_events_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr('stickslip_sim.runs.offline.MAX_EVENTS', 10)
+    monkeypatch.setattr('stickslip_sim.runs.simulated.MAX_EVENTS', 10)
     with pytest.raises(InputError, match='at most 10 events'):
-        run_offline(load_scene('paper_fig8'), 60.0)
+        simulate_events(load_scene('paper_fig8'), 60.0)

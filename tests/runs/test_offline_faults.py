@@ -4,7 +4,7 @@
 
 import pytest
 
-from stickslip_sim.runs.offline import run_offline
+from stickslip_sim.runs import simulate, simulate_events
 from stickslip_sim.scene import load_scene
 
 FAULTS = {'faults.ids': ['dry', 'knock', 'stop'], 'faults.kinds': ['friction_scale', 'force_pulse', 'drive_freeze'],
@@ -15,9 +15,9 @@ FAULTS = {'faults.ids': ['dry', 'knock', 'stop'], 'faults.kinds': ['friction_sca
 @pytest.mark.parametrize('name', ['paper_fig7', 'positioning', 'cutting_force'])
 def test_a_run_from_event_to_event_is_that_of_the_steps(name: str) -> None:
     scene = load_scene(name, {**FAULTS, 'time.rate': 200.0})
-    run = run_offline(scene, 2.0, 0.005)
+    run = simulate(scene, 2.0, 0.005)
     rig = scene.make_rig()
     results = [rig.make_step() for _ in range(401)]
     assert run.events == [event for result in results for event in result.events]
     assert list(run.sample_rows()) == [result.sample for result in results]
-    assert run.events != run_offline(load_scene(name, {'time.rate': 200.0}), 2.0).events
+    assert run.events != simulate_events(load_scene(name, {'time.rate': 200.0}), 2.0).events

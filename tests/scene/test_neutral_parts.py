@@ -7,18 +7,18 @@ from pathlib import Path
 import pytest
 
 from stickslip_sim.core.types import EventKind
-from stickslip_sim.runs.offline import Trajectory, run_offline
+from stickslip_sim.runs import SimulatedRun, simulate
 from stickslip_sim.scene import load_scene
 
 DURATION, PERIOD = 3.0, 0.01   # s
 CONSTANT = {'friction.static.law': 'constant', 'friction.static.initial': 0.2}
 
 
-def with_values(name: str, changes: dict[str, object]) -> Trajectory:
-    return run_offline(load_scene(name, changes), DURATION, PERIOD)
+def with_values(name: str, changes: dict[str, object]) -> SimulatedRun:
+    return simulate(load_scene(name, changes), DURATION, PERIOD)
 
 
-def assert_same(a: Trajectory, b: Trajectory) -> None:
+def assert_same(a: SimulatedRun, b: SimulatedRun) -> None:
     assert len(a.events) > 5
     assert a.events == b.events
     assert all((a.samples[name] == b.samples[name]).all() for name in a.samples)
@@ -46,7 +46,7 @@ def test_dampers_of_nothing_are_none(tmp_path: Path) -> None:
     path = tmp_path / 'scene.yaml'
     path.write_text('\n'.join(line for line in given.text.splitlines() if 'damping: 0.0' not in line))
     left_out = load_scene(str(path))
-    assert_same(run_offline(given, DURATION, PERIOD), run_offline(left_out, DURATION, PERIOD))
+    assert_same(simulate(given, DURATION, PERIOD), simulate(left_out, DURATION, PERIOD))
 
 
 @pytest.mark.parametrize('law', ['exponential', 'kato', 'hyperbolic', 'logarithmic'])

@@ -13,7 +13,7 @@ import pytest
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.types import Event, EventKind, Mode
 from stickslip_sim.extremes.shared_axes import elapsed
-from stickslip_sim.runs.offline import run_offline
+from stickslip_sim.runs import simulate_events
 from stickslip_sim.scene import Scene, load_scene
 from stickslip_sim.simulation.cycles import cycle_figures
 from stickslip_sim.study import MOTIONS, Figures, Grid, Motion, Sobol, Study, variation
@@ -49,7 +49,7 @@ def test_figures_are_those_of_runs_of_their_own(name: str, texts: tuple[str, ...
     figures, points = study.figures(0, study.count), study.points(0, study.count)
     slips = 0
     for k, point in enumerate(points):
-        run = run_offline(study.scene_at(point), float(figures.duration[k]))
+        run = simulate_events(study.scene_at(point), float(figures.duration[k]))
         cycles = cycle_figures(run.events)
         assert figures.cycles[k] == len(cycles)
         if figures.motion[k] != Motion.STICK_SLIP:
@@ -141,7 +141,7 @@ def test_motions_have_their_words() -> None:
 def test_inputs_that_change_with_time_run_one_after_the_other() -> None:
     study = grid(load_scene('cutting_force'), 'force.period=0.05:0.0625:2', duration=3.0)
     figures = study.figures(0, 2)
-    run = run_offline(load_scene('cutting_force'), 3.0)
+    run = simulate_events(load_scene('cutting_force'), 3.0)
     assert run.summary.last is not None
     assert figures.period[1] == run.summary.last.period
     assert not study.works_in_batches
@@ -214,7 +214,7 @@ def test_a_run_twice_as_long_ends_in_the_same_cycle(seed: int) -> None:
     study = grid(scene, 'axis.drive_damping=500:8000:6')
     figures = study.figures(0, 6)
     for k, point in enumerate(study.points(0, 6)):
-        longer = run_offline(study.scene_at(point), 2.0 * float(figures.duration[k])).summary
+        longer = simulate_events(study.scene_at(point), 2.0 * float(figures.duration[k])).summary
         if figures.motion[k] == Motion.STICK_SLIP:
             assert longer.last is not None
             assert longer.last.period == pytest.approx(figures.period[k], rel=1e-6)
@@ -232,7 +232,7 @@ def test_a_slider_that_coasts_nearly_as_fast_as_its_drive_is_not_yet_sliding_for
         'friction.static.time_constant': 0.1873409621137062})
     figures = grid(scene, 'drive.velocity=0.0066:0.0070:5').figures(0, 5)
     assert (figures.motion == Motion.STICK_SLIP).all()
-    late = run_offline(load_scene('paper_fig8', {**scene.values, 'drive.velocity': 0.0068}), 100.0).events
+    late = simulate_events(load_scene('paper_fig8', {**scene.values, 'drive.velocity': 0.0068}), 100.0).events
     assert sum(event.kind == EventKind.STICK and event.time > 50.0 for event in late) > 100
 
 
@@ -241,7 +241,7 @@ def test_where_the_slider_only_just_comes_to_rest_the_events_are_those_of_the_re
     pytest.importorskip('mpmath')
     from stickslip_sim.reference import simulate
     scene = load_scene('paper_fig7', {'drive.velocity': 0.03, 'axis.drive_stiffness': 3e6})
-    events = run_offline(scene, 2.0).events
+    events = simulate_events(scene, 2.0).events
     expected = simulate(scene.axis, scene.initial, scene.drive, scene.force, 2.0).events
     assert [event.kind for event in events] == [event.kind for event in expected]
     assert sum(event.kind == EventKind.BREAKAWAY for event in events) == 30

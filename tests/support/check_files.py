@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Limits files, evidence and bags for tests of `stickslip check`, and the tool itself."""
+"""Limits files, runs and bags for tests of `stickslip check`, and the tool itself."""
 
 import math
 import shutil
@@ -8,10 +8,9 @@ from pathlib import Path
 
 from stickslip_sim.check.judgement import Outcome, judge
 from stickslip_sim.check.limits import limits_of
-from stickslip_sim.check.sources import Evidence, simulated
 from stickslip_sim.config.ros_yaml import read_yaml
 from stickslip_sim.recording import RunFacts, write_bag
-from stickslip_sim.runs.offline import run_offline
+from stickslip_sim.runs import SimulatedRun, simulate
 from stickslip_sim.scene import Scene, load_scene, scene_from_values
 from tests.support import tool
 from tests.support.tool import Capture
@@ -30,17 +29,16 @@ def free_position(time: float) -> float:
     return START_VELOCITY / FREQUENCY * math.exp(-DECAY * time) * math.sin(FREQUENCY * time)
 
 
-def evidence(scene: Scene | str, duration: float) -> Evidence:
-    scene = load_scene(scene) if isinstance(scene, str) else scene
-    return simulated(run_offline(scene, duration, scene.time.step))
+def simulated(scene: Scene | str, duration: float) -> SimulatedRun:
+    return simulate(load_scene(scene) if isinstance(scene, str) else scene, duration)
 
 
-def judged(text: str, found: Evidence) -> dict[str, Outcome]:
+def judged(text: str, found: SimulatedRun) -> dict[str, Outcome]:
     """Return the outcomes of limits given as YAML, by name."""
     return {outcome.name: outcome for outcome in judge(limits_of(read_yaml(text)), found)}
 
 
-def measured(text: str, found: Evidence) -> float:
+def measured(text: str, found: SimulatedRun) -> float:
     """Return the figure of the one limit given as YAML."""
     (outcome,) = judged(f'limits: {{{text}}}', found).values()
     assert outcome.value is not None
@@ -56,7 +54,7 @@ def limits_file(folder: Path, text: str) -> str:
 def node_bag(folder: Path, timing: object) -> Path:
     """Write a bag as a node does, with this in its receipt."""
     scene = load_scene('paper_fig7')
-    done = run_offline(scene, 0.2, scene.time.step)
+    done = simulate(scene, 0.2, scene.time.step)
     write_bag(folder, RunFacts.of(scene), done.sample_rows(), done.events, {'timing': timing})
     return folder
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from stickslip_sim.recording import Run
+from stickslip_sim.recording import Bag
 from stickslip_sim.rig import Fault, RigEventKind, StepResult
 from stickslip_sim.scene import Scene, scene_from_values
 from tests.support.rigs import Order, Script, run
@@ -16,7 +16,7 @@ FIELDS = ('time', 'position', 'velocity', 'acceleration', 'drive_position', 'dri
           'rest_time', 'mode', 'direction')
 
 
-def orders_of(recorded: Run, scene: Scene) -> Script:
+def orders_of(recorded: Bag, scene: Scene) -> Script:
     """Return the orders of a bag, by the step before which they came."""
     orders: dict[int, list[Order]] = defaultdict(list)
     values = dict(scene.values)
@@ -32,12 +32,12 @@ def orders_of(recorded: Run, scene: Scene) -> Script:
     return orders
 
 
-def made_again(recorded: Run, scene: Scene) -> list[StepResult]:
+def made_again(recorded: Bag, scene: Scene) -> list[StepResult]:
     """Return what a rig makes of the orders of a bag, over as many steps."""
     return run(scene.make_rig(), recorded.counts['/slider_state'], orders_of(recorded, scene))
 
 
-def assert_same_states(recorded: Run, products: list[StepResult]) -> None:
+def assert_same_states(recorded: Bag, products: list[StepResult]) -> None:
     """Compare the states of a bag with those of a rig, bit by bit."""
     states = recorded.columns('/slider_state')
     assert list(states['step']) == [result.step for result in products]

@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 from stickslip_sim.cli.main import run
-from stickslip_sim.recording import flat_layout, read_run
+from stickslip_sim.recording import flat_layout, open_bag, read_run
 from stickslip_sim.recording.topics import FRICTION_FORCE, SLIDER_STATE, Topic
-from stickslip_sim.verify.original import open_original
+from stickslip_sim.verify.origin import doubts_about
 from stickslip_sim.verify.verification import verify
 from tests.support.rewritten_bags import rewritten
 from tests.support.tool import Capture
@@ -44,15 +44,15 @@ class TestIdentical:
         ('paper_fig8', 1.00005, ['solver.name=adaptive', 'time.rate=100.0']),
     ])
     def test_whatever_moves_the_axis(self, scene: str, duration: float, changes: list[str], tmp_path: Path) -> None:
-        recording = open_original(simulated(tmp_path / 'run', scene, duration, *changes))
+        recording = read_run(simulated(tmp_path / 'run', scene, duration, *changes))
         verdict = verify(recording)
-        assert (verdict.difference, verdict.missing, recording.notes) == (None, 0, ())
-        assert verdict.steps == recording.run.counts['/slider_state'] > 50
-        assert verdict.events == recording.run.counts['/mode_event'] > 2
+        assert (verdict.difference, verdict.missing, doubts_about(recording)) == (None, 0, ())
+        assert verdict.steps == recording.bag.counts['/slider_state'] > 50
+        assert verdict.events == recording.bag.counts['/mode_event'] > 2
 
     def test_an_mcap_file_in_another_namespace(self, bag: Path, tmp_path: Path) -> None:
         rewritten(bag, tmp_path / 'cell', lambda name: f'/cell{name}' if name != '/parameter_events' else name)
-        assert verify(open_original(tmp_path / 'cell' / 'run_0.mcap')).steps == STEPS
+        assert verify(read_run(tmp_path / 'cell' / 'run_0.mcap')).steps == STEPS
 
 
 class TestDifferent:
@@ -60,7 +60,7 @@ class TestDifferent:
     def test_every_field_to_the_last_bit(self, topic: Topic, bag: Path, tmp_path: Path) -> None:
         layout = flat_layout(topic.type)
         name = f'/{topic.name}'
-        original = next(item.data for item in read_run(bag).messages([name]) if item.sequence == 1500)
+        original = next(item.data for item in open_bag(bag).messages([name]) if item.sequence == 1500)
         numbers = layout.numbers(original)
         assert numbers is not None
         for place, field in enumerate(layout.names):
@@ -68,14 +68,14 @@ class TestDifferent:
             changed[place] = nudged(numbers[place])
             data = original[:12] + layout.pack(0, *changed)[12:]
             folder = rewritten(bag, tmp_path / field, message=replacing(name, 1500, data))
-            difference = verify(open_original(folder)).difference
+            difference = verify(read_run(folder)).difference
             assert difference is not None
             assert (difference.step, difference.topic, difference.field) == (1500, name, field)
             assert (difference.recorded, difference.made) == (changed[place], numbers[place])
 
     def test_a_sign_of_zero_and_a_stamp(self, bag: Path, tmp_path: Path) -> None:
         layout = flat_layout(SLIDER_STATE.type)
-        original = next(item.data for item in read_run(bag).messages(['/slider_state']) if item.sequence == 0)
+        original = next(item.data for item in open_bag(bag).messages(['/slider_state']) if item.sequence == 0)
         numbers = layout.numbers(original)
         assert numbers is not None
         place = layout.names.index('position')
@@ -84,28 +84,28 @@ class TestDifferent:
         later = original[:8] + struct.pack('<I', 1) + original[12:]
         for data, field in ((zero, 'position'), (later, 'header.stamp')):
             folder = rewritten(bag, tmp_path / field, message=replacing('/slider_state', 0, data))
-            difference = verify(open_original(folder)).difference
+            difference = verify(read_run(folder)).difference
             assert difference is not None
             assert difference.field == field
 
     def test_a_transition_too_few_and_one_too_many(self, bag: Path, tmp_path: Path) -> None:
-        times = {item.sequence: item.log_time for item in read_run(bag).messages(['/mode_event'])}
+        times = {item.sequence: item.log_time for item in open_bag(bag).messages(['/mode_event'])}
         step = list(times)[3]
         less = rewritten(bag, tmp_path / 'less', message=lambda topic, number, data: (
             None if (topic, number) == ('/mode_event', step) else data))
-        difference = verify(open_original(less)).difference
+        difference = verify(read_run(less)).difference
         assert difference is not None
         assert (difference.step, difference.recorded) == (step, None)
         assert difference.time == difference.made == pytest.approx(times[step] * 1e-9, abs=1e-9)
         more = rewritten(bag, tmp_path / 'more', definition=lambda text: text)
         other = simulated(tmp_path / 'other', 'paper_fig8', 3.0, 'axis.normal_force=3000.0')
-        scene = (read_run(other).attachments['scene.yaml'])
+        scene = (open_bag(other).attachments['scene.yaml'])
         mixed = rewritten(more, tmp_path / 'mixed', contents=lambda name, data: scene if name == 'scene.yaml' else data)
-        assert verify(open_original(mixed)).difference is not None
+        assert verify(read_run(mixed)).difference is not None
 
     def test_what_it_says(self, bag: Path, tmp_path: Path, capsys: Capture) -> None:
         layout = flat_layout(SLIDER_STATE.type)
-        original = next(item.data for item in read_run(bag).messages(['/slider_state']) if item.sequence == 1500)
+        original = next(item.data for item in open_bag(bag).messages(['/slider_state']) if item.sequence == 1500)
         numbers = layout.numbers(original)
         assert numbers is not None
         data = original[:12] + layout.pack(0, numbers[0], numbers[1], 0.25, *numbers[3:])[12:]

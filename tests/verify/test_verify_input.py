@@ -11,10 +11,10 @@ import pytest
 from stickslip_sim.cli.main import run
 from stickslip_sim.core.errors import StickslipError
 from stickslip_sim.core.types import EventKind
-from stickslip_sim.runs.offline import run_offline
+from stickslip_sim.recording import read_run
+from stickslip_sim.runs import simulate_events
 from stickslip_sim.runs.receipt import plain
 from stickslip_sim.scene import load_scene
-from stickslip_sim.verify.original import open_original
 from tests.support.rewritten_bags import rewritten
 from tests.support.tool import Capture
 from tests.support.verify_tool import refused, verified
@@ -65,7 +65,7 @@ class TestCutAndDamaged:
             damaged = bytearray(data)
             damaged[stream.randrange(8, int(0.9 * end))] ^= 1 << stream.randrange(8)
             with pytest.raises(StickslipError, match='damaged: it was finished'):
-                open_original(written(tmp_path / str(trial), bytes(damaged)))
+                read_run(written(tmp_path / str(trial), bytes(damaged)))
 
     def test_lost_messages(self, bag: Path, tmp_path: Path, capsys: Capture) -> None:
         lost = {700, 701, 1500}
@@ -164,10 +164,10 @@ class TestWhatIf:
         figures = json.loads((out / 'what_if.json').read_text())
         changes = {'axis.normal_force': 3000.0, 'drive.velocity': 0.003}
         assert figures['changes'] == changes
-        summary = run_offline(load_scene('paper_fig8', changes), 3.0).summary
+        summary = simulate_events(load_scene('paper_fig8', changes), 3.0).summary
         assert figures['what_if'] == plain(summary) | {'events': figures['what_if']['events']}
         assert figures['what_if']['events']['breakaway'] == summary.events[EventKind.BREAKAWAY]
-        mean = run_offline(load_scene('paper_fig8'), 3.0).summary.mean
+        mean = simulate_events(load_scene('paper_fig8'), 3.0).summary.mean
         assert mean is not None
         assert figures['recorded']['mean']['period'] == pytest.approx(mean.period, rel=1e-13)
         assert load_scene(str(out / 'scene.yaml')).values == load_scene('paper_fig8', changes).values

@@ -3,7 +3,7 @@
 """The duration of the runs: the longest allowed one, and one that is enough when none is given."""
 
 from ..core.errors import InputError
-from ..runs.offline import run_offline
+from ..runs import simulate_events
 from ..scene import Scene, changed
 from .trial_runs import BY_EXACT
 
@@ -24,7 +24,7 @@ def default_duration(scene: Scene) -> float:
     """Return 10 s, doubled up to 320 s while the exact solver finds fewer than 20 cycles; 10 s if there are none."""
     exact, duration = changed(scene, BY_EXACT), _SHORTEST
     while True:
-        cycles = run_offline(exact, duration).summary.cycles
+        cycles = simulate_events(exact, duration).summary.cycles
         if cycles >= _CYCLES:
             return duration
         if duration >= _LONGEST:

@@ -14,7 +14,7 @@ from ..bench.peers.peer import EXACT
 from ..bench.problem import Outcome, Problem
 from ..core.errors import InputError, SolverError
 from ..core.types import Event, Instant, Sample
-from ..runs.offline import Trajectory, run_offline
+from ..runs import SimulatedRun, simulate
 from ..scene import Scene, changed
 from ..simulation.simulator import Simulator
 from ..solvers import Solver
@@ -34,7 +34,7 @@ class ExactRun(NamedTuple):
     """The exact run with everything on; `end` is its last sample."""
 
     scene: Scene
-    run: Trajectory
+    run: SimulatedRun
     end: Sample
     figures: RunFigures
 
@@ -69,7 +69,7 @@ def changes_between(base: Scene, other: Scene) -> Changes:
 def reference_of(scene: Scene, duration: float) -> ExactRun:
     """Run a scene with the exact solver, whichever it names."""
     exact = changed(scene, BY_EXACT)
-    run = run_offline(exact, duration, duration)   # sampled at its start and its end
+    run = simulate(exact, duration, duration)   # sampled at its start and its end
     start, end = run.sample_rows()
     return ExactRun(exact, run, end, run_figures(run.events, duration, start, end))
 
@@ -114,7 +114,7 @@ def _run(scene: Scene, reference: ExactRun) -> tuple[list[Event], Sample, Sample
     """Return the events of a run as long as the reference, and its first and last sample."""
     duration = reference.run.duration
     if scene.solver.name != 'adaptive':
-        run = run_offline(scene, duration, duration)
+        run = simulate(scene, duration, duration)
         begin, end = run.sample_rows()
         return run.events, begin, end
     solver = _watched(scene.solver.make(scene.axis), max(_MOST_AT_LEAST, _MOST * len(reference.run.events)))

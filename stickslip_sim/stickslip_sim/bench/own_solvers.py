@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from .. import __version__
 from ..axis.layout import (
     EVENT_DIRECTION,
     EVENT_FRACTION,
@@ -26,6 +25,7 @@ from ..axis.layout import (
 from ..core.errors import SolverError
 from ..core.jit import IS_COMPILED
 from ..core.types import Sample
+from ..core.version import __version__
 from ..solvers import DONE, Solver, adaptive, exact, fixed_step
 from .peers.peer import EXACT, Peer, Setting, time_steps, tolerances
 from .problem import Numbers, Outcome, Problem

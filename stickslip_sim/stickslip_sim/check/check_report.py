@@ -6,9 +6,10 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from ..runs import Run
 from .judgement import Outcome
 from .kinds import TIMING
-from .sources import Evidence
+from .observed_run import gaps_in, motion_of
 
 
 def verdict_line(outcomes: Sequence[Outcome]) -> str:
@@ -33,12 +34,12 @@ def told(outcome: Outcome) -> str:
     return f'{text} ({outcome.remark})' if outcome.remark else text
 
 
-def as_json(evidence: Evidence, outcomes: Sequence[Outcome]) -> dict[str, Any]:
+def as_json(run: Run, outcomes: Sequence[Outcome]) -> dict[str, Any]:
     """Return everything that was found; an infinite figure is the text 'inf'."""
-    motion = evidence.motion
+    motion = motion_of(run)
     return {
-        'run': {'name': evidence.name, 'begin': motion.begin, 'end': motion.end, 'states': len(motion.time),
-                'events': len(motion.events), 'is_complete': evidence.is_complete, 'notes': list(evidence.notes)},
+        'run': {'name': run.name, 'begin': motion.begin, 'end': motion.end, 'states': len(motion.time),
+                'events': len(motion.events), 'is_complete': run.is_complete, 'notes': list(gaps_in(run))},
         'passed': not failures(outcomes),
         'limits': [_entry(outcome) for outcome in outcomes],
     }

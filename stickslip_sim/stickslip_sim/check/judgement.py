@@ -1,15 +1,16 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The judgement: every limit of a file on one motion."""
+"""The judgement: every limit of a file on one run."""
 
 import math
 from typing import NamedTuple
 
 from ..core.errors import InputError
+from ..runs import Run
 from .kinds import TIMING
 from .limits import Limit, Limits, check_fit
 from .observed_motion import Motion
-from .sources import Evidence
+from .observed_run import motion_of, timing_of
 
 
 class Outcome(NamedTuple):
@@ -27,16 +28,18 @@ class Outcome(NamedTuple):
         return None if self.limit is None or self.value is None else self.limit.maximum - self.value
 
 
-def judge(limits: Limits, evidence: Evidence) -> list[Outcome]:
+def judge(limits: Limits, run: Run) -> list[Outcome]:
     """Return the outcome of every limit, timing last; raises InputError when one does not fit the run.
 
     A recording that was cut off is judged as far as it goes.
     """
-    motion = evidence.motion.following(limits.reference) if limits.reference else evidence.motion
-    check_fit(limits, motion.begin, motion.end if evidence.is_complete else math.inf, evidence.timing is not None)
+    motion, timing = motion_of(run), timing_of(run)
+    if limits.reference:
+        motion = motion.following(limits.reference)
+    check_fit(limits, motion.begin, motion.end if run.is_complete else math.inf, timing is not None)
     outcomes = [_outcome(limit, motion) for limit in limits.limits]
-    if limits.timing and evidence.timing:
-        outcomes.append(Outcome(TIMING, None, evidence.timing.valid, None, evidence.timing.verdict))
+    if limits.timing and timing:
+        outcomes.append(Outcome(TIMING, None, timing.valid, None, timing.verdict))
     return outcomes
 
 

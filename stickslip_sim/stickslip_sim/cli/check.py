@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 import click
 
 from .files import STDOUT, check_distinct, check_file, write_text
-from .run_or_scene import is_recorded
+from .run_or_scene import is_recorded, recorded_run
 
 if TYPE_CHECKING:
     from ..check.limits import Limits
-    from ..check.sources import Evidence
+    from ..runs import Run
 
 
 @click.command(short_help='Check a run against limits: pass or fail.')
@@ -34,16 +34,16 @@ def check(source: str, limits_file: str, duration: float | None, changes: tuple[
     from .check_table import table_lines
 
     limits = load_limits(limits_file)
-    evidence = _evidence(source, limits, duration, changes)
-    outcomes = judge(limits, evidence)
+    run = _run(source, limits, duration, changes)
+    outcomes = judge(limits, run)
     if STDOUT not in (junit, json_file):
-        print('\n'.join([*table_lines(evidence, outcomes), verdict_line(outcomes)]), flush=True)
+        print('\n'.join([*table_lines(run, outcomes), verdict_line(outcomes)]), flush=True)
     if json_file is not None:
-        write_text(json_file, [json.dumps(as_json(evidence, outcomes), indent=2, allow_nan=False) + '\n'])
+        write_text(json_file, [json.dumps(as_json(run, outcomes), indent=2, allow_nan=False) + '\n'])
     if junit is not None:
-        write_text(junit, [junit_text(evidence.name, outcomes)])
+        write_text(junit, [junit_text(run.name, outcomes)])
     if failed := failures(outcomes):
-        raise VerdictError(f'{evidence.name} does not keep {limits_file}: {", ".join(failed)}')
+        raise VerdictError(f'{run.name} does not keep {limits_file}: {", ".join(failed)}')
 
 
 def _check_outputs(junit: str | None, json_file: str | None) -> None:
@@ -55,23 +55,21 @@ def _check_outputs(junit: str | None, json_file: str | None) -> None:
     check_distinct(targets)
 
 
-def _evidence(source: str, limits: 'Limits', duration: float | None, changes: tuple[str, ...]) -> 'Evidence':
-    from ..check.sources import recorded
-
+def _run(source: str, limits: 'Limits', duration: float | None, changes: tuple[str, ...]) -> 'Run':
     if is_recorded(source):
         if duration is not None or changes:
             raise click.UsageError('--duration and --set are for a scene; a run stays as it was recorded.')
-        return recorded(source)
+        return recorded_run(source)
     if duration is None:
         raise click.UsageError('--duration S is needed to simulate a scene.')
     return _simulated(source, limits, duration, changes)
 
 
-def _simulated(source: str, limits: 'Limits', duration: float, changes: tuple[str, ...]) -> 'Evidence':
-    """Return the motion of a scene with a sample each step, as its node would record it."""
+def _simulated(source: str, limits: 'Limits', duration: float, changes: tuple[str, ...]) -> 'Run':
+    """Return the run of a scene with a sample each step, as its node would record it."""
     from ..check.limits import check_fit
-    from ..check.sources import simulated
-    from ..runs.offline import check_times, run_offline
+    from ..runs import simulate
+    from ..runs.simulated import check_times
     from ..scene import load_scene, parse_override
     from .progress import progress_bar
 
@@ -79,4 +77,4 @@ def _simulated(source: str, limits: 'Limits', duration: float, changes: tuple[st
     check_fit(limits, 0.0, duration, has_timing=False)
     scene = load_scene(source, dict(parse_override(change) for change in changes))
     with progress_bar('simulating') as progress:
-        return simulated(run_offline(scene, duration, scene.time.step, progress))
+        return simulate(scene, duration, progress=progress)

@@ -5,19 +5,20 @@
 from collections.abc import Iterator, Sequence
 
 from ..check.judgement import Outcome
-from ..check.sources import Evidence
-from .format import quantity
+from ..check.observed_run import gaps_in, motion_of
+from ..runs import Run
+from ..runs.wording import quantity
 
 _HEADS = ('limit', 'measured', 'at most', 'margin', '', '')
 _NUMBERS = (1, 2, 3)   # columns to the right
 
 
-def table_lines(evidence: Evidence, outcomes: Sequence[Outcome]) -> Iterator[str]:
+def table_lines(run: Run, outcomes: Sequence[Outcome]) -> Iterator[str]:
     """Yield the checked run, its missing parts, and a line for each limit."""
-    motion = evidence.motion
-    yield (f'{evidence.name}: {motion.begin:g} to {motion.end:g} s, {len(motion.time)} states, '
+    motion = motion_of(run)
+    yield (f'{run.name}: {motion.begin:g} to {motion.end:g} s, {len(motion.time)} states, '
            f'{len(motion.events)} transitions')
-    yield from (f'note: {note}' for note in evidence.notes)
+    yield from (f'note: {note}' for note in gaps_in(run))
     rows = [_HEADS, *map(_cells, outcomes)]
     widths = [max(map(len, column)) for column in zip(*rows)]
     for row in rows:

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 import click
 
 from .files import check_new_folder, new_folder
-from .run_or_scene import is_recorded
+from .run_or_scene import is_recorded, recorded_run
 
 if TYPE_CHECKING:
-    from ..compare.history import History
     from ..compare.report_folder import Judged
+    from ..runs import Run
 
 _MOST = 8   # runs, rows of a picture
 
@@ -34,18 +34,18 @@ def compare(runs: tuple[str, ...], out: str, duration: float | None, changes: tu
     from ..core.errors import VerdictError
     from .progress import progress_bar
 
-    histories = []
+    sources = []
     with progress_bar('comparing') as progress:
         for k, run in enumerate(runs):
-            histories.append(_history(run, duration, changes))
+            sources.append(_run(run, duration, changes))
             if progress:
                 progress((k + 1) / (2 * len(runs)))
         with new_folder('--out', out) as folder:
-            judged = write_report(_named_apart(histories), folder)
-    for run_judged in judged:
-        _tell(run_judged)
+            judged = write_report(_named_apart(sources), folder)
+    for each in judged:
+        _tell(each)
     print(f'written: {Path(out) / "report.html"}')
-    failed = [f'{found.history.name}: {name}' for found in judged for name in found.failed]
+    failed = [f'{found.name}: {name}' for found in judged for name in found.failed]
     if failed:
         raise VerdictError(f'{len(failed)} of the statements that apply do not hold ({"; ".join(failed)})')
 
@@ -63,37 +63,36 @@ def _check(runs: tuple[str, ...], out: str, duration: float | None, changes: tup
                 raise click.UsageError(f'{option} is for scenes, and all of these are recorded runs.')
 
 
-def _history(run: str, duration: float | None, changes: tuple[str, ...]) -> 'History':
+def _run(source: str, duration: float | None, changes: tuple[str, ...]) -> 'Run':
     from ..advise.duration import default_duration
-    from ..compare.fresh import simulate
-    from ..compare.recorded import history_of_run
+    from ..compare.fresh import simulate_densely
     from ..scene import load_scene, parse_override
 
-    if is_recorded(run):
-        return history_of_run(run)
-    scene = load_scene(run, dict(parse_override(change) for change in changes))
-    return simulate(scene, default_duration(scene) if duration is None else duration)
+    if is_recorded(source):
+        run = recorded_run(source)
+        _ = run.samples, run.scene, run.events   # what cannot be read is refused before the work begins
+        return run
+    scene = load_scene(source, dict(parse_override(change) for change in changes))
+    return simulate_densely(scene, default_duration(scene) if duration is None else duration)
 
 
-def _named_apart(histories: list['History']) -> list['History']:
+def _named_apart(runs: list['Run']) -> dict[str, 'Run']:
     """Give each run a name of its own that is good for a file, too."""
-    from dataclasses import replace
-
     from ..scene.text import file_name
 
-    named: dict[str, History] = {}
-    for history in histories:
-        stem = file_name(history.name)
+    named: dict[str, Run] = {}
+    for run in runs:
+        stem = file_name(Path(run.name).stem if run.is_recorded else run.name)
         name = next(name for name in (stem, *(f'{stem}_{k}' for k in range(2, _MOST + 1))) if name not in named)
-        named[name] = replace(history, name=name)
-    return list(named.values())
+        named[name] = run
+    return named
 
 
-def _tell(run: 'Judged') -> None:
-    from .format import headline
+def _tell(judged: 'Judged') -> None:
+    from ..runs.wording import headline
 
-    print(f'{run.history.name}: {headline(run.history.summary)}')
-    for note in run.history.notes:
+    print(f'{judged.name}: {headline(judged.run.summary)}')
+    for note in judged.run.notes:
         print(f'  note: {note}')
-    for statement, finding in run.findings:
+    for statement, finding in judged.findings:
         print(f'  {finding.outcome.value:15} {statement.name}: {finding.text}')

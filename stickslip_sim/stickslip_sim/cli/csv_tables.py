@@ -5,7 +5,7 @@
 from collections.abc import Iterable, Iterator
 
 from ..core.types import Event, EventKind, Mode
-from ..runs.offline import Columns
+from ..runs import Columns
 
 EVENT_COLUMNS = ('time', 'kind', 'direction', 'position', 'velocity', 'drive_force', 'friction_force',
                  'static_coefficient', 'rest_time')

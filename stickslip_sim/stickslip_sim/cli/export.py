@@ -31,18 +31,18 @@ def export(run: str, csv_file: str | None, parquet: str | None, topic: str) -> N
     log_time is simulation time, publish_time is that of the message's stamp, both in ns; sequence is the step.
     """
     _check(csv_file, parquet)
-    from ..recording import read_run
+    from ..recording import open_bag
 
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter('always')
-        recorded = read_run(run)
+        bag = open_bag(run)
     for warning in caught:
         print(f'note: {warning.message}', file=sys.stderr)
     if parquet is not None:
         with whole(parquet) as temporary:
-            recorded.frame(topic).to_parquet(temporary, index=False)
+            bag.frame(topic).to_parquet(temporary, index=False)
     if csv_file is not None:
-        write_text(csv_file, csv_lines(recorded.columns(topic)))
+        write_text(csv_file, csv_lines(bag.columns(topic)))
 
 
 def csv_lines(columns: 'dict[str, NDArray[Any]]') -> Iterator[str]:

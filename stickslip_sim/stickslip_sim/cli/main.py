@@ -17,8 +17,8 @@ from typing import NoReturn
 
 import click
 
-from .. import __version__
 from ..core.errors import StickslipError, internal_error
+from ..core.version import __version__
 from .advise import advise
 from .bench import bench
 from .check import check

@@ -79,21 +79,22 @@ def _check_complete(sweep: 'Folder') -> None:
 
 def _pick(study: 'Study', columns: 'Columns', text: str) -> 'Pick':
     """Return a point of the map with its motion."""
-    from ..compare.fresh import sampled, simulate
+    from ..compare.fresh import densely_sampled, simulate_densely
     from ..compare.windows import motion_of
     from ..plots.stability_map import Pick
     from ..study.picks import ending_at, place_in_map, point_of
     from ..study.point_figures import Motion
 
     point = point_of(study, text)
-    ending, scene = ending_at(study, columns, point), study.scene_at(point)
+    ending = ending_at(study, columns, point)
     shown = _time_shown(ending)
-    is_known = shown == ending.duration
-    motion = motion_of(sampled(scene, shown, ending.events) if is_known else simulate(scene, shown))
+    is_known = shown == ending.run.duration
+    motion = motion_of(densely_sampled(ending.run) if is_known else simulate_densely(ending.run.scene, shown))
     sticks = ending.motion == Motion.STICK_SLIP
     return Pick(*place_in_map(study, point), motion if sticks else motion._replace(cycle=None))
 
 
 def _time_shown(ending: 'Ending') -> float:
     """Return how much of a motion a phase plane shows, s: all, longer where it swings on, less with many events."""
-    return ending.duration * min(_SWINGS_ON if ending.swings_on else 1.0, _MOST_EVENTS / max(len(ending.events), 1))
+    run = ending.run
+    return run.duration * min(_SWINGS_ON if ending.swings_on else 1.0, _MOST_EVENTS / max(len(run.events), 1))

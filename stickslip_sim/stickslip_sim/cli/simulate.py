@@ -13,7 +13,7 @@ import click
 from .files import STDOUT, check_distinct, check_file, check_new_folder, check_picture, whole, write_text
 
 if TYPE_CHECKING:
-    from ..runs.offline import Trajectory
+    from ..runs import SimulatedRun
     from ..scene import Scene
 
 _PLOT_POINTS = 20_000
@@ -50,7 +50,8 @@ def simulate(scene: str, changes: tuple[str, ...], **options: object) -> None:
     """
     wishes = _Wishes(**options)  # type: ignore[arg-type]
     _check(wishes)
-    from ..runs.offline import check_times, run_offline
+    from ..runs import simulate, simulate_events
+    from ..runs.simulated import check_times
     from ..scene import load_scene, parse_override
     from .progress import progress_bar
 
@@ -58,7 +59,10 @@ def simulate(scene: str, changes: tuple[str, ...], **options: object) -> None:
     loaded = load_scene(scene, dict(parse_override(change) for change in changes))
     period = _sample_period(wishes, loaded)
     with progress_bar('simulating') as progress:
-        run = run_offline(loaded, wishes.duration, period, progress)
+        if period is None:
+            run = simulate_events(loaded, wishes.duration, progress)
+        else:
+            run = simulate(loaded, wishes.duration, period, progress)
     if wishes.receipt or wishes.bag:
         run = _with_estimate(run)
     _write(wishes, run)
@@ -89,14 +93,14 @@ def _sample_period(wishes: _Wishes, scene: 'Scene') -> Fraction | float | None:
     return scene.time.step if wishes.samples or wishes.bag else None
 
 
-def _with_estimate(run: 'Trajectory') -> 'Trajectory':
+def _with_estimate(run: 'SimulatedRun') -> 'SimulatedRun':
     """Return the run with an estimate of its error in the receipt; that takes a few more runs."""
     from ..runs.error_estimate import error_estimate
 
     return replace(run, receipt={**run.receipt, 'error_estimate': error_estimate(run)._asdict()})
 
 
-def _write(wishes: _Wishes, run: 'Trajectory') -> None:
+def _write(wishes: _Wishes, run: 'SimulatedRun') -> None:
     """Write the outputs, standard output last: its reader may leave early."""
     from .csv_tables import event_lines, sample_lines
 
@@ -114,7 +118,7 @@ def _write(wishes: _Wishes, run: 'Trajectory') -> None:
         _tell(run)
 
 
-def _write_bag(folder: str, run: 'Trajectory') -> None:
+def _write_bag(folder: str, run: 'SimulatedRun') -> None:
     """Record the run step by step; a folder that was begun vanishes on any error."""
     from ..recording.offline_bag import write_bag
     from ..recording.run import RunFacts
@@ -131,29 +135,26 @@ def _write_bag(folder: str, run: 'Trajectory') -> None:
         raise
 
 
-def _draw(path: str, run: 'Trajectory') -> None:
-    from ..plots import plot_run
-    from .format import headline
-
+def _draw(path: str, run: 'SimulatedRun') -> None:
     if len(run.samples['time']) < _PLOT_POINTS:
         run = _sampled(run, Fraction(repr(run.duration)) / _PLOT_POINTS)
-    title = f'{run.scene.name}, {run.duration:g} s\n{headline(run.summary)}'
     with whole(path) as temporary:
-        plot_run(run.samples, run.events, title, temporary)
+        run.plot(temporary)
 
 
-def _sampled(run: 'Trajectory', period: Fraction) -> 'Trajectory':
+def _sampled(run: 'SimulatedRun', period: Fraction) -> 'SimulatedRun':
     """Return the same run with other samples."""
-    from ..runs.offline import run_offline
+    from ..runs import simulate
 
     if run.sample_period == period:
         return run
-    again = run_offline(run.scene, run.duration, period)
+    again = simulate(run.scene, run.duration, period)
     return replace(again, receipt={**run.receipt, **again.receipt})
 
 
-def _tell(run: 'Trajectory') -> None:
-    from .format import quantity, summary_lines
+def _tell(run: 'SimulatedRun') -> None:
+    from ..runs.wording import quantity
+    from .format import summary_lines
 
     cost, energy = run.receipt['cost'], run.receipt['energy']
     print(f'{run.scene.name}: {run.duration:g} s with the {run.scene.solver.name} solver')

@@ -92,8 +92,8 @@ def _laws(sample: 'Saltelli') -> list[str]:
 
 
 def _percentiles(found: 'Uncertainty') -> list[str]:
+    from ..runs.wording import quantity
     from ..study.uncertainty import PERCENTS, SPREAD
-    from .format import quantity
 
     doubts = ((found.failed, 'failed'), (found.undecided, 'undecided'),
               (found.unsettled, 'had not settled'))

@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING
 import click
 
 from .files import check_new_folder, new_folder
+from .run_or_scene import recorded_run
 
 if TYPE_CHECKING:
+    from ..recording import RecordedRun
+    from ..runs import Run
     from ..scene import Scene
-    from ..verify.original import Original
     from ..verify.verification import Verdict
-    from ..verify.what_if import Side
 
 
 @click.command(short_help='Run a recorded run again; with --set, what would have been.')
@@ -30,21 +31,22 @@ def verify(run: str, changes: tuple[str, ...], out: str | None) -> None:
     _check(changes, out)
     from ..core.errors import VerdictError
     from ..scene import parse_override
-    from ..verify.original import open_original
+    from ..verify.origin import doubts_about
     from ..verify.verification import verify as judge
     from ..verify.what_if import other_scene
     from .progress import progress_bar
 
-    original = open_original(run)
+    recorded = recorded_run(run)
+    doubts = doubts_about(recorded)
     given = dict(parse_override(change) for change in changes)
-    scene = other_scene(original, given)
-    for note in original.notes:
-        print(f'note: {note}')
+    scene = other_scene(recorded, given)
+    for doubt in doubts:
+        print(f'note: {doubt}')
     with progress_bar('verifying') as progress:
-        verdict = judge(original, progress)
-    _tell(original, verdict)
+        verdict = judge(recorded, progress)
+    _tell(recorded, verdict)
     if given:
-        _what_if(original, scene, given, out)
+        _what_if(recorded, scene, given, out)
     if verdict.difference:
         raise VerdictError(f'{run} differs from its re-simulation at {verdict.difference}')
 
@@ -58,16 +60,16 @@ def _check(changes: tuple[str, ...], out: str | None) -> None:
     check_new_folder('--out', out)
 
 
-def _tell(original: 'Original', verdict: 'Verdict') -> None:
-    from ..verify.original import made_with
+def _tell(run: 'RecordedRun', verdict: 'Verdict') -> None:
+    from ..verify.origin import made_with
 
     if verdict.missing:
         print(f'note: {verdict.missing} steps have no recorded state')
     if verdict.difference:
         print(f'differs after {_amount(verdict)} that are identical')
-        print(f'      recorded with {made_with(original)}')
+        print(f'      recorded with {made_with(run)}')
         return
-    extent = 'identical' if original.run.is_complete else 'identical as far as it goes'
+    extent = 'identical' if run.is_complete else 'identical as far as it goes'
     print(f'{extent}, {_amount(verdict)}, up to t = {verdict.end:.9g} s', flush=True)
 
 
@@ -75,28 +77,29 @@ def _amount(verdict: 'Verdict') -> str:
     return f'{verdict.steps} steps, {verdict.events} events'
 
 
-def _what_if(original: 'Original', scene: 'Scene', changes: dict[str, object], out: str | None) -> None:
-    from ..verify.what_if import other_side, recorded_side
+def _what_if(run: 'RecordedRun', scene: 'Scene', changes: dict[str, object], out: str | None) -> None:
+    from ..verify.what_if import other_run
     from .format import beside_lines
     from .progress import progress_bar
 
-    recorded = recorded_side(original)
+    _ = run.summary   # what cannot be read is refused before the work begins
     with progress_bar('what if') as progress:
-        other = other_side(original, scene, changes, progress)
-    print('\n'.join(beside_lines(recorded.figures, other.figures)), flush=True)
+        other = other_run(run, scene, changes, progress)
+    print('\n'.join(beside_lines(run.summary, other.summary)), flush=True)
     if out is not None:
         with new_folder('--out', out) as folder:
-            _write(folder, scene, changes, recorded, other)
+            _write(folder, changes, run, other)
         print(f'written: {out}')
 
 
-def _write(folder: Path, scene: 'Scene', changes: dict[str, object], recorded: 'Side', other: 'Side') -> None:
+def _write(folder: Path, changes: dict[str, object], recorded: 'Run', other: 'Run') -> None:
     from ..plots import plot_beside
     from ..runs.receipt import plain
 
+    scene = other.scene
     changed = ', '.join(f'{name} = {value}' for name, value in changes.items())
-    plot_beside(recorded.columns, other.columns, f'{scene.name}\nwhat if {changed}', folder / 'what_if.png')
-    figures = {'scene': scene.name, 'changes': changes, 'recorded': recorded.figures, 'what_if': other.figures}
+    plot_beside(recorded.samples, other.samples, f'{scene.name}\nwhat if {changed}', folder / 'what_if.png')
+    figures = {'scene': scene.name, 'changes': changes, 'recorded': recorded.summary, 'what_if': other.summary}
     text = json.dumps(plain(figures), indent=2, allow_nan=False) + '\n'
     (folder / 'what_if.json').write_text(text, encoding='utf-8')
     (folder / 'scene.yaml').write_text(scene.text, encoding='utf-8')

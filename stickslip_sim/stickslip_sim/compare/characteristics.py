@@ -9,40 +9,41 @@ import numpy as np
 from ..core.types import Event, EventKind, Mode
 from ..friction import StaticLaw
 from ..plots.characteristics import Characteristics, Curve
-from .history import History, Numbers
+from ..runs import Run
+from .drawn import Numbers
 
 _BEYOND = 1.25   # of the limit velocity, and of the longest rest: how far the axes go
 _POINTS = 400
 _TIME_CONSTANTS = 5.0
 
 
-def characteristics_of(history: History) -> Characteristics:
+def characteristics_of(run: Run) -> Characteristics:
     """Return what there is to draw of the friction of a run."""
-    friction = history.scene.axis.friction
-    speeds = _speeds(history)
+    friction = run.scene.axis.friction
+    speeds = _speeds(run)
     kinetic = np.array([friction.kinetic.coefficient(speed) for speed in speeds])
-    breaks = [event for event in history.events if event.kind == EventKind.BREAKAWAY and event.mode != Mode.STICK]
+    breaks = [event for event in run.events if event.kind == EventKind.BREAKAWAY and event.mode != Mode.STICK]
     finite = [event for event in breaks if math.isfinite(event.rest_time)]
     marks = np.array([(event.rest_time, event.static_coefficient) for event in finite]).reshape(-1, 2)
     rests = np.linspace(0.0, _longest(friction.static, finite), _POINTS, dtype=np.float64)
     static = np.array([friction.static.coefficient(rest) for rest in rests.tolist()])
     return Characteristics(
-        Curve(speeds, kinetic), _accelerating(history, speeds, kinetic, breaks), Curve(rests, static),
+        Curve(speeds, kinetic), _accelerating(run, speeds, kinetic, breaks), Curve(rests, static),
         friction.static.coefficient(math.inf) if friction.static.bounded else None,
         Curve(marks[:, 0], marks[:, 1]), len(finite) < len(breaks))
 
 
-def _speeds(history: History) -> Numbers:
+def _speeds(run: Run) -> Numbers:
     """Return speeds that show all of the tables, knots among them."""
-    friction = history.scene.axis.friction
+    friction = run.scene.axis.friction
     knots = {*friction.kinetic.velocities, *(friction.excess.velocities if friction.excess else ())}
-    end = _BEYOND * (friction.kinetic.limit_velocity or float(np.abs(history.samples['velocity']).max()) or 1.0)
+    end = _BEYOND * (friction.kinetic.limit_velocity or float(np.abs(run.samples['velocity']).max()) or 1.0)
     return np.array(sorted({*np.linspace(0.0, end, _POINTS).tolist(), *(knot for knot in knots if knot < end)}))
 
 
-def _accelerating(history: History, speeds: Numbers, kinetic: Numbers, breaks: list[Event]) -> dict[str, Curve]:
+def _accelerating(run: Run, speeds: Numbers, kinetic: Numbers, breaks: list[Event]) -> dict[str, Curve]:
     """Return the accelerating branch of the first and of the last break-away: mu_k + E psi."""
-    friction = history.scene.axis.friction
+    friction = run.scene.axis.friction
     if friction.excess is None or not breaks:
         return {}
     psi = np.array([friction.excess.fraction(speed) for speed in speeds])

@@ -5,8 +5,9 @@
 from dataclasses import replace
 
 from ..axis import Axis, CompliantContact, RigidContact
+from ..runs import Run
 from ..simulation.cycles import Cycle
-from .history import History
+from .drawn import steady_inputs
 from .reruns import last_cycles, lasts, longest_period
 from .statement import Finding, Statement, found, not_applicable
 
@@ -16,17 +17,17 @@ _FIGURES = {'period': 'period', 'stick time': 'stick_time', 'slip time': 'slip_t
             'peak speed': 'peak_speed', 'break-away force': 'break_away_force'}
 
 
-def judge(history: History) -> Finding:
+def judge(run: Run) -> Finding:
     """Compare the limit cycles of this axis with a rigid and with a compliant contact."""
-    axis, inputs = history.scene.axis, history.steady_inputs()
+    axis, inputs = run.scene.axis, steady_inputs(run)
     if axis.friction.excess is None:
         return not_applicable('said of the acceleration-dependent characteristic only')
     if inputs is None:
         return not_applicable('drive or force are not constant')
-    if not lasts(history.cycles, history.end):
-        return not_applicable(f'stick-slip does not last: {len(history.cycles)} complete cycles')
-    rigid, compliant = (last_cycles(replace(axis, contact=contact), history.scene.initial, inputs,
-                                    longest_period(history.cycles)) for contact in (RigidContact(), _compliant(axis)))
+    if not lasts(run.cycles(), run.end):
+        return not_applicable(f'stick-slip does not last: {len(run.cycles())} complete cycles')
+    rigid, compliant = (last_cycles(replace(axis, contact=contact), run.scene.initial, inputs,
+                                    longest_period(run.cycles())) for contact in (RigidContact(), _compliant(axis)))
     if not rigid or not compliant:
         return found(False, 'stick-slip lasts with one of the two contacts only')
     changes = {name: _change(rigid[-1], compliant[-1], field) for name, field in _FIGURES.items()}

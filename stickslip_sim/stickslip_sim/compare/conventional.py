@@ -5,20 +5,21 @@
 from contextlib import suppress
 
 from ..core.errors import InputError
+from ..runs import Run
 from ..scene import Scene, changed
-from .history import History
+from .drawn import steady_inputs
 
 _KINETIC = 'friction.kinetic'
 
 
-def scene_as_run(history: History) -> Scene | None:
+def scene_as_run(run: Run) -> Scene | None:
     """Return the scene with the inputs of the run; None for a recorded run whose inputs were not constant."""
-    if not history.is_recorded:
-        return history.scene
-    inputs = history.steady_inputs()
-    if inputs is None or history.is_changed:
+    if not run.is_recorded:
+        return run.scene
+    inputs = steady_inputs(run)
+    if inputs is None or run.is_changed:
         return None
-    return changed(history.scene, {'drive.course': 'constant', 'drive.velocity': inputs.velocity,
+    return changed(run.scene, {'drive.course': 'constant', 'drive.velocity': inputs.velocity,
                                    'force.course': 'constant', 'force.constant': inputs.force})
 
 

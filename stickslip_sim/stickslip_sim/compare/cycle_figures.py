@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from ..runs import Run
 from ..runs.receipt import plain
 from ..simulation.cycles import Cycle
-from .history import History, slips
+from .drawn import slips, within
 from .reruns import difference
 from .ring_down import closed_form, identified
 from .statement import Finding, Statement
@@ -18,10 +19,10 @@ from .statement import Finding, Statement
 _ROUNDING = 1e-10   # relative: a smaller difference of two cycles says nothing of how they converge
 
 
-def peak_accelerations(history: History) -> list[float]:
+def peak_accelerations(run: Run) -> list[float]:
     """Return the largest |ẍ| in the slip of each cycle, m/s²."""
-    ends = {begin.time: end.time for begin, end in slips(history)}
-    parts = (history.within(cycle.begin, ends[cycle.begin]) for cycle in history.cycles)
+    ends = {begin.time: end.time for begin, end in slips(run)}
+    parts = (within(run, cycle.begin, ends[cycle.begin]) for cycle in run.cycles())
     return [float(np.abs(part['acceleration']).max()) for part in parts]
 
 
@@ -36,17 +37,17 @@ def contraction(changes: Sequence[float]) -> float | None:
     return float(np.median(ratios)) if ratios else None
 
 
-def figures_of(history: History, findings: Sequence[tuple[Statement, Finding]]) -> dict[str, Any]:
-    """Return all figures of a run as JSON values, in SI; an infinite number is the text 'inf'."""
-    outline, form, ring = history.summary, closed_form(history.scene.axis), identified(history)
-    changes = convergence(history.cycles)
+def figures_of(name: str, run: Run, findings: Sequence[tuple[Statement, Finding]]) -> dict[str, Any]:
+    """Return all figures of a run by its name, as JSON values, in SI; an infinite number is the text 'inf'."""
+    outline, form, ring = run.summary, closed_form(run.scene.axis), identified(run)
+    changes = convergence(run.cycles())
     figures = {
-        'name': history.name, 'source': history.source, 'notes': list(history.notes),
-        'scene': history.scene.name, 'scene_hash': history.scene.hash,
-        'begin': history.begin, 'end': history.end, 'motion': outline.motion, 'settled': outline.settled,
+        'name': name, 'source': run.source, 'notes': list(run.notes),
+        'scene': run.scene.name, 'scene_hash': run.scene.hash,
+        'begin': run.begin, 'end': run.end, 'motion': outline.motion, 'settled': outline.settled,
         'stick_share': outline.stick_share,
         'cycles': [{**cycle._asdict(), 'peak_acceleration': peak}
-                   for cycle, peak in zip(history.cycles, peak_accelerations(history))],
+                   for cycle, peak in zip(run.cycles(), peak_accelerations(run))],
         'convergence': changes, 'contraction': contraction(changes),
         'ring_down': {'identified': ring and ring._asdict(), 'closed_form': form and form._asdict()},
         'statements': [{'name': statement.name, 'text': statement.text, 'outcome': finding.outcome.value,

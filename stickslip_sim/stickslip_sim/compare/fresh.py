@@ -4,6 +4,7 @@
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -11,10 +12,10 @@ import numpy as np
 from ..core.errors import InputError
 from ..core.input_profile import InputProfile
 from ..core.types import Event, Instant, Sample
-from ..runs.offline import run_offline
+from ..runs import SimulatedRun, simulate_events
+from ..runs.simulated import columns_of_rows
 from ..scene import Scene
 from ..simulation.simulator import Simulator
-from .history import History
 from .ring_down import closed_form
 
 MAX_EVENTS = 50_000
@@ -25,26 +26,24 @@ _WAVE_BUDGET = 100_000     # samples for the sines of the inputs
 _BEFORE = 1e-9             # s: where an input jumps it is sampled that much before, too
 
 
-def simulate(scene: Scene, duration: float) -> History:
-    """Return the history of `duration` seconds of a scene; raises InputError on a time without a meaning."""
-    return sampled(scene, duration, run_offline(scene, duration).events)
+def simulate_densely(scene: Scene, duration: float) -> SimulatedRun:
+    """Return the run of `duration` seconds of a scene; raises InputError on a time without a meaning."""
+    return densely_sampled(simulate_events(scene, duration))
 
 
-def sampled(scene: Scene, duration: float, events: list[Event]) -> History:
-    """Return the history of `duration` seconds of a scene whose `events` are known; raises InputError on too many."""
-    if len(events) > MAX_EVENTS:
+def densely_sampled(run: SimulatedRun) -> SimulatedRun:
+    """Return a run with samples so dense; raises InputError on too many events."""
+    scene, duration = run.scene, run.duration
+    if len(run.events) > MAX_EVENTS:
         raise InputError('duration', duration, f'short enough for at most {MAX_EVENTS} events',
-                         f'there are {len(events)}: simulate a shorter time')
+                         f'there are {len(run.events)}: simulate a shorter time')
     simulator = Simulator(scene.axis, scene.initial, scene.drive, scene.force, scene.solver.make(scene.axis))
-    instants = _instants(scene, duration, events)
+    instants = _instants(scene, duration, run.events)
     rows = np.empty((len(instants), len(Sample._fields)))
     for row, instant in zip(rows, instants):
         simulator.advance(instant)
         row[:] = simulator.sample()
-    columns = {name: rows[:, i] for i, name in enumerate(Sample._fields)}
-    columns['time'] = columns['second'] + columns['fraction']
-    source = f'simulated for {duration:g} s with the {scene.solver.name} solver'
-    return History(scene.name, source, scene, columns, events)
+    return replace(run, samples=columns_of_rows(rows))
 
 
 def _instants(scene: Scene, duration: float, events: list[Event]) -> list[Instant]:

@@ -6,24 +6,25 @@ import math
 from collections.abc import Iterator
 
 from ..axis import InitialState
+from ..runs import Run
 from ..simulation.cycles import Cycle
-from .history import History
+from .drawn import steady_inputs
 from .reruns import CYCLES, distance, last_cycles, lasts, longest_period
 from .statement import Finding, Statement, found, not_applicable
 
 _SAME = 1e-6   # relative difference of two limit cycles that are one
 
 
-def judge(history: History) -> Finding:
+def judge(run: Run) -> Finding:
     """Start the axis of this run in other ways, with the same inputs, and compare the cycles that it ends in."""
-    inputs = history.steady_inputs()
+    inputs = steady_inputs(run)
     if inputs is None:
         return not_applicable('drive or force are not constant')
-    if not lasts(history.cycles, history.end):
-        return not_applicable(f'stick-slip does not last: {len(history.cycles)} complete cycles')
-    own = history.cycles[-1]
-    ends = {label: last_cycles(history.scene.axis, start, inputs, longest_period(history.cycles))
-            for label, start in _starts(history, own)}
+    if not lasts(run.cycles(), run.end):
+        return not_applicable(f'stick-slip does not last: {len(run.cycles())} complete cycles')
+    own = run.cycles()[-1]
+    ends = {label: last_cycles(run.scene.axis, start, inputs, longest_period(run.cycles()))
+            for label, start in _starts(run, own)}
     strays = [label for label, cycles in ends.items() if not cycles]
     if strays:
         return found(False, f'stick-slip does not last from {len(strays)} of {len(ends)} starts: {", ".join(strays)}',
@@ -33,14 +34,14 @@ def judge(history: History) -> Finding:
     is_one, apart, end = spread <= _SAME, distance(own, reference), reference[-1]
     text = (f'{len(ends)} starts ({", ".join(ends)}) end after {CYCLES} cycles in {"one" if is_one else "several"}, '
             f'{spread:.1g} apart; period {end.period:.6g} s, jump {end.jump * 1e3:.6g} mm; the last of the '
-            f'{len(history.cycles)} of this run is {apart:.1g} from it')
+            f'{len(run.cycles())} of this run is {apart:.1g} from it')
     return found(is_one, text, starts=len(ends), spread=spread, period=end.period, jump=end.jump, own_difference=apart)
 
 
-def _starts(history: History, own: Cycle) -> Iterator[tuple[str, InitialState]]:
+def _starts(run: Run, own: Cycle) -> Iterator[tuple[str, InitialState]]:
     """Yield starts at rest, for any time before, and in motion, both ways."""
     rests = [0.0, 0.5 * own.stick_time]
-    if history.scene.axis.friction.static.bounded:
+    if run.scene.axis.friction.static.bounded:
         rests.append(math.inf)
     for rest in rests:
         yield f'rested {rest:.3g} s', InitialState(rest_time=rest)

@@ -5,17 +5,17 @@
 import math
 
 from ..core.types import Event, EventKind, Mode
-from .history import History
+from ..runs import Run
 from .statement import Finding, Statement, found, not_applicable
 
 _EQUAL = 1e-3   # relative; the exact solver has rounding only, others their step
 
 
-def judge(history: History) -> Finding:
+def judge(run: Run) -> Finding:
     """Compare the first break-away of a run that begins after prolonged rest with those that follow."""
-    axis = history.scene.axis
+    axis = run.scene.axis
     law = axis.friction.static
-    break_aways = [event for event in history.events if _is_break_away(event)]
+    break_aways = [event for event in run.events if _is_break_away(event)]
     if not break_aways:
         return not_applicable('no break-away')
     first, *later = break_aways

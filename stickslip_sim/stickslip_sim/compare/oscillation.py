@@ -8,7 +8,8 @@ import numpy as np
 
 from ..axis import CompliantContact
 from ..core.types import Event, EventKind
-from .history import History, Numbers, slips, sticks
+from ..runs import Run
+from .drawn import Numbers, slips, steady_inputs, sticks
 from .ring_down import RingDown, closed_form
 from .statement import Finding, Statement, found, not_applicable
 
@@ -28,16 +29,16 @@ class _Ringing(NamedTuple):
     rest: float        # share of the largest acceleration that is left in the last quarter
 
 
-def judge(history: History) -> Finding:
+def judge(run: Run) -> Finding:
     """Look at the motion in each stick after a complete slip."""
-    ring = closed_form(history.scene.axis)
-    if not isinstance(history.scene.axis.contact, CompliantContact) or ring is None:
-        return _without_contact(history)
+    ring = closed_form(run.scene.axis)
+    if not isinstance(run.scene.axis.contact, CompliantContact) or ring is None:
+        return _without_contact(run)
     if ring.damped_frequency == 0.0:
         return not_applicable(f'the contact is overdamped: damping ratio {ring.damping_ratio:.4g}')
-    begins = {stop: begin for begin, stop in slips(history)}
-    rings = [_ringing(history, begins[stop], stop, end) for stop, end in sticks(history)
-             if stop in begins and _is_fit(history, ring, begins[stop], stop, end)]
+    begins = {stop: begin for begin, stop in slips(run)}
+    rings = [_ringing(run, begins[stop], stop, end) for stop, end in sticks(run)
+             if stop in begins and _is_fit(run, ring, begins[stop], stop, end)]
     if not rings:
         return not_applicable('no slip and stick with constant inputs, long enough for the oscillation to vanish and '
                               'sampled finely enough to show it')
@@ -49,27 +50,27 @@ def judge(history: History) -> Finding:
                  amplitude=last.amplitude, amplitude_ratio=share, remaining_ratio=rest)
 
 
-def _without_contact(history: History) -> Finding:
+def _without_contact(run: Run) -> Finding:
     """Look for motion in the sticks of a rigid contact: there must be none."""
-    if not any(event.kind == EventKind.STICK for event in history.events):
+    if not any(event.kind == EventKind.STICK for event in run.events):
         return not_applicable('no slip ends in this run')
-    ends = sticks(history)
-    moving = max((float(np.abs(_part(history, begin, end, 'velocity')).max()) for begin, end in ends), default=0.0)
+    ends = sticks(run)
+    moving = max((float(np.abs(_part(run, begin, end, 'velocity')).max()) for begin, end in ends), default=0.0)
     return found(moving == 0.0, f'rigid contact: none; the largest speed in {len(ends)} sticks is {moving:g} m/s',
                  sticks=len(ends), largest_speed=moving)
 
 
-def _is_fit(history: History, ring: RingDown, begin: Event, stop: Event, end: Event) -> bool:
+def _is_fit(run: Run, ring: RingDown, begin: Event, stop: Event, end: Event) -> bool:
     """Whether the stick lasts, under the inputs of the slip before, and is sampled finely enough to see it swing."""
-    times = history.samples['time']
+    times = run.samples['time']
     first, last = np.searchsorted(times, (stop.time, stop.time + 1.0 / ring.damped_frequency))
     return ((end.time - stop.time) * ring.decay >= _LONG and last - first >= _SAMPLES
-            and history.steady_inputs(begin.time, end.time) is not None)
+            and steady_inputs(run, begin.time, end.time) is not None)
 
 
-def _ringing(history: History, begin: Event, stop: Event, end: Event) -> _Ringing:
+def _ringing(run: Run, begin: Event, stop: Event, end: Event) -> _Ringing:
     time, position, velocity, acceleration = (
-        _part(history, stop, end, name) for name in ('time', 'position', 'velocity', 'acceleration'))
+        _part(run, stop, end, name) for name in ('time', 'position', 'velocity', 'acceleration'))
     settled = position - position[-1] - velocity[-1] * (time - time[-1])   # from the line that it creeps along
     size = np.abs(acceleration)
     signs = np.sign(acceleration[size > _VISIBLE * size.max()])
@@ -78,9 +79,9 @@ def _ringing(history: History, begin: Event, stop: Event, end: Event) -> _Ringin
                     int(np.count_nonzero(np.diff(signs))), float(size[last_quarter].max() / size.max()))
 
 
-def _part(history: History, begin: Event, end: Event, name: str) -> Numbers:
-    first, last = np.searchsorted(history.samples['time'], (begin.time, end.time))
-    return history.samples[name][first:last]
+def _part(run: Run, begin: Event, end: Event, name: str) -> Numbers:
+    first, last = np.searchsorted(run.samples['time'], (begin.time, end.time))
+    return run.samples[name][first:last]
 
 
 OSCILLATION = Statement('oscillation after a slip',

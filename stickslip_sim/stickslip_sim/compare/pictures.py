@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The pictures of a comparison: what is drawn of each run, and of all side by side."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
@@ -10,10 +10,10 @@ from ..axis import CompliantContact
 from ..plots.characteristics import plot_characteristics
 from ..plots.paper_panels import plot_motion
 from ..plots.side_by_side import plot_side_by_side
+from ..runs import Run
 from .characteristics import characteristics_of
 from .conventional import characteristics_beside, scene_as_run
-from .fresh import simulate
-from .history import History
+from .fresh import simulate_densely
 from .windows import motion_of
 
 KINDS = ('png', 'svg')
@@ -33,42 +33,42 @@ class Picture(NamedTuple):
     caption: str
 
 
-def draw(histories: Sequence[History], folder: Path) -> list[Picture]:
-    """Draw all pictures into a folder, each as PNG and SVG."""
+def draw(runs: Mapping[str, Run], folder: Path) -> list[Picture]:
+    """Draw all pictures of runs by their names into a folder, each as PNG and SVG."""
     pictures = []
-    for history in histories:
-        pictures += [_motion(history, folder), _friction(history, folder)]
-    rows = dict(zip((history.name for history in histories), histories))
+    for name, run in runs.items():
+        pictures += [_motion(name, run, folder), _friction(name, run, folder)]
+    rows = runs
     caption = f'The runs beside each other: {_OF_ROWS}'
-    if len(histories) == 1:
-        rows = _beside(histories[0])
+    if len(runs) == 1:
+        (alone,) = runs.values()
+        rows = _beside(alone)
         caption = f'The same axis with the conventional characteristics and with acceleration dependence: {_OF_ROWS}'
     if rows:
-        motions = {name: motion_of(history) for name, history in rows.items()}
+        motions = {name: motion_of(run) for name, run in rows.items()}
         pictures.append(_drawn(Picture('side_by_side', '', caption), folder,
                                lambda path: plot_side_by_side(motions, path)))
     return pictures
 
 
-def _motion(history: History, folder: Path) -> Picture:
-    motion = motion_of(history)
-    picture = Picture(f'{history.name}_motion', history.name, f'{_likeness(history)}: {_OF_MOTION}')
+def _motion(name: str, run: Run, folder: Path) -> Picture:
+    motion = motion_of(run)
+    picture = Picture(f'{name}_motion', name, f'{_likeness(run)}: {_OF_MOTION}')
     return _drawn(picture, folder, lambda path: plot_motion(motion, path))
 
 
-def _friction(history: History, folder: Path) -> Picture:
-    friction = characteristics_of(history)
-    picture = Picture(f'{history.name}_friction', history.name, _OF_FRICTION)
+def _friction(name: str, run: Run, folder: Path) -> Picture:
+    friction = characteristics_of(run)
+    picture = Picture(f'{name}_friction', name, _OF_FRICTION)
     return _drawn(picture, folder, lambda path: plot_characteristics(friction, path))
 
 
-def _beside(history: History) -> dict[str, History]:
+def _beside(run: Run) -> Mapping[str, Run]:
     """Return runs of the same axis with other characteristics; none when the inputs of a recorded run are unknown."""
-    scene = scene_as_run(history)
+    scene = scene_as_run(run)
     if scene is None:
         return {}
-    duration = history.end - history.begin
-    return {name: simulate(other, duration) for name, other in characteristics_beside(scene).items()}
+    return {name: simulate_densely(other, run.duration) for name, other in characteristics_beside(scene).items()}
 
 
 def _drawn(picture: Picture, folder: Path, draw_to: Callable[[Path], None]) -> Picture:
@@ -77,9 +77,9 @@ def _drawn(picture: Picture, folder: Path, draw_to: Callable[[Path], None]) -> P
     return picture
 
 
-def _likeness(history: History) -> str:
+def _likeness(run: Run) -> str:
     """Return which figure of the paper has this kind of axis."""
-    axis = history.scene.axis
+    axis = run.scene.axis
     if axis.friction.excess is None:
         return 'Conventional characteristics, in the manner of Fig. 7 of the paper'
     if isinstance(axis.contact, CompliantContact):

@@ -3,13 +3,13 @@
 """A comparison as a folder: pictures, `report.json` with all figures, `report.html` with everything."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from ..runs import Run
 from ..runs.receipt import versions
 from .cycle_figures import figures_of
-from .history import History
 from .page import page
 from .pictures import draw
 from .statement import Finding, Outcome, Statement
@@ -17,9 +17,10 @@ from .statements import judged
 
 
 class Judged(NamedTuple):
-    """A run and what came of the paper's statements on it."""
+    """A run under the name that it has in the report, and what came of the paper's statements on it."""
 
-    history: History
+    name: str
+    run: Run
     findings: list[tuple[Statement, Finding]]
 
     @property
@@ -28,12 +29,12 @@ class Judged(NamedTuple):
         return [statement.name for statement, finding in self.findings if finding.outcome == Outcome.FAILS]
 
 
-def write_report(histories: Sequence[History], folder: Path) -> list[Judged]:
-    """Draw and judge runs into a folder that exists; their names must differ.  Raises OSError when the disk refuses."""
-    runs = [Judged(history, judged(history)) for history in histories]
-    report: dict[str, Any] = {'versions': versions(), 'runs': [figures_of(*run) for run in runs]}
-    pictures = draw(histories, folder)
+def write_report(runs: Mapping[str, Run], folder: Path) -> list[Judged]:
+    """Draw and judge runs by their names into a folder that exists.  Raises OSError when the disk refuses."""
+    found = [Judged(name, run, judged(run)) for name, run in runs.items()]
+    report: dict[str, Any] = {'versions': versions(), 'runs': [figures_of(*each) for each in found]}
+    pictures = draw(runs, folder)
     report['pictures'] = [picture._asdict() for picture in pictures]
     (folder / 'report.json').write_text(json.dumps(report, indent=1, allow_nan=False) + '\n', encoding='utf-8')
     (folder / 'report.html').write_text(page(report, pictures, folder), encoding='utf-8')
-    return runs
+    return found

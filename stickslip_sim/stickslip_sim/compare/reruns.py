@@ -9,7 +9,7 @@ from ..core.input_profile import constant
 from ..core.types import Instant
 from ..simulation.cycles import Cycle, cycle_figures
 from ..simulation.simulator import Simulator
-from .history import Inputs
+from .drawn import Inputs
 
 CYCLES = 100                                                          # that a run has to find its limit cycle
 _IN_TURN = 8                                                          # slips that one limit cycle may consist of

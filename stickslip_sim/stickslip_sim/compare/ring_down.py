@@ -15,7 +15,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..axis import Axis, CompliantContact
-from .history import History, sticks
+from ..runs import Run
+from .drawn import steady_inputs, sticks
 
 _LEAST_SAMPLES = 8
 _PERIODS = 4.0      # of the ring-down: what comes later is too small to add anything
@@ -38,20 +39,20 @@ def closed_form(axis: Axis) -> RingDown | None:
     return _ring_down(stiffness / axis.mass, (axis.drive_damping + axis.contact.damping) / axis.mass)
 
 
-def identified(history: History) -> RingDown | None:
+def identified(run: Run) -> RingDown | None:
     """Return the ring-down of the last complete stick with constant inputs, None when there is none to see."""
-    form = closed_form(history.scene.axis)
+    form = closed_form(run.scene.axis)
     if form is None:
         return None
-    for begin, end in reversed(sticks(history)):
+    for begin, end in reversed(sticks(run)):
         until = min(end.time, begin.time + _PERIODS / form.frequency)
-        if history.steady_inputs(begin.time, until):
-            return _fitted(history, begin.time, until)
+        if steady_inputs(run, begin.time, until):
+            return _fitted(run, begin.time, until)
     return None
 
 
-def _fitted(history: History, begin: float, end: float) -> RingDown | None:
-    samples = history.samples
+def _fitted(run: Run, begin: float, end: float) -> RingDown | None:
+    samples = run.samples
     first, last = np.searchsorted(samples['time'], (begin, end))
     if last - first < _LEAST_SAMPLES:
         return None

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from enum import Enum
 from typing import NamedTuple
 
-from .history import History
+from ..runs import Run
 
 
 class Outcome(Enum):
@@ -30,7 +30,7 @@ class Statement(NamedTuple):
 
     name: str
     text: str
-    judge: Callable[[History], Finding]
+    judge: Callable[[Run], Finding]
 
 
 def found(holds: bool, text: str, **figures: float) -> Finding:

@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..core.types import Event, EventKind, Mode
-from .history import History, Numbers, slips
+from ..runs import Run
+from .drawn import Numbers, slips, within
 from .statement import Finding, Statement, found, not_applicable
 
 _GAP = 0.01   # of the lower value: less is one value
@@ -21,11 +22,11 @@ class _Gap(NamedTuple):
     lower: float   # N, decelerating
 
 
-def judge(history: History) -> Finding:
+def judge(run: Run) -> Finding:
     """Compare both branches of each slip half-way between the speeds of its break-away and its peak."""
-    if history.scene.axis.friction.excess is None:
+    if run.scene.axis.friction.excess is None:
         return not_applicable('without acceleration dependence friction has one value at each velocity')
-    gaps = [gap for slip in slips(history) if _is_raised(history, *slip) and (gap := _gap(history, *slip))]
+    gaps = [gap for slip in slips(run) if _is_raised(run, *slip) and (gap := _gap(run, *slip))]
     if not gaps:
         return not_applicable('no complete slip with a break-away above kinetic friction')
     least = min(gap.upper / gap.lower - 1.0 if gap.lower > 0.0 else np.inf for gap in gaps)
@@ -36,15 +37,15 @@ def judge(history: History) -> Finding:
                  accelerating_force=last.upper, decelerating_force=last.lower)
 
 
-def _is_raised(history: History, begin: Event, _: Event) -> bool:
+def _is_raised(run: Run, begin: Event, _: Event) -> bool:
     """Whether static friction at the break-away is above kinetic friction, so that there is a second branch."""
-    kinetic = history.scene.axis.friction.kinetic.coefficient(abs(begin.velocity))
+    kinetic = run.scene.axis.friction.kinetic.coefficient(abs(begin.velocity))
     return begin.kind == EventKind.BREAKAWAY and begin.static_coefficient > (1.0 + _GAP) * kinetic
 
 
-def _gap(history: History, begin: Event, end: Event) -> _Gap | None:
+def _gap(run: Run, begin: Event, end: Event) -> _Gap | None:
     """Return the friction of both branches at one speed, None when a branch has no two points."""
-    columns = history.within(begin.time, end.time)
+    columns = within(run, begin.time, end.time)
     speed, force = np.abs(columns['velocity']), np.abs(columns['friction_force'])
     branches = [columns['mode'] == mode for mode in (Mode.ACCELERATING, Mode.DECELERATING)]
     if min(branch.sum() for branch in branches) < 2:

@@ -6,7 +6,8 @@ import math
 
 from ..core.types import EventKind
 from ..plots.paper_panels import DrawnMotion, Stretch
-from .history import History, slips
+from ..runs import Run
+from .drawn import drawn, slips
 
 _CYCLES = 5                    # that show how the motion begins
 _IN_ORBIT = 30                 # that show where it goes
@@ -14,42 +15,42 @@ _BEFORE, _AFTER = 0.25, 0.75   # of a slip's duration: what is shown of the stic
 _BEGINNING = 0.1               # of a slip without an end: what is shown
 
 
-def motion_of(history: History) -> DrawnMotion:
+def motion_of(run: Run) -> DrawnMotion:
     """Return what is drawn of a run: its first cycles, its last complete slip, its last complete cycle."""
-    slip, break_away = _slip(history)
-    return DrawnMotion(history.drawn, _opening(history), slip, break_away, _orbit(history), _cycle(history))
+    slip, break_away = _slip(run)
+    return DrawnMotion(drawn(run), _opening(run), slip, break_away, _orbit(run), _cycle(run))
 
 
-def _opening(history: History) -> Stretch:
-    cycles = history.cycles
+def _opening(run: Run) -> Stretch:
+    cycles = run.cycles()
     if not cycles:
-        return history.begin, history.end
+        return run.begin, run.end
     last = cycles[min(_CYCLES, len(cycles)) - 1]
-    return history.begin, min(last.begin + last.period + _AFTER * last.slip_time, history.end)
+    return run.begin, min(last.begin + last.period + _AFTER * last.slip_time, run.end)
 
 
-def _slip(history: History) -> tuple[Stretch, float | None]:
+def _slip(run: Run) -> tuple[Stretch, float | None]:
     """Return the last slip with a stick after it and its break-away, or how the first slip begins."""
-    last = history.cycles[-1].begin if history.cycles else math.inf
-    complete = [slip for slip in slips(history) if slip[0].time <= last]
+    last = run.cycles()[-1].begin if run.cycles() else math.inf
+    complete = [slip for slip in slips(run) if slip[0].time <= last]
     if complete:
         begin, end = complete[-1][0].time, complete[-1][1].time
         length = end - begin
-        return (max(begin - _BEFORE * length, history.begin), min(end + _AFTER * length, history.end)), begin
-    first = next((event.time for event in history.events if event.kind == EventKind.BREAKAWAY), None)
+        return (max(begin - _BEFORE * length, run.begin), min(end + _AFTER * length, run.end)), begin
+    first = next((event.time for event in run.events if event.kind == EventKind.BREAKAWAY), None)
     if first is None:
-        return (history.begin, history.end), None
-    return (history.begin, first + _BEGINNING * (history.end - first)), first
+        return (run.begin, run.end), None
+    return (run.begin, first + _BEGINNING * (run.end - first)), first
 
 
-def _orbit(history: History) -> Stretch:
+def _orbit(run: Run) -> Stretch:
     """Return as many cycles as a picture can show."""
-    cycles = history.cycles
-    return history.begin, cycles[_IN_ORBIT].begin if len(cycles) > _IN_ORBIT else history.end
+    cycles = run.cycles()
+    return run.begin, cycles[_IN_ORBIT].begin if len(cycles) > _IN_ORBIT else run.end
 
 
-def _cycle(history: History) -> Stretch | None:
-    if not history.cycles:
+def _cycle(run: Run) -> Stretch | None:
+    if not run.cycles():
         return None
-    last = history.cycles[-1]
+    last = run.cycles()[-1]
     return last.begin, last.begin + last.period

@@ -17,8 +17,8 @@ from typing import NamedTuple
 from ..core.errors import InputError, SolverError
 from ..core.types import Event, EventKind
 from ..reference import simulate
+from ..runs import SimulatedRun, simulate_events
 from ..runs.error_estimate import ErrorEstimate, error_estimate
-from ..runs.offline import Trajectory, run_offline
 from ..scene import Scene, SolverSettings, load_scene, scene_names
 from .against import DIGITS
 from .outcome import Measurement, Setup, Tally, require
@@ -86,15 +86,15 @@ def _settings(setup: Setup) -> Iterator[SolverSettings]:
             yield SolverSettings('fixed_step', method, step)
 
 
-def _run(scene: Scene) -> Trajectory | None:
+def _run(scene: Scene) -> SimulatedRun | None:
     """Return the run; None where a step is too long for the axis, or a guard of the adaptive solver fires for ever."""
     try:
-        return run_offline(scene, _DURATION)
+        return simulate_events(scene, _DURATION)
     except (InputError, SolverError):
         return None
 
 
-def _ratio(_: str, run: Trajectory, wanted: Sequence[Event], judged: list[_Judged]) -> float:
+def _ratio(_: str, run: SimulatedRun, wanted: Sequence[Event], judged: list[_Judged]) -> float:
     """Return the largest error of an event over its estimate."""
     solver = run.scene.solver.name
     knots = solver != 'fixed_step'   # which notes none

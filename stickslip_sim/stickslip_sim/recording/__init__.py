@@ -4,32 +4,31 @@
 
 from .bag import BagWriter
 from .offline_bag import OfflineBag, samples_of, write_bag
-from .opening import read_run
-from .reader import RecordedMessage, Run
+from .opening import open_bag
+from .reader import Bag, RecordedMessage
+from .recorded_run import RecordedRun, read_run
 from .run import RunFacts, checkpoint_file, open_run, receipt_file
 from .schemas import MessageCodec, Schema, flat_layout, schema
-from .tables import columns_of, events_of, name_of
 from .thread import RecorderThread
 from .topics import DIAGNOSTICS, RECORDED, QosProfile, Topic, recorded_topics
 
 __all__ = [
     'DIAGNOSTICS',
     'RECORDED',
+    'Bag',
     'BagWriter',
     'MessageCodec',
     'OfflineBag',
     'QosProfile',
     'RecordedMessage',
+    'RecordedRun',
     'RecorderThread',
-    'Run',
     'RunFacts',
     'Schema',
     'Topic',
     'checkpoint_file',
-    'columns_of',
-    'events_of',
     'flat_layout',
-    'name_of',
+    'open_bag',
     'open_run',
     'read_run',
     'receipt_file',

@@ -9,8 +9,8 @@ from typing import NoReturn
 
 from mcap.writer import CompressionType, Writer
 
-from .. import __version__
 from ..core.errors import RecordingError
+from ..core.version import __version__
 from .blocks import to_yaml
 from .metadata import MessageTally, information, write_metadata
 from .schemas import schema

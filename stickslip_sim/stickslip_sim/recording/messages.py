@@ -4,8 +4,8 @@
 
 from operator import attrgetter
 
-from .. import __version__
 from ..core.types import Event, Sample
+from ..core.version import __version__
 from .layout import Layout
 from .run import RunFacts
 from .schemas import flat_layout

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Opens runs, also those of a process that was killed or of a disk that was full, and takes in what they hold."""
+"""Opens bags, also those of a process that was killed or of a disk that was full, and takes in what they hold."""
 
 import warnings
 from pathlib import Path
@@ -8,55 +8,68 @@ from pathlib import Path
 from mcap.records import Attachment, Channel, Footer, McapRecord, Message, Metadata, Schema
 
 from ..core.errors import RecordingError, RecordingWarning
-from .reader import OVERHEAD, Run
+from .reader import OVERHEAD, Bag
 from .records import records
 
 MOST_TOLD = 64 << 20   # bytes of all that a file holds beside messages
 
 
-def read_run(path: Path | str) -> Run:
-    """Return the run in a folder, or in an MCAP file by itself; raises RecordingError when there is none, or damaged.
+def open_bag(path: Path | str) -> Bag:
+    """Return the bag in a folder, or in an MCAP file by itself; raises RecordingError when there is none, or damaged.
 
-    A run without an end (its process was killed, its disk was full, or it is still being written) is read as far as it
+    One without an end (its process was killed, its disk was full, or it is still being written) is read as far as it
     goes, with a RecordingWarning.
     """
-    run = Run(file_of(Path(path)))
+    bag = bag_in(path)
+    for note in shortfalls(bag):
+        warnings.warn(note, RecordingWarning, stacklevel=2)
+    return bag
+
+
+def bag_in(path: Path | str) -> Bag:
+    """Return what `open_bag` does, without a warning."""
+    bag = Bag(file_of(Path(path)))
     names: dict[int, str] = {}
     channels: dict[int, str] = {}
     told = 0
-    for record in records(run.path):
+    for record in records(bag.path):
         if isinstance(record, Message):
             if record.channel_id not in channels:
-                raise RecordingError(f'{run.path}: damaged: a message on channel {record.channel_id}, which is nowhere')
-            run.counts[channels[record.channel_id]] += 1
+                raise RecordingError(f'{bag.path}: damaged: a message on channel {record.channel_id}, which is nowhere')
+            bag.counts[channels[record.channel_id]] += 1
             continue
         told += _size(record)
         if told > MOST_TOLD:
-            raise RecordingError(f'{run.path}: more than {MOST_TOLD >> 20} MiB beside its messages; no run has that')
-        _note(run, record, names, channels)
-    if not run.is_complete:
-        warnings.warn(f'{run.path} has no end: cut off, or still being written; {sum(run.counts.values())} messages are'
-                      ' whole, and metadata.yaml does not count them', RecordingWarning, stacklevel=2)
-    return run
+            raise RecordingError(f'{bag.path}: more than {MOST_TOLD >> 20} MiB beside its messages; no run has that')
+        _note(bag, record, names, channels)
+    return bag
 
 
-def _note(run: Run, record: McapRecord, names: dict[int, str], channels: dict[int, str]) -> None:
-    """Take what a record tells of the run; `names` of schemas and topics of `channels` by their numbers."""
+def shortfalls(bag: Bag) -> tuple[str, ...]:
+    """Return what is missing of a bag, for people."""
+    if bag.is_complete:
+        return ()
+    return (f'{bag.path} has no end: cut off, or still being written; {sum(bag.counts.values())} messages are'
+            ' whole, and metadata.yaml does not count them',)
+
+
+def _note(bag: Bag, record: McapRecord, names: dict[int, str], channels: dict[int, str]) -> None:
+    """Take what a record tells of the bag; `names` of schemas and topics of `channels` by their numbers."""
     if isinstance(record, Schema) and record.id not in names:    # the index repeats them
         names[record.id] = record.name
         if record.encoding == 'ros2msg':
-            run.schemas[record.name] = record.data.decode(errors='replace')
+            bag.schemas[record.name] = record.data.decode(errors='replace')
     elif isinstance(record, Channel) and record.id not in channels:
         channels[record.id] = record.topic
-        run.topics[record.topic] = names.get(record.schema_id, '')    # other programs may give none
-        run.channel_metadata[record.topic] = record.metadata
-        run.counts.setdefault(record.topic, 0)
+        bag.topics[record.topic] = names.get(record.schema_id, '')    # other programs may give none
+        bag.channel_metadata[record.topic] = record.metadata
+        bag.counts.setdefault(record.topic, 0)
     elif isinstance(record, Attachment):
-        run.attachments[record.name] = record.data
+        bag.attachments[record.name] = record.data
     elif isinstance(record, Metadata):
-        run.metadata[record.name] = record.metadata
+        bag.metadata[record.name] = record.metadata
     elif isinstance(record, Footer):
-        run.is_complete = True
+        bag.is_complete = True
 
 
 def _size(record: McapRecord) -> int:

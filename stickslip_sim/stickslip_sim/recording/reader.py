@@ -1,9 +1,10 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""A recorded run: its messages, its figures, and its topics as arrays."""
+"""A bag read back: its messages, what is attached to it, its topics as arrays, its transitions as events."""
 
 import json
-from collections.abc import Iterable, Iterator
+import math
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -16,16 +17,19 @@ from numpy.typing import NDArray
 from rosbags.typesys.store import Typestore
 
 from ..core.errors import InputError, RecordingError
-from ..core.types import Event
+from ..core.types import Event, EventKind, Mode
 from ..scene import Scene, parse_scene
 from .layout import Layout, layout_of, numbers_of, texts_of
 from .records import records
 from .run import RECEIPT_FILE, SCENE_FILE
 from .schemas import store_of, understood
-from .tables import events_of
+from .topics import MODE_EVENT, Topic
 
 MOST_HELD = 4 << 30    # bytes of a topic in memory at once
 OVERHEAD = 300         # bytes of a message there beside its own
+
+_EVENT_FIELDS = ('time', 'kind', 'mode', 'direction', 'position', 'velocity', 'drive_force', 'friction_force',
+                 'static_coefficient', 'rest_time')
 
 
 class RecordedMessage(NamedTuple):
@@ -40,8 +44,8 @@ class RecordedMessage(NamedTuple):
 
 
 @dataclass
-class Run:
-    """A recorded run; messages are read from the file each time, in the order in which they were written."""
+class Bag:
+    """A bag; messages are read from the file each time, in the order in which they were written."""
 
     path: Path
     is_complete: bool = False
@@ -70,8 +74,14 @@ class Run:
 
     @property
     def events(self) -> list[Event]:
-        """The transitions in the order of time; the drive position is not recorded with them (NaN)."""
-        return events_of(self)
+        """The transitions in the order of time; the drive position is not recorded with them (NaN).
+
+        Raises RecordingError.
+        """
+        columns = self.columns_of(MODE_EVENT, _EVENT_FIELDS)
+        if not (np.isin(columns['kind'], list(EventKind)).all() and np.isin(columns['mode'], list(Mode)).all()):
+            raise RecordingError(f'{self.path}: transitions of unknown kinds; recorded by another version?')
+        return [_event(*row) for row in zip(*(column.tolist() for column in columns.values()))]
 
     def values(self, attachment: str) -> dict[str, Any]:
         """Return what a JSON file in the run says by name, nothing without the file; raises RecordingError."""
@@ -110,6 +120,31 @@ class Run:
             for name in ('log_time', 'publish_time', 'sequence'):
                 columns[name] = np.array([getattr(message, name) for message in messages], dtype=np.int64)
         return columns
+
+    def name_of(self, topic: Topic) -> str:
+        """Return the name of the one topic of this type; raises RecordingError when there is none, or more than one."""
+        names = [name for name, type_name in self.topics.items() if type_name == topic.type]
+        if not self.topics and not self.is_complete:
+            raise RecordingError(f'{self.path}: cut off before the first of its messages was written')
+        if not names:
+            raise RecordingError(f'{self.path}: no topic of type {topic.type}; there are '
+                                 f'{", ".join(self.topics) or "none"}')
+        if len(names) > 1:
+            raise RecordingError(f'{self.path}: {" and ".join(names[:2])} are both of type {topic.type}; give a '
+                                 'recording of one axis')
+        return names[0]
+
+    def columns_of(self, topic: Topic, fields: Sequence[str]) -> dict[str, NDArray[Any]]:
+        """Return fields of the one topic of this type, whatever the namespace of its node.
+
+        Raises RecordingError when topic or fields are not there.
+        """
+        name = self.name_of(topic)
+        columns = self.columns(name)
+        missing = [field for field in fields if field not in columns]
+        if missing:
+            raise RecordingError(f'{self.path}: {name} has no {", ".join(missing)}; recorded by another version?')
+        return {field: columns[field] for field in fields}
 
     def layout(self, topic: str) -> Layout:
         """Return where a topic has its numbers; raises RecordingError when they have no fixed places."""
@@ -171,3 +206,9 @@ class Run:
             yield
         except RecordingError as error:
             raise RecordingError(': '.join([str(self.path), *part, str(error)])) from None
+
+
+def _event(time: float, kind: int, mode: int, direction: int, position: float, velocity: float, *rest: float) -> Event:
+    second = math.floor(time)
+    return Event(float(second), time - second, EventKind(kind), Mode(mode), direction, position, velocity, math.nan,
+                 *rest)

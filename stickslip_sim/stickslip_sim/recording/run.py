@@ -11,7 +11,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .. import __version__
+from ..core.version import __version__
 from ..runs.receipt import plain
 from .bag import BagWriter
 from .metadata import ros_distro

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..core.types import Mode
 from ..plots import plot_run
-from ..recording import Run, events_of, read_run
+from ..recording import Bag, open_bag
 from ..simulation.cycles import Summary, summary
 
 PICTURE = 'run.png'
@@ -23,21 +23,21 @@ _FIGURES = (
 
 def report(folder: Path) -> list[str]:
     """Draw the picture of a run into its folder; return what to tell about the run, in lines."""
-    run = read_run(folder)
-    samples, events = sample_columns(run), events_of(run)
+    bag = open_bag(folder)
+    samples, events = sample_columns(bag), bag.events
     figures = summary(events, float(samples['time'][-1]), Mode(int(samples['mode'][0])))
-    scene = run.metadata['stickslip']['scene']
+    scene = bag.metadata['stickslip']['scene']
     plot_run(samples, events, f'{scene} in real time\n{headline(figures)}', folder / PICTURE)
-    return [f'bag      {folder} ({sum(run.counts.values())} messages)', f'picture  {folder / PICTURE}',
-            *cycle_lines(figures), *timing_lines(run.columns('/timing'))]
+    return [f'bag      {folder} ({sum(bag.counts.values())} messages)', f'picture  {folder / PICTURE}',
+            *cycle_lines(figures), *timing_lines(bag.columns('/timing'))]
 
 
-def sample_columns(run: Run) -> dict[str, NDArray[Any]]:
-    """Return the states of a run by the columns of `types.Sample`, and `time`."""
-    states, friction = run.columns('/slider_state'), run.columns('/friction_force')
+def sample_columns(bag: Bag) -> dict[str, NDArray[Any]]:
+    """Return the states of a recorded run by the columns of `types.Sample`, and `time`."""
+    states, friction = bag.columns('/slider_state'), bag.columns('/friction_force')
     force = np.zeros(len(states['step']))
-    for message in run.messages(['/external_force']):
-        force[states['step'] >= message.sequence] = run.decode(message).force
+    for message in bag.messages(['/external_force']):
+        force[states['step'] >= message.sequence] = bag.decode(message).force
     return {**states, 'friction_force': friction['force'], 'friction_coefficient': friction['coefficient'],
             'contact_deflection': friction['contact_deflection'], 'external_force': force}
 

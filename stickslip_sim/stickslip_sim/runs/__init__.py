@@ -1,3 +1,8 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""A run as one thing: carried out offline, with its receipt and an estimate of its error."""
+"""A run as one thing, simulated or recorded: its samples, events, figures and receipt, and an estimate of its error."""
+
+from .run import COLUMNS, Columns, Run
+from .simulated import SimulatedRun, simulate, simulate_events
+
+__all__ = ['COLUMNS', 'Columns', 'Run', 'SimulatedRun', 'simulate', 'simulate_events']

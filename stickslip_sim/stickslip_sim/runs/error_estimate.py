@@ -21,8 +21,8 @@ from ..core.errors import InputError, SolverError
 from ..core.types import Event, EventKind
 from ..friction import KineticTable, kinetic_table
 from ..scene import Scene, SolverSettings
-from .offline import Trajectory, run_offline
 from .perturbation import perturbed
+from .simulated import SimulatedRun, simulate_events
 
 REPEATS = 3
 _SAFETY = 4.0   # of the largest shift among so few repeats
@@ -53,12 +53,12 @@ class _Shift(NamedTuple):
     until: float
 
 
-def error_estimate(run: Trajectory) -> ErrorEstimate:
+def error_estimate(run: SimulatedRun) -> ErrorEstimate:
     """Return the estimate for a run; it costs three more runs, or four to six of the exact solver."""
     return _of_rounding(run) if run.scene.solver.name == 'exact' else _of_steps(run)
 
 
-def _of_rounding(run: Trajectory) -> ErrorEstimate:
+def _of_rounding(run: SimulatedRun) -> ErrorEstimate:
     """Return the estimate for a run of the exact solver, from repeats with every number moved."""
     others = _perturbed_scenes(run.scene)
     shifts = [_repeat(run, other) for other in others]
@@ -77,7 +77,7 @@ def _of_rounding(run: Trajectory) -> ErrorEstimate:
     return estimate._replace(how=f'{estimate.how}; the events differ from t = {until:.6g} s: unknown from there')
 
 
-def _of_soft_stops(run: Trajectory) -> float:
+def _of_soft_stops(run: SimulatedRun) -> float:
     """Return how far rounding of the speed may move the softest arrest, s: δ/|ẍ|, or √(2δ/|x⃛|) without deceleration."""
     axis, drive, force = run.scene.axis, run.scene.drive, run.scene.force
     worst = fastest = 0.0
@@ -104,22 +104,22 @@ def _perturbed_scenes(scene: Scene) -> list[Scene]:
     return scenes
 
 
-def _repeat(run: Trajectory, scene: Scene) -> _Shift:
+def _repeat(run: SimulatedRun, scene: Scene) -> _Shift:
     try:
-        return _compare(run.events, run_offline(scene, run.duration).events, run.duration)
+        return _compare(run.events, simulate_events(scene, run.duration).events, run.duration)
     except (InputError, SolverError):
         return _Shift(0.0, 0.0, 0.0)
 
 
-def _of_steps(run: Trajectory) -> ErrorEstimate:
+def _of_steps(run: SimulatedRun) -> ErrorEstimate:
     """Return the estimate for a run of another solver: its distance to the exact one, and how far that may be off."""
     scene = dataclasses.replace(run.scene, solver=SolverSettings('exact'))
     law = _integrates_the_law(run.scene)
     try:
-        judge = run_offline(_with_table(scene, 1.0) if law else scene, run.duration)
+        judge = simulate_events(_with_table(scene, 1.0) if law else scene, run.duration)
         own = _of_rounding(judge)
         if law:
-            own = _plus(own, _shift(run_offline(_with_table(scene, _COARSER), run.duration), judge, own.until_s),
+            own = _plus(own, _shift(simulate_events(_with_table(scene, _COARSER), run.duration), judge, own.until_s),
                         'what a table of mu_k ten times as coarse moves them by')
     except SolverError as reason:
         return ErrorEstimate(0.0, 0.0, 0.0, f'the exact solver gives up: unknown ({reason})')
@@ -154,7 +154,7 @@ def _table(table: KineticTable, coarser: float) -> KineticTable:
         return kinetic_table(table.law, coarser * table.error)
 
 
-def _shift(run: Trajectory, judge: Trajectory, until: float) -> _Shift:
+def _shift(run: SimulatedRun, judge: SimulatedRun, until: float) -> _Shift:
     """Return how far the events of two runs are apart before a time; knots count where both solvers note them."""
     knots = run.scene.solver.name != 'fixed_step' and run.scene.axis.friction.kinetic.law is None
 

@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy
 
-from .. import __version__
 from ..core.energy import EnergyBalance
 from ..core.jit import hot_path
 from ..core.types import Mode, Sample
+from ..core.version import __version__
 from ..scene import Scene
 from ..simulation.cycles import Summary
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..runs.offline import run_offline
+from ..runs import simulate_events
 from ..simulation.cycles import Cycle, cycle_figures
 from .point_figures import Figures, Motion
 from .points import scene_at
@@ -39,7 +39,7 @@ def bifurcation(study: Study, figures: Figures, progress: Callable[[float], None
     for k, value in enumerate(values):
         scene = scene_at(study.values, study.names, np.array([value]))
         if figures.motion[k] == Motion.STICK_SLIP:
-            events = run_offline(scene, float(figures.duration[k])).events
+            events = simulate_events(scene, float(figures.duration[k])).events
             found = cycle_figures(events)
             cycles += [_row(value, cycle) for cycle in found[len(found) // 2:][-_LAST:]]
         feed = scene.drive.values[0]

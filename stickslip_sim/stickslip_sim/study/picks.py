@@ -7,8 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..core.errors import InputError
-from ..core.types import Event
-from ..runs.offline import run_offline
+from ..runs import SimulatedRun, simulate_events
 from .borders import FEED
 from .point_figures import Motion, figures_of_runs
 from .points import runs_of_run
@@ -18,15 +17,14 @@ from .variation import Numbers
 
 
 class Ending(NamedTuple):
-    """The motion that a point ends in, and the events of the `duration`, s, after which that was known.
+    """The motion that a point ends in, and the events of the run after which that was known.
 
     `swings_on`: it slides, and still swung when its time was over.
     """
 
     motion: Motion
     swings_on: bool
-    duration: float
-    events: list[Event]
+    run: SimulatedRun
 
 
 def point_of(study: Study, text: str) -> Numbers:
@@ -54,8 +52,8 @@ def ending_at(study: Study, columns: Columns, point: Numbers) -> Ending:
     stands = np.logical_and.reduce([columns[name] == value for name, value in zip(study.names, point)])
     known = np.flatnonzero(stands & (columns['motion'] != Motion.FAILED))
     if not len(known) and study.duration is not None:
-        run = run_offline(scene, study.duration)
-        return Ending(Motion(int(figures_of_runs(runs_of_run(run)).motion[0])), False, run.duration, run.events)
+        run = simulate_events(scene, study.duration)
+        return Ending(Motion(int(figures_of_runs(runs_of_run(run)).motion[0])), False, run)
     if len(known):
         motion, settled, duration = (float(columns[name][known[0]]) for name in ('motion', 'settled', 'duration'))
     else:
@@ -63,4 +61,4 @@ def ending_at(study: Study, columns: Columns, point: Numbers) -> Ending:
         motion = float(figures_of_runs(runs).motion[0])
         settled, duration = float(runs.settled[0]), float(runs.duration[0])
     swings_on = study.duration is None and motion == Motion.SMOOTH_SLIDING and settled == 0.0
-    return Ending(Motion(int(motion)), swings_on, duration, run_offline(scene, duration).events)
+    return Ending(Motion(int(motion)), swings_on, simulate_events(scene, duration))

@@ -11,8 +11,8 @@ import numpy as np
 
 from ..core.errors import InputError, SolverError
 from ..friction import StaticLawKind
+from ..runs import SimulatedRun, simulate_events
 from ..runs.batch import figures_in, rounds_in
-from ..runs.offline import Trajectory, run_offline
 from ..scene import Scene, scene_from_values
 from ..scene.values import overridden
 from ..solvers.exact import many_axes
@@ -64,14 +64,14 @@ def runs_alone(values: Values, names: Sequence[str], points: Numbers, duration: 
     for k, point in enumerate(points):
         try:
             scene = scene_at(values, names, point)
-            run = run_offline(scene, duration)
+            run = simulate_events(scene, duration)
         except (SolverError, InputError):   # it gave up, or found more events than can be held
             continue
         runs.put([k], runs_of_run(run))
     return replace(runs, settled=runs.settled | runs.slides_on)
 
 
-def runs_of_run(run: Trajectory) -> Runs:
+def runs_of_run(run: SimulatedRun) -> Runs:
     """Return a complete run as one entry of `Runs`."""
     out = np.empty((1, many_axes.ROW_SIZE))
     many_axes.clear(out[0])

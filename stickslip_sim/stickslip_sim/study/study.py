@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from ..core.errors import InputError
-from ..runs.offline import check_times
+from ..runs.simulated import check_times
 from ..scene import Scene, scene_from_values
 from ..scene.load import named
 from .point_figures import Figures, Runs, figures_of_runs

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from ..core.errors import RecordingError
 from ..core.types import Event, Sample
-from ..recording import RecordedMessage, Run, name_of
+from ..recording import Bag, RecordedMessage
 from ..recording.messages import Packer
 from ..recording.topics import FRICTION_FORCE, MODE_EVENT, SLIDER_STATE, Topic
 from .remake import Made
@@ -36,9 +36,9 @@ class Difference(NamedTuple):
 class Comparison:
     """Compares the steps of a recording."""
 
-    def __init__(self, run: Run) -> None:
-        self._events = _Topic(run, MODE_EVENT)
-        self._states = [_Topic(run, SLIDER_STATE), _Topic(run, FRICTION_FORCE)]
+    def __init__(self, bag: Bag) -> None:
+        self._events = _Topic(bag, MODE_EVENT)
+        self._states = [_Topic(bag, SLIDER_STATE), _Topic(bag, FRICTION_FORCE)]
 
     def first_difference(self, step: Step, made: Made) -> Difference | None:
         """Return the first difference in a step, in the order of its messages; None when there is none.
@@ -66,10 +66,10 @@ class Comparison:
 class _Topic:
     """The messages of a topic, in the form that the recording itself describes."""
 
-    def __init__(self, run: Run, topic: Topic) -> None:
-        self.topic, self.name = topic, name_of(run, topic)
-        self._path = run.path
-        self._layout = run.layout(self.name)
+    def __init__(self, bag: Bag, topic: Topic) -> None:
+        self.topic, self.name = topic, bag.name_of(topic)
+        self._path = bag.path
+        self._layout = bag.layout(self.name)
         self._packer = Packer(topic, self._layout)
 
     def difference(self, message: RecordedMessage, number: int, word: Sample | Event) -> Difference | None:

@@ -6,7 +6,7 @@ from collections.abc import Collection
 from typing import Any
 
 from ..core.errors import InputError, RecordingError
-from ..recording import RecordedMessage, Run
+from ..recording import Bag, RecordedMessage
 from ..recording.topics import DRIVE_VELOCITY, EXTERNAL_FORCE, PARAMETER_EVENTS, RIG_EVENT
 from ..rig import Fault, Rig, RigEventKind
 from ..scene import Scene, scene_from_values
@@ -16,16 +16,16 @@ _VALUES = {1: 'bool_value', 2: 'integer_value', 3: 'double_value', 4: 'string_va
            6: 'bool_array_value', 7: 'integer_array_value', 8: 'double_array_value', 9: 'string_array_value'}
 
 
-def is_order(run: Run, message: RecordedMessage) -> bool:
+def is_order(bag: Bag, message: RecordedMessage) -> bool:
     """Return whether a rig event was ordered from outside; the others follow by themselves."""
-    return run.decode(message).kind in _ORDERS
+    return bag.decode(message).kind in _ORDERS
 
 
 class Orders:
     """Orders to a rig of a scene; `fixed` parameters stay as they are, whatever was changed while the axis ran."""
 
-    def __init__(self, run: Run, scene: Scene, rig: Rig, fixed: Collection[str]) -> None:
-        self._run, self._rig, self._fixed = run, rig, fixed
+    def __init__(self, bag: Bag, scene: Scene, rig: Rig, fixed: Collection[str]) -> None:
+        self._bag, self._rig, self._fixed = bag, rig, fixed
         self._values = scene.values
         self._doers = {DRIVE_VELOCITY.type: self._velocity, EXTERNAL_FORCE.type: self._force,
                        RIG_EVENT.type: self._event, PARAMETER_EVENTS.type: self._change}
@@ -33,9 +33,9 @@ class Orders:
     def give(self, message: RecordedMessage) -> None:
         """Order what a message says; raises RecordingError when the rig refuses."""
         try:
-            self._doers[message.type](self._run.decode(message))
+            self._doers[message.type](self._bag.decode(message))
         except InputError as error:
-            raise RecordingError(f'{self._run.path}: the order before step {message.sequence} is refused: {error}'
+            raise RecordingError(f'{self._bag.path}: the order before step {message.sequence} is refused: {error}'
                                  ) from None
 
     def _velocity(self, message: Any) -> None:

@@ -8,13 +8,14 @@ from typing import NamedTuple, Protocol
 
 from ..core.errors import InputError, RecordingError
 from ..core.types import Event, EventKind, Sample
+from ..recording import RecordedRun
 from ..recording.run import CHECKPOINT_FILE
 from ..recording.topics import RIG_EVENT
 from ..rig import Rig
-from ..runs.offline import run_offline
+from ..runs import simulate
 from ..scene import Scene
 from .orders import Orders
-from .original import Offline, Original
+from .origin import Offline, checkpoint_of, offline_of
 from .steps import Step
 
 Progress = Callable[[float], None] | None
@@ -37,22 +38,21 @@ class Maker(Protocol):
         """Yield all steps up to a recorded one, which begins with what was ordered before it; raises SolverError."""
 
 
-def maker_of(original: Original, scene: Scene, fixed: Collection[str] = (), progress: Progress = None) -> Maker:
+def maker_of(run: RecordedRun, scene: Scene, fixed: Collection[str] = (), progress: Progress = None) -> Maker:
     """Return what makes a run again from its scene, or from another whose `fixed` parameters nothing changes.
 
     A run that begins with a checkpoint takes the axis of the scene alone.  Raises RecordingError and InputError.
     """
-    if original.offline:
-        return _OfflineMaker(original, scene, original.offline, progress)
-    return _NodeMaker(original, scene, fixed)
+    offline = offline_of(run)
+    return _OfflineMaker(run, scene, offline, progress) if offline else _NodeMaker(run, scene, fixed)
 
 
 class _NodeMaker:
     """Follows the orders of the recording."""
 
-    def __init__(self, original: Original, scene: Scene, fixed: Collection[str]) -> None:
-        self._rig, self._known = _rig(original, scene)
-        self._orders = Orders(original.run, scene, self._rig, fixed)
+    def __init__(self, run: RecordedRun, scene: Scene, fixed: Collection[str]) -> None:
+        self._rig, self._known = _rig(run, scene)
+        self._orders = Orders(run.bag, scene, self._rig, fixed)
         self.start = self._rig.step
 
     def make(self, step: Step) -> Iterator[Made]:
@@ -70,16 +70,17 @@ class _NodeMaker:
         return Made(result.step, _without_knots(result.events), result.sample)
 
 
-def _rig(original: Original, scene: Scene) -> tuple[Rig, int]:
+def _rig(run: RecordedRun, scene: Scene) -> tuple[Rig, int]:
     """Return the rig as the recording began, and how many of the first events it has behind it."""
-    if original.checkpoint is None:
+    checkpoint = checkpoint_of(run)
+    if checkpoint is None:
         return scene.make_rig(), 0
-    rig = original.scene.make_rig()
+    rig = run.scene.make_rig()
     try:
-        rig.restore(original.checkpoint)
-        known = int(original.checkpoint['notes'])
+        rig.restore(checkpoint)
+        known = int(checkpoint['notes'])
     except (InputError, LookupError, TypeError, ValueError, OverflowError) as error:
-        raise RecordingError(f'{original.run.path}: its {CHECKPOINT_FILE} is damaged or of another version: {error}'
+        raise RecordingError(f'{run.bag.path}: its {CHECKPOINT_FILE} is damaged or of another version: {error}'
                              ) from None
     rig.change_axis(scene.axis)
     return rig, known
@@ -90,11 +91,11 @@ class _OfflineMaker:
 
     start = -1
 
-    def __init__(self, original: Original, scene: Scene, offline: Offline, progress: Progress) -> None:
-        self._path = original.run.path
-        run = run_offline(scene, offline.duration, offline.sample_period, progress)
-        self._samples = enumerate(run.sample_rows())
-        self._events = deque(_without_knots(run.events))
+    def __init__(self, run: RecordedRun, scene: Scene, offline: Offline, progress: Progress) -> None:
+        self._path = run.bag.path
+        again = simulate(scene, offline.duration, offline.sample_period, progress)
+        self._samples = enumerate(again.sample_rows())
+        self._events = deque(_without_knots(again.events))
 
     def make(self, step: Step) -> Iterator[Made]:
         for number, sample in self._samples:

@@ -7,7 +7,7 @@ from itertools import groupby
 from typing import NamedTuple
 
 from ..core.errors import RecordingError
-from ..recording import RecordedMessage, name_of
+from ..recording import RecordedMessage, RecordedRun
 from ..recording.topics import (
     DRIVE_VELOCITY,
     EXTERNAL_FORCE,
@@ -19,7 +19,7 @@ from ..recording.topics import (
     Topic,
 )
 from .orders import is_order
-from .original import Original
+from .origin import offline_of
 
 ORDERS = DRIVE_VELOCITY, EXTERNAL_FORCE, RIG_EVENT, PARAMETER_EVENTS
 WORDS = SLIDER_STATE, FRICTION_FORCE, MODE_EVENT
@@ -40,24 +40,24 @@ class Step(NamedTuple):
         return bool(self.words[SLIDER_STATE] and self.words[FRICTION_FORCE])
 
 
-def steps_of(original: Original, start: int) -> Iterator[Step]:
+def steps_of(run: RecordedRun, start: int) -> Iterator[Step]:
     """Yield the recorded steps after `start` (−1: all); raises RecordingError when they do not follow each other.
 
     An offline run has no orders: its commands only tell what its courses did.
     """
-    run = original.run
-    ordered = () if original.offline else [topic for topic in ORDERS if topic.type in run.topics.values()]
-    kinds = {name_of(run, topic): topic for topic in (*ordered, *WORDS)}
-    messages = (message for message in run.messages(kinds) if kinds[message.topic] != RIG_EVENT
-                or is_order(run, message))
+    bag = run.bag
+    ordered = () if offline_of(run) else [topic for topic in ORDERS if topic.type in bag.topics.values()]
+    kinds = {bag.name_of(topic): topic for topic in (*ordered, *WORDS)}
+    messages = (message for message in bag.messages(kinds) if kinds[message.topic] != RIG_EVENT
+                or is_order(bag, message))
     number, missing = start, 0
     for sequence, group in groupby(_numbered(messages, kinds, start), key=lambda item: item[0]):
         ahead = (sequence - number + _HALF) % _WHOLE - _HALF
         if ahead < 0:
-            raise RecordingError(f'{run.path}: step {number + ahead} after step {number}; give a recording of one run')
+            raise RecordingError(f'{bag.path}: step {number + ahead} after step {number}; give a recording of one run')
         missing += max(ahead - 1, 0)
         if missing > MOST_MISSING:
-            raise RecordingError(f'{run.path}: step {number + ahead} after step {number}; a recording that lacks more '
+            raise RecordingError(f'{bag.path}: step {number + ahead} after step {number}; a recording that lacks more '
                                  f'than {MOST_MISSING} steps is damaged')
         number += ahead
         if number > start:     # what was in force at the checkpoint is told again

@@ -6,9 +6,10 @@ from collections import deque
 from typing import NamedTuple
 
 from ..core.errors import RecordingError
+from ..recording import Bag, RecordedRun
 from ..recording.topics import MODE_EVENT, SLIDER_STATE
 from .difference import Comparison, Difference
-from .original import Original
+from .origin import offline_of
 from .remake import Maker, Progress, maker_of
 from .steps import Step, steps_of
 
@@ -25,34 +26,33 @@ class Verdict(NamedTuple):
     difference: Difference | None
 
 
-def verify(original: Original, progress: Progress = None) -> Verdict:
+def verify(run: RecordedRun, progress: Progress = None) -> Verdict:
     """Run a recording again up to its end or to the first difference.
 
     Raises RecordingError when there is nothing in it to compare, SolverError when the solver gives up.
     """
-    maker = maker_of(original, original.scene, progress=progress)
-    look = _Look(original, maker, None if original.offline else progress)
-    for step in steps_of(original, maker.start):
+    maker = maker_of(run, run.scene, progress=progress)
+    look = _Look(run.bag, maker, None if offline_of(run) else progress)
+    for step in steps_of(run, maker.start):
         look.at(step)
         if look.difference:
             break
     if not (look.steps or look.difference):
-        raise RecordingError(f'{original.run.path}: no step with its state in it; nothing can be verified')
+        raise RecordingError(f'{run.bag.path}: no step with its state in it; nothing can be verified')
     return Verdict(look.steps, look.events, look.missing, look.end, look.difference)
 
 
 class _Look:
     """Makes and compares one recorded step after the other."""
 
-    def __init__(self, original: Original, maker: Maker, progress: Progress) -> None:
+    def __init__(self, bag: Bag, maker: Maker, progress: Progress) -> None:
         self.steps = self.events = self.missing = 0
         self.end = 0.0
         self.difference: Difference | None = None
         self._first = maker.start + 1
         self._maker, self._progress = maker, progress
-        self._comparison = Comparison(original.run)
-        self._total = sum(original.run.counts[topic] for topic, kind in original.run.topics.items()
-                          if kind == SLIDER_STATE.type)
+        self._comparison = Comparison(bag)
+        self._total = sum(bag.counts[topic] for topic, kind in bag.topics.items() if kind == SLIDER_STATE.type)
 
     def at(self, step: Step) -> None:
         made = deque(self._maker.make(step), 1).pop()    # those before it were not recorded

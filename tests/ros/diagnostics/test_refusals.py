@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from stickslip_sim.recording import read_run
+from stickslip_sim.recording import open_bag
 from tests.support.ros_nodes import Client, node_and_client, recording_into
 from tests.support.waiting import wait_for
 
@@ -91,6 +91,6 @@ def diagnosed(axis: Client) -> list[str]:
 def recorded(folder: Path) -> list[Any]:
     """Return the events of refused commands in a bag."""
     from stickslip_msgs.msg import RigEvent
-    run = read_run(folder)
+    run = open_bag(folder)
     return [event for event in map(run.decode, run.messages(['/rig_event']))
             if event.kind == RigEvent.KIND_COMMAND_REFUSED]

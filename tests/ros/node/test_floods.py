@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 from stickslip_sim.config.ros_yaml import plain_value
-from stickslip_sim.recording import read_run
+from stickslip_sim.recording import open_bag
 from stickslip_sim.rig import RigEventKind
 from stickslip_sim.scene import Scene, load_scene
 from tests.support.replays import assert_same_states, made_again
@@ -108,7 +108,7 @@ class TestController:
                 timing = axis.next('timing', has_timed_out(count))
                 assert timing.total_timed_out == count
                 assert axis.status('command')[0].message.startswith('timed out: no drive velocity comes')
-        recorded = read_run(tmp_path / 'run')
+        recorded = open_bag(tmp_path / 'run')
         kinds = [event.kind for event in map(recorded.decode, recorded.messages(['/rig_event']))]
         assert kinds == [RigEventKind.COMMAND_TIMEOUT, RigEventKind.COMMAND_RESUMED, RigEventKind.COMMAND_TIMEOUT]
         assert '2 time-outs' in recorded.receipt['timing']['verdict']
@@ -140,7 +140,7 @@ class TestInterrupt:
             wait_for(lambda: axis.heard['slider_state'] and axis.latest('slider_state').step > 500, 'steps')
             code, errors = process.end(signal.SIGINT)
         assert (code, 'Traceback' in errors) == (0, False), errors
-        recorded = read_run(folder)
+        recorded = open_bag(folder)
         assert recorded.is_complete
         last = recorded.columns('/slider_state')['step'][-1]
         assert 500 < last < 100_000

@@ -10,7 +10,7 @@ import pytest
 
 from stickslip_sim.core.errors import RecordingWarning
 from stickslip_sim.core.types import EventKind
-from stickslip_sim.recording import read_run
+from stickslip_sim.recording import open_bag
 from tests.support.busy_machine import judged_by_time
 from tests.support.ros_nodes import assert_clean, client, recording_into, running
 from tests.support.waiting import wait_for
@@ -81,7 +81,7 @@ class TestSignals:
             process.send(number)
             process.send(number)      # impatient
             assert_clean(*process.wait())
-        run = read_run(folder)
+        run = open_bag(folder)
         assert run.is_complete
         states = run.columns('/slider_state')
         assert list(states['step']) == list(range(len(states['step'])))
@@ -116,7 +116,7 @@ class TestSignals:
             process.kill()
             last = axis.latest('slider_state').step
             with pytest.warns(RecordingWarning, match='no end'):
-                run = read_run(folder)
+                run = open_bag(folder)
             steps = run.columns('/slider_state')['step']
             assert last - 1000 < steps[-1] <= last + 1000
         assert not run.is_complete

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from stickslip_sim.core.errors import RecordingWarning
-from stickslip_sim.recording import Run, read_run
+from stickslip_sim.recording import Bag, open_bag
 from stickslip_sim.scene import load_scene
 from tests.support.ros_nodes import assert_clean, client, recording_into, running
 from tests.support.tool import restore_interrupt
@@ -48,7 +48,7 @@ class TestRecording:
             axis.next('slider_state', lambda state: state.step > step + 100)
             assert_clean(*process.end())
         with pytest.warns(RecordingWarning, match='no end'):
-            run = read_run(folder)
+            run = open_bag(folder)
         assert len(run.columns('/slider_state')['step']) > 100
 
     def test_the_receipt_tells_the_solver_and_its_settings(self, tmp_path: Path) -> None:
@@ -57,7 +57,7 @@ class TestRecording:
         with running(*wanted) as process, client() as axis:
             axis.connect()
             assert_clean(*process.end())
-        receipt = read_run(folder).receipt
+        receipt = open_bag(folder).receipt
         assert (receipt['solver'], receipt['solver_settings']) == ('fixed_step', {'method': 'euler', 'step': 0.0005})
         assert 'error_estimate' not in receipt
 
@@ -69,7 +69,7 @@ class TestRecording:
             assert {'/cell/press/slider_state', '/cell/press/drive_velocity', '/diagnostics'} <= names
             assert axis.next('/diagnostics').status[0].hardware_id == '/cell/press/feed_axis'
             assert_clean(*process.end())
-        assert set(read_run(folder).topics) >= {'/cell/press/slider_state', '/parameter_events'}
+        assert set(open_bag(folder).topics) >= {'/cell/press/slider_state', '/parameter_events'}
 
     def test_only_below_the_folder_of_the_start(self, tmp_path: Path) -> None:
         """Who may set parameters may not write anywhere: not up, not elsewhere, not through a link."""
@@ -95,7 +95,7 @@ class TestRecording:
         recordings = Recordings('/', scene)
         recordings.begin(scene)
         recordings.end({})
-        assert read_run(tmp_path / 'runs' / 'first').is_complete
+        assert open_bag(tmp_path / 'runs' / 'first').is_complete
 
     def test_a_scene_whose_name_is_a_path(self, tmp_path: Path) -> None:
         scene = tmp_path / 'scene.yaml'
@@ -117,7 +117,7 @@ class TestRecording:
             begin = axis.latest('slider_state').step
             axis.next('slider_state', lambda state: state.step > begin + 600)
             assert axis.switch('record', False).success
-            run = read_run(folder)
+            run = open_bag(folder)
             last = run.columns('/slider_state')['step'][-1]
             axis.next('slider_state', lambda state: state.step > last, begin=0)
             heard = {state.step: state for state in axis.states_of_run()}
@@ -129,7 +129,7 @@ class TestRecording:
         assert command.velocity == 0.003      # the one in force when it began
 
 
-def assert_same(run: Run, topic: str, heard: dict[int, Any]) -> None:
+def assert_same(run: Bag, topic: str, heard: dict[int, Any]) -> None:
     from rclpy.serialization import serialize_message
     messages = {message.sequence: message.data for message in run.messages([topic])}
     assert len(messages) > 500

@@ -14,7 +14,7 @@ from sensor_msgs.msg import JointState
 
 from stickslip_msgs.msg import RigEvent
 from stickslip_msgs.srv import InjectFault
-from stickslip_sim.recording import read_run
+from stickslip_sim.recording import open_bag
 from tests.support.ros2_control_client import (
     SHIPPED,
     THRESHOLD,
@@ -92,7 +92,7 @@ class TestJointStates:
             assert list(message.velocity) == [state.velocity, state.drive_velocity]
             assert list(message.effort) == [0.0, state.drive_force]
         assert any(end - step == 19 for step, end in zip(missing, missing[19:]))
-        assert not [topic for topic in read_run(tmp_path / 'run').topics if 'joint' in topic]
+        assert not [topic for topic in open_bag(tmp_path / 'run').topics if 'joint' in topic]
 
     def test_quantised(self) -> None:
         def velocities() -> set[float]:

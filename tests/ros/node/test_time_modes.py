@@ -16,8 +16,8 @@ import numpy as np
 import pytest
 
 from stickslip_sim.core.errors import InputError
-from stickslip_sim.recording import Run, read_run
-from stickslip_sim.runs.offline import run_offline
+from stickslip_sim.recording import Bag, open_bag
+from stickslip_sim.runs import simulate_events
 from stickslip_sim.scene import Scene, load_scene
 from tests.support.busy_machine import judged_by_time
 from tests.support.replays import FIELDS, assert_same_states, made_again
@@ -90,7 +90,7 @@ def steps(axis: Client, count: int, velocity: float = math.nan, force: float = m
     return answer
 
 
-def repeat_in_lockstep(axis: Client, recorded: Run) -> None:
+def repeat_in_lockstep(axis: Client, recorded: Bag) -> None:
     """Give the commands of a bag with ~/step, before the steps that they came before."""
     commands: dict[int, dict[str, float]] = {}
     for message in recorded.messages(['/drive_velocity', '/external_force']):
@@ -112,13 +112,13 @@ class TestTheSameCourse:
                 if k % 7 == 0:
                     axis.send_force(30.0 * math.cos(k))
                 wait_for_steps(axis, 25)
-        live = read_run(tmp_path / 'live')
+        live = open_bag(tmp_path / 'live')
         assert live.counts['/drive_velocity'] > 15
         assert live.receipt['commands']['lost'] > 1
         assert live.receipt['timing']['overruns'] > 100
         with node_of(scene, tmp_path, 'stepped', 'lockstep') as (process, axis), stalls(process):
             repeat_in_lockstep(axis, live)
-        stepped = read_run(tmp_path / 'stepped')
+        stepped = open_bag(tmp_path / 'stepped')
         assert_same_columns(live, stepped)
         assert_same_states(live, made_again(live, scene))
         assert stepped.receipt['commands']['lost'] == live.receipt['commands']['lost']
@@ -135,7 +135,7 @@ class TestTheSameCourse:
             for _ in range(5):
                 steps(axis, 800)
         results, offline = (receipt['results'] for receipt in (
-            read_run(tmp_path / 'again').receipt, run_offline(scene, 4000.0).receipt))
+            open_bag(tmp_path / 'again').receipt, simulate_events(scene, 4000.0).receipt))
         for each in (results, offline):
             del each['root_iterations']    # they depend on where the steps end
         assert sum(results['events'].values()) > 20_000
@@ -146,7 +146,7 @@ class TestTheSameCourse:
                                            'faults.starts': [1.0], 'faults.durations': [2.0], 'faults.values': [1.6]})
         with node_of(scene, tmp_path, 'free', 'free_run') as (process, axis), stalls(process):
             axis.next('slider_state', lambda state: state.time > 4.0)
-        free = read_run(tmp_path / 'free')
+        free = open_bag(tmp_path / 'free')
         assert free.receipt['dropped_messages'] == 0
         assert_same_states(free, run(scene.make_rig(), free.counts['/slider_state']))
 
@@ -156,13 +156,13 @@ class TestTheSameCourse:
             for k in range(40):
                 axis.send_velocity(0.004 * math.sin(0.3 * k))
                 wait_for_steps(axis, 50)
-        free = read_run(tmp_path / 'free')
+        free = open_bag(tmp_path / 'free')
         assert free.counts['/drive_velocity'] > 3
         assert free.receipt['dropped_messages'] == 0
         assert_same_states(free, made_again(free, scene))
 
 
-def assert_same_columns(one: Run, other: Run) -> None:
+def assert_same_columns(one: Bag, other: Bag) -> None:
     for topic, names in (('/slider_state', (*FIELDS, 'step', 'sequence', 'log_time')),
                          ('/friction_force', ('step', 'force', 'coefficient', 'contact_deflection')),
                          ('/mode_event', ('step', 'time', 'kind', 'position', 'friction_force', 'rest_time'))):

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import pytest
 from rosgraph_msgs.msg import Clock
 
-from stickslip_sim.recording import read_run
+from stickslip_sim.recording import open_bag
 from tests.support.launch_files import launched
 from tests.support.ros_nodes import Client, NodeProcess, client, running
 from tests.support.waiting import wait_for
@@ -90,7 +90,7 @@ def test_each_records_what_is_its_own(tmp_path: Path) -> None:
     assert [folder.name[:14] for folder in folders] == ['x_positioning_', 'y_positioning_']
     commands = []
     for name, folder in zip('xy', folders):
-        run = read_run(folder)
+        run = open_bag(folder)
         assert {topic.split('/')[1] for topic in run.topics} == {name, 'parameter_events'}
         commands.append(run.counts[f'/{name}/drive_velocity'])
     assert commands == [1, 0]

@@ -14,7 +14,7 @@ import pytest
 from mcap.writer import Writer
 
 from stickslip_sim.core.errors import RecordingWarning
-from stickslip_sim.recording import open_run, read_run, schema, write_bag
+from stickslip_sim.recording import open_bag, open_run, schema, write_bag
 from stickslip_sim.recording.topics import CLOCK, PARAMETER_EVENTS, RECORDED, SLIDER_STATE, Topic
 from tests.support.busy_machine import judged_by_time
 from tests.support.recorded_runs import FACTS, damage, events, samples
@@ -87,7 +87,7 @@ class Ears:
 
 def recorded(bag: Path, name: str, since: float = 0.0, until: float = 1e9) -> list[bytes]:
     """Return the bytes of a topic between two log times, s."""
-    return [message.data for message in read_run(bag).messages([name])
+    return [message.data for message in open_bag(bag).messages([name])
             if since * 1e9 <= message.log_time <= until * 1e9]
 
 

@@ -9,7 +9,7 @@ from types import MappingProxyType
 
 import pytest
 
-from stickslip_sim.recording import RECORDED, Run, flat_layout, open_run, read_run
+from stickslip_sim.recording import RECORDED, Bag, flat_layout, open_bag, open_run
 from stickslip_sim.recording.messages import Packer
 from stickslip_sim.recording.topics import DRIVE_VELOCITY, RIG_EVENT, SLIDER_STATE, Topic
 from tests.support.busy_machine import judged_by_time
@@ -59,7 +59,7 @@ def ended(process: NodeProcess) -> None:
     assert 'Traceback' not in errors
 
 
-def assert_same(one: Run, other: Run) -> None:
+def assert_same(one: Bag, other: Bag) -> None:
     """Assert that two runs have the same steps and events, to the last bit; stamps are those of their own clocks."""
     for topic in SAME:
         columns, others = one.columns(topic), other.columns(topic)
@@ -71,14 +71,14 @@ def assert_same(one: Run, other: Run) -> None:
 class TestLockStep:
     def test_the_same_run_to_the_last_bit(self, recorded: Path, tmp_path: Path) -> None:
         again, scene = tmp_path / 'again', tmp_path / 'scene.yaml'
-        scene.write_bytes(read_run(recorded).attachments['scene.yaml'])
+        scene.write_bytes(open_bag(recorded).attachments['scene.yaml'])
         arguments = ['--params-file', str(scene), *LOCKSTEP, *recording_into(again)]
         with running(*arguments) as axis, replaying(recorded, '-p', 'rate:=50') as process:
             ended(process)
             assert_clean(*axis.end())
-        assert_same(read_run(recorded), read_run(again))
+        assert_same(open_bag(recorded), open_bag(again))
         for topic in ('/drive_velocity', '/external_force', '/parameter_events'):
-            steps, again_at = ([message.sequence for message in read_run(folder).messages([topic])]
+            steps, again_at = ([message.sequence for message in open_bag(folder).messages([topic])]
                                for folder in (recorded, again))
             assert steps == again_at
 
@@ -89,7 +89,7 @@ class TestLockStep:
             with replaying(recorded, '-p', 'rate:=50', '-p', 'playback_duration:=0.5') as process:
                 ended(process)
             wait_for(lambda: viewer.latest('slider_state').step == 500, 'the last step')
-            columns = read_run(recorded).columns('slider_state')
+            columns = open_bag(recorded).columns('slider_state')
             for name in ('position', 'velocity', 'acceleration', 'drive_force'):
                 assert getattr(viewer.latest('slider_state'), name) == columns[name][500]
             assert_clean(*axis.end())
@@ -193,7 +193,7 @@ class TestRealTime:
         with running(*recording_into(again)) as axis, replaying(recorded) as process, judged_by_time(0.001, axis.waits):
             ended(process)
             assert_clean(*axis.end())
-            one, other = read_run(recorded), read_run(again)
+            one, other = open_bag(recorded), open_bag(again)
             for topic in ('/drive_velocity', '/external_force'):    # the axis hears the latest, if it is late
                 field = 'velocity' if topic == '/drive_velocity' else 'force'
                 assert one.columns(topic)[field].tolist() == other.columns(topic)[field].tolist()
@@ -204,7 +204,7 @@ class TestRealTime:
         assert changes == ['axis.mass'] * 2
 
     def test_the_command_in_force_comes_first(self, recorded: Path) -> None:
-        run = read_run(recorded)
+        run = open_bag(recorded)
         _, second, third = (message.log_time * 1e-9 for message in run.messages(['/drive_velocity']))
         begin = (second + third) / 2.0
         with running('-p', 'drive.velocity:=0.0') as axis, client() as viewer:

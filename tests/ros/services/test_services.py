@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from stickslip_sim.core.errors import InputError
-from stickslip_sim.recording import read_run
+from stickslip_sim.recording import open_bag
 from stickslip_sim.rig import Fault
 from stickslip_sim.rig.faults import RULES
 from stickslip_sim.scene import load_scene, scene_from_values
@@ -183,7 +183,7 @@ class TestStorm:
             storm = LiveStorm(axis, 2)
             for _ in range(CALLS):
                 storm.call()
-        recorded = read_run(tmp_path / 'run')
+        recorded = open_bag(tmp_path / 'run')
         assert recorded.counts['/rig_event'] > 10
         assert recorded.counts['/slider_state'] > 300
         assert_same_states(recorded, made_again(recorded, load_scene('paper_fig8')))

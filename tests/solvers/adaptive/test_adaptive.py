@@ -15,7 +15,7 @@ from stickslip_sim.core.input_profile import InputProfile, Sinusoid, steps, tabl
 from stickslip_sim.core.types import Event, EventKind, Mode
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
 from stickslip_sim.friction.kinetic import default_excess
-from stickslip_sim.runs.offline import run_offline
+from stickslip_sim.runs import simulate_events
 from stickslip_sim.scene import load_scene
 from stickslip_sim.solvers import adaptive
 from tests.conftest import Program
@@ -197,7 +197,7 @@ class TestItEnds:
         """Smooth sliding decays to the speed of the drive, where guards are zero to within the tolerance."""
         scene = load_scene('fast_feed', {'solver.name': 'adaptive'})
         with pytest.raises(SolverError, match=r'^\d\d events up to .* time hardly goes on'):
-            run_offline(scene, 10.0)
+            simulate_events(scene, 10.0)
 
     def test_numbers_that_end_are_a_solver_error(self) -> None:
         simulator = make(adaptive.solver(), paper_axis(RIGID), 0.0, 0.0, InitialState(velocity=1e305))
@@ -222,5 +222,5 @@ def test_bad_settings_are_refused(settings: dict[str, Any], name: str) -> None:
 
 
 def test_scipy_is_loaded_only_by_those_who_use_it(in_a_process: Program) -> None:
-    program = 'import sys\nimport stickslip_sim.runs.offline\nprint("scipy" in sys.modules)'
+    program = 'import sys\nimport stickslip_sim.runs.simulated\nprint("scipy" in sys.modules)'
     assert in_a_process(program, compiled=False).split() == ['False']

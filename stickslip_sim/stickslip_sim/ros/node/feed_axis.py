@@ -17,8 +17,8 @@ from ...realtime.verdict import verdict
 from ...realtime.watchdog import Watchdog
 from ...recording import RECORDED, RunFacts, messages
 from ...recording import topics as names
-from ...runs.offline import warm_up
 from ...runs.receipt import CostMeter
+from ...runs.simulated import warm_up
 from ...scene.model import Scene
 from ...scene.sections import NODE
 from ..diagnostics.periodic_report import PeriodicReport

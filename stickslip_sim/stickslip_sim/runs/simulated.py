@@ -4,9 +4,9 @@
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,8 +18,8 @@ from ..rig import Rig
 from ..scene import Scene
 from ..simulation.cycles import Summary, summary
 from .receipt import CostMeter, receipt_of
-
-Columns = dict[str, NDArray[np.float64]]
+from .run import Columns
+from .views import Views
 
 MAX_DURATION = 1e9         # s
 MAX_SAMPLES = 10_000_000   # 1.2 GB
@@ -27,17 +27,38 @@ MAX_EVENTS = 5_000_000     # about as much
 _PARTS = 200               # of a run: progress is told, and Ctrl-C heard, this often
 
 
-@dataclass(frozen=True, slots=True)
-class Trajectory:
-    """A run: events in the order of time, `samples` by column (fields of `types.Sample`, and `time`), receipt."""
+@dataclass(frozen=True, eq=False)
+class SimulatedRun(Views):
+    """A run that was simulated just now; `samples` have the exact instants too, as `second` and `fraction`."""
 
     scene: Scene
-    duration: float
-    sample_period: Fraction | None   # s
+    end: float
+    sample_period: Fraction | None   # s; None: without samples, or not evenly spaced
     events: list[Event]
     samples: Columns
     summary: Summary
-    receipt: dict[str, Any]
+    receipt: dict[str, Any] = field(default_factory=dict)
+    begin: float = 0.0
+    notes: tuple[str, ...] = ()
+    is_recorded: ClassVar[bool] = False
+    is_complete: ClassVar[bool] = True
+    is_changed: ClassVar[bool] = False
+    missing_steps: ClassVar[int] = 0
+
+    @property
+    def name(self) -> str:
+        """Of the scene."""
+        return self.scene.name
+
+    @property
+    def source(self) -> str:
+        """How long it was simulated, and by which solver."""
+        return f'simulated for {self.duration:g} s with the {self.scene.solver.name} solver'
+
+    @property
+    def states(self) -> Columns:
+        """The samples."""
+        return self.samples
 
     def sample_rows(self) -> Iterator[Sample]:
         """Yield the samples one by one."""
@@ -45,13 +66,32 @@ class Trajectory:
             yield Sample(float(second), float(fraction), Mode(int(mode)), int(direction), *map(float, rest))
 
 
-def run_offline(scene: Scene, duration: float, sample_period: float | Fraction | None = None,
-                progress: Callable[[float], None] | None = None) -> Trajectory:
-    """Simulate `duration` seconds of a scene, with a sample every `sample_period` seconds from 0 on if given.
+Progress = Callable[[float], None] | None
+
+
+def simulate(scene: Scene, duration: float, sample_period: float | Fraction | None = None,
+             progress: Progress = None) -> SimulatedRun:
+    """Simulate `duration` seconds of a scene, with a sample every `sample_period` seconds from 0 on (None: each step).
 
     `progress` is called with the share that is done.  Raises InputError on times without a meaning and on a run too
     long to hold, SolverError when the solver gives up.
     """
+    return _simulated(scene, duration, scene.time.step if sample_period is None else sample_period, progress)
+
+
+def simulate_events(scene: Scene, duration: float, progress: Progress = None) -> SimulatedRun:
+    """Simulate as `simulate` does, without any sample: for long runs, and where events say all."""
+    return _simulated(scene, duration, None, progress)
+
+
+def columns_of_rows(rows: NDArray[np.float64]) -> Columns:
+    """Return rows, each with the fields of a sample, as columns by name, with the time as one number."""
+    columns = {name: rows[:, i] for i, name in enumerate(Sample._fields)}
+    return {**columns, 'time': columns['second'] + columns['fraction']}
+
+
+def _simulated(scene: Scene, duration: float, sample_period: float | Fraction | None,
+               progress: Progress) -> SimulatedRun:
     check_times(duration, sample_period)
     rig = _loaded_rig(scene)
     simulator = rig.simulator
@@ -64,11 +104,11 @@ def run_offline(scene: Scene, duration: float, sample_period: float | Fraction |
     receipt = receipt_of(scene, duration, float(sample_period) if sample_period else None, figures,
                          simulator.root_iterations, simulator.sample(), simulator.energy, *spent)
     period = _decimal(sample_period) if sample_period else None
-    return Trajectory(scene, duration, period, events, _columns(rows, period or Fraction(0)), figures, receipt)
+    return SimulatedRun(scene, duration, period, events, _columns(rows, period or Fraction(0)), figures, receipt)
 
 
 def _run(rig: Rig, duration: float, sample_period: float | Fraction | None, parts: int,
-         progress: Callable[[float], None] | None) -> tuple[list[Event], NDArray[np.float64]]:
+         progress: Progress) -> tuple[list[Event], NDArray[np.float64]]:
     """Return the events, and a row for each sample."""
     events: list[Event] = []
     rows = np.empty((_sample_count(duration, sample_period), len(Sample._fields)))

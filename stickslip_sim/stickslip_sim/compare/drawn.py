@@ -1,0 +1,104 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""What a comparison looks at in a run: the samples with the state before each event, the inputs, slips and sticks."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.types import Event, EventKind, Mode
+from ..runs import Columns, Run
+from ..runs.kept import kept
+
+Numbers = NDArray[np.float64]
+
+_STEADY = 1e-9   # relative: inputs that vary less are constant
+_DRAWN = ('time', 'position', 'velocity', 'acceleration', 'drive_position', 'drive_force', 'friction_force', 'mode')
+
+
+class Inputs(NamedTuple):
+    """Inputs that do not change."""
+
+    velocity: float   # m/s, of the drive
+    force: float      # N
+
+
+@kept
+def applied_force(run: Run) -> Numbers:
+    """Return the external force at the samples, N, from the balance m ẍ = F_d + F_e − F."""
+    inertia: Numbers = run.scene.axis.mass * run.samples['acceleration']
+    return inertia + run.samples['friction_force'] - run.samples['drive_force']
+
+
+@kept
+def drawn(run: Run) -> Columns:
+    """Return the samples and the state just before each event, so that corners and jumps are where they are."""
+    before = _before_events(run)
+    times = np.concatenate([before['time'], run.samples['time']])
+    order = np.argsort(times, kind='stable')   # at equal times the state before comes first
+    return {name: np.concatenate([before[name], run.samples[name]])[order] for name in _DRAWN}
+
+
+def within(run: Run, begin: float, end: float) -> Columns:
+    """Return what is `drawn` from `begin` to `end` (s)."""
+    columns = drawn(run)
+    inside = rows(columns['time'], begin, end)
+    return {name: column[inside] for name, column in columns.items()}
+
+
+def steady_inputs(run: Run, begin: float = -math.inf, end: float = math.inf) -> Inputs | None:
+    """Return the drive velocity and the external force between two times (s); None when they are not constant."""
+    samples = run.samples
+    inside = rows(samples['time'], begin, end)
+    if inside.start >= inside.stop:
+        return None
+    velocity, force = samples['drive_velocity'][inside], applied_force(run)[inside]
+    scale = max(np.abs(samples[name][inside]).max() for name in ('friction_force', 'drive_force'))
+    if np.ptp(velocity) > _STEADY * np.abs(velocity).max() or np.ptp(force) > _STEADY * scale:
+        return None
+    return Inputs(float(velocity[0]), float(np.median(force)) if np.abs(force).max() > _STEADY * scale else 0.0)
+
+
+def rows(time: Numbers, begin: float, end: float) -> slice:
+    """Return the rows from `begin` to `end` (s), both included, of a column of times that rises."""
+    return slice(int(np.searchsorted(time, begin)), int(np.searchsorted(time, end, side='right')))
+
+
+def slips(run: Run) -> list[tuple[Event, Event]]:
+    """Return where each slip begins and ends that is complete: break-away (or reversal) and standstill."""
+    found: list[tuple[Event, Event]] = []
+    begin: Event | None = None
+    for event in run.events:
+        if event.kind in (EventKind.STICK, EventKind.REVERSE) and begin is not None:
+            found.append((begin, event))
+            begin = None
+        if event.kind == EventKind.REVERSE or (event.kind == EventKind.BREAKAWAY and event.mode != Mode.STICK):
+            begin = event
+    return found
+
+
+def sticks(run: Run) -> list[tuple[Event, Event]]:
+    """Return where each stick begins and ends that is complete: standstill and the break-away from there."""
+    found: list[tuple[Event, Event]] = []
+    begin: Event | None = None
+    for event in run.events:
+        if event.kind == EventKind.BREAKAWAY and event.mode != Mode.STICK and begin is not None:
+            found.append((begin, event))
+            begin = None
+        elif event.kind == EventKind.STICK:
+            begin = event
+    return found
+
+
+def _before_events(run: Run) -> Columns:
+    """Return the state just before each event; the acceleration is that of the balance of forces."""
+    events, samples = run.events, run.samples
+    columns = {name: np.array([getattr(event, name) for event in events], dtype=np.float64)
+               for name in ('time', 'position', 'velocity', 'drive_position', 'drive_force', 'friction_force')}
+    applied = np.interp(columns['time'], samples['time'], applied_force(run))
+    columns['acceleration'] = (columns['drive_force'] + applied - columns['friction_force']) / run.scene.axis.mass
+    modes = [Mode(int(samples['mode'][0])), *(event.mode for event in events[:-1])][:len(events)]
+    columns['mode'] = np.array(modes, dtype=np.float64)
+    return columns

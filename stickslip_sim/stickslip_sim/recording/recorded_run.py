@@ -1,0 +1,136 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""A recorded run: states at its steps, events at their exact times, the scene that travels in it."""
+
+import os
+import warnings
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.errors import RecordingError, RecordingWarning, one_line
+from ..core.types import Event, Mode
+from ..runs import COLUMNS, Columns
+from ..runs.views import Views
+from ..scene import Scene
+from ..simulation.cycles import Summary, summary
+from .opening import bag_in, shortfalls
+from .reader import Bag
+from .topics import FRICTION_FORCE, PARAMETER_EVENTS, SLIDER_STATE
+
+_STATE = ('time', 'step', 'position', 'velocity', 'acceleration', 'drive_position', 'drive_velocity', 'drive_force',
+          'rest_time', 'mode', 'direction')
+_FRICTION = {'force': 'friction_force', 'coefficient': 'friction_coefficient',
+             'contact_deflection': 'contact_deflection'}
+_NO_FORCE = 1e-9   # of the other forces: what rounding leaves where no external force acts
+
+
+def read_run(path: Path | str) -> 'RecordedRun':
+    """Return the run in a folder, or in an MCAP file by itself; raises RecordingError when there is none, or damaged.
+
+    A run without an end (its process was killed, its disk was full, or it is still being written) is read as far as it
+    goes, with a RecordingWarning; its `notes` say so too.
+    """
+    run = RecordedRun(bag_in(path), path)
+    for note in run.notes:
+        warnings.warn(note, RecordingWarning, stacklevel=2)
+    return run
+
+
+class RecordedRun(Views):
+    """A run from a bag, read when it is asked for; `bag` has all its messages.
+
+    `samples` are the steps of which state and friction were recorded; their external force is that of the balance of
+    forces, m ẍ = F_d + F_e − F.
+    """
+
+    is_recorded = True
+
+    def __init__(self, bag: Bag, path: Path | str) -> None:
+        self.bag = bag
+        self.notes = shortfalls(bag)
+        self.is_complete = bag.is_complete
+        self.is_changed = bag.counts.get(PARAMETER_EVENTS.name, 0) > 0
+        self._given = path
+
+    @property
+    def name(self) -> str:
+        """Of the folder or file."""
+        return one_line(Path(os.path.abspath(self._given)).name)
+
+    @property
+    def source(self) -> str:
+        """Where it was read from."""
+        return f'recorded in {self._given}'
+
+    @cached_property
+    def scene(self) -> Scene:
+        """The scene that travels in the bag; raises RecordingError when there is none that this version can read."""
+        return self.bag.scene
+
+    @cached_property
+    def receipt(self) -> dict[str, Any]:
+        """The final figures; empty when the run was cut off.  Raises RecordingError when they are none."""
+        return self.bag.receipt
+
+    @cached_property
+    def begin(self) -> float:
+        """Time of the first sample, s."""
+        return float(self.samples['time'][0])
+
+    @cached_property
+    def end(self) -> float:
+        """Time of the last sample, s."""
+        return float(self.samples['time'][-1])
+
+    @cached_property
+    def states(self) -> Columns:
+        """The recorded states, with their `step`."""
+        return self.bag.columns_of(SLIDER_STATE, _STATE)
+
+    @cached_property
+    def missing_steps(self) -> int:
+        """How many steps have no recorded state between the first and the last that has."""
+        steps = self.states['step']
+        return int(steps[-1]) - int(steps[0]) + 1 - len(steps) if len(steps) else 0
+
+    @cached_property
+    def samples(self) -> Columns:
+        """The steps of which state and friction were recorded; raises RecordingError on fewer than 2."""
+        states = self.states
+        friction = self.bag.columns_of(FRICTION_FORCE, ('step', *_FRICTION))
+        _, rows, others = np.intersect1d(states['step'], friction['step'], return_indices=True)
+        if len(rows) < 2:
+            raise RecordingError(f'{self.bag.path}: {len(rows)} states with their friction force; a run has at least 2')
+        columns = {name: states[name][rows].astype(np.float64) for name in _STATE if name in COLUMNS}
+        columns |= {name: friction[field][others].astype(np.float64) for field, name in _FRICTION.items()}
+        if np.any(np.diff(columns['time']) <= 0.0) or not np.all(np.isin(columns['mode'], list(Mode))):
+            raise RecordingError(f'{self.bag.path}: its steps do not follow each other in time, or are in unknown '
+                                 'modes')
+        columns['external_force'] = _external_force(columns, self.scene.axis.mass)
+        return columns
+
+    @cached_property
+    def events(self) -> list[Event]:
+        """The transitions up to the last state; the drive's position then is between those at the steps."""
+        events, time = self.bag.events, self.states['time']
+        events = [event for event in events if len(time) and time[0] <= event.time <= time[-1]]
+        times = [event.time for event in events]
+        drive = np.interp(times, time, self.states['drive_position']).tolist() if events else []
+        return [event._replace(drive_position=position) for event, position in zip(events, drive)]
+
+    @cached_property
+    def summary(self) -> Summary:
+        """What the run amounts to, from its first sample to its last."""
+        events = [event for event in self.events if self.begin <= event.time <= self.end]
+        return summary(events, self.duration, Mode(int(self.samples['mode'][0])), self.begin)
+
+
+def _external_force(columns: Columns, mass: float) -> NDArray[np.float64]:
+    """Return what the other forces leave of m ẍ, N; 0 where it is no more than their rounding."""
+    friction, drive = columns['friction_force'], columns['drive_force']
+    force = mass * columns['acceleration'] + friction - drive
+    return np.where(np.abs(force) > _NO_FORCE * max(np.abs(friction).max(), np.abs(drive).max()), force, 0.0)

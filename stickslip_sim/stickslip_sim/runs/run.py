@@ -1,0 +1,100 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""A run as one thing: the same to read whether it was simulated or recorded."""
+
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.types import Event, Sample
+from ..scene import Scene
+from ..simulation.cycles import Cycle, Summary
+
+Columns = dict[str, NDArray[np.float64]]
+
+COLUMNS = ('time', *Sample._fields[2:])   # of the samples of every run
+
+
+class Run(Protocol):
+    """What an axis did from `begin` to `end`, and what is known of it.
+
+    What stands in a file is read when it is asked for, and raises RecordingError then.
+    """
+
+    @property
+    def name(self) -> str:
+        """Of the scene, or of the folder."""
+
+    @property
+    def source(self) -> str:
+        """Where it comes from, for people."""
+
+    @property
+    def scene(self) -> Scene:
+        """What was simulated."""
+
+    @property
+    def begin(self) -> float:
+        """Time of the first sample, s."""
+
+    @property
+    def end(self) -> float:
+        """Time at the end, s."""
+
+    @property
+    def duration(self) -> float:
+        """From the begin to the end, s."""
+
+    @property
+    def samples(self) -> Columns:
+        """Columns by name (COLUMNS, and what one kind of run has more), each just after what happened at its time."""
+
+    @property
+    def states(self) -> Columns:
+        """The state of the axis at its steps; a recorded run has it also where a friction force is missing."""
+
+    @property
+    def events(self) -> list[Event]:
+        """The transitions in the order of time."""
+
+    @property
+    def summary(self) -> Summary:
+        """What the run amounts to."""
+
+    @property
+    def receipt(self) -> dict[str, Any]:
+        """Versions, figures, energy, cost (docs/receipt.md); empty when there is none."""
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What a user must know."""
+
+    @property
+    def is_recorded(self) -> bool:
+        """Whether it was read from a bag."""
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether it goes up to its end; a recording may be cut off."""
+
+    @property
+    def is_changed(self) -> bool:
+        """Whether parameters were changed while it ran."""
+
+    @property
+    def missing_steps(self) -> int:
+        """How many steps have no recorded state between the first and the last that has."""
+
+    def cycles(self) -> list[Cycle]:
+        """Return the complete cycles of stick-slip, from break-away to break-away."""
+
+    def frame(self) -> Any:
+        """Return the samples as a pandas.DataFrame with COLUMNS; raises InputError without pandas."""
+
+    def plot(self, path: Path | str) -> None:
+        """Draw position, velocity, forces and mode over time into `path` (.png or .svg).
+
+        Raises InputError without samples, and for other endings.
+        """

@@ -1,0 +1,34 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Figures of a run in words: numbers with their units, and a run in one line."""
+
+import math
+
+from ..simulation.cycles import Summary
+
+CYCLE_FIGURES = (
+    ('period', 'period', 's'), ('stick', 'stick_time', 's'), ('slip', 'slip_time', 's'), ('jump', 'jump', 'm'),
+    ('peak speed', 'peak_speed', 'm/s'), ('break-away force', 'break_away_force', 'N'),
+    ('drive force at arrest', 'arrest_drive_force', 'N'), ('static coefficient', 'static_coefficient', ''),
+)
+_PREFIXES = ((1e3, 'k'), (1.0, ''), (1e-3, 'm'), (1e-6, 'µ'), (1e-9, 'n'))
+_IN_A_LINE = 6   # of CYCLE_FIGURES
+
+
+def quantity(value: float, unit: str, digits: int = 5) -> str:
+    """Return a number, and its unit with the prefix that suits it: 659.07 ms."""
+    if not unit or value == 0.0 or not math.isfinite(value):
+        return f'{value:.{digits}g} {unit}'.rstrip()
+    scale, prefix = next(((s, p) for s, p in _PREFIXES if abs(value) >= s), _PREFIXES[-1])
+    if unit == 's' and scale > 1.0:
+        scale, prefix = 1.0, ''
+    return f'{value / scale:.{digits}g} {prefix}{unit}'
+
+
+def headline(figures: Summary) -> str:
+    """Return the figures of the last cycle in one line, or what happened instead."""
+    cycle = figures.last
+    if cycle is None:
+        return f'{figures.motion}; {100.0 * figures.stick_share:.3g} % of the time in stick'
+    shown = (f'{name} {quantity(getattr(cycle, field), unit, 4)}' for name, field, unit in CYCLE_FIGURES[:_IN_A_LINE])
+    return ('' if figures.settled else 'last cycle: ') + ' · '.join(shown)
