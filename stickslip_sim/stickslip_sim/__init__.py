@@ -1,5 +1,95 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Exact, event-driven simulation of a feed axis with stick-slip friction."""
+"""Exact, event-driven simulation of a feed axis with stick-slip friction.
 
-__version__ = '0.1.0'
+    import stickslip_sim as stickslip
+
+    run = stickslip.simulate(stickslip.load_scene('paper_fig8'), duration=10.0)
+    run.plot('run.png')
+
+All names of `__all__` are imported when they are first used (docs/python.md shows them).  The rooms, from the top
+floor down; each imports only from the floors below it:
+
+    cli          the tool `stickslip`, one file a verb; the only room that prints
+    ros          the nodes; the only room that imports ROS
+    extremes     what breaks other simulators, measured on this one
+    compare      the figures and statements of the paper, on any run
+    advise       which solver and which parts of a scene are worth their time
+    check        a run against limits
+    verify       a recorded run again, bit by bit, or as something else had been
+    study        sweeps, maps, critical values, uncertainty
+    bench        this solver beside its rivals
+    recording    runs as bags: written, read back, played
+    runs         a run as one thing, simulated or recorded; its receipt and error
+    realtime     steps that keep the time of a clock, and how well they do
+    plots        pictures; the only room that imports matplotlib
+    scene        everything that decides a run, from a file
+    controllers  the example controllers, without ROS
+    rig          what is around the axis: commands, drive limits, faults, encoders
+    simulation   one axis through time: simulator, inputs, checkpoint, cycles
+    solvers      exact, adaptive and fixed steps, and how they are compiled
+    reference    an independent solver that judges the others
+    axis         the equations of motion of the paper
+    friction     the laws of friction
+    linear       closed forms of linear motion, and roots that are not missed
+    config       strict YAML, and what a parameter is
+    core         what every room uses: errors, events, samples, input profiles
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+from .core.version import __version__
+
+if TYPE_CHECKING:
+    from .core.errors import (
+        InputError,
+        RecordingError,
+        RecordingWarning,
+        SolverError,
+        StickslipError,
+        UnsoundError,
+        VerdictError,
+    )
+    from .core.types import Event, EventKind, Instant, Mode, Sample
+    from .recording import read_run
+    from .runs import Run, simulate, simulate_events
+    from .runs.batch import run_batch
+    from .runs.error_estimate import error_estimate
+    from .scene import Scene, load_scene, scene_names
+    from .simulation.cycles import Cycle, Summary
+    from .simulation.simulator import Simulator
+    from .study.in_memory import critical, sweep, uncertainty
+
+__all__ = [
+    'Cycle', 'Event', 'EventKind', 'InputError', 'Instant', 'Mode', 'RecordingError', 'RecordingWarning', 'Run',
+    'Sample', 'Scene', 'Simulator', 'SolverError', 'StickslipError', 'Summary', 'UnsoundError', 'VerdictError',
+    '__version__', 'critical', 'error_estimate', 'load_scene', 'read_run', 'run_batch', 'scene_names', 'simulate',
+    'simulate_events', 'sweep', 'uncertainty',
+]
+
+if not TYPE_CHECKING:   # a type checker knows the names from above, and finds a misspelt one
+    _MODULES = {
+        '.core.errors': ('InputError', 'RecordingError', 'RecordingWarning', 'SolverError', 'StickslipError',
+                         'UnsoundError', 'VerdictError'),
+        '.core.types': ('Event', 'EventKind', 'Instant', 'Mode', 'Sample'),
+        '.recording': ('read_run',),
+        '.runs': ('Run', 'simulate', 'simulate_events'),
+        '.runs.batch': ('run_batch',),
+        '.runs.error_estimate': ('error_estimate',),
+        '.scene': ('Scene', 'load_scene', 'scene_names'),
+        '.simulation.cycles': ('Cycle', 'Summary'),
+        '.simulation.simulator': ('Simulator',),
+        '.study.in_memory': ('critical', 'sweep', 'uncertainty'),
+    }
+    _HOMES = {name: module for module, names in _MODULES.items() for name in names}
+
+    def __getattr__(name):
+        """Import what is asked for the first time."""
+        if name not in _HOMES:
+            raise AttributeError(f'module {__name__!r} has no attribute {name!r}')
+        globals()[name] = found = getattr(import_module(_HOMES[name], __name__), name)
+        return found
+
+    def __dir__():
+        return sorted(__all__)

@@ -17,7 +17,7 @@ from stickslip_sim.cli.compare import _named_apart
 from stickslip_sim.cli.main import run
 from stickslip_sim.compare.characteristics import characteristics_of
 from stickslip_sim.compare.conventional import characteristics_beside
-from stickslip_sim.compare.drawn import drawn, steady_inputs
+from stickslip_sim.compare.drawn import drawn_columns, steady_inputs
 from stickslip_sim.compare.fresh import simulate_densely
 from stickslip_sim.compare.ring_down import closed_form, identified
 from stickslip_sim.compare.statement import Outcome
@@ -184,7 +184,7 @@ def test_a_recording_that_began_later(bag: Path, tmp_path: Path) -> None:
 def test_corners_are_where_they_are() -> None:
     """At each event there is a sample just before and one just after it, whatever the sample rate."""
     moving = simulate_densely(load_scene('paper_fig7'), 2.0)
-    columns = drawn(moving)
+    columns = drawn_columns(moving)
     for event in moving.events:
         at = np.flatnonzero(columns['time'] == event.time)
         assert len(at) == 2

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from stickslip_sim.check.limits import limits_of
-from stickslip_sim.check.observed_run import gaps_in, motion_of, timing_of
+from stickslip_sim.check.observed_run import gaps_in, observed_motion, timing_of
 from stickslip_sim.cli.export import csv_lines
 from stickslip_sim.config.ros_yaml import read_yaml
 from stickslip_sim.core.errors import LINE_LIMIT, RecordingWarning, StickslipError
@@ -95,8 +95,8 @@ def bag(path: Path) -> None:
                 accepts_or_refuses(lambda run, topic: list(csv_lines(run.columns(topic))), run, topic)
         recorded = accepts_or_refuses(read_run, path)
         if isinstance(recorded, RecordedRun):
-            for use in (motion_of, timing_of, lambda run: list(gaps_in(run)), lambda run: (run.samples, run.events),
-                        lambda run: (run.summary, run.cycles()), doubts_about, verify):
+            for use in (observed_motion, timing_of, lambda run: list(gaps_in(run)), doubts_about, verify,
+                        lambda run: (run.samples, run.events), lambda run: (run.summary, run.cycles())):
                 accepts_or_refuses(use, recorded)
         accepts_or_refuses(_play, path)
 

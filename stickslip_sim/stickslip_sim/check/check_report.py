@@ -9,7 +9,7 @@ from typing import Any
 from ..runs import Run
 from .judgement import Outcome
 from .kinds import TIMING
-from .observed_run import gaps_in, motion_of
+from .observed_run import gaps_in, observed_motion
 
 
 def verdict_line(outcomes: Sequence[Outcome]) -> str:
@@ -36,7 +36,7 @@ def told(outcome: Outcome) -> str:
 
 def as_json(run: Run, outcomes: Sequence[Outcome]) -> dict[str, Any]:
     """Return everything that was found; an infinite figure is the text 'inf'."""
-    motion = motion_of(run)
+    motion = observed_motion(run)
     return {
         'run': {'name': run.name, 'begin': motion.begin, 'end': motion.end, 'states': len(motion.time),
                 'events': len(motion.events), 'is_complete': run.is_complete, 'notes': list(gaps_in(run))},

@@ -10,7 +10,7 @@ from ..runs import Run
 from .kinds import TIMING
 from .limits import Limit, Limits, check_fit
 from .observed_motion import Motion
-from .observed_run import motion_of, timing_of
+from .observed_run import observed_motion, timing_of
 
 
 class Outcome(NamedTuple):
@@ -33,7 +33,7 @@ def judge(limits: Limits, run: Run) -> list[Outcome]:
 
     A recording that was cut off is judged as far as it goes.
     """
-    motion, timing = motion_of(run), timing_of(run)
+    motion, timing = observed_motion(run), timing_of(run)
     if limits.reference:
         motion = motion.following(limits.reference)
     check_fit(limits, motion.begin, motion.end if run.is_complete else math.inf, timing is not None)

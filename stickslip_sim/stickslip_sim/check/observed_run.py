@@ -26,7 +26,7 @@ class Timing:
 
 
 @kept
-def motion_of(run: Run) -> Motion:
+def observed_motion(run: Run) -> Motion:
     """Return the motion of a run with samples, of a recorded one as far as its states go; raises RecordingError."""
     if isinstance(run, RecordedRun):
         _check_states(run)
@@ -53,7 +53,7 @@ def timing_of(run: Run) -> Timing | None:
 def gaps_in(run: Run) -> Iterator[str]:
     """Yield what is missing of a run, for people."""
     if not run.is_complete:
-        yield f'the recording has no end: checked up to t = {motion_of(run).end:.6g} s'
+        yield f'the recording has no end: checked up to t = {observed_motion(run).end:.6g} s'
     if lost := run.missing_steps:
         yield f'{lost} of {lost + len(run.states["time"])} steps are missing in the recording'
 

@@ -5,7 +5,7 @@
 from collections.abc import Iterator, Sequence
 
 from ..check.judgement import Outcome
-from ..check.observed_run import gaps_in, motion_of
+from ..check.observed_run import gaps_in, observed_motion
 from ..runs import Run
 from ..runs.wording import quantity
 
@@ -15,7 +15,7 @@ _NUMBERS = (1, 2, 3)   # columns to the right
 
 def table_lines(run: Run, outcomes: Sequence[Outcome]) -> Iterator[str]:
     """Yield the checked run, its missing parts, and a line for each limit."""
-    motion = motion_of(run)
+    motion = observed_motion(run)
     yield (f'{run.name}: {motion.begin:g} to {motion.end:g} s, {len(motion.time)} states, '
            f'{len(motion.events)} transitions')
     yield from (f'note: {note}' for note in gaps_in(run))

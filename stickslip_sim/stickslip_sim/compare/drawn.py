@@ -26,14 +26,14 @@ class Inputs(NamedTuple):
 
 
 @kept
-def applied_force(run: Run) -> Numbers:
+def external_force(run: Run) -> Numbers:
     """Return the external force at the samples, N, from the balance m ẍ = F_d + F_e − F."""
     inertia: Numbers = run.scene.axis.mass * run.samples['acceleration']
     return inertia + run.samples['friction_force'] - run.samples['drive_force']
 
 
 @kept
-def drawn(run: Run) -> Columns:
+def drawn_columns(run: Run) -> Columns:
     """Return the samples and the state just before each event, so that corners and jumps are where they are."""
     before = _before_events(run)
     times = np.concatenate([before['time'], run.samples['time']])
@@ -42,8 +42,8 @@ def drawn(run: Run) -> Columns:
 
 
 def within(run: Run, begin: float, end: float) -> Columns:
-    """Return what is `drawn` from `begin` to `end` (s)."""
-    columns = drawn(run)
+    """Return the `drawn_columns` from `begin` to `end` (s)."""
+    columns = drawn_columns(run)
     inside = rows(columns['time'], begin, end)
     return {name: column[inside] for name, column in columns.items()}
 
@@ -54,7 +54,7 @@ def steady_inputs(run: Run, begin: float = -math.inf, end: float = math.inf) -> 
     inside = rows(samples['time'], begin, end)
     if inside.start >= inside.stop:
         return None
-    velocity, force = samples['drive_velocity'][inside], applied_force(run)[inside]
+    velocity, force = samples['drive_velocity'][inside], external_force(run)[inside]
     scale = max(np.abs(samples[name][inside]).max() for name in ('friction_force', 'drive_force'))
     if np.ptp(velocity) > _STEADY * np.abs(velocity).max() or np.ptp(force) > _STEADY * scale:
         return None
@@ -97,7 +97,7 @@ def _before_events(run: Run) -> Columns:
     events, samples = run.events, run.samples
     columns = {name: np.array([getattr(event, name) for event in events], dtype=np.float64)
                for name in ('time', 'position', 'velocity', 'drive_position', 'drive_force', 'friction_force')}
-    applied = np.interp(columns['time'], samples['time'], applied_force(run))
+    applied = np.interp(columns['time'], samples['time'], external_force(run))
     columns['acceleration'] = (columns['drive_force'] + applied - columns['friction_force']) / run.scene.axis.mass
     modes = [Mode(int(samples['mode'][0])), *(event.mode for event in events[:-1])][:len(events)]
     columns['mode'] = np.array(modes, dtype=np.float64)

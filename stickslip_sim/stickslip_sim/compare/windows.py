@@ -7,7 +7,7 @@ import math
 from ..core.types import EventKind
 from ..plots.paper_panels import DrawnMotion, Stretch
 from ..runs import Run
-from .drawn import drawn, slips
+from .drawn import drawn_columns, slips
 
 _CYCLES = 5                    # that show how the motion begins
 _IN_ORBIT = 30                 # that show where it goes
@@ -18,7 +18,7 @@ _BEGINNING = 0.1               # of a slip without an end: what is shown
 def motion_of(run: Run) -> DrawnMotion:
     """Return what is drawn of a run: its first cycles, its last complete slip, its last complete cycle."""
     slip, break_away = _slip(run)
-    return DrawnMotion(drawn(run), _opening(run), slip, break_away, _orbit(run), _cycle(run))
+    return DrawnMotion(drawn_columns(run), _opening(run), slip, break_away, _orbit(run), _cycle(run))
 
 
 def _opening(run: Run) -> Stretch:

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..core.errors import InputError
 from ..simulation.cycles import Cycle, cycle_figures
+from .frame import data_frame
 from .kept import kept
 from .run import COLUMNS, Run
 from .wording import headline
@@ -30,13 +31,8 @@ class Views:
 
     def frame(self: Run) -> Any:
         """Return the samples as a pandas.DataFrame with COLUMNS; raises InputError without pandas."""
-        try:
-            import pandas
-        except ImportError:
-            raise InputError('pandas', None, 'installed for a data frame',
-                             'pip install pandas; `samples` has the same numbers without it') from None
         whole = {name: self.samples[name].astype(np.int8) for name in ('mode', 'direction')}
-        return pandas.DataFrame({name: whole.get(name, self.samples[name]) for name in COLUMNS})
+        return data_frame({name: whole.get(name, self.samples[name]) for name in COLUMNS}, 'samples')
 
     def plot(self: Run, path: Path | str) -> None:
         """Draw position, velocity, forces and mode over time into `path` (.png or .svg).

@@ -1,0 +1,92 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Studies for Python: a scene and ranges in, arrays out, without a folder."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..runs.frame import data_frame
+from ..scene import Scene
+from . import critical as search
+from .point_figures import FIGURES, MOTIONS, Motion
+from .sample import Grid, Saltelli, Sobol
+from .study import Study
+from .uncertain_file import load_uncertain, uncertain_of
+from .uncertainty import Uncertainty, uncertainty_of
+from .variation import Numbers, range_of, variation
+
+Progress = Callable[[float], None] | None
+
+
+@dataclass(frozen=True)
+class SweptPoints:
+    """The points of a sweep: a column for each parameter that varies, and for each figure (docs/maps.md)."""
+
+    columns: dict[str, Numbers]
+
+    @property
+    def motions(self) -> list[str]:
+        """What each point ends in, in words: at rest, smooth sliding, stick-slip, undecided, failed."""
+        return [MOTIONS[Motion(int(motion))] for motion in self.columns['motion']]
+
+    def frame(self) -> Any:
+        """Return the columns as a pandas.DataFrame, the motions in words; raises InputError without pandas."""
+        return data_frame({**self.columns, 'motion': self.motions}, 'columns')
+
+
+def sweep(scene: Scene, *over: str, sobol: int | None = None, duration: float | None = None,
+          progress: Progress = None) -> SweptPoints:
+    """Run a scene at many values of its parameters; return what becomes of each point.
+
+    `over` are ranges as `stickslip sweep --over` takes them, 'drive.velocity=1e-4:1e-1:100:log': every combination of
+    their values, or with `sobol` so many points between their ends (without N then).  A point runs for `duration` s, or
+    until its motion settles.  Raises InputError.
+    """
+    variations = tuple(variation(text, drawn=sobol is not None) for text in over)
+    sample = Grid(variations) if sobol is None else Sobol(variations, sobol, scene.seed)
+    return SweptPoints(_columns(Study(scene.values, sample, duration), progress))
+
+
+def critical(scene: Scene, name: str, between: tuple[float, float] | None = None, accuracy: float = 1e-9,
+             progress: Progress = None) -> search.Critical:
+    """Return the values of a parameter at which stick-slip begins or ends, from rest and from sliding.
+
+    They are sought `between` two values (None: 1/100 to 100 times that of the scene) to a relative `accuracy`.
+    Raises InputError.
+    """
+    if between is None:
+        over = search.default_range(scene, name)
+    else:
+        over = range_of('between', name, '{!r}:{!r}'.format(*map(float, between)))
+    return search.critical(scene, over, accuracy, progress)
+
+
+def uncertainty(scene: Scene, known: str | Path | Mapping[str, object], samples: int = 1024, seed: int = 0,
+                duration: float | None = None, progress: Progress = None) -> Uncertainty:
+    """Return what becomes of a scene whose parameters are known only roughly: percentiles, and which one decides.
+
+    `known` is a file as `stickslip uncertainty --with` takes it, or its section of parameters with a `seed`; `samples`
+    is a power of two.  Raises InputError.
+    """
+    if isinstance(known, Mapping):
+        found = uncertain_of({'parameters': known, 'seed': seed})
+    else:
+        found = load_uncertain(str(known))
+    sample = Saltelli(found.distributions, samples, found.seed)
+    return uncertainty_of(sample, _columns(Study(scene.values, sample, duration), progress))
+
+
+def _columns(study: Study, progress: Progress) -> dict[str, Numbers]:
+    """Run all points of a study; return its parameters and figures by name."""
+    parts = []
+    for first, last in study.stretches():
+        figures = study.figures(first, last)
+        numbers = [np.asarray(getattr(figures, name), dtype=np.float64) for name in FIGURES]
+        parts.append(np.column_stack([study.points(first, last), *numbers]))
+        if progress:
+            progress(last / study.count)
+    return dict(zip((*study.names, *FIGURES), np.concatenate(parts).T))
