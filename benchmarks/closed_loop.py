@@ -54,13 +54,14 @@ def close_loop(axis: Axis, controller: Controller, moves: Moves, duration: float
     following, progress = Following(controller, moves), None
     run = Run(moves, [], [], [], [])
     waiting = deque([0.0] * delay)
+    command: float | None = None
     for step in range(round(duration * RATE)):
-        result = rig.make_step()
+        result = rig.make_step(command)
         assert result.measured is not None
         answer = following.answer(progress, grid.nanoseconds(step), result.measured)
         progress = answer.progress
         waiting.append(answer.command.velocity)
-        rig.command_velocity(waiting.popleft())
+        command = waiting.popleft()
         run.setpoints.append(answer.setpoint)
         run.samples.append(result.sample)
         run.commands.append(answer.command.velocity)

@@ -56,6 +56,7 @@ class _Tape:
 
     def __init__(self, writer: BagWriter) -> None:
         self._writer = writer
+        self._velocity: float | None = None    # of the next step, m/s
         self._codec = MessageCodec(_CODEC)
         self._packers = {topic: Packer(topic) for topic in (topics.SLIDER_STATE, topics.FRICTION_FORCE,
                                                             topics.MODE_EVENT)}
@@ -63,8 +64,8 @@ class _Tape:
     def order(self, rig: Rig, scene: Scene) -> None:
         """Order one thing of every kind before the next step."""
         at, step = rig.time_ns, rig.step + 1
-        rig.command_velocity(0.03)
-        self._encoded(topics.DRIVE_VELOCITY, {'header': header(at), 'velocity': 0.03}, at, step)
+        self._velocity = 0.03
+        self._encoded(topics.DRIVE_VELOCITY, {'header': header(at), 'velocity': self._velocity}, at, step)
         rig.change_axis(changed(scene, {'axis.mass': 300.0}).axis)
         self._encoded(topics.PARAMETER_EVENTS, _parameter_event(at, 'axis.mass', 300.0), at, step)
         rig.inject(Fault('dry', 'friction_scale', 0.04, 0.1, 1.5))
@@ -72,7 +73,7 @@ class _Tape:
     def step(self, rig: Rig) -> None:
         """Make a step and write what came of it."""
         before = rig.time_ns
-        result = rig.make_step()
+        result, self._velocity = rig.make_step(self._velocity), None
         self._notes(result.notes, before, result.step)
         for event in result.events:
             if event.kind == EventKind.KNOT:    # a node does not tell of them

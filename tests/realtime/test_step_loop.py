@@ -26,11 +26,15 @@ from tests.support.waiting import wait_for
 RATE = 1000.0
 
 
+def slots() -> tuple[CommandSlot, CommandSlot]:
+    return CommandSlot('velocity', 'm/s', 1.0), CommandSlot('force', 'N', 1e5)
+
+
 class Bench:
     """A loop that runs 20 times faster than time, and keeps what it hands out."""
 
     def __init__(self, solver: Solver = exact.SOLVER, by_request: bool = False) -> None:
-        self.slots = (CommandSlot('velocity', 'm/s', 1.0), CommandSlot('force', 'N', 1e5))
+        self.slots = slots()
         self.results: list[StepResult] = []
         grid = Grid(RATE)
         rig = Rig(paper_axis(COMPLIANT), InitialState(), constant(0.002), constant(0.0), solver, grid, RigSettings())
@@ -142,7 +146,7 @@ def test_a_bad_command_leaves_the_one_before(value: float) -> None:
 
 def test_the_loop_makes_step_0_before_it_hears_requests() -> None:
     results: list[StepResult] = []
-    loop = StepLoop(make_rig(), Unpaced(Grid(1000.0)), (), [results.append], Watchdog(0.0), by_request=True)
+    loop = StepLoop(make_rig(), Unpaced(Grid(1000.0)), slots(), [results.append], Watchdog(0.0), by_request=True)
     loop.start()
     counts: list[int] = []
 
@@ -163,7 +167,7 @@ def test_the_loop_makes_step_0_before_it_hears_requests() -> None:
 
 def test_a_paused_loop_that_is_reset_has_its_start() -> None:
     results: list[StepResult] = []
-    loop = StepLoop(make_rig(), Unpaced(Grid(1000.0)), (), [results.append], Watchdog(0.0))
+    loop = StepLoop(make_rig(), Unpaced(Grid(1000.0)), slots(), [results.append], Watchdog(0.0))
     loop.paused = True
     loop.start()
     wait_for(lambda: loop.step == 0, 'the start')

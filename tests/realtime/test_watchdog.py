@@ -32,13 +32,13 @@ class Bench:
         grid, self.clock = Grid(rate), FakeClock()
         paced = Pacer(grid, clock=self.clock, watches_steady=mode == 'realtime')
         step_clock: StepClock = Unpaced(grid) if mode == 'lockstep' else paced
-        self.slot = CommandSlot('velocity', 'm/s', 1.0)
+        self.slots = CommandSlot('velocity', 'm/s', 1.0), CommandSlot('force', 'N', 1.0)
         self.rig = make(rate=rate)
         self.results: list[StepResult] = []
-        self.loop = StepLoop(self.rig, step_clock, (self.slot,), [self._take], Watchdog(timeout), mode == 'lockstep')
+        self.loop = StepLoop(self.rig, step_clock, self.slots, [self._take], Watchdog(timeout), mode == 'lockstep')
 
     def command(self) -> None:
-        self.slot.offer(0.01, self.clock.now())
+        self.slots[0].offer(0.01, self.clock.now())
 
     def stall(self, milliseconds: int) -> None:
         """Let time pass while the loop stands."""
@@ -116,7 +116,7 @@ class TestSilence:
 
     def test_refused_commands_are_none(self) -> None:
         def bad(bench: Bench) -> None:
-            bench.slot.offer(math.nan, bench.clock.now())
+            bench.slots[0].offer(math.nan, bench.clock.now())
 
         assert Bench().run(300, {9: command, 50: bad, 80: bad}) == [111]
 
@@ -160,7 +160,7 @@ class TestPause:
     def test_steps_on_request_in_a_pause_are_none_either(self) -> None:
         bench = Bench()
         bench.run(50, {9: command})
-        other = StepLoop(bench.rig, Pacer(Grid(1000.0), clock=bench.clock), (bench.slot,), [bench.results.append],
+        other = StepLoop(bench.rig, Pacer(Grid(1000.0), clock=bench.clock), bench.slots, [bench.results.append],
                          Watchdog(TIMEOUT))
         other.paused = True
         other.start()
@@ -174,7 +174,7 @@ class TestPause:
 
 def test_a_reset_forgets_the_commands() -> None:
     bench = Bench('lockstep')
-    again = StepLoop(bench.rig, Unpaced(Grid(1000.0)), (bench.slot,), [bench.results.append], Watchdog(TIMEOUT), True)
+    again = StepLoop(bench.rig, Unpaced(Grid(1000.0)), bench.slots, [bench.results.append], Watchdog(TIMEOUT), True)
     again.start()
     assert again.at_boundary(lambda: again.run_steps(50, 0.01, None, lambda: False))
     assert again.at_boundary(again.restart)

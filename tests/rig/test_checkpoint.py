@@ -25,10 +25,8 @@ def go(rig: Rig, scene: Scene, first: int, count: int) -> list[StepResult]:
     results = []
     for n in range(first, first + count):
         stream = Random(n)
-        if n % 7 == 0:
-            rig.command_velocity(stream.uniform(-0.01, 0.01))
-        if n % 97 == 0:
-            rig.command_force(stream.uniform(-900.0, 900.0))
+        velocity = stream.uniform(-0.01, 0.01) if n % 7 == 0 else None
+        force = stream.uniform(-900.0, 900.0) if n % 97 == 0 else None
         if n % 100 == 50:
             kind = stream.choice(['friction_scale', 'force_pulse', 'command_loss', 'command_delay', 'drive_freeze'])
             rig.inject(Fault('', kind, 0.01, 0.1, 0.0 if kind == 'drive_freeze' else stream.random()))
@@ -36,7 +34,7 @@ def go(rig: Rig, scene: Scene, first: int, count: int) -> list[StepResult]:
             rig.time_out(0.2)
         if n % 333 == 3:
             rig.change_axis(changed(scene, {'axis.mass': stream.uniform(200.0, 400.0)}).axis)
-        results.append(rig.make_step())
+        results.append(rig.make_step(velocity, force))
     return results
 
 

@@ -12,7 +12,7 @@ from stickslip_sim.core.time_grid import Grid
 from stickslip_sim.rig import Fault, RigEventKind
 from stickslip_sim.rig.faults import MAX_FAULTS, RULES
 from stickslip_sim.scene import load_scene
-from tests.support.rigs import bits, inject, make, run, told
+from tests.support.rigs import bits, inject, make, run, told, velocity
 from tests.support.scene_files import refusal
 
 GRID = Grid(1000.0)
@@ -93,7 +93,7 @@ class TestRefused:
             rig.inject(Fault('', kind, 0.0, 0.005, value))
         for value in bad:
             assert f'with {kind}: ' in str(refusal(rig.inject, Fault('', kind, 0.0, 1.0, value)))
-        run(rig, 20, {5: [lambda rig: rig.command_velocity(0.01)]})
+        run(rig, 20, {5: [velocity(0.01)]})
 
     def test_every_kind_has_a_rule_that_was_tried(self) -> None:
         assert set(RULES) == {'friction_scale', 'force_pulse', 'encoder_freeze', 'encoder_step', 'encoder_dropout',

@@ -18,7 +18,7 @@ from stickslip_sim.rig import Fault, RigEventKind
 from stickslip_sim.rig.faults import Faults
 from stickslip_sim.scene import load_scene
 from stickslip_sim.simulation.simulator import Simulator
-from tests.support.rigs import AXIS, STUCK, Script, bits, inject, make, run, told
+from tests.support.rigs import AXIS, STUCK, Script, bits, force, inject, make, run, told
 
 GRID = Grid(1000.0)
 
@@ -86,7 +86,7 @@ class TestForcePulse:
     def test_those_that_overlap_add_to_each_other_and_to_commands(self) -> None:
         script: Script = {10: [inject('force_pulse', duration=0.02, value=100.0)],
                           20: [inject('force_pulse', duration=0.02, value=-30.0)],
-                          25: [lambda rig: rig.command_force(7.0)]}
+                          25: [force(7.0)]}
         forces = [result.sample.external_force for result in run(make(), 50, script)]
         assert [forces[step] for step in (9, 10, 20, 25, 30, 40)] == [0.0, 100.0, 70.0, 77.0, -23.0, 7.0]
 

@@ -15,6 +15,7 @@ from stickslip_sim.core.errors import InputError, SolverError
 from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant
 from stickslip_sim.core.time_grid import Grid
 from stickslip_sim.core.types import EventKind
+from stickslip_sim.realtime.command_slot import CommandSlot
 from stickslip_sim.realtime.pacing import Unpaced
 from stickslip_sim.realtime.step_loop import StepLoop
 from stickslip_sim.realtime.watchdog import Watchdog
@@ -24,7 +25,21 @@ from stickslip_sim.rig.encoder import EncoderSettings
 from stickslip_sim.rig.settings import RigSettings
 from stickslip_sim.scene import load_scene
 from stickslip_sim.simulation.simulator import Simulator
-from tests.support.rigs import AXIS, STUCK, Order, Script, bits, inject, make, random_script, run, tired_after
+from tests.support.rigs import (
+    AXIS,
+    STUCK,
+    Order,
+    Script,
+    bits,
+    force,
+    given,
+    inject,
+    make,
+    random_script,
+    run,
+    tired_after,
+    velocity,
+)
 
 STEPS = 600
 FULL: dict[str, Any] = {
@@ -66,15 +81,14 @@ class TestDeterminism:
     def test_reset_forgets_what_was_ordered_and_not_yet_obeyed(self) -> None:
         rig = make()
         run(rig, 20)
-        for order in (lambda: rig.command_velocity(0.01), lambda: rig.command_force(100.0), lambda: rig.time_out(1.0),
-                      lambda: rig.inject(Fault('', 'drive_freeze', 0.0, math.inf, 0.0))):
-            order()
+        rig.time_out(1.0)
+        rig.inject(Fault('', 'drive_freeze', 0.0, math.inf, 0.0))
         rig.reset()
         assert bits(run(rig, 100)) == bits(run(make(), 100))
 
     @pytest.mark.parametrize('settings', [{}, {'measures': True}, {'limits': DriveLimits(0.01, 0.4)}])
     def test_seeds_do_not_matter_without_randomness(self, settings: dict[str, Any]) -> None:
-        script = {100: [lambda rig: rig.command_velocity(0.02), inject('friction_scale', value=2.0)]}
+        script = {100: [velocity(0.02), inject('friction_scale', value=2.0)]}
         one, other = (run(make(seed=seed, **settings), 300, script) for seed in (1, 2))
         assert bits(one) == bits(other)
 
@@ -98,21 +112,25 @@ class TestDeterminism:
 
 
 def change_velocity(step: int) -> Order:
-    return lambda rig: rig.command_velocity(step * 1e-5)
+    return velocity(step * 1e-5)
 
 
 def in_groups(rig: Rig, groups: Sequence[int], script: Script) -> list[StepResult]:
     """Make step 0 and then steps group by group, in the thread of a loop; orders are given as steps come."""
     results: list[StepResult] = []
+    slots = CommandSlot('velocity', 'm/s', math.inf), CommandSlot('force', 'N', math.inf)
+
+    def order(step: int) -> None:
+        for slot, value in zip(slots, given(rig, script.get(step, ()))):
+            if value is not None:
+                slot.offer(value, 1)
 
     def take(result: StepResult) -> None:
         results.append(result)
-        for order in script.get(result.step + 1, ()):
-            order(rig)
+        order(result.step + 1)
 
-    for order in script.get(0, ()):
-        order(rig)
-    loop = StepLoop(rig, Unpaced(Grid(1000.0)), (), [take], Watchdog(0.0), by_request=True)
+    order(0)
+    loop = StepLoop(rig, Unpaced(Grid(1000.0)), slots, [take], Watchdog(0.0), by_request=True)
     loop.start()
     for count in groups:
         assert loop.at_boundary(partial(loop.run_steps, count, None, None, lambda: False))
@@ -125,21 +143,20 @@ class TestNeutral:
     @pytest.mark.parametrize('settings', [{}, {'measures': True}, {'seed': 9, 'on_timeout': 'fault'}])
     @pytest.mark.parametrize('scene', ['paper_fig7', 'paper_fig8', 'cutting_force', 'positioning', 'stribeck'])
     def test_a_rig_without_anything_is_the_simulator(self, scene: str, settings: dict[str, Any]) -> None:
-        given = load_scene(scene)
-        grid = Grid(given.time.rate)
-        bare = Simulator(given.axis, given.initial, given.drive, given.force, given.solver.make(given.axis))
-        rig = Rig(given.axis, given.initial, given.drive, given.force, given.solver.make(given.axis), grid,
+        loaded = load_scene(scene)
+        grid = Grid(loaded.time.rate)
+        bare = Simulator(loaded.axis, loaded.initial, loaded.drive, loaded.force, loaded.solver.make(loaded.axis))
+        rig = Rig(loaded.axis, loaded.initial, loaded.drive, loaded.force, loaded.solver.make(loaded.axis), grid,
                   RigSettings(**settings))
-        commands = {1000: (0.004, None), 1300: (None, 300.0), 1500: (-0.01, -200.0), 1501: (-0.01, 0.0)}
+        commands: dict[int, tuple[float | None, float | None]] = {
+            1000: (0.004, None), 1300: (None, 300.0), 1500: (-0.01, -200.0), 1501: (-0.01, 0.0)}
         for step in range(2000):
-            velocity, force = commands.get(step, (None, None))
-            if velocity is not None:
-                rig.command_velocity(velocity)
-                bare.command_drive(velocity)
-            if force is not None:
-                rig.command_force(force)
-                bare.command_force(force)
-            result = rig.make_step()
+            speed, push = commands.get(step, (None, None))
+            if speed is not None:
+                bare.command_drive(speed)
+            if push is not None:
+                bare.command_force(push)
+            result = rig.make_step(speed, push)
             assert bits(result.events) == bits(bare.advance(grid.instant(step)))
             assert repr(result.sample) == repr(bare.sample())
             if result.measured:
@@ -164,10 +181,10 @@ class TestOrders:
     @pytest.mark.parametrize('value', [math.nan, math.inf, -math.inf])
     def test_what_is_no_number_is_refused(self, value: float) -> None:
         rig = make()
-        for name, order in (('velocity', rig.command_velocity), ('force', rig.command_force)):
+        for name in ('velocity', 'force'):
             with pytest.raises(InputError, match=f'{name} = {value}'):
-                order(value)
-        assert run(rig, 2)[-1].velocity is None
+                rig.make_step(**{name: value})
+        assert bits(run(rig, 2)) == bits(run(make(), 2))
 
 
 class TestAtOnce:
@@ -184,8 +201,8 @@ class TestAtOnce:
 
     def test_a_pulse_that_ends_as_friction_comes_back(self) -> None:
         results = run(make(STUCK, 0.0), 200, {10: [inject('friction_scale', value=2.0)],
-                                               20: [lambda rig: rig.command_force(self.HELD)],
-                                               60: [lambda rig: rig.command_force(0.0)]})
+                                               20: [force(self.HELD)],
+                                               60: [force(0.0)]})
         assert [event for result in results for event in result.events] == []
 
     def test_a_pulse_that_begins_as_friction_falls_breaks_away_once(self) -> None:
@@ -197,7 +214,7 @@ class TestAtOnce:
     def test_faults_that_are_cleared_together(self) -> None:
         results = run(make(STUCK, 0.0), 200, {
             10: [inject('friction_scale', value=10.0, duration=1.0), inject('friction_scale', value=0.1, duration=1.0),
-                 lambda rig: rig.command_force(500.0)],
+                 force(500.0)],
             60: [lambda rig: rig.clear_faults()]})
         assert [event for result in results for event in result.events] == []
 
@@ -228,8 +245,7 @@ class TestFailure:
     def test_reset_after_the_state_left_the_range_of_numbers(self) -> None:
         rig = make(drive=InputProfile((0.0,), (0.0,), (0.0,), sinusoids=(Sinusoid(1e-3, 5.0, 0.0),)))
         first = run(rig, 100)
-        rig.command_velocity(1.7e308)
         with pytest.raises(SolverError):
-            run(rig, 100)
+            run(rig, 100, {100: [velocity(1.7e308)]})
         rig.reset()
         assert bits(run(rig, 100)) == bits(first)

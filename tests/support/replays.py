@@ -10,7 +10,7 @@ import numpy as np
 from stickslip_sim.recording import Bag
 from stickslip_sim.rig import Fault, RigEventKind, StepResult
 from stickslip_sim.scene import Scene, scene_from_values
-from tests.support.rigs import Order, Script, run
+from tests.support.rigs import Order, Script, force, run, velocity
 
 FIELDS = ('time', 'position', 'velocity', 'acceleration', 'drive_position', 'drive_velocity', 'drive_force',
           'rest_time', 'mode', 'direction')
@@ -48,8 +48,8 @@ def assert_same_states(recorded: Bag, products: list[StepResult]) -> None:
 
 def _command(message: Any) -> Order:
     if hasattr(message, 'velocity'):
-        return lambda rig: rig.command_velocity(message.velocity)
-    return lambda rig: rig.command_force(message.force)
+        return velocity(message.velocity)
+    return force(message.force)
 
 
 def _change(scene: Scene) -> Order:

@@ -5,7 +5,7 @@
 import random
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 from stickslip_sim.axis import Axis, InitialState
 from stickslip_sim.core.input_profile import InputProfile, constant
@@ -16,7 +16,15 @@ from stickslip_sim.rig.settings import RigSettings
 from stickslip_sim.solvers import Solver, exact
 from tests.support.axes import COMPLIANT, RIGID, paper_axis
 
-Order = Callable[[Rig], object]
+
+class Command(NamedTuple):
+    """What a step is made with: m/s and N."""
+
+    velocity: float | None = None
+    force: float | None = None
+
+
+Order = Callable[[Rig], object] | Command
 Script = Mapping[int, Iterable[Order]]
 
 RATE = 1000.0
@@ -46,10 +54,27 @@ def run(rig: Rig, steps: int, script: Script | None = None) -> list[StepResult]:
     """Make steps; orders of a step are given before it."""
     results = []
     for _ in range(steps):
-        for order in (script or {}).get(rig.step + 1, ()):
-            order(rig)
-        results.append(rig.make_step())
+        results.append(rig.make_step(*given(rig, (script or {}).get(rig.step + 1, ()))))
     return results
+
+
+def given(rig: Rig, orders: Iterable[Order]) -> Command:
+    """Give orders to a rig; return the commands among them, the last of each kind."""
+    commands = Command()
+    for order in orders:
+        if isinstance(order, Command):
+            commands = Command(*(old if new is None else new for old, new in zip(commands, order)))
+        else:
+            order(rig)
+    return commands
+
+
+def velocity(value: float) -> Order:
+    return Command(velocity=value)
+
+
+def force(value: float) -> Order:
+    return Command(force=value)
 
 
 def inject(kind: str, start: float = 0.0, duration: float = 0.05, value: float = 0.0, name: str = '') -> Order:
@@ -74,13 +99,13 @@ def random_script(seed: int, steps: int) -> Script:
 
 
 def _random_order(stream: random.Random) -> Order:
-    velocity, force, mass = stream.uniform(-0.02, 0.02), stream.uniform(-900.0, 900.0), stream.uniform(300.0, 400.0)
+    speed, push, mass = stream.uniform(-0.02, 0.02), stream.uniform(-900.0, 900.0), stream.uniform(300.0, 400.0)
     kind = stream.choice([*RULES])
     value = {'friction_scale': stream.uniform(0.1, 3.0), 'force_pulse': stream.uniform(-500.0, 500.0),
              'encoder_step': 1e-4, 'encoder_dropout': 0.5, 'command_loss': 0.5, 'command_delay': 0.007}.get(kind, 0.0)
     fault = Fault('', kind, stream.choice([0.0, 0.01]), stream.choice([0.001, 0.02]), value)
     return stream.choice([
-        lambda rig: rig.command_velocity(velocity), lambda rig: rig.command_velocity(velocity),
-        lambda rig: rig.command_force(force), lambda rig: rig.inject(fault),
+        velocity(speed), velocity(speed),
+        force(push), lambda rig: rig.inject(fault),
         lambda rig: rig.change_axis(replace(AXIS, mass=mass)), lambda rig: rig.time_out(0.5),
         lambda rig: rig.clear_faults()])

@@ -51,6 +51,10 @@ class InputProfile:
     sinusoids: tuple[Sinusoid, ...] = ()
 
     def __post_init__(self) -> None:
+        if self.sinusoids:
+            self._check_sinusoids()
+
+    def _check_sinusoids(self) -> None:
         if len(self.sinusoids) > MAX_SINUSOIDS:
             raise InputError('sinusoids', len(self.sinusoids), f'at most {MAX_SINUSOIDS} in a course',
                              'leave the weakest out')
@@ -79,18 +83,28 @@ class InputProfile:
         end = turn + self.starts[i + 1] if i + 1 < len(self.starts) else (turns + 1.0) * self.period
         return Piece(turn + self.starts[i], end, self.values[i], self.rates[i])
 
+    def pieces_at(self, time: float) -> tuple[float, float, float]:
+        """Return what the pieces make at `time` >= 0 s: the value, its rate, and until when."""
+        if len(self.starts) == 1 and self.period == math.inf:
+            return self.values[0] + self.rates[0] * (time - self.starts[0]), self.rates[0], math.inf
+        piece = self.piece_at(time)
+        return piece.value + piece.rate * (time - piece.start), piece.rate, piece.end
+
     def plus(self, value: float) -> 'InputProfile':
         """Return the course with a constant added."""
         return replace(self, values=tuple(own + value for own in self.values))
 
     def value_at(self, time: float) -> float:
         """Return the value at `time` >= 0 s."""
-        piece = self.piece_at(time)
-        return piece.value + piece.rate * (time - piece.start) + sum(sinusoid.at(time) for sinusoid in self.sinusoids)
+        return self.pieces_at(time)[0] + sum(sinusoid.at(time) for sinusoid in self.sinusoids)
 
 
-def plain_of(profile: InputProfile) -> list[Any]:
-    """Return a course as numbers in lists, for `course_of`."""
+Input = InputProfile | float    # a course, or a number that holds
+
+
+def plain_of(given: Input) -> list[Any]:
+    """Return an input as numbers in lists, for `profile_of`."""
+    profile = given if isinstance(given, InputProfile) else constant(given)
     return [list(profile.starts), list(profile.values), list(profile.rates), profile.period,
             [list(sinusoid) for sinusoid in profile.sinusoids]]
 

@@ -5,7 +5,7 @@
 import math
 from fractions import Fraction
 
-from .types import Instant
+from .types import Instant, tuple_of
 
 
 class Grid:
@@ -18,7 +18,7 @@ class Grid:
     def instant(self, step: int) -> Instant:
         """Return the simulation time at which a step ends."""
         second, rest = divmod(step * self._down, self._up)
-        return Instant(float(second), rest / self._up)
+        return tuple_of(Instant, (float(second), rest / self._up))
 
     def nanoseconds(self, step: int) -> int:
         """Return that time rounded to nanoseconds."""

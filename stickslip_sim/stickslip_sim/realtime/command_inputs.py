@@ -1,14 +1,12 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Where the step loop takes its commands from: a slot for each kind, and the order that a command in it becomes."""
+"""Where the step loop takes its commands from: a slot for each kind, and which of them are new to a step."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from ..rig.step_result import Counts
 from .command_slot import Command, CommandSlot
-
-Order = Callable[[float], None]
 
 
 class CommandTotals(NamedTuple):
@@ -21,18 +19,28 @@ class CommandTotals(NamedTuple):
     timed_out: int    # times that they stopped coming
 
 
-class CommandInputs:
-    """Gives each new command as an order once, and remembers which are in force; for the thread of the loop."""
+class NewCommands(NamedTuple):
+    """What a step takes up; None where nothing new has come."""
 
-    def __init__(self, slots: Sequence[CommandSlot], orders: Sequence[Order]) -> None:
+    velocity: float | None    # m/s
+    force: float | None       # N
+    age: int | None           # ns since the newest command in force arrived, None without one
+    arrival: int              # of the newest of these, ns on the steady clock; 0 without one
+
+
+class CommandInputs:
+    """Hands out each new command once, and remembers which are in force; for the thread of the loop."""
+
+    def __init__(self, slots: tuple[CommandSlot, CommandSlot]) -> None:
         self.slots = slots
-        self._orders = orders
-        self._held: list[Command | None] = [None] * len(slots)
+        self._velocity, self._force = slots
+        self._held_velocity: Command | None = None
+        self._held_force: Command | None = None
 
     @property
     def held(self) -> list[float | None]:
         """The commands in force, by input; None where the course of the scene is."""
-        return [command.value if command else None for command in self._held]
+        return [command.value if command else None for command in (self._held_velocity, self._held_force)]
 
     def totals(self, counts: Counts) -> CommandTotals:
         """Return what befell the commands so far, with what the rig counted."""
@@ -46,22 +54,23 @@ class CommandInputs:
             if value is not None:
                 slot.latest = Command(value, now)
 
-    def take(self, now: int) -> tuple[int | None, int]:
-        """Order what is new; return the age of the newest command in force, and when the newest new one arrived."""
-        newest = fresh = 0
-        for kind, slot in enumerate(self.slots):
-            command = slot.latest
-            if command is None:
-                continue
-            newest = max(newest, command.arrival)
-            if command is not self._held[kind]:
-                self._orders[kind](command.value)
-                self._held[kind] = command
-                fresh = max(fresh, command.arrival)
-        return (now - newest if newest else None), fresh
+    def take(self, now: int) -> NewCommands:
+        """Return what has come since the last time; it is in force then."""
+        velocity, force = self._velocity.latest, self._force.latest
+        new_velocity = velocity if velocity is not self._held_velocity else None
+        new_force = force if force is not self._held_force else None
+        self._held_velocity, self._held_force = velocity, force
+        newest = _later(velocity, force)
+        return NewCommands(new_velocity.value if new_velocity else None, new_force.value if new_force else None,
+                           now - newest if newest else None, _later(new_velocity, new_force))
 
     def forget(self) -> None:
         """Begin anew, as if no command had come."""
         for slot in self.slots:
             slot.forget()
-        self._held = [None] * len(self.slots)
+        self._held_velocity = self._held_force = None
+
+
+def _later(one: Command | None, other: Command | None) -> int:
+    """Return when the later of two commands arrived, ns; 0 without any."""
+    return max(one.arrival if one else 0, other.arrival if other else 0)

@@ -32,7 +32,7 @@ class StepLoop:
     `takers` get each product, in the loop's thread.  With `by_request` time moves with `run_steps` only.
     """
 
-    def __init__(self, rig: Rig, clock: StepClock, slots: Sequence[CommandSlot], sinks: Sequence[Sink],
+    def __init__(self, rig: Rig, clock: StepClock, slots: tuple[CommandSlot, CommandSlot], sinks: Sequence[Sink],
                  watchdog: Watchdog, by_request: bool = False) -> None:
         self.rig = rig
         self.paused = False
@@ -41,7 +41,7 @@ class StepLoop:
         self.crash: BaseException | None = None
         self.timing_statistics, self.account = TimingStatistics(), clock.account
         self._clock, self._sinks, self._watchdog = clock, sinks, watchdog
-        self._inputs = CommandInputs(slots, (rig.command_velocity, rig.command_force))
+        self._inputs = CommandInputs(slots)
         self._requests: deque[Callable[[], None]] = deque()
         self._is_over, self._wake = threading.Event(), threading.Event()
         self._thread = threading.Thread(target=self._run, name='steps', daemon=True)
@@ -156,13 +156,14 @@ class StepLoop:
         return bool(self.failure) or (self.step >= 0 and (self.paused or self.by_request))
 
     def _make_step(self, begin: int, lateness: int) -> StepResult:
-        age, fresh = self._inputs.take(begin)
+        new = self._inputs.take(begin)
         self._watch()
-        result = self.rig.make_step()
+        result = self.rig.make_step(new.velocity, new.force)
         for take in self._sinks:
             take(result)
         end = self._clock.now()
-        self.timing_statistics.add(self.rig.time_ns, end - begin, lateness, age, end - fresh if fresh else None)
+        self.timing_statistics.add(self.rig.time_ns, end - begin, lateness, new.age,
+                                   end - new.arrival if new.arrival else None)
         return result
 
     def _watch(self) -> None:

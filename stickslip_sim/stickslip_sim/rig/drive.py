@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ..core.input_profile import InputProfile, constant, plain_of, profile_of
+from ..core.input_profile import Input, InputProfile, plain_of, profile_of
 from ..core.types import Instant
 
 
@@ -28,31 +28,34 @@ class Drive:
     def __init__(self, profile: InputProfile, limits: DriveLimits) -> None:
         self._limits = limits
         self._own = profile               # while nothing was commanded
-        self._profile = profile
+        self._profile: Input = profile
         self._target: float | None = None
         self._acceleration = math.inf    # with which it makes for it
         self._frozen = False
+        self.is_new = False              # since its course was last taken
 
     @property
-    def profile(self) -> InputProfile:
-        """What it does: constant, ramps, or the course of the scene."""
+    def profile(self) -> Input:
+        """What it does: a velocity that holds, m/s, ramps, or the course of the scene."""
         return _STANDSTILL if self._frozen else self._profile
 
-    def can_follow(self, velocity: float, now: Instant) -> bool:
-        """Return whether it would take on a velocity at once."""
-        within = abs(velocity) <= self._limits.velocity
-        return within and (self._limits.acceleration == math.inf or velocity == self._at(now))
+    def follow(self, velocity: float, now: Instant, acceleration: float = math.inf) -> bool:
+        """Make for a velocity (m/s) within the limits, and within `acceleration` (m/s²) if that is lower.
 
-    def follow(self, velocity: float, now: Instant, acceleration: float = math.inf) -> None:
-        """Make for a velocity (m/s) within the limits, and within `acceleration` (m/s²) if that is lower."""
-        target = min(max(velocity, -self._limits.velocity), self._limits.velocity)
-        acceleration = min(acceleration, self._limits.acceleration)
-        if target == self._target and acceleration == self._acceleration:
-            return
-        self._target, self._acceleration = target, acceleration
-        if not self._frozen:
-            self._profile = (_ramp(self._at(now), target, now, acceleration) if acceleration < math.inf
-                            else constant(target))
+        Returns whether the limits let it take that velocity on at once.
+        """
+        limits = self._limits
+        is_within = -limits.velocity <= velocity <= limits.velocity
+        takes_it_on = is_within and (limits.acceleration == math.inf or velocity == self._at(now))
+        target = velocity if is_within else math.copysign(limits.velocity, velocity)
+        acceleration = min(acceleration, limits.acceleration)
+        if target != self._target or acceleration != self._acceleration:
+            self._target, self._acceleration = target, acceleration
+            if not self._frozen:
+                self.is_new = True
+                self._profile = (target if acceleration == math.inf
+                                 else _ramp(self._at(now), target, now, acceleration))
+        return takes_it_on
 
     def freeze(self, frozen: bool, now: Instant) -> None:
         """Stand still at once, or make for the latest target again: from standstill, within the limits."""
@@ -60,6 +63,7 @@ class Drive:
             self._profile = self._own
             if self._target is not None:
                 self._profile = _ramp(0.0, self._target, now, self._acceleration)
+        self.is_new |= frozen != self._frozen
         self._frozen = frozen
 
     def checkpoint(self) -> list[Any]:
@@ -74,17 +78,18 @@ class Drive:
         self._acceleration, self._frozen = float(acceleration), bool(frozen)
 
     def _at(self, now: Instant) -> float:
-        return self.profile.value_at(now.seconds)
+        profile = self.profile
+        return profile.value_at(now.seconds) if isinstance(profile, InputProfile) else profile + 0.0    # never −0.0
 
 
-_STANDSTILL = constant(0.0)
+_STANDSTILL = 0.0
 
 
-def _ramp(start: float, target: float, now: Instant, acceleration: float) -> InputProfile:
+def _ramp(start: float, target: float, now: Instant, acceleration: float) -> Input:
     begin = now.seconds
     end = begin + abs(target - start) / acceleration
     if not end > begin:
-        return constant(target)
+        return target
     rate = math.copysign(acceleration, target - start)
     if begin == 0.0:
         return InputProfile((0.0, end), (start, target), (rate, 0.0))

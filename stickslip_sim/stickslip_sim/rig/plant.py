@@ -16,64 +16,74 @@ from .friction import with_friction_scaled
 
 
 class Plant:
-    """Keeps what was ordered apart from what acts; what changes between two steps takes effect with `act`, at once."""
+    """Keeps what was ordered apart from what acts; what changes between two steps takes effect with `act`, at once.
+
+    The simulator keeps the inputs that act.  Commands are finite: `Rig.make_step` has checked them.
+    """
 
     def __init__(self, simulator: Simulator, drive: Drive, force: InputProfile, faults: Faults) -> None:
-        self.drive = drive
-        self._simulator, self._faults = simulator, faults
-        self._axis = simulator.axis           # without faults
-        self._force, self._acting_force = force, force
-        self._acting_drive = drive.profile
+        self.is_changed = False          # something, since `act`
+        self._has_new_parts = False      # another axis, or other faults
+        self._simulator, self._drive, self._faults = simulator, drive, faults
+        self._axis = simulator.axis      # without faults
+        self._force = force              # without faults
         self._friction_scale = 1.0
-        self._is_changed = False              # axis, force or faults, since they last took effect
 
     def rewind(self) -> None:
         """Bring the simulator back to time 0, without faults; the parameters of the axis stay as they are."""
         self._change_axis(1.0)
         self._simulator.reset()
 
-    def command_force(self, force: float) -> None:
+    def follow(self, velocity: float, acceleration: float = math.inf) -> bool:
+        """Let the drive make for a velocity (m/s); return whether its limits let it take that on at once."""
+        self.is_changed = True
+        return self._drive.follow(velocity, self._simulator.time, acceleration)
+
+    def push(self, force: float) -> None:
         """Let a force act on the slider, N."""
-        self._force, self._is_changed = constant(force), True
+        self._force, self.is_changed = constant(force), True
 
     def change_axis(self, axis: Axis) -> None:
         """Go on with other parameters."""
-        self._axis, self._is_changed = axis, True
+        self._axis = axis
+        self.change_faults()
 
     def change_faults(self) -> None:
         """Take note that other faults are in force."""
-        self._is_changed = True
+        self.is_changed = self._has_new_parts = True
 
     def act(self) -> None:
         """Let all that changed take effect at once; raises SolverError when the faults leave no axis to go on with."""
-        if not self._is_changed:
-            self._command_drive()
-            return
-        scale = math.prod(self._faults.values('friction_scale'))
-        falls, self._friction_scale = scale < self._friction_scale, scale
-        self.drive.freeze(bool(self._faults.values('drive_freeze')), self._simulator.time)
-        if not falls:
-            self._change_axis(scale)
-        self._command_force()
-        self._command_drive()
-        if falls:    # last: what held before and holds afterwards must not break away in between
-            self._change_axis(scale)
-        self._is_changed = False
+        if self._has_new_parts:
+            self._enter_parts()
+        else:
+            self._set_inputs()
+        self.is_changed = False
 
     def checkpoint(self) -> dict[str, Any]:
         """Return what was ordered, what acts and how the axis moves, as plain data."""
-        return {'drive': self.drive.checkpoint(), 'force': plain_of(self._force),
-                'acting_force': plain_of(self._acting_force), 'friction_scale': self._friction_scale,
+        return {'drive': self._drive.checkpoint(), 'force': plain_of(self._force),
+                'acting_force': plain_of(self._simulator.force), 'friction_scale': self._friction_scale,
                 'simulator': self._simulator.checkpoint()}
 
     def restore(self, saved: Mapping[str, Any]) -> None:
         """Go on from a checkpoint, with the parameters of the axis that held then."""
-        self.drive.restore(saved['drive'])
-        self._acting_drive = self.drive.profile
-        self._force, self._acting_force = profile_of(saved['force']), profile_of(saved['acting_force'])
+        self._drive.restore(saved['drive'])
+        self._force, acting_force = profile_of(saved['force']), profile_of(saved['acting_force'])
         self._friction_scale = float(saved['friction_scale'])
         axis = with_friction_scaled(self._axis, self._friction_scale)
-        self._simulator.restore(saved['simulator'], axis, self._acting_drive, self._acting_force)
+        self._simulator.restore(saved['simulator'], axis, self._drive.profile, acting_force)
+
+    def _enter_parts(self) -> None:
+        scale = math.prod(self._faults.values('friction_scale'))
+        falls, self._friction_scale = scale < self._friction_scale, scale
+        self._drive.freeze(bool(self._faults.values('drive_freeze')), self._simulator.time)
+        if not falls:
+            self._change_axis(scale)
+        self._set_inputs()
+        if falls:    # last: what held before and holds afterwards must not break away in between
+            self._change_axis(scale)
+        self._has_new_parts = False
 
     def _change_axis(self, friction_scale: float) -> None:
         try:
@@ -83,14 +93,10 @@ class Plant:
         except InputError as error:
             raise SolverError(f'the faults in force scale friction by {friction_scale:g}: {error}') from None
 
-    def _command_force(self) -> None:
-        pulse = math.fsum(self._faults.values('force_pulse'))
-        profile = self._force.plus(pulse) if pulse else self._force
-        if profile != self._acting_force:
-            self._acting_force = profile
-            self._simulator.command_force(profile)
-
-    def _command_drive(self) -> None:
-        if self.drive.profile is not self._acting_drive:
-            self._acting_drive = self.drive.profile
-            self._simulator.command_drive(self._acting_drive)
+    def _set_inputs(self) -> None:
+        pulse = math.fsum(self._faults.values('force_pulse')) if self._faults.active else 0.0
+        force, acting = self._force.plus(pulse) if pulse else self._force, self._simulator.force
+        is_same = force is acting or force == acting
+        if self._drive.is_new or not is_same:
+            self._drive.is_new = False
+            self._simulator.set_inputs(self._drive.profile, acting if is_same else force)

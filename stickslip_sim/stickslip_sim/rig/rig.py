@@ -1,16 +1,16 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""One axis and its rig, from step to step: orders come in, products go out."""
+"""One axis and its rig, from step to step: commands and orders come in, step results go out."""
 
-import math
 from collections.abc import Mapping, Sequence
+from math import isfinite
 from typing import Any
 
 from ..axis import Axis, InitialState
 from ..core.errors import InputError
 from ..core.input_profile import InputProfile
 from ..core.time_grid import Grid
-from ..core.types import Event, Instant
+from ..core.types import Event, Instant, tuple_of
 from ..simulation.simulator import Simulator, SolverOf
 from ..solvers import Solver
 from .command_channel import CommandChannel
@@ -23,16 +23,16 @@ from .step_result import Counts, RigEvent, RigEventKind, StepResult
 
 
 class Rig:
-    """Makes one step after the other; orders take effect with the next step, all that came before it at once.
+    """Makes one step after the other; what is ordered between two takes effect with the next, all of it at once.
 
-    Drive velocities come through the wire and are followed by the drive within its limits; forces act at once.
+    A commanded velocity passes the command channel, and the drive follows it within its limits; a force acts at once.
     """
 
     def __init__(self, axis: Axis, initial: InitialState, drive: InputProfile, force: InputProfile,
                  solver: Solver | SolverOf,
                  grid: Grid, settings: RigSettings) -> None:
         self.simulator = Simulator(axis, initial, drive, force, solver, accounting=True)
-        self._grid, self._settings = grid, settings
+        self._grid, self._settings, self._measures = grid, settings, settings.measures
         self._courses = drive, force
         self._begin()
 
@@ -50,8 +50,6 @@ class Rig:
         self._faults = Faults(self._grid, settings.faults)
         self._channel = CommandChannel(self._grid, settings.seed)
         self._plant = Plant(self.simulator, Drive(drive, settings.limits), force, self._faults)
-        self._velocity_order: float | None = None
-        self._force_order: float | None = None
         self._encoder = Encoder(settings.encoder, self._grid.rate, settings.encoder_delay_steps, settings.seed)
         self._notes: list[RigEvent] = []
         self.is_silent = False                # since a command time-out, until the next command
@@ -69,16 +67,6 @@ class Rig:
 
     # Orders, between two steps
 
-    def command_velocity(self, velocity: float) -> None:
-        """Send the drive a velocity, m/s; of several before one step the last counts."""
-        _check_finite('velocity', velocity, 'm/s')
-        self._velocity_order = velocity
-
-    def command_force(self, force: float) -> None:
-        """Let a force act on the slider, N."""
-        _check_finite('force', force, 'N')
-        self._force_order = force
-
     def time_out(self, silence: float) -> None:
         """Do what the scene says when no drive velocity came for `silence` seconds."""
         self.counts.timed_out += 1
@@ -89,11 +77,11 @@ class Rig:
                                 silence))
         self.has_failed = reaction == 'fault'
         if reaction != 'hold':
-            self._plant.drive.follow(0.0, self.simulator.time, self._settings.timeout_deceleration)
+            self._plant.follow(0.0, self._settings.timeout_deceleration)
 
     def inject(self, fault: Fault) -> Fault:
         """Plan a fault from now on; return it with its id.  Raises InputError."""
-        fault = self._faults.inject(fault, max(self._next, 1))
+        fault = self._faults.inject(fault, max(self.step + 1, 1))
         self._notes.append(RigEvent(RigEventKind.FAULT_INJECTED, fault.id, f'{fault.kind} planned', fault.value,
                                     fault=fault))
         return fault
@@ -142,24 +130,31 @@ class Rig:
 
     # Steps
 
-    def make_step(self) -> StepResult:
-        """Make the next step; raises SolverError."""
-        step = self._next
+    def make_step(self, velocity: float | None = None, force: float | None = None) -> StepResult:
+        """Make the next step, with a new drive velocity (m/s) and force (N) from its begin on, or those in force.
+
+        Raises SolverError, and InputError on a command that is not finite: then nothing has happened.
+        """
+        if velocity is not None and not isfinite(velocity):
+            raise _not_finite('velocity', velocity, 'm/s')
+        if force is not None and not isfinite(force):
+            raise _not_finite('force', force, 'N')
+        step = self.step + 1
         if step >= self._faults.next_change and step > 0:
             self._enter_faults(step)
-        velocity, force = self._velocity_order, self._force_order
-        if velocity is not None or not self._channel.is_empty:
-            self._obey_velocity(velocity, step)
+        if velocity is not None or self._channel.under_way:
+            self._command_drive(velocity, step)
         if force is not None:
-            self._force_order = None
-            self._plant.command_force(force)
-        self._plant.act()
+            self._plant.push(force)
+        if self._plant.is_changed:
+            self._plant.act()
         notes, self._notes = self._notes, []
-        events = self.simulator.advance(self._grid.instant(step))
-        sample = self.simulator.sample()
+        simulator = self.simulator
+        events = simulator.advance(self._grid.instant(step))
+        sample = simulator.sample()
         self.step = step
-        measured = self._encoder.measure(sample, self._faults.active) if self._settings.measures else None
-        return StepResult(step, velocity, force, notes, events, sample, measured)
+        measured = self._encoder.measure(sample, self._faults.active) if self._measures else None
+        return tuple_of(StepResult, (step, velocity, force, notes, events, sample, measured))
 
     def advance(self, to: Instant) -> list[Event]:
         """Bring the axis to any time, through the faults of the scene; for runs without steps.  Returns its events."""
@@ -170,16 +165,8 @@ class Rig:
             self._plant.act()
         return events + self.simulator.advance(to)
 
-    @property
-    def _next(self) -> int:
-        return self.step + 1
-
-    def _obey_velocity(self, sent: float | None, step: int) -> None:
-        self._velocity_order = None
-        if sent is not None and not self._channel.put(sent, step, self._faults.active):
-            self.counts.lost += 1
-            self._notes.append(RigEvent(RigEventKind.COMMAND_LOST, 'velocity', 'a fault ate a command', sent))
-        velocity = self._channel.take(step)
+    def _command_drive(self, sent: float | None, step: int) -> None:
+        velocity = self._through_channel(sent, step)
         if velocity is None:
             return
         if self.has_failed:
@@ -190,16 +177,21 @@ class Rig:
             self.is_silent = False
             self._notes.append(RigEvent(RigEventKind.COMMAND_RESUMED, 'velocity', 'drive velocities come again',
                                         velocity))
-        self._tell_limits(velocity)
-        self._plant.drive.follow(velocity, self.simulator.time)
-
-    def _tell_limits(self, velocity: float) -> None:
-        can_follow = self._plant.drive.can_follow(velocity, self.simulator.time)
-        was_limited, self._is_limited = self._is_limited, not can_follow
+        was_limited, self._is_limited = self._is_limited, not self._plant.follow(velocity)
         self.counts.limited += self._is_limited
         if self._is_limited and not was_limited:
             self._notes.append(RigEvent(RigEventKind.COMMAND_LIMITED, 'velocity',
-                                    'beyond the limits of the drive, which follows within them', velocity))
+                                        'beyond the limits of the drive, which follows within them', velocity))
+
+    def _through_channel(self, sent: float | None, step: int) -> float | None:
+        """Return the velocity that reaches the drive before a step; without a fault the one that was sent."""
+        channel, faults = self._channel, self._faults.active
+        if not (faults or channel.under_way):
+            return sent
+        if sent is not None and not channel.put(sent, step, faults):
+            self.counts.lost += 1
+            self._notes.append(RigEvent(RigEventKind.COMMAND_LOST, 'velocity', 'a fault ate a command', sent))
+        return channel.take(step)
 
     def _enter_faults(self, step: int) -> None:
         ended, begun = self._faults.enter(step)
@@ -219,6 +211,5 @@ _REACTIONS = {'hold': 'the latest is held', 'ramp_to_zero': 'the drive stops unt
               'fault': 'the drive stops and takes none until ~/clear_faults or ~/reset'}
 
 
-def _check_finite(name: str, value: float, unit: str) -> None:
-    if not math.isfinite(value):
-        raise InputError(name, value, f'finite, in {unit}', 'the command before it stays in force')
+def _not_finite(name: str, value: float, unit: str) -> InputError:
+    return InputError(name, value, f'finite, in {unit}', 'the command before it stays in force')

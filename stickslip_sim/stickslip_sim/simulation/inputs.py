@@ -1,51 +1,58 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The inputs of an axis, drive velocity and external force: the courses in force, and which pieces of them."""
+"""The inputs of an axis, drive velocity and external force: what is in force, and which pieces of it."""
 
 import math
+from collections.abc import Sequence
 
 from ..core.errors import InputError
-from ..core.input_profile import InputProfile, Piece, constant
+from ..core.input_profile import Input, InputProfile, Piece, Sinusoid
 
 
 class Inputs:
     """Two courses over simulation time, and what commands made of them; `until` (s) is where their pieces end.
 
-    Raises InputError when a course has no meaning.
+    `drive` and `force` are in force; the simulator has yet to enter them when `are_commanded`.  Raises InputError when
+    a course has no meaning.
     """
 
     def __init__(self, drive: InputProfile, force: InputProfile) -> None:
         drive.check('drive')
         force.check('force')
         self._first = drive, force
+        self.most_sinusoids = len(drive.sinusoids) + len(force.sinusoids)    # that the inputs can have
         self.reset()
 
-    def reset(self) -> None:
-        """Take the original courses again."""
-        self._drive, self._force = self._first
-        self.are_commanded = False    # since pieces were entered
-        self.until = 0.0
-
-    @property
-    def most_sinusoids(self) -> int:
-        """How many waves the courses can have."""
-        return sum(len(profile.sinusoids) for profile in self._first)
-
-    def command_drive(self, velocity: float | InputProfile) -> None:
-        """Replace the drive velocity by a constant, m/s, or a course; raises InputError."""
-        self._drive = _profile('velocity', velocity, 'm/s', self._first[0])
-        self.are_commanded = True
-
-    def command_force(self, force: float | InputProfile) -> None:
-        """Replace the external force by a constant, N, or a course; raises InputError."""
-        self._force = _profile('force', force, 'N', self._first[1])
-        self.are_commanded = True
-
-    def enter(self, time: float) -> tuple[Piece, Piece]:
-        """Return the pieces of drive and force from a time on, s."""
-        v, f = self._drive.piece_at(time), self._force.piece_at(time)
+    def reset(self) -> tuple[Piece, Piece]:
+        """Take the original courses again; return their first pieces."""
+        drive, force = self._first
+        self.drive: Input = drive
+        self.force: Input = force
+        v, f = drive.piece_at(0.0), force.piece_at(0.0)
         self.go_on(min(v.end, f.end))
         return v, f
+
+    def set(self, drive: Input, force: Input) -> None:
+        """Let these be in force: finite, and with no more waves than the courses of the start."""
+        self.drive, self.force = drive, force
+        self.are_commanded = True
+
+    def command_drive(self, velocity: Input) -> None:
+        """Replace the drive velocity by a constant, m/s, or a course; raises InputError."""
+        _check('velocity', velocity, 'm/s', self._first[0])
+        self.set(velocity, self.force)
+
+    def command_force(self, force: Input) -> None:
+        """Replace the external force by a constant, N, or a course; raises InputError."""
+        _check('force', force, 'N', self._first[1])
+        self.set(self.drive, force)
+
+    def enter(self, time: float) -> tuple[float, float, float, float]:
+        """Return drive velocity, its rate, force and its rate from a time on, s, up to where their pieces end."""
+        v, v_rate, v_end = _pieces_at(self.drive, time)
+        f, f_rate, f_end = _pieces_at(self.force, time)
+        self.go_on(v_end if v_end <= f_end else f_end)
+        return v, v_rate, f, f_rate
 
     def go_on(self, until: float) -> None:
         """Let pieces that were entered before be in force until a time, s."""
@@ -53,21 +60,29 @@ class Inputs:
         self.until = until
 
     def sinusoids(self) -> list[float]:
-        """Return the waves of both courses as `solvers.Solver` wants them, without those that are nothing."""
-        of_drive = [(sinusoid.frequency, sinusoid.phase, sinusoid.amplitude, 0.0) for sinusoid in self._drive.sinusoids]
-        of_force = [(sinusoid.frequency, sinusoid.phase, 0.0, sinusoid.amplitude) for sinusoid in self._force.sinusoids]
-        return [number for frequency, phase, v, f in of_drive + of_force
+        """Return the waves of both inputs as `solvers.Solver` wants them, without those that are nothing."""
+        waves = [(wave.frequency, wave.phase, wave.amplitude, 0.0) for wave in _sinusoids(self.drive)]
+        waves += [(wave.frequency, wave.phase, 0.0, wave.amplitude) for wave in _sinusoids(self.force)]
+        return [number for frequency, phase, v, f in waves
                 if v != 0.0 or f != 0.0 for number in (frequency, math.fmod(0.5 * phase / math.pi, 1.0), v, f)]
 
 
-def _profile(name: str, value: float | InputProfile, unit: str, first: InputProfile) -> InputProfile:
+def _pieces_at(given: Input, time: float) -> tuple[float, float, float]:
+    if isinstance(given, InputProfile):
+        return given.pieces_at(time)
+    return given + 0.0, 0.0, math.inf    # no -0.0, as in a course
+
+
+def _sinusoids(given: Input) -> Sequence[Sinusoid]:
+    return given.sinusoids if isinstance(given, InputProfile) else ()
+
+
+def _check(name: str, value: Input, unit: str, first: InputProfile) -> None:
     if isinstance(value, InputProfile):
         value.check(name)
         if len(value.sinusoids) > len(first.sinusoids):
             raise InputError(f'{name}.sinusoids', len(value.sinusoids),
                              f'at most {len(first.sinusoids)}, as at the start',
                              'give the simulator a course with as many waves at its start')
-        return value
-    if not math.isfinite(value):
+    elif not math.isfinite(value):
         raise InputError(name, value, f'finite, in {unit}', 'the command before it stays in force')
-    return constant(value)

@@ -21,9 +21,9 @@ from ..axis.layout import (
 )
 from ..core.energy import EnergyBalance
 from ..core.errors import InputError, SolverError, UnsoundError
-from ..core.input_profile import InputProfile
+from ..core.input_profile import Input, InputProfile
 from ..core.jit import IS_COMPILED
-from ..core.types import Event, EventKind, Instant, Mode, Sample
+from ..core.types import Event, EventKind, Instant, Mode, Sample, tuple_of
 from ..solvers import DONE, FULL, OUT_OF_RANGE, UNSOUND, Solver, exact
 from .checkpoint import event_of, state_of
 from .inputs import Inputs
@@ -60,10 +60,9 @@ class Simulator:
 
     def reset(self) -> list[Event]:
         """Begin anew at time 0 with the initial state and the original courses; return the events at time 0."""
-        self._inputs.reset()
+        v, f = self._inputs.reset()
         self._sinusoids = _numbers(self._inputs.sinusoids())
         self._time = Instant(0.0, 0.0)
-        v, f = self._inputs.enter(0.0)
         start = self._initial
         rows = self._solver.start(self._parameters, self._state, start.position, start.velocity, start.rest_time,
                                   v.value, v.rate, f.value, f.rate, self._sinusoids, self._table, 0)
@@ -80,6 +79,11 @@ class Simulator:
     def axis(self) -> Axis:
         """The axis as it is now."""
         return self._axis
+
+    @property
+    def force(self) -> Input:
+        """The external force in force, N."""
+        return self._inputs.force
 
     @property
     def root_iterations(self) -> int:
@@ -120,12 +124,14 @@ class Simulator:
         Raises InputError when it is before or no time, SolverError when the events do not let time go on; the state is
         then that of the last event.
         """
-        if not (self._time <= to and math.isfinite(to.second) and 0.0 <= to.fraction < 1.0):
+        second, fraction = to
+        if not (self._time <= to and math.isfinite(second) and 0.0 <= fraction < 1.0):
             raise InputError('time', tuple(to), f'finite and not before {self._time.seconds!r} s',
                              'time does not go back: reset to begin anew')
-        self._obey()
+        if self._inputs.are_commanded:
+            self._obey()
         events, self._waiting = self._waiting, []
-        while (until := self._inputs.until) <= to.seconds:
+        while (until := self._inputs.until) <= second + fraction:
             self._advance(Instant(math.floor(until), until - math.floor(until)), events)
             self._enter_pieces(events)
         self._advance(to, events)
@@ -133,7 +139,7 @@ class Simulator:
             self._counts[event.kind] += 1
         return events
 
-    def command_drive(self, velocity: float | InputProfile) -> None:
+    def command_drive(self, velocity: Input) -> None:
         """Let the drive move at a constant velocity (m/s), or after a course over simulation time, from now on.
 
         Events that this causes come with `advance`.  Raises InputError; a course must have no more waves than that of
@@ -141,13 +147,21 @@ class Simulator:
         """
         self._inputs.command_drive(velocity)
 
-    def command_force(self, force: float | InputProfile) -> None:
+    def command_force(self, force: Input) -> None:
         """Let a constant external force (N), or a course over simulation time, act from now on, as `command_drive`."""
         self._inputs.command_force(force)
 
+    def set_inputs(self, drive: Input, force: Input) -> None:
+        """Let both be in force from now on, as `command_drive` and `command_force`, but without their checks.
+
+        For the rig, which makes them of commands that were checked.
+        """
+        self._inputs.set(drive, force)
+
     def change_axis(self, axis: Axis) -> None:
         """Go on with other parameters from now on; position, velocity and the spring stay continuous."""
-        self._obey()
+        if self._inputs.are_commanded:
+            self._obey()
         old = self._parameters
         self._take_axis(axis)
         rows = self._solver.set_parameters(old, self._parameters, self._state, *self._time, self._table, 0)
@@ -155,23 +169,26 @@ class Simulator:
 
     def sample(self) -> Sample:
         """Return the state at the present time; raises SolverError when it is not finite."""
-        self._obey()
-        row = self._row
-        self._solver.sample(self._parameters, self._state, *self._time, row)
-        second, fraction, mode, direction, *rest = row.tolist() if IS_COMPILED else row
-        if not all(map(math.isfinite, rest[:8])):
+        if self._inputs.are_commanded:
+            self._obey()
+        second, fraction = self._time
+        self._solver.sample(self._parameters, self._state, second, fraction, self._row)
+        row = self._row.tolist() if IS_COMPILED else [*self._row]
+        if not math.isfinite(sum(row)) and not all(map(math.isfinite, row[4:12])):    # what does not move may be inf
             raise SolverError(f'the state leaves the range of numbers at t = {second + fraction!r} s; '
                               f'{self._solver.advice}')
-        return Sample(second, fraction, _MODES[int(mode)], int(direction), *rest)
+        row[2], row[3] = _MODES[int(row[2])], int(row[3])
+        return tuple_of(Sample, row)
 
     def checkpoint(self) -> dict[str, Any]:
         """Return the state as plain data, from which a simulator of the same scene goes on to the last bit."""
-        self._obey()
+        if self._inputs.are_commanded:
+            self._obey()
         return {'time': list(self._time), 'until': self._inputs.until,
                 'state': [float(number) for number in self._state],
                 'waiting': [[*map(float, event)] for event in self._waiting]}
 
-    def restore(self, saved: Mapping[str, Any], axis: Axis, drive: InputProfile, force: InputProfile) -> None:
+    def restore(self, saved: Mapping[str, Any], axis: Axis, drive: Input, force: Input) -> None:
         """Go on from a checkpoint that was taken with this axis and these courses in force.
 
         Raises InputError on impossible courses; KeyError, TypeError or ValueError when it is no checkpoint.
@@ -192,16 +209,18 @@ class Simulator:
 
     def _obey(self) -> None:
         """Let the commands of this instant take effect, all at once: their order does not matter."""
-        if self._inputs.are_commanded:
+        if self._inputs.most_sinusoids:
             self._sinusoids = _numbers(self._inputs.sinusoids())
-            self._enter_pieces(self._waiting)
+        self._enter_pieces(self._waiting)
 
     def _advance(self, to: Instant, events: list[Event]) -> None:
+        second, fraction = to
         taken = 0
         while True:
-            rows, end = self._solver.advance(self._parameters, self._state, *to, self._table, 0)
-            events.extend(self._rows(rows))
-            taken += rows
+            rows, end = self._solver.advance(self._parameters, self._state, second, fraction, self._table, 0)
+            if rows:
+                events.extend(self._rows(rows))
+                taken += rows
             if end == DONE:
                 self._time = to
                 return
@@ -216,12 +235,11 @@ class Simulator:
                                   'friction or inputs are too extreme for this axis: check the scene')
 
     def _enter_pieces(self, events: list[Event]) -> None:
-        time = self._time.seconds
-        v, f = self._inputs.enter(time)
-        rows = self._solver.set_inputs(self._parameters, self._state, *self._time,
-                                       v.value + v.rate * (time - v.start), v.rate,
-                                       f.value + f.rate * (time - f.start), f.rate, self._sinusoids, self._table, 0)
-        events.extend(self._rows(rows))
+        second, fraction = self._time
+        rows = self._solver.set_inputs(self._parameters, self._state, second, fraction,
+                                       *self._inputs.enter(second + fraction), self._sinusoids, self._table, 0)
+        if rows:
+            events.extend(self._rows(rows))
 
     def _rows(self, count: int) -> Iterator[Event]:
         for i in range(count):

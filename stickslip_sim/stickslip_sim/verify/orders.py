@@ -8,7 +8,7 @@ from typing import Any
 from ..core.errors import InputError, RecordingError
 from ..recording import Bag, RecordedMessage
 from ..recording.topics import DRIVE_VELOCITY, EXTERNAL_FORCE, PARAMETER_EVENTS, RIG_EVENT
-from ..rig import Fault, Rig, RigEventKind
+from ..rig import Fault, Rig, RigEventKind, StepResult
 from ..scene import Scene, scene_from_values
 
 _ORDERS = RigEventKind.COMMAND_TIMEOUT, RigEventKind.FAULT_INJECTED, RigEventKind.FAULT_CLEARED
@@ -26,8 +26,10 @@ class Orders:
 
     def __init__(self, bag: Bag, scene: Scene, rig: Rig, fixed: Collection[str]) -> None:
         self._bag, self._rig, self._fixed = bag, rig, fixed
+        self._velocity: float | None = None    # for the next step, m/s
+        self._force: float | None = None       # N
         self._values = scene.values
-        self._doers = {DRIVE_VELOCITY.type: self._velocity, EXTERNAL_FORCE.type: self._force,
+        self._doers = {DRIVE_VELOCITY.type: self._command_velocity, EXTERNAL_FORCE.type: self._command_force,
                        RIG_EVENT.type: self._event, PARAMETER_EVENTS.type: self._change}
 
     def give(self, message: RecordedMessage) -> None:
@@ -35,14 +37,24 @@ class Orders:
         try:
             self._doers[message.type](self._bag.decode(message))
         except InputError as error:
-            raise RecordingError(f'{self._bag.path}: the order before step {message.sequence} is refused: {error}'
-                                 ) from None
+            raise self._refused(message.sequence, error) from None
 
-    def _velocity(self, message: Any) -> None:
-        self._rig.command_velocity(message.velocity)
+    def make_step(self) -> StepResult:
+        """Make the next step, under the commands given before it; raises RecordingError when the rig refuses them."""
+        velocity, force, self._velocity, self._force = self._velocity, self._force, None, None
+        try:
+            return self._rig.make_step(velocity, force)
+        except InputError as error:
+            raise self._refused(self._rig.step + 1, error) from None
 
-    def _force(self, message: Any) -> None:
-        self._rig.command_force(message.force)
+    def _refused(self, step: int, error: InputError) -> RecordingError:
+        return RecordingError(f'{self._bag.path}: the order before step {step} is refused: {error}')
+
+    def _command_velocity(self, message: Any) -> None:
+        self._velocity = message.velocity
+
+    def _command_force(self, message: Any) -> None:
+        self._force = message.force
 
     def _event(self, message: Any) -> None:
         if message.kind == RigEventKind.COMMAND_TIMEOUT:

@@ -66,7 +66,7 @@ class _NodeMaker:
         yield self._made()
 
     def _made(self) -> Made:
-        result = self._rig.make_step()
+        result = self._orders.make_step()
         return Made(result.step, _without_knots(result.events), result.sample)
 
 

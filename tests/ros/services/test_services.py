@@ -68,11 +68,8 @@ class Storm:
 
     def follow(self, answer: Any, count: int, velocity: float, force: float) -> None:
         """Make the same steps; the state and the events must be the same to the last bit."""
-        if not math.isnan(velocity):
-            self.rig.command_velocity(velocity)
-        if not math.isnan(force):
-            self.rig.command_force(force)
-        results = [self.rig.make_step() for _ in range(count)]
+        results = [self.rig.make_step(*(None if math.isnan(value) else value for value in (velocity, force)))]
+        results += [self.rig.make_step() for _ in range(count - 1)]
         assert answer.state.step == results[-1].step
         assert {name: getattr(answer.state, name) for name in FIELDS} == {
             name: getattr(results[-1].sample, name) for name in FIELDS}

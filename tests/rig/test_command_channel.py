@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from stickslip_sim.core.time_grid import Grid
 from stickslip_sim.rig import Fault, RigEventKind
 from stickslip_sim.rig.command_channel import CommandChannel
-from tests.support.rigs import Order, Script, inject, make, run, told
+from tests.support.rigs import Script, force, inject, make, run, told, velocity
 
 GRID = Grid(1000.0)
 
@@ -22,19 +22,19 @@ class TestLoss:
     def test_share(self, shares: list[float]) -> None:
         count, kept = 4000, math.prod(1.0 - share for share in shares)
         rig = make(seed=11, faults=tuple(Fault('', 'command_loss', 0.0, math.inf, share) for share in shares))
-        results = run(rig, count + 1, {step: [lambda rig: rig.command_velocity(0.01)] for step in range(1, count + 1)})
+        results = run(rig, count + 1, {step: [velocity(0.01)] for step in range(1, count + 1)})
         assert rig.counts.lost + rig.counts.heard == count
         assert rig.counts.heard / count == pytest.approx(kept, abs=4 * math.sqrt(kept * (1 - kept) / count))
         assert [kind for _, kind in told(results)].count(RigEventKind.COMMAND_LOST) == rig.counts.lost
 
     def test_of_all(self) -> None:
         results = run(make(), 60, {10: [inject('command_loss', duration=0.02, value=1.0)],
-                                    15: [lambda rig: rig.command_velocity(0.05)],
-                                    40: [lambda rig: rig.command_velocity(0.07)]})
+                                    15: [velocity(0.05)],
+                                    40: [velocity(0.07)]})
         assert [results[step].sample.drive_velocity for step in (15, 39, 40)] == [0.002, 0.002, 0.07]
 
     def test_forces_are_not_lost(self) -> None:
-        results = run(make(), 30, {10: [inject('command_loss', value=1.0), lambda rig: rig.command_force(9.0)]})
+        results = run(make(), 30, {10: [inject('command_loss', value=1.0), force(9.0)]})
         assert results[10].sample.external_force == 9.0
 
 
@@ -44,7 +44,7 @@ class TestDelay:
     ])
     def test_is_exact_in_steps(self, rate: float, delay: float, late: int) -> None:
         rig = make(rate=rate, faults=(Fault('d', 'command_delay', 0.0, math.inf, delay),))
-        results = run(rig, 12 + late, {10: [lambda rig: rig.command_velocity(0.01)]})
+        results = run(rig, 12 + late, {10: [velocity(0.01)]})
         speeds = [result.sample.drive_velocity for result in results]
         assert speeds[10 + late - 1:10 + late + 1] == [0.002, 0.01]
         assert rig.counts.heard == 1
@@ -52,21 +52,18 @@ class TestDelay:
     def test_those_that_overlap_add_up_in_steps(self) -> None:
         rig = make(faults=tuple(Fault('', 'command_delay', 0.0, math.inf, delay) for delay in (0.1, 0.2)))
         speeds = [result.sample.drive_velocity
-                  for result in run(rig, 320, {10: [lambda rig: rig.command_velocity(0.01)]})]
+                  for result in run(rig, 320, {10: [velocity(0.01)]})]
         assert speeds.index(0.01) == 310
 
     def test_all_commands_come_in_their_order(self) -> None:
-        def velocity(step: int) -> Order:
-            return lambda rig: rig.command_velocity(step * 1e-4)
-
-        script: Script = {step: [velocity(step)] for step in range(10, 40)}
+        script: Script = {step: [velocity(step * 1e-4)] for step in range(10, 40)}
         speeds = [result.sample.drive_velocity
                   for result in run(make(faults=(Fault('d', 'command_delay', 0.0, math.inf, 0.02),)), 70, script)]
         assert speeds[30:60] == [step * 1e-4 for step in range(10, 40)]
 
     def test_what_comes_undelayed_overtakes(self) -> None:
-        script: Script = {10: [inject('command_delay', 0.0, 0.005, 0.02), lambda rig: rig.command_velocity(0.03)],
-                          20: [lambda rig: rig.command_velocity(0.01)]}
+        script: Script = {10: [inject('command_delay', 0.0, 0.005, 0.02), velocity(0.03)],
+                          20: [velocity(0.01)]}
         speeds = [result.sample.drive_velocity for result in run(make(), 60, script)]
         assert set(speeds[20:]) == {0.01}
 
