@@ -10,7 +10,7 @@ from stickslip_sim.core.input_profile import MAX_SINUSOIDS
 from stickslip_sim.friction.kinetic import MAX_KNOTS
 from stickslip_sim.recording import opening, reader, records, schemas
 from stickslip_sim.rig.faults import MAX_FAULTS
-from stickslip_sim.runs import offline
+from stickslip_sim.runs import simulated
 from stickslip_sim.study import folder
 from stickslip_sim.verify import steps
 from tests.support.repository import ROOT
@@ -28,7 +28,7 @@ ROWS = [line for line in (ROOT / 'docs/security.md').read_text().splitlines() if
     ('a topic of a bag', (reader.MOST_HELD >> 20,)),
     ('the description of a sweep', (folder.LONGEST >> 20,)),
     ('steps that a recording may lack', (steps.MOST_MISSING,)),
-    ('samples and events', (offline.MAX_SAMPLES, offline.MAX_EVENTS)),
+    ('samples and events', (simulated.MAX_SAMPLES, simulated.MAX_EVENTS)),
 ])
 def test_limits(what: str, limits: tuple[int, ...]) -> None:
     (row,) = [row for row in ROWS if row.startswith(f'| {what}')]
