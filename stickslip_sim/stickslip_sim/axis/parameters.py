@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from ..core import ranges
 from ..core.errors import InputError
 from ..friction import ExcessTable, KineticTable, StaticLaw
 from ..friction.kinetic import merged_knots
@@ -24,11 +25,9 @@ class CompliantContact:
     damping: float
 
     def __post_init__(self) -> None:
-        if not 0.0 < self.stiffness < math.inf:
-            raise InputError('contact.stiffness', self.stiffness, 'finite and > 0 N/m',
-                             'use contact.model: rigid for a contact that does not yield')
-        if not 0.0 <= self.damping < math.inf:
-            raise InputError('contact.damping', self.damping, 'finite and >= 0 N s/m', 'use 0 for no damping')
+        ranges.CONTACT_STIFFNESS.check_meaning('contact.stiffness', self.stiffness, 'N/m',
+                                               'use contact.model: rigid for a contact that does not yield')
+        ranges.DAMPING.check_meaning('contact.damping', self.damping, 'N s/m', 'use 0 for no damping')
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,12 +61,11 @@ class Axis:
     friction: Friction
 
     def __post_init__(self) -> None:
-        if not 0.0 < self.mass < math.inf:
-            raise InputError('axis.mass', self.mass, 'finite and > 0 kg', 'give the mass of the slider')
-        for name, unit in (('drive_stiffness', 'N/m'), ('drive_damping', 'N s/m'), ('normal_force', 'N')):
-            value = getattr(self, name)
-            if not 0.0 <= value < math.inf:
-                raise InputError(f'axis.{name}', value, f'finite and >= 0 {unit}', 'use 0 to leave it out')
+        ranges.MASS.check_meaning('axis.mass', self.mass, 'kg', 'give the mass of the slider')
+        for name, within, unit in (('drive_stiffness', ranges.STIFFNESS, 'N/m'),
+                                   ('drive_damping', ranges.DAMPING, 'N s/m'),
+                                   ('normal_force', ranges.NORMAL_FORCE, 'N')):
+            within.check_meaning(f'axis.{name}', getattr(self, name), unit, 'use 0 to leave it out')
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
+from ..core import ranges
 from ..core.errors import InputError
 from .smooth import SmoothExcess, SmoothKinetic
 
@@ -36,11 +37,9 @@ class KineticTable:
         name = 'friction.kinetic'
         _check_knots(name, self.velocities, 'coefficients', self.coefficients)
         for value in self.coefficients:
-            if not 0.0 <= value < math.inf:
-                raise InputError(f'{name}.coefficients', value, 'finite and >= 0', 'friction opposes the motion')
-        if not 0.0 <= self.end_slope < math.inf:
-            raise InputError(f'{name}.end_slope', self.end_slope, 'finite and >= 0 s/m',
-                             'a coefficient that fell for ever would become negative; add a breakpoint instead')
+            ranges.COEFFICIENT.check_meaning(f'{name}.coefficients', value, '', 'friction opposes the motion')
+        ranges.SLOPE.check_meaning(f'{name}.end_slope', self.end_slope, 's/m',
+                                   'a coefficient that fell for ever would become negative; add a breakpoint instead')
 
     @property
     def limit_velocity(self) -> float:

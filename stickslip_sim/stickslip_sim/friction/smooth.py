@@ -11,9 +11,9 @@
 The engine works on tables of them (`tables`); the error of a table is measured against the laws.
 """
 
-import math
 from dataclasses import dataclass
 
+from ..core import ranges
 from ..core.errors import InputError
 from .shapes import MAX_EXPONENT, MIN_EXPONENT, Cosine, Decay, Hyperbola, Power, Shape
 
@@ -36,15 +36,11 @@ class SmoothKinetic:
     def __post_init__(self) -> None:
         name = 'friction.kinetic'
         for part in ('initial', 'limit'):
-            if not 0.0 <= getattr(self, part) < math.inf:
-                raise InputError(f'{name}.{part}', getattr(self, part), 'finite and >= 0',
-                                 'friction opposes the motion')
-        if not 0.0 < self.stribeck_velocity < math.inf:
-            raise InputError(f'{name}.stribeck_velocity', self.stribeck_velocity, 'finite and > 0 m/s',
-                             'give the speed at which the falling part has dropped to 1/e')
-        if not 0.0 <= self.viscous < math.inf:
-            raise InputError(f'{name}.viscous', self.viscous, 'finite and >= 0 s/m',
-                             'a coefficient that fell for ever would become negative')
+            ranges.COEFFICIENT.check_meaning(f'{name}.{part}', getattr(self, part), '', 'friction opposes the motion')
+        ranges.LAW_SPEED.check_meaning(f'{name}.stribeck_velocity', self.stribeck_velocity, 'm/s',
+                                       'give the speed at which the falling part has dropped to 1/e')
+        ranges.SLOPE.check_meaning(f'{name}.viscous', self.viscous, 's/m',
+                                   'a coefficient that fell for ever would become negative')
         if isinstance(self.shape, Decay) and not MIN_EXPONENT <= self.shape.exponent <= MAX_EXPONENT:
             raise InputError(f'{name}.exponent', self.shape.exponent, f'>= {MIN_EXPONENT} and <= {MAX_EXPONENT}',
                              '2 is the Gaussian form, 1 the exponential law')
@@ -79,9 +75,8 @@ class SmoothExcess:
 
     def __post_init__(self) -> None:
         name = 'friction.excess'
-        if not 0.0 < self.limit_velocity < math.inf:
-            raise InputError(f'{name}.limit_velocity', self.limit_velocity, 'finite and > 0 m/s',
-                             'give the speed at which the two branches meet')
+        ranges.LAW_SPEED.check_meaning(f'{name}.limit_velocity', self.limit_velocity, 'm/s',
+                                       'give the speed at which the two branches meet')
         if isinstance(self.shape, Power) and not 1.0 < self.shape.exponent <= MAX_EXPONENT:
             raise InputError(f'{name}.exponent', self.shape.exponent, f'> 1 and <= {MAX_EXPONENT}',
                              'for n = 1 leave out friction.excess: psi is linear then')

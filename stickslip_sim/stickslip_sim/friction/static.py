@@ -15,6 +15,7 @@ import math
 from dataclasses import dataclass
 from enum import IntEnum
 
+from ..core import ranges
 from ..core.errors import InputError
 from ..core.jit import compiled, inlined
 
@@ -50,19 +51,16 @@ class StaticLaw:
     exponent: float = 1.0
 
     def __post_init__(self) -> None:
-        if not 0.0 <= self.initial < math.inf:
-            raise InputError('friction.static.initial', self.initial, 'finite and >= 0', 'give mu_s at zero rest time')
+        ranges.COEFFICIENT.check_meaning('friction.static.initial', self.initial, '', 'give mu_s at zero rest time')
         if self.kind == StaticLawKind.CONSTANT:
             return
         if not self.initial <= self.limit < math.inf:
             raise InputError('friction.static.limit', self.limit, f'finite and >= initial ({self.initial!r})',
                              'static friction grows with rest time; swap the two values or use law: constant')
-        if not 0.0 < self.time_constant < math.inf:
-            raise InputError('friction.static.time_constant', self.time_constant, 'finite and > 0 s',
-                             'use law: constant for a coefficient that does not grow')
-        if not 0.0 < self.exponent < math.inf:
-            raise InputError('friction.static.exponent', self.exponent, 'finite and > 0',
-                             'n = 1 is the exponential law')
+        ranges.TIME_CONSTANT.check_meaning('friction.static.time_constant', self.time_constant, 's',
+                                           'use law: constant for a coefficient that does not grow')
+        ranges.KATO_EXPONENT.check_meaning('friction.static.exponent', self.exponent, '',
+                                           'n = 1 is the exponential law')
 
     @property
     def bounded(self) -> bool:

@@ -5,6 +5,7 @@
 import math
 from functools import lru_cache
 
+from ..core import ranges
 from ..core.errors import InputError
 from .kinetic import MAX_KNOTS, ExcessTable, KineticTable
 from .refine import Breakpoint, shape_table, table_error
@@ -42,8 +43,7 @@ def excess_table(law: SmoothExcess, tolerance: float) -> ExcessTable:
 
 
 def _breakpoints(name: str, shape: Shape, tolerance: float, scale: float) -> list[Breakpoint]:
-    if not 0.0 < tolerance < math.inf:
-        raise InputError(f'{name}.tolerance', tolerance, 'finite and > 0', 'give the error that the table may have')
+    ranges.TOLERANCE.check_meaning(f'{name}.tolerance', tolerance, '', 'give the error that the table may have')
     breakpoints = _cached_shape_table(shape, tolerance / scale)
     if breakpoints is None:
         raise InputError(f'{name}.tolerance', tolerance, f'large enough for at most {MAX_KNOTS} breakpoints',

@@ -3,19 +3,20 @@
 """Short ways to declare the parameters of a scene."""
 
 from ..config.parameter import Parameter, When
+from ..core.ranges import Range
 
 
-def number(name: str, default: float | None, unit: str, description: str, *, low: float, high: float,
-           above: bool = False, infinite: bool = False, live: bool = False, when: When | None = None) -> Parameter:
-    """Return a double from `low` (excluded with `above`) to `high`; required when it has no default."""
-    return Parameter(name, 'double', default, unit, description, low, high, above, infinite, (), live, when,
+def number(name: str, default: float | None, unit: str, description: str, *, within: Range, above: bool = False,
+           infinite: bool = False, live: bool = False, when: When | None = None) -> Parameter:
+    """Return a double within a range (with `above` not at its low end); required when it has no default."""
+    return Parameter(name, 'double', default, unit, description, *within, above, infinite, (), live, when,
                      default is None)
 
 
-def numbers(name: str, default: tuple[float, ...] | None, unit: str, description: str, *, low: float, high: float,
+def numbers(name: str, default: tuple[float, ...] | None, unit: str, description: str, *, within: Range,
             infinite: bool = False, live: bool = False, when: When | None = None, required: bool = True) -> Parameter:
     """Return a list of doubles."""
-    return Parameter(name, 'double_array', default, unit, description, low, high, infinite=infinite, live=live,
+    return Parameter(name, 'double_array', default, unit, description, *within, infinite=infinite, live=live,
                      when=when, required=required and default is None)
 
 

@@ -8,8 +8,9 @@ rigid contact, a drive that stands still, no force.  (A node without any file ru
 
 import math
 
-from ..config import bounds
 from ..config.parameter import Parameter, When
+from ..core import ranges
+from ..core.ranges import Range
 from ..friction.shapes import MAX_EXPONENT, MIN_EXPONENT
 from ..rig.faults import MAX_TIME
 from .declare import choice, number, numbers, texts
@@ -38,120 +39,121 @@ _STOPS = When('command.on_timeout', _REACTIONS[1:])
 PARAMETERS: tuple[Parameter, ...] = (
     Parameter('scene', 'string', 'unnamed', '', 'name of the scene, for people'),
 
-    number('axis.mass', 350.0, 'kg', "slider m; default: the paper's", low=bounds.MASS[0], high=bounds.MASS[1],
+    number('axis.mass', 350.0, 'kg', "slider m; default: the paper's", within=ranges.MASS,
            live=True),
-    number('axis.drive_stiffness', 6.0e5, 'N/m', "drive spring c; default: the paper's", low=0.0, high=bounds.STIFFNESS,
+    number('axis.drive_stiffness', 6.0e5, 'N/m', "drive spring c; default: the paper's", within=ranges.STIFFNESS,
            live=True),
-    number('axis.drive_damping', 4000.0, 'N s/m', "drive damper h; default: the paper's", low=0.0, high=bounds.DAMPING,
+    number('axis.drive_damping', 4000.0, 'N s/m', "drive damper h; default: the paper's", within=ranges.DAMPING,
            live=True),
     number('axis.normal_force', 3432.3275, 'N', 'normal force N, friction = coefficient times N; not in the paper,'
-           ' default: the weight of its 350 kg (it does not follow axis.mass)', low=0.0, high=bounds.FORCE, live=True),
+           ' default: the weight of its 350 kg (it does not follow axis.mass)', within=ranges.NORMAL_FORCE, live=True),
 
     choice('contact.model', 'rigid', 'contact in stick: rigid (the slider stands still) or compliant (a spring and a'
            ' damper)', ('rigid', 'compliant')),
-    number('contact.stiffness', None, 'N/m', 'tangential contact spring c_c, in stick only', low=bounds.SOFTEST,
-           high=bounds.STIFFNESS, live=True, when=_COMPLIANT),
-    number('contact.damping', 0.0, 'N s/m', 'tangential contact damper h_c, in stick only', low=0.0,
-           high=bounds.DAMPING, live=True, when=_COMPLIANT),
+    number('contact.stiffness', None, 'N/m', 'tangential contact spring c_c, in stick only',
+           within=ranges.CONTACT_STIFFNESS, live=True, when=_COMPLIANT),
+    number('contact.damping', 0.0, 'N s/m', 'tangential contact damper h_c, in stick only',
+           within=ranges.DAMPING, live=True, when=_COMPLIANT),
 
     choice('friction.static.law', 'constant', 'growth of the static coefficient mu_s with the rest time', _LAWS),
-    number('friction.static.initial', 0.0, '', 'mu_s at zero rest time', low=0.0, high=bounds.COEFFICIENT, live=True),
+    number('friction.static.initial', 0.0, '', 'mu_s at zero rest time', within=ranges.COEFFICIENT, live=True),
     number('friction.static.limit', None, '', 'mu_s after infinite rest (logarithmic: initial + one unit of growth)',
-           low=0.0, high=bounds.COEFFICIENT, live=True, when=_GROWS),
-    number('friction.static.time_constant', None, 's', 'tau of the growth of mu_s', low=bounds.SHORTEST,
-           high=bounds.TIME, live=True, when=_GROWS),
-    number('friction.static.exponent', None, '', "n of Kato's law exp(-(t/tau)^n)", low=bounds.KATO[0],
-           high=bounds.KATO[1], live=True, when=When('friction.static.law', ('kato',))),
+           within=ranges.COEFFICIENT, live=True, when=_GROWS),
+    number('friction.static.time_constant', None, 's', 'tau of the growth of mu_s',
+           within=ranges.TIME_CONSTANT, live=True, when=_GROWS),
+    number('friction.static.exponent', None, '', "n of Kato's law exp(-(t/tau)^n)",
+           within=ranges.KATO_EXPONENT, live=True, when=When('friction.static.law', ('kato',))),
     choice('friction.kinetic.law', 'table', 'kinetic coefficient mu_k over the speed: a table, linear between'
            ' breakpoints; or mu_c + (mu_0 - mu_c) g(speed/v_s) + k_v speed with g(z) = exp(-z^exponent) (stribeck),'
            ' exp(-z) (exponential) or 1/(1 + z) (hyperbolic)', _KINETIC),
     numbers('friction.kinetic.velocities', (0.0,), 'm/s', 'breakpoints of the kinetic coefficient; the first is 0, each'
-            ' is higher, the last is v_gr', low=0.0, high=bounds.SPEED, live=True, when=_KNOTS),
-    numbers('friction.kinetic.coefficients', (0.0,), '', 'mu_k at these speeds', low=0.0,
-            high=bounds.COEFFICIENT, live=True, when=_KNOTS),
-    number('friction.kinetic.end_slope', 0.0, 's/m', 'slope of mu_k beyond the last breakpoint', low=0.0,
-           high=bounds.SLOPE, live=True, when=_KNOTS),
-    number('friction.kinetic.initial', None, '', 'mu_0, mu_k at rest; not above friction.static.initial', low=0.0,
-           high=bounds.COEFFICIENT, live=True, when=_SMOOTH),
-    number('friction.kinetic.limit', None, '', 'mu_c, limit of the falling part at high speed', low=0.0,
-           high=bounds.COEFFICIENT, live=True, when=_SMOOTH),
+            ' is higher, the last is v_gr', within=ranges.SPEED, live=True, when=_KNOTS),
+    numbers('friction.kinetic.coefficients', (0.0,), '', 'mu_k at these speeds',
+            within=ranges.COEFFICIENT, live=True, when=_KNOTS),
+    number('friction.kinetic.end_slope', 0.0, 's/m', 'slope of mu_k beyond the last breakpoint',
+           within=ranges.SLOPE, live=True, when=_KNOTS),
+    number('friction.kinetic.initial', None, '', 'mu_0, mu_k at rest; not above friction.static.initial',
+           within=ranges.COEFFICIENT, live=True, when=_SMOOTH),
+    number('friction.kinetic.limit', None, '', 'mu_c, limit of the falling part at high speed',
+           within=ranges.COEFFICIENT, live=True, when=_SMOOTH),
     number('friction.kinetic.stribeck_velocity', None, 'm/s', 'v_s, at which the falling part has dropped to 1/e'
-           ' (hyperbolic: to 1/2)', low=bounds.LOWEST_SPEED, high=bounds.SPEED, live=True, when=_SMOOTH),
-    number('friction.kinetic.exponent', 2.0, '', 'delta of the law stribeck; 2: Gaussian', low=MIN_EXPONENT,
-           high=MAX_EXPONENT, live=True, when=When('friction.kinetic.law', ('stribeck',))),
-    number('friction.kinetic.viscous', 0.0, 's/m', 'k_v, rise of mu_k with the speed', low=0.0, high=bounds.SLOPE,
+           ' (hyperbolic: to 1/2)', within=ranges.LAW_SPEED, live=True, when=_SMOOTH),
+    number('friction.kinetic.exponent', 2.0, '', 'delta of the law stribeck; 2: Gaussian',
+           within=Range(MIN_EXPONENT, MAX_EXPONENT), live=True, when=When('friction.kinetic.law', ('stribeck',))),
+    number('friction.kinetic.viscous', 0.0, 's/m', 'k_v, rise of mu_k with the speed', within=ranges.SLOPE,
            live=True, when=_SMOOTH),
     number('friction.kinetic.tolerance', 1e-4, '', 'largest difference, in mu, between the smooth law and its'
-           ' table', low=bounds.FINEST, high=1.0, live=True, when=_SMOOTH),
+           ' table', within=ranges.TOLERANCE, live=True, when=_SMOOTH),
     Parameter('friction.acceleration_dependence', 'bool', False, '', 'whether the accelerating branch of mu_k lies'
               ' above the decelerating one (Fig. 6) instead of one curve for both (Fig. 3)'),
     choice('friction.excess.law', 'table', 'psi over the speed, the shape of the excess of the accelerating branch: a'
            ' table; or (1 + cos(pi z))/2 (cosine) or (1 - z)^exponent (power) with z = speed/limit_velocity,'
            ' 0 beyond', _EXCESS, _BRANCHES),
     numbers('friction.excess.velocities', None, 'm/s', 'breakpoints of psi; left out: linear to 0 at the last'
-            ' breakpoint of mu_k (a smooth law: where its falling part has dropped to 1 %)', low=0.0, high=bounds.SPEED,
+            ' breakpoint of mu_k (a smooth law: where its falling part has dropped to 1 %)', within=ranges.SPEED,
             live=True, when=_EXCESS_KNOTS, required=False),
-    numbers('friction.excess.fractions', None, '', 'psi at these speeds: 1 at the first, 0 at the last', low=0.0,
-            high=1.0, live=True, when=_EXCESS_KNOTS, required=False),
+    numbers('friction.excess.fractions', None, '', 'psi at these speeds: 1 at the first, 0 at the last',
+            within=ranges.SHARE, live=True, when=_EXCESS_KNOTS, required=False),
     Parameter('friction.excess.limit_velocity', 'double', None, 'm/s', 'speed at which psi ends; left out: as for a'
-              ' table', bounds.LOWEST_SPEED, bounds.SPEED, live=True, when=_EXCESS_SMOOTH),
-    number('friction.excess.exponent', None, '', 'n of the law power', low=1.0, high=MAX_EXPONENT, above=True,
+              ' table', *ranges.LAW_SPEED, live=True, when=_EXCESS_SMOOTH),
+    number('friction.excess.exponent', None, '', 'n of the law power', within=Range(1.0, MAX_EXPONENT), above=True,
            live=True, when=When('friction.excess.law', ('power',))),
     number('friction.excess.tolerance', 1e-3, '', 'largest difference between the smooth psi and its table',
-           low=bounds.FINEST, high=1.0, live=True, when=_EXCESS_SMOOTH),
+           within=ranges.TOLERANCE, live=True, when=_EXCESS_SMOOTH),
 
     *profile('drive', 'velocity', 'acceleration', 'velocities', 'm/s', 'velocity of the drive end of the spring',
-            bounds.SPEED, bounds.ACCELERATION),
-    *profile('force', 'constant', 'rate', 'forces', 'N', 'external force on the slider, along +x', bounds.FORCE,
-            bounds.FORCE_RATE),
+            ranges.VELOCITY, ranges.ACCELERATION),
+    *profile('force', 'constant', 'rate', 'forces', 'N', 'external force on the slider, along +x', ranges.FORCE,
+            ranges.FORCE_RATE),
 
     number('initial.position', 0.0, 'm', 'position of slider and drive at the start; the spring is unstretched',
-           low=-bounds.PLACE, high=bounds.PLACE),
-    number('initial.velocity', 0.0, 'm/s', 'velocity of the slider at the start', low=-bounds.SPEED, high=bounds.SPEED),
-    number('initial.rest_time', math.inf, 's', 'rest time before the start (.inf: prolonged rest)', low=0.0,
-           high=bounds.TIME, infinite=True),
+           within=ranges.PLACE),
+    number('initial.velocity', 0.0, 'm/s', 'velocity of the slider at the start', within=ranges.VELOCITY),
+    number('initial.rest_time', math.inf, 's', 'rest time before the start (.inf: prolonged rest)',
+           within=ranges.TIME, infinite=True),
 
     choice('solver.name', 'exact', 'exact: closed form, from event to event; fixed_step: the usual loop, to compare'
            ' with; adaptive: steps of a stated tolerance, offline only (docs/solvers.md)', _SOLVERS),
     Parameter('solver.method', 'string', None, '', 'with fixed_step euler or rk4, left out: euler; with adaptive one of'
               ' the others, left out: DOP853', choices=_METHODS, when=When('solver.name', _SOLVERS[1:])),
-    number('solver.step', 1e-3, 's', 'length of a step', low=1e-9, high=1.0, when=_FIXED_STEP),
-    number('solver.rtol', 1e-8, '', 'error of a step relative to travel and velocity', low=2.3e-14, high=1e-2,
+    number('solver.step', 1e-3, 's', 'length of a step', within=Range(1e-9, 1.0), when=_FIXED_STEP),
+    number('solver.rtol', 1e-8, '', 'error of a step relative to travel and velocity', within=Range(2.3e-14, 1e-2),
            when=_ADAPTIVE),
-    number('solver.atol', 1e-10, 'm, m/s', 'error of a step in travel and velocity', low=1e-300, high=1.0,
+    number('solver.atol', 1e-10, 'm, m/s', 'error of a step in travel and velocity', within=Range(1e-300, 1.0),
            when=_ADAPTIVE),
 
     choice('time.mode', 'realtime', 'time of the node: realtime follows the clock of the machine; lockstep moves with'
            ' ~/step only; free_run goes at time.factor, or as fast as it can with .inf; the last two publish /clock',
            _MODES),
-    number('time.rate', 1000.0, 'Hz', 'steps per second of simulation time', low=1.0, high=20_000.0),
-    number('time.factor', 1.0, '', 'simulation time per real time; .inf with free_run only', low=1e-3, high=1e3,
+    number('time.rate', 1000.0, 'Hz', 'steps per second of simulation time', within=Range(1.0, 20_000.0)),
+    number('time.factor', 1.0, '', 'simulation time per real time; .inf with free_run only', within=Range(1e-3, 1e3),
            infinite=True),
     Parameter('clock.rate', 'double', None, 'Hz', 'rate of /clock, per second of simulation time, at most time.rate;'
               ' left out: with every step', 1e-3, 20_000.0, when=_OWN_CLOCK),
 
     number('command.max_velocity', 1.0, 'm/s', 'largest drive_velocity, in both directions; beyond it is refused',
-           low=0.0, high=bounds.SPEED, above=True, live=True),
-    number('command.max_force', 1.0e5, 'N', 'largest external_force, in both directions; beyond it is refused', low=0.0,
-           high=bounds.FORCE, above=True, live=True),
+           within=ranges.SPEED, above=True, live=True),
+    number('command.max_force', 1.0e5, 'N', 'largest external_force, in both directions; beyond it is refused',
+           within=Range(0.0, ranges.FORCE.high), above=True, live=True),
 
     number('command.timeout', 0.0, 's', 'silence after the first drive_velocity that counts as a time-out, in real'
-           ' time on the steady clock, else in simulation time; 0: off', low=0.0, high=bounds.TIME),
+           ' time on the steady clock, else in simulation time; 0: off', within=ranges.TIME),
     choice('command.on_timeout', 'hold', 'reaction to a time-out: the drive holds the velocity; stops until the next'
            ' command; or stops and takes none until ~/clear_faults or ~/reset', _REACTIONS),
-    number('command.timeout_deceleration', 1.0, 'm/s²', 'deceleration with which the drive then stops', low=1e-9,
-           high=bounds.ACCELERATION, when=_STOPS),
+    number('command.timeout_deceleration', 1.0, 'm/s²', 'deceleration with which the drive then stops',
+           within=ranges.RAMP, when=_STOPS),
     number('command.velocity_limit', math.inf, 'm/s', 'largest velocity of the drive: commands beyond it are followed'
-           ' up to it, and counted as limited', low=0.0, high=bounds.SPEED, above=True, infinite=True),
+           ' up to it, and counted as limited', within=ranges.SPEED, above=True, infinite=True),
     number('command.acceleration_limit', math.inf, 'm/s²', 'largest acceleration of the drive: faster changes are'
-           ' followed on a ramp, and counted as limited', low=1e-9, high=bounds.ACCELERATION, infinite=True),
+           ' followed on a ramp, and counted as limited', within=ranges.RAMP, infinite=True),
 
-    number('encoder.resolution', 0.0, 'm', 'resolution of the positions on joint_states; 0: none', low=0.0, high=1.0),
-    number('encoder.offset', 0.0, 'm', 'added to the positions before they are rounded to the resolution', low=-1e3,
-           high=1e3),
-    number('encoder.noise', 0.0, 'm', 'standard deviation of the noise before rounding, normal, seeded', low=0.0,
-           high=1.0),
-    number('encoder.delay', 0.0, 's', 'delay of the measurement: whole steps', low=0.0, high=1.0),
+    number('encoder.resolution', 0.0, 'm', 'resolution of the positions on joint_states; 0: none',
+           within=Range(0.0, 1.0)),
+    number('encoder.offset', 0.0, 'm', 'added to the positions before they are rounded to the resolution',
+           within=Range(-1e3, 1e3)),
+    number('encoder.noise', 0.0, 'm', 'standard deviation of the noise before rounding, normal, seeded',
+           within=Range(0.0, 1.0)),
+    number('encoder.delay', 0.0, 's', 'delay of the measurement: whole steps', within=Range(0.0, 1.0)),
     Parameter('encoder.velocity_steps', 'integer', 1, '', 'steps over which the measured velocity is the difference of'
               ' measured positions (with all else 0: the true velocity)', 1, 1000),
 
@@ -160,18 +162,19 @@ PARAMETERS: tuple[Parameter, ...] = (
 
     texts('faults.ids', 'ids of faults from the start on, as with ~/inject_fault (docs/hil.md)'),
     texts('faults.kinds', 'kinds of these faults, like friction_scale or force_pulse'),
-    numbers('faults.starts', None, 's', 'starts of these faults', low=0.0, high=MAX_TIME, required=False),
-    numbers('faults.durations', None, 's', 'durations of these faults', low=bounds.SHORTEST, high=MAX_TIME,
+    numbers('faults.starts', None, 's', 'starts of these faults', within=Range(0.0, MAX_TIME), required=False),
+    numbers('faults.durations', None, 's', 'durations of these faults',
+            within=Range(ranges.TIME_CONSTANT.low, MAX_TIME),
             infinite=True, required=False),
-    numbers('faults.values', None, 'by kind', 'values of these faults; left out: 0', low=-bounds.FORCE,
-            high=bounds.FORCE, required=False),
+    numbers('faults.values', None, 'by kind', 'values of these faults; left out: 0',
+            within=ranges.FORCE, required=False),
 
-    number('timing.max_lateness', 0.01, 's', 'largest lateness of a step in a run that is real-time valid', low=0.0,
-           high=bounds.TIME, above=True, infinite=True),
+    number('timing.max_lateness', 0.01, 's', 'largest lateness of a step in a run that is real-time valid',
+           within=ranges.TIME, above=True, infinite=True),
     number('timing.max_overruns', 0.01, '', 'largest share of steps that start more than a period late in such a run',
-           low=0.0, high=1.0),
+           within=ranges.SHARE),
     number('timing.max_latency', math.inf, 's', 'largest time from a command to the first state that it moved, in'
-           ' such a run', low=0.0, high=bounds.TIME, above=True, infinite=True),
+           ' such a run', within=ranges.TIME, above=True, infinite=True),
 
     Parameter('record.enabled', 'bool', False, '', 'whether the node records a bag from the start'),
     Parameter('record.folder', 'string', '', '', 'folder of the bag, which must not exist; empty: the node chooses;'
