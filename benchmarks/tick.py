@@ -15,13 +15,11 @@ import statistics
 import time
 from collections.abc import Callable
 
-import numpy as np
 import rclpy
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 
 from stickslip_msgs.msg import FrictionForce, SliderState
-from stickslip_sim.axis.layout import EVENT_SIZE
 from stickslip_sim.bench.cases import make_case
 from stickslip_sim.bench.own_solvers import state_for
 from stickslip_sim.bench.ratios import at_most
@@ -36,11 +34,13 @@ ROUNDS = 7
 def tick_cost() -> Callable[[], float]:
     """Return what measures a tick of 1 ms, s."""
     problem, solver = make_case('B'), exact.SOLVER
-    p, state, events = problem.parameters, state_for(problem), np.zeros((64, EVENT_SIZE))
+    of = solver.records
+    p, state, events = of.Parameters(problem.parameters.tolist()), state_for(problem, of), of.Events(64)
+    sinusoids = of.Sinusoids(problem.sinusoids.tolist())
     instants = [(float(k // 1000), k % 1000 / 1000.0) for k in range(1, TICKS + 1)]
 
     def measure() -> float:
-        solver.start(p, state, *problem.start, *problem.pieces[0, 1:], problem.sinusoids, events, 0)
+        solver.start(p, state, *problem.start, *problem.pieces[0, 1:], sinusoids, events, 0)
         advance = solver.advance
         begin = time.process_time()
         for second, fraction in instants:

@@ -2,36 +2,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """Installation of stickslip_sim as a ROS 2 package."""
 
-import os
-import subprocess
 import sys
 from glob import glob
+from pathlib import Path
 
 from setuptools import find_packages, setup
-from setuptools.command.build_py import build_py
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))   # pip runs this file from elsewhere
+from hot_unit.build import BuildUnit, extensions
 
 NAME = 'stickslip_sim'
 SHARE = f'share/{NAME}'
 
-
-class BuildAndCompile(build_py):
-    """Build, and compile the hot path ahead of time; where that fails, the first start of the package compiles."""
-
-    def run(self):
-        """Compile what was just built, in a process that imports nothing else of this name."""
-        super().run()
-        environment = {**os.environ, 'STICKSLIP_COMPILED': 'jit', 'PYTHONPATH': os.pathsep.join(
-            [os.path.abspath(self.build_lib), *filter(None, os.environ.get('PYTHONPATH', '').split(os.pathsep))])}
-        done = subprocess.run([sys.executable, '-m', f'{NAME}.solvers.ahead', os.path.join(self.build_lib, NAME)],
-                              env=environment, capture_output=True, text=True, check=False)
-        if done.returncode != 0:
-            reason = (done.stderr.strip().splitlines() or ['no reason given'])[-1]
-            self.warn(f'{NAME} is not compiled ahead of time; its first start will compile: {reason}')
-
-
 setup(
     name=NAME,
-    cmdclass={'build_py': BuildAndCompile},
+    cmdclass={'build_ext': BuildUnit},
+    ext_modules=extensions(),
     version='0.1.0',
     description='Stick-slip of a feed axis in real time: exact engine, ROS 2 node, offline tool',
     maintainer='The stickslip developers',
@@ -52,11 +38,12 @@ setup(
     zip_safe=False,
     python_requires='>=3.10',
     install_requires=[
-        'setuptools', 'numpy', 'scipy', 'numba', 'PyYAML', 'mcap', 'zstandard', 'lz4', 'rosbags',
+        'setuptools', 'numpy', 'scipy', 'PyYAML', 'mcap', 'zstandard', 'lz4', 'rosbags',
         'matplotlib>=3.6', 'click',
     ],
     extras_require={
-        'bench': ['mpmath'], 'cluster': ['distributed'], 'tables': ['pandas', 'fastparquet'], 'test': ['pytest'],
+        'bench': ['mpmath', 'numba'], 'cluster': ['distributed'], 'tables': ['pandas', 'fastparquet'],
+        'test': ['numba', 'pytest'],
     },
     entry_points={
         'console_scripts': [

@@ -353,7 +353,6 @@ def test_the_account_of_a_hold_takes_the_same_work_at_any_frequency_and_length(i
 WRONG = """
 import math
 from stickslip_sim.axis import motion
-from stickslip_sim.axis.layout import NEXT, SPRING, VELOCITY
 from stickslip_sim.axis import InitialState
 from stickslip_sim.core.input_profile import constant
 from stickslip_sim.linear import roots
@@ -364,12 +363,12 @@ from tests.support.axes import COMPLIANT, RIGID, paper_axis
 def late(find):
     def find_late(p, s, due):
         find(p, s, due)
-        s[NEXT] *= 1.0 + 1e-6
+        s.next *= 1.0 + 1e-6
     return find_late
 def jumping(transition):
     def jump(p, s, events, row, before):
         transition(p, s, events, row, before)
-        s[SPRING] *= 1.0 + 1e-9
+        s.spring *= 1.0 + 1e-9
     return jump
 def off(form, item):
     def off_form(osc, t):

@@ -101,7 +101,7 @@ class TestImage:
     ('ros2_ws/bootstrap', True), ('ros2_ws/requirements-jazzy.txt', True), ('docker/entrypoint', True),
     ('ros2_ws/.venv', False), ('ros2_ws/install/setup.bash', False), ('.git/config', False), ('runs/a', False),
     ('stickslip_sim/stickslip_sim/__pycache__', False), ('tests/house/test_docker.py', False),
-    ('stickslip_sim/stickslip_sim/_ahead_steps_0.cpython-311-x86_64-linux-gnu.so', False),
+    ('stickslip_sim/stickslip_sim/_hot.cpython-311-x86_64-linux-gnu.so', False),
 ])
 def test_context(path: str, is_in: bool) -> None:
     assert in_context(path) == is_in

@@ -9,10 +9,10 @@ from collections.abc import Iterator
 import mpmath as mp
 import pytest
 
-from stickslip_sim.linear.oscillator import integrals, oscillator
-from stickslip_sim.linear.roots import finite_horizon, first_passage, householder
-
-Oscillator = tuple[float, float, float, float, float]
+from stickslip_sim.linear.oscillator import Oscillator, integrals, oscillator
+from stickslip_sim.linear.roots import first_passage
+from stickslip_sim.linear.steps import householder
+from stickslip_sim.linear.zeros import finite_horizon
 
 
 def exact_passage(gamma: float, omega2: float, rate: float, jerk: float, gap: float, near: float) -> float:
@@ -45,14 +45,14 @@ def test_a_guess_far_up_a_growing_slip_leads_to_the_root(seed: int) -> None:
     osc, rate, jerk, growth = growing(random.Random(seed))
     rng = random.Random(seed + 1000)
     gap = 10.0 ** rng.uniform(-8.0, 0.0)
-    slow = growth if osc[2] > 0.0 else osc[3]
+    slow = growth if osc.nu > 0.0 else osc.slow
     want, passed, *_ = first_passage(osc, rate, jerk, 0.0, gap, math.inf, 0.0)
     for exponent in (200.0, 236.0, 240.0, 300.0, 590.0, 599.0):
         t, reached, *_ = first_passage(osc, rate, jerk, 0.0, gap, math.inf, exponent / slow)
         assert reached == passed
         assert t == pytest.approx(want, rel=1e-14)
     if passed:
-        assert want == pytest.approx(exact_passage(osc[0], osc[1], rate, jerk, gap, want), rel=1e-13)
+        assert want == pytest.approx(exact_passage(osc.gamma, osc.omega2, rate, jerk, gap, want), rel=1e-13)
         assert want < finite_horizon(osc, math.inf)
 
 
@@ -73,15 +73,15 @@ def test_a_slip_that_dies_out_before_its_turn_keeps_its_root() -> None:
     """(b) The turn is up to 1e7 time constants away, where rates are 0 or below 1e-308."""
     found = 0
     for osc, rate, jerk, gap in fading():
-        want, passed, *_ = first_passage(osc, rate, jerk, 0.0, gap, 1e9 / osc[0], 0.0)
+        want, passed, *_ = first_passage(osc, rate, jerk, 0.0, gap, 1e9 / osc.gamma, 0.0)
         assert passed
         for horizon in (want + 4.0 * allowed(osc, rate, jerk, want), 10.0 * want, 1e4 * want):
-            for guess in (0.0, 0.3 * want, 40.0 * want, 700.0 / osc[0], 1e4 / osc[0]):
+            for guess in (0.0, 0.3 * want, 40.0 * want, 700.0 / osc.gamma, 1e4 / osc.gamma):
                 t, reached, *_ = first_passage(osc, rate, jerk, 0.0, gap, horizon, guess)
                 assert reached
                 assert t <= horizon
                 assert abs(t - want) <= allowed(osc, rate, jerk, want)
-        assert abs(want - exact_passage(osc[0], osc[1], rate, jerk, gap, want)) <= allowed(osc, rate, jerk, want)
+        assert abs(want - exact_passage(osc.gamma, osc.omega2, rate, jerk, gap, want)) <= allowed(osc, rate, jerk, want)
         found += 1
     assert found > 50
 

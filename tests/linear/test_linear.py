@@ -9,8 +9,10 @@ from itertools import pairwise
 import mpmath as mp
 import pytest
 
-from stickslip_sim.linear.oscillator import bound, impulse, integrals, oscillator
-from stickslip_sim.linear.roots import first_crossing, first_passage, first_zero, safe_step
+from stickslip_sim.linear.oscillator import Oscillator, bound, impulse, integrals, oscillator
+from stickslip_sim.linear.polynomials import first_crossing, safe_step
+from stickslip_sim.linear.roots import first_passage
+from stickslip_sim.linear.zeros import first_zero
 
 KINDS = ('under-damped', 'over-damped', 'critical', 'no spring', 'no damper', 'unstable', 'soft', 'neither')
 
@@ -66,11 +68,11 @@ def test_first_zero_is_the_first(kind: str) -> None:
         if z == 0.0:
             rate = abs(rate) + scale
 
-        def value(t: float, osc: tuple[float, ...] = osc, z: float = z, rate: float = rate) -> float:
+        def value(t: float, osc: Oscillator = osc, z: float = z, rate: float = rate) -> float:
             g, slope = impulse(osc, t)
-            return float(z * (slope + 2.0 * osc[0] * g) + rate * g)
+            return float(z * (slope + 2.0 * osc.gamma * g) + rate * g)
 
-        t = first_zero(osc, z, rate + 2.0 * osc[0] * z)
+        t = first_zero(osc, z, rate + 2.0 * osc.gamma * z)
         end = min(t, 20.0 / scale)
         assert all(value(end * i / 200) > 0.0 for i in range(1, 200))
         if t < 20.0 / scale:
@@ -99,7 +101,7 @@ def test_first_passage_misses_nothing(snap: float) -> None:
             jerk = abs(jerk) + 0.1 * scale
         bend = snap * scale * scale if omega2 > 0.0 else 0.0
 
-        def r(t: float, osc: tuple[float, ...] = osc, rate: float = rate, jerk: float = jerk,
+        def r(t: float, osc: Oscillator = osc, rate: float = rate, jerk: float = jerk,
               bend: float = bend) -> float:
             g, _, first, second, _ = integrals(osc, t)
             return float(rate * g + jerk * first + bend * second)

@@ -10,7 +10,7 @@ import mpmath as mp
 import pytest
 
 from stickslip_sim.linear.moments import moments
-from stickslip_sim.linear.oscillator import oscillator
+from stickslip_sim.linear.oscillator import Oscillator, oscillator
 from stickslip_sim.linear.wave_products import (
     cycle_within,
     ramped_integral,
@@ -94,7 +94,7 @@ def test_a_motion_that_faded_long_ago_keeps_its_digits() -> None:
     rate, x = -3e8, 1.0
     c = (rate - near * x) / (far - near)
     a = x - c
-    _, _, first, second, third, square = moments((1.5e9, 2e18, -5e8, near, far), x, rate, 0.0, 0.0, t)
+    _, _, first, second, third, square = moments(Oscillator(1.5e9, 2e18, -5e8, near, far), x, rate, 0.0, 0.0, t)
     once = a / -near + c / -far
     twice = a / near ** 2 + c / far ** 2
     assert first == pytest.approx(once, rel=1e-13)

@@ -105,7 +105,7 @@ class TestReaders:
         assert run.receipt == {'periods': 3, 'end': 'inf'}
         assert run.attachments['scene.yaml'].decode() == FACTS.scene_text
         assert run.metadata['stickslip'].items() >= {'scene': 'made_up', 'seed': '7', 'rate': '1000.0'}.items()
-        assert run.metadata['stickslip']['numba']
+        assert run.metadata['stickslip']['hot_path'] in ('compiled', 'plain python')
 
     def test_columns(self, bag: Path) -> None:
         columns = open_bag(bag).columns('/slider_state')

@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
-from ..axis.layout import FRACTION, SECOND
 from ..bench.measure import Cost, measure
 from ..bench.own_solvers import own_solver
 from ..bench.peers.peer import EXACT
@@ -17,7 +16,7 @@ from ..core.types import Event, Instant, Sample
 from ..runs import SimulatedRun, simulate
 from ..scene import Scene, changed
 from ..simulation.simulator import Simulator
-from ..solvers import Solver
+from ..solvers import Solver, with_advance
 from .figure_distance import Distance, RunFigures, distance_between, run_figures
 from .part import Changes
 
@@ -132,11 +131,11 @@ def _watched(solver: Solver, most: int) -> Solver:
         rows, end = solver.advance(*arguments)
         found += rows
         if found > most:
-            time = arguments[1][SECOND] + arguments[1][FRACTION]
+            time = arguments[1].second + arguments[1].fraction
             raise SolverError(f'more than {most} events up to t = {time:.4g} s, far more than with the exact solver')
         return rows, end
 
-    return solver._replace(advance=advance)
+    return with_advance(solver, advance)
 
 
 def _tabulated(scene: Scene) -> Scene:

@@ -8,17 +8,25 @@ rate, then of the rate's rate, decides.
 
 from ..core.jit import compiled, inlined
 from ..core.types import EventKind
-from .layout import (
-    ACCELERATION, COMPLIANT, CONTACT_STIFFNESS, DAMPING, DEFLECTION, DIRECTION, DRIVE, EVENT_DIRECTION, EVENT_DRIVE,
-    EVENT_DRIVE_FORCE, EVENT_FRACTION, EVENT_FRICTION, EVENT_KIND, EVENT_MODE, EVENT_POSITION, EVENT_REST, EVENT_SECOND,
-    EVENT_STATIC, EVENT_VELOCITY, EXCESS, F, FRACTION, F_RATE, GAMMA, MASS, MODE, NORMAL, ORIGIN, PIECE, POSITION,
-    RESIDUAL, REST, SECOND, SPRING, STATIC_INITIAL, STIFFNESS, V, VELOCITY, V_RATE, WAVES,
-)
+from .layout import Events, Parameters, State
 from .motion import (
-    ACCELERATING, COASTING, DECELERATING, STICK, contact_force, drive_force, friction_force, friction_line,
-    has_branches, is_rigid_stick, kinetic_at_rest, knot_speed, piece_above, piece_below, static_limit,
+    ACCELERATING,
+    COASTING,
+    DECELERATING,
+    STICK,
+    breakpoint_speed,
+    contact_force,
+    drive_force,
+    friction_force,
+    friction_line,
+    has_branches,
+    is_rigid_stick,
+    kinetic_at_rest,
+    segment_above,
+    segment_below,
+    static_limit,
 )
-from .waves import forced_rate
+from .sinusoids import forced_rate
 
 BREAKAWAY = float(EventKind.BREAKAWAY)
 COAST = float(EventKind.COAST)
@@ -29,201 +37,201 @@ REVERSE = float(EventKind.REVERSE)
 KNOT = float(EventKind.KNOT)
 
 _ROUNDING = 8.0 * 2.220446049250313e-16
-_MUCH = 16.0     # so much more is lost on a steep piece of the table before the forces tell it better
+_MUCH = 16.0     # so much more is lost on a steep segment of the table before the forces know it better
 _TIE = 1e-15   # of the friction force: a closed-form acceleration smaller than that is a tie
 
 
 @inlined
-def applied_force(p, s):
-    """Return F_d + F_e at the anchor."""
-    return drive_force(p, s[SPRING], s[V], s[VELOCITY]) + s[F]
+def applied_force(p: Parameters, s: State) -> float:
+    """Return F_d + F_e at the segment start."""
+    return drive_force(p, s.spring, s.v, s.velocity) + s.f
 
 
 @inlined
-def force_rounding(p, s, friction):
-    """Return the size of rounding errors in a sum of the forces at the anchor."""
-    return _ROUNDING * (p[STIFFNESS] * abs(s[SPRING]) + p[DAMPING] * (abs(s[V]) + abs(s[VELOCITY])) + abs(s[F])
-                        + p[NORMAL] * friction)
+def force_rounding(p: Parameters, s: State, friction: float) -> float:
+    """Return the size of rounding errors in a sum of the forces at the segment start."""
+    return _ROUNDING * (p.stiffness * abs(s.spring) + p.damping * (abs(s.v) + abs(s.velocity)) + abs(s.f)
+                        + p.normal_force * friction)
 
 
 @inlined
-def write_event(p, s, events, row, kind, direction, friction, limit):
-    """Write a row with the state at the anchor and mu_s = `limit`; who calls it adds the mode that follows."""
-    e = events[row]
-    e[EVENT_SECOND] = s[SECOND]
-    e[EVENT_FRACTION] = s[FRACTION]
-    e[EVENT_KIND] = kind
-    e[EVENT_DIRECTION] = direction
-    e[EVENT_POSITION] = s[ORIGIN] + s[POSITION]
-    e[EVENT_VELOCITY] = s[VELOCITY]
-    e[EVENT_DRIVE] = s[ORIGIN] + s[DRIVE]
-    e[EVENT_DRIVE_FORCE] = drive_force(p, s[SPRING], s[V], s[VELOCITY])
-    e[EVENT_FRICTION] = friction
-    e[EVENT_STATIC] = limit
-    e[EVENT_REST] = s[REST]
+def write_event(p: Parameters, s: State, events: Events, row: int, kind: float, direction: float, friction: float,
+                limit: float) -> None:
+    """Write a row with the state at the segment start and mu_s = `limit`; who calls it adds the mode that follows."""
+    events.rows[row].second = s.second
+    events.rows[row].fraction = s.fraction
+    events.rows[row].kind = kind
+    events.rows[row].direction = direction
+    events.rows[row].position = s.origin + s.position
+    events.rows[row].velocity = s.velocity
+    events.rows[row].drive = s.origin + s.drive
+    events.rows[row].drive_force = drive_force(p, s.spring, s.v, s.velocity)
+    events.rows[row].friction = friction
+    events.rows[row].static = limit
+    events.rows[row].rest = s.rest
 
 
 @inlined
-def force_rate(p, s):
+def force_rate(p: Parameters, s: State) -> tuple[float, float]:
     """Return the rate of F_d + F_e at constant velocity, and the rate's rate; within rounding of 0 the first is 0."""
-    if s[WAVES] != 0.0:
+    if s.sinusoid_count != 0.0:
         return forced_rate(p, s)
-    pushed = p[DAMPING] * s[V_RATE] + s[F_RATE]
-    rate = p[STIFFNESS] * (s[V] - s[VELOCITY]) + pushed
-    if abs(rate) <= _ROUNDING * (p[STIFFNESS] * (abs(s[V]) + abs(s[VELOCITY])) + abs(pushed)):
+    pushed = p.damping * s.v_rate + s.f_rate
+    rate = p.stiffness * (s.v - s.velocity) + pushed
+    if abs(rate) <= _ROUNDING * (p.stiffness * (abs(s.v) + abs(s.velocity)) + abs(pushed)):
         rate = 0.0
-    return rate, p[STIFFNESS] * s[V_RATE]
+    return rate, p.stiffness * s.v_rate
 
 
 @inlined
-def choose_slip(p, s, residual, lower, tolerance):
+def choose_slip(p: Parameters, s: State, residual: float, lower: float, tolerance: float) -> bool:
     """Set the slip sub-mode from R − B = `residual` and R = `lower`; return False when the slider comes to rest.
 
     R = ±(F_d + F_e) − N mu_k along the slip and B = N e(|ẋ|), see docs/model.md.  Neither is made from the other: where
     B is large the small one would lose its digits.
     """
-    direction = s[DIRECTION]
-    speed = abs(s[VELOCITY])
-    rate, bend = force_rate(p, s)
+    direction = s.direction
+    speed = abs(s.velocity)
+    rate, second_rate = force_rate(p, s)
     rate *= direction
-    bend *= direction
+    second_rate *= direction
     if abs(residual) <= tolerance:
         residual = 0.0
-    if residual > 0.0 or (residual == 0.0 and (rate > 0.0 or (rate == 0.0 and bend > 0.0))):
-        s[MODE] = ACCELERATING
-        s[PIECE] = piece_above(p, speed)
-        s[ACCELERATION] = direction * residual / p[MASS]
+    if residual > 0.0 or (residual == 0.0 and (rate > 0.0 or (rate == 0.0 and second_rate > 0.0))):
+        s.mode = ACCELERATING
+        s.segment = segment_above(p, speed)
+        s.acceleration = direction * residual / p.mass
         return True
     if speed == 0.0:
         return False
-    piece = piece_above(p, speed)
-    coefficient, _, psi, _ = friction_line(p, piece, speed)
-    band = p[NORMAL] * s[EXCESS] * psi
+    segment = segment_above(p, speed)
+    coefficient, _, psi, _ = friction_line(p, segment, speed)
+    band = p.normal_force * s.excess * psi
     if abs(lower) <= min(tolerance, force_rounding(p, s, coefficient)):
         lower = 0.0
-    rests_on_edge = lower == 0.0 and ((band > 0.0 and rate > 0.0) or (rate == 0.0 and bend >= 0.0))
+    rests_on_edge = lower == 0.0 and ((band > 0.0 and rate > 0.0) or (rate == 0.0 and second_rate >= 0.0))
     if rests_on_edge or (lower > 0.0 and band > 0.0):
-        s[MODE] = COASTING
-        s[PIECE] = piece
-        s[RESIDUAL] = lower
-        s[ACCELERATION] = 0.0
+        s.mode = COASTING
+        s.segment = segment
+        s.residual = lower
+        s.acceleration = 0.0
         return True
-    s[MODE] = DECELERATING
-    s[PIECE] = piece_below(p, speed)
-    s[ACCELERATION] = direction * lower / p[MASS]
+    s.mode = DECELERATING
+    s.segment = segment_below(p, speed)
+    s.acceleration = direction * lower / p.mass
     return True
 
 
 @inlined
-def band_of(p, s):
-    """Return B = N e(|ẋ|), the width of the coasting band at the anchor, N."""
-    _, _, psi, _ = friction_line(p, int(s[PIECE]), abs(s[VELOCITY]))
-    return p[NORMAL] * s[EXCESS] * psi
+def band_of(p: Parameters, s: State) -> float:
+    """Return B = N e(|ẋ|), the width of the coasting band at the segment start, N."""
+    _, _, psi, _ = friction_line(p, int(s.segment), abs(s.velocity))
+    return p.normal_force * s.excess * psi
 
 
 @inlined
-def break_away(p, s, direction, limit, margin):
+def break_away(p: Parameters, s: State, direction: float, limit: float, margin: float) -> None:
     """Begin a slip at the friction coefficient `limit`; `margin` is how far the force is beyond it along the slip, N.
 
     The excess E of this slip makes friction continuous; without acceleration dependence, or at a speed where psi has
     ended, friction drops to mu_k at once.
     """
-    speed = abs(s[VELOCITY])
-    coefficient, _, psi, _ = friction_line(p, piece_above(p, speed), speed)
-    s[EXCESS] = 0.0
-    s[DIRECTION] = direction
+    speed = abs(s.velocity)
+    coefficient, _, psi, _ = friction_line(p, segment_above(p, speed), speed)
+    s.excess = 0.0
+    s.direction = direction
     tolerance = force_rounding(p, s, limit)
-    if p[COMPLIANT] != 0.0:
-        margin += direction * p[MASS] * s[ACCELERATION]
-        tolerance = _TIE * p[NORMAL] * limit
-    residual = lower = margin + p[NORMAL] * (limit - coefficient)
+    if p.compliant != 0.0:
+        margin += direction * p.mass * s.acceleration
+        tolerance = _TIE * p.normal_force * limit
+    residual = lower = margin + p.normal_force * (limit - coefficient)
     if has_branches(p) and psi > 0.0 and limit >= coefficient:
-        s[EXCESS] = (limit - coefficient) / psi
+        s.excess = (limit - coefficient) / psi
         residual = margin
-    s[REST] = 0.0
-    s[DEFLECTION] = 0.0
+    s.rest = 0.0
+    s.deflection = 0.0
     if not choose_slip(p, s, residual, lower, tolerance):
         rest(p, s)
 
 
 @inlined
-def rest(p, s):
+def rest(p: Parameters, s: State) -> None:
     """Begin to stick at standstill."""
-    s[MODE] = STICK
-    s[REST] = 0.0
-    s[VELOCITY] = 0.0
-    s[ACCELERATION] = 0.0
-    s[DEFLECTION] = 0.0
-    if p[COMPLIANT] != 0.0:
-        friction = s[DIRECTION] * p[NORMAL] * kinetic_at_rest(p)
-        s[DEFLECTION] = friction / p[CONTACT_STIFFNESS]
-        s[ACCELERATION] = (applied_force(p, s) - friction) / p[MASS]
-    s[DIRECTION] = 0.0
+    s.mode = STICK
+    s.rest = 0.0
+    s.velocity = 0.0
+    s.acceleration = 0.0
+    s.deflection = 0.0
+    if p.compliant != 0.0:
+        friction = s.direction * p.normal_force * kinetic_at_rest(p)
+        s.deflection = friction / p.contact_stiffness
+        s.acceleration = (applied_force(p, s) - friction) / p.mass
+    s.direction = 0.0
 
 
 @inlined
-def arrest(p, s, events, row):
+def arrest(p: Parameters, s: State, events: Events, row: int) -> None:
     """End a slip at standstill: stick, or reverse at once where a rigid contact cannot hold the force."""
-    s[VELOCITY] = 0.0
-    friction = s[DIRECTION] * p[NORMAL] * kinetic_at_rest(p)
+    s.velocity = 0.0
+    friction = s.direction * p.normal_force * kinetic_at_rest(p)
     force = applied_force(p, s)
     limit = static_limit(p, 0.0)
-    margin = abs(force) - p[NORMAL] * limit
-    if p[COMPLIANT] == 0.0 and margin > force_rounding(p, s, limit):
+    margin = abs(force) - p.normal_force * limit
+    if p.compliant == 0.0 and margin > force_rounding(p, s, limit):
         direction = 1.0 if force > 0.0 else -1.0
         write_event(p, s, events, row, REVERSE, direction, friction, limit)
         break_away(p, s, direction, limit, margin)
     else:
-        write_event(p, s, events, row, ARREST, s[DIRECTION], friction, limit)
+        write_event(p, s, events, row, ARREST, s.direction, friction, limit)
         rest(p, s)
-    events[row][EVENT_MODE] = s[MODE]
+    events.rows[row].mode = s.mode
 
 
 @inlined
-def release(p, s, events, row):
+def release(p: Parameters, s: State, events: Events, row: int) -> None:
     """Begin a slip from stick, where |F| has reached N mu_s(t⁻)."""
-    force = applied_force(p, s) if is_rigid_stick(p, s) else contact_force(p, s[DEFLECTION], s[VELOCITY])
-    limit = static_limit(p, s[REST])
-    direction = _way_out(p, s, force)
-    margin = abs(force) - p[NORMAL] * limit
+    force = applied_force(p, s) if is_rigid_stick(p, s) else contact_force(p, s.deflection, s.velocity)
+    limit = static_limit(p, s.rest)
+    direction = _direction_out(p, s, force)
+    margin = abs(force) - p.normal_force * limit
     if margin <= force_rounding(p, s, limit):
         margin = 0.0
-    friction = direction * p[NORMAL] * limit
-    if s[VELOCITY] * direction < 0.0:   # friction turns round: it opposes the motion from now on
+    friction = direction * p.normal_force * limit
+    if s.velocity * direction < 0.0:   # friction turns round: it opposes the motion from now on
         direction = -direction
-        margin = -(margin + 2.0 * p[NORMAL] * limit)
+        margin = -(margin + 2.0 * p.normal_force * limit)
     write_event(p, s, events, row, BREAKAWAY, direction, friction, limit)
     break_away(p, s, direction, limit, margin)
-    events[row][EVENT_MODE] = s[MODE]
+    events.rows[row].mode = s.mode
 
 
 @compiled
-def _way_out(p, s, force):
-    """Return the way that stick breaks; where nothing holds and nothing pulls yet, that of the next derivative."""
-    rate, bend = force_rate(p, s)
-    way = force if abs(force) > force_rounding(p, s, 0.0) else 0.0
-    if way == 0.0 and p[COMPLIANT] != 0.0:
-        way = s[VELOCITY] if s[VELOCITY] != 0.0 else s[ACCELERATION]
-    if way == 0.0:
-        way = rate if rate != 0.0 else bend
-    return 1.0 if way > 0.0 else -1.0
+def _direction_out(p: Parameters, s: State, force: float) -> float:
+    """Return the direction in which stick breaks; where nothing acts yet, that of the next derivative."""
+    rate, second_rate = force_rate(p, s)
+    push = force if abs(force) > force_rounding(p, s, 0.0) else 0.0
+    if push == 0.0 and p.compliant != 0.0:
+        push = s.velocity if s.velocity != 0.0 else s.acceleration
+    if push == 0.0:
+        push = rate if rate != 0.0 else second_rate
+    return 1.0 if push > 0.0 else -1.0
 
 
 @inlined
-def turn(p, s, events, row):
+def turn(p: Parameters, s: State, events: Events, row: int) -> None:
     """Leave a sub-mode where its acceleration vanishes: coast, or pass to the other branch where they coincide."""
-    mode = s[MODE]
-    direction = s[DIRECTION]
-    friction = friction_force(p, s, 0.0, s[VELOCITY], 0.0)
+    mode = s.mode
+    direction = s.direction
+    friction = friction_force(p, s, 0.0, s.velocity, 0.0)
     band = band_of(p, s)
-    s[ACCELERATION] = 0.0
-    rate, bend = force_rate(p, s)
-    slides_steadily = rate == 0.0 and bend == 0.0
+    s.acceleration = 0.0
+    rate, second_rate = force_rate(p, s)
+    slides_steadily = rate == 0.0 and second_rate == 0.0
     if band > 0.0 or slides_steadily:
-        if slides_steadily and s[F_RATE] == 0.0:
-            s[VELOCITY] = s[V]
-        s[MODE] = COASTING
-        s[RESIDUAL] = band if mode == ACCELERATING else 0.0
+        if slides_steadily and s.f_rate == 0.0:
+            s.velocity = s.v
+        s.mode = COASTING
+        s.residual = band if mode == ACCELERATING else 0.0
         kind = COAST
     elif mode == ACCELERATING:
         enter_branch(p, s, DECELERATING)
@@ -231,87 +239,87 @@ def turn(p, s, events, row):
     else:
         enter_branch(p, s, ACCELERATING)
         kind = ACCELERATE
-    write_event(p, s, events, row, kind, direction, friction, p[STATIC_INITIAL])
-    events[row][EVENT_MODE] = s[MODE]
+    write_event(p, s, events, row, kind, direction, friction, p.static_initial)
+    events.rows[row].mode = s.mode
 
 
 @inlined
-def enter_branch(p, s, mode):
+def enter_branch(p: Parameters, s: State, mode: float) -> None:
     """Begin to accelerate or decelerate with no acceleration yet."""
-    s[MODE] = mode
-    speed = abs(s[VELOCITY])
-    s[PIECE] = piece_above(p, speed) if mode == ACCELERATING else piece_below(p, speed)
-    s[ACCELERATION] = 0.0
+    s.mode = mode
+    speed = abs(s.velocity)
+    s.segment = segment_above(p, speed) if mode == ACCELERATING else segment_below(p, speed)
+    s.acceleration = 0.0
 
 
 @inlined
-def leave_coast(p, s, events, row, kind):
+def leave_coast(p: Parameters, s: State, events: Events, row: int, kind: float) -> None:
     """Leave the coasting band: upwards to accelerate, downwards to decelerate."""
-    write_event(p, s, events, row, kind, s[DIRECTION], applied_force(p, s), p[STATIC_INITIAL])
+    write_event(p, s, events, row, kind, s.direction, applied_force(p, s), p.static_initial)
     enter_branch(p, s, ACCELERATING if kind == ACCELERATE else DECELERATING)
-    events[row][EVENT_MODE] = s[MODE]
+    events.rows[row].mode = s.mode
 
 
 @compiled
-def cross_knot(p, s, events, row, before):
-    """Go on along the next piece of the friction table; the speed is that of the knot, exactly.
+def cross_breakpoint(p: Parameters, s: State, events: Events, row: int, before: float) -> None:
+    """Go on along the next segment of the friction table; the speed is that of the breakpoint, exactly.
 
     So is the acceleration of the balance of forces there, but for their rounding; that of the closed form is off by the
-    rounding of how it began, `before`, and of what the piece gave to it.  The one that is off less is taken.
+    rounding of how it began, `before`, and of what the segment gave to it.  The one that is off less is taken.
     """
-    lost = p[MASS] * (abs(before) + 2.0 * abs(s[GAMMA] * s[VELOCITY]))
-    step = 1.0 if s[MODE] == ACCELERATING else -1.0
-    knot = int(s[PIECE] + (1.0 if step > 0.0 else 0.0))
-    speed = knot_speed(p, knot)
-    coefficient, _, psi, _ = friction_line(p, knot, speed)
-    if s[MODE] == ACCELERATING:
-        coefficient += s[EXCESS] * psi
-    friction = s[DIRECTION] * p[NORMAL] * coefficient
-    s[VELOCITY] = s[DIRECTION] * speed
-    write_event(p, s, events, row, KNOT, s[DIRECTION], friction, p[STATIC_INITIAL])
-    s[PIECE] += step
-    if lost > _MUCH * p[NORMAL] * coefficient and _ROUNDING * lost > _MUCH * force_rounding(p, s, coefficient):
-        s[ACCELERATION] = (applied_force(p, s) - friction) / p[MASS]
-    if step * s[DIRECTION] * s[ACCELERATION] < 0.0:   # the speed peaks here: a tie, which the force's rate decides
-        s[ACCELERATION] = 0.0
-    events[row][EVENT_MODE] = s[MODE]
+    lost = p.mass * (abs(before) + 2.0 * abs(s.gamma * s.velocity))
+    step = 1.0 if s.mode == ACCELERATING else -1.0
+    upper = int(s.segment + (1.0 if step > 0.0 else 0.0))
+    speed = breakpoint_speed(p, upper)
+    coefficient, _, psi, _ = friction_line(p, upper, speed)
+    if s.mode == ACCELERATING:
+        coefficient += s.excess * psi
+    friction = s.direction * p.normal_force * coefficient
+    s.velocity = s.direction * speed
+    write_event(p, s, events, row, KNOT, s.direction, friction, p.static_initial)
+    s.segment += step
+    if lost > _MUCH * p.normal_force * coefficient and _ROUNDING * lost > _MUCH * force_rounding(p, s, coefficient):
+        s.acceleration = (applied_force(p, s) - friction) / p.mass
+    if step * s.direction * s.acceleration < 0.0:   # the speed peaks here: a tie, which the force's rate decides
+        s.acceleration = 0.0
+    events.rows[row].mode = s.mode
 
 
 @inlined
-def apply_inputs(p, s, events, row):
-    """Choose the mode anew after a jump of an input or a parameter at the anchor; return True if it wrote an event."""
-    mode = s[MODE]
+def apply_inputs(p: Parameters, s: State, events: Events, row: int) -> bool:
+    """Choose the mode anew after a jump of an input or a parameter; return True if that wrote an event."""
+    mode = s.mode
     if mode == STICK:
         return _press_stick(p, s, events, row)
-    direction = s[DIRECTION]
-    speed = abs(s[VELOCITY])
-    coefficient, _, psi, _ = friction_line(p, piece_above(p, speed), speed)
-    upper = coefficient + s[EXCESS] * psi
+    direction = s.direction
+    speed = abs(s.velocity)
+    coefficient, _, psi, _ = friction_line(p, segment_above(p, speed), speed)
+    upper = coefficient + s.excess * psi
     push = direction * applied_force(p, s)
-    residual, lower = push - p[NORMAL] * upper, push - p[NORMAL] * coefficient
+    residual, lower = push - p.normal_force * upper, push - p.normal_force * coefficient
     if not choose_slip(p, s, residual, lower, force_rounding(p, s, upper)):
         arrest(p, s, events, row)
         return True
-    if s[MODE] == mode:
+    if s.mode == mode:
         return False
-    kind = COAST if s[MODE] == COASTING else (ACCELERATE if s[MODE] == ACCELERATING else DECELERATE)
-    friction = friction_force(p, s, 0.0, s[VELOCITY], applied_force(p, s))
-    write_event(p, s, events, row, kind, direction, friction, p[STATIC_INITIAL])
-    events[row][EVENT_MODE] = s[MODE]
+    kind = COAST if s.mode == COASTING else (ACCELERATE if s.mode == ACCELERATING else DECELERATE)
+    friction = friction_force(p, s, 0.0, s.velocity, applied_force(p, s))
+    write_event(p, s, events, row, kind, direction, friction, p.static_initial)
+    events.rows[row].mode = s.mode
     return True
 
 
 @inlined
-def _press_stick(p, s, events, row):
-    if p[COMPLIANT] != 0.0:
-        force = contact_force(p, s[DEFLECTION], s[VELOCITY])
-        s[ACCELERATION] = (applied_force(p, s) - force) / p[MASS]
+def _press_stick(p: Parameters, s: State, events: Events, row: int) -> bool:
+    if p.compliant != 0.0:
+        force = contact_force(p, s.deflection, s.velocity)
+        s.acceleration = (applied_force(p, s) - force) / p.mass
     else:
         force = applied_force(p, s)
-    if abs(force) <= p[NORMAL] * p[STATIC_INITIAL]:
+    if abs(force) <= p.normal_force * p.static_initial:
         return False
-    limit = static_limit(p, s[REST])
-    if abs(force) - p[NORMAL] * limit <= force_rounding(p, s, limit):
+    limit = static_limit(p, s.rest)
+    if abs(force) - p.normal_force * limit <= force_rounding(p, s, limit):
         return False
     release(p, s, events, row)
     return True

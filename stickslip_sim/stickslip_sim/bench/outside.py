@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Measurements in processes of their own: plain Python, the first start, a start with cached code."""
+"""Measurements in processes of their own: plain Python, and starts of Python until an axis slips."""
 
 import json
 import os
@@ -19,7 +19,7 @@ from .peers.peer import EXACT, Setting
 from .ratios import Ratio, at_least, at_most
 
 _CASES, _DURATION, _ROUNDS = 'ABC', 20.0, 5
-_STARTS, _COMPILATIONS = 5, 3
+_STARTS = 5
 _PLAIN_MARK, _PLAIN_AIM = 200.0, 400.0                    # times
 _COLD_MARK, _START_MARK, _START_AIM = 6.0, 0.6, 0.2       # s
 # up to the first slip: an axis that nothing has moved yet needs little of the hot path
@@ -46,12 +46,11 @@ def outside_ratios() -> Iterator[Ratio]:
 def start_ratios() -> Iterator[Ratio]:
     """Yield the times from the start of Python until an axis slips."""
     with tempfile.TemporaryDirectory() as folder:
-        cold = _wall(folder, '1')
-        warm = statistics.median(_wall(folder, '1') for _ in range(_STARTS))
-    by_numba = statistics.median(_compilation() for _ in range(_COMPILATIONS))
-    yield at_most('first start until the first slip, nothing cached, s', '', cold, _COLD_MARK)
+        cold = _start(PYTHONPYCACHEPREFIX=folder)
+    warm, plain = (statistics.median(_start(STICKSLIP_COMPILED=switch) for _ in range(_STARTS)) for switch in '10')
+    yield at_most('first start until the first slip, no bytecode cached, s', '', cold, _COLD_MARK)
     yield at_most('later start until the first slip, s', '', warm, _START_MARK, _START_AIM)
-    yield Ratio('first start until the first slip when numba has to compile the hot path, s', '', by_numba)
+    yield Ratio('later start until the first slip, plain Python, s', '', plain)
 
 
 def tell_plain_ratios() -> None:
@@ -68,20 +67,14 @@ def tell_plain_ratios() -> None:
     sys.stdout.write(json.dumps(ratios) + '\n')
 
 
-def _compilation() -> float:
-    with tempfile.TemporaryDirectory() as folder:
-        return _wall(folder, 'jit')
-
-
-def _wall(cache: str, compiled: str) -> float:
+def _start(**environment: str) -> float:
     begin = time.monotonic()
-    _run(FIRST_SLIP, XDG_CACHE_HOME=cache, STICKSLIP_COMPILED=compiled)
+    _run(FIRST_SLIP, **environment)
     return time.monotonic() - begin
 
 
 def _run(program: str, **environment: str) -> str:
-    """Run a program in a Python of its own; numba's cache is where that one says."""
-    inherited = {name: value for name, value in os.environ.items() if name != 'NUMBA_CACHE_DIR'}
+    """Run a program in a Python of its own."""
     path = os.pathsep.join(filter(None, sys.path))
-    return subprocess.run([sys.executable, '-c', program], env={**inherited, 'PYTHONPATH': path, **environment},
+    return subprocess.run([sys.executable, '-c', program], env={**os.environ, 'PYTHONPATH': path, **environment},
                           check=True, stdout=subprocess.PIPE, text=True).stdout

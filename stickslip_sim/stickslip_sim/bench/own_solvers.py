@@ -4,26 +4,14 @@
 
 import math
 from collections.abc import Callable
-from functools import cache, partial
+from functools import partial
 from typing import Any
 
 import numpy as np
 
-from ..axis.layout import (
-    EVENT_DIRECTION,
-    EVENT_FRACTION,
-    EVENT_KIND,
-    EVENT_POSITION,
-    EVENT_SECOND,
-    EVENT_SIZE,
-    EVENT_VELOCITY,
-    SAMPLE_SIZE,
-    STATE_SIZE,
-    WAVE_INPUTS,
-    WAVE_SIZE,
-)
+from ..axis.layout import GIVEN_SINUSOID_FIELDS
 from ..core.errors import SolverError
-from ..core.jit import IS_COMPILED
+from ..core.jit import UNIT
 from ..core.types import Sample
 from ..core.version import __version__
 from ..solvers import DONE, Solver, adaptive, exact, fixed_step
@@ -60,65 +48,52 @@ def _by_tolerance(make: Callable[..., Solver], method: str, setting: Setting) ->
 
 def exact_solver() -> Peer:
     """Return the exact engine as a contestant."""
-    name = 'exact' if IS_COMPILED else 'exact, plain Python'
+    name = 'exact' if UNIT is not None else 'exact, plain Python'
     return own_solver(name, (EXACT,), lambda setting: exact.SOLVER)
 
 
-def state_for(problem: Problem) -> Numbers:
-    """Return an empty state with space for the sinusoids of a problem."""
-    return np.zeros(STATE_SIZE + WAVE_SIZE * (len(problem.sinusoids) // WAVE_INPUTS))
+def state_for(problem: Problem, records: Any) -> Any:
+    """Return an empty state with room for the waves of a problem."""
+    return records.State(len(problem.sinusoids) // len(GIVEN_SINUSOID_FIELDS))
 
 
 def _prepare(problem: Problem, solver: Solver) -> Callable[[], Outcome]:
-    run = _driver(solver.advance, solver.set_inputs, solver.sample)
-    begin, duration = problem.start.tolist(), problem.duration
-    count = len(problem.event_rows())
-    arrays: tuple[Any, ...] = (
-        problem.parameters, problem.pieces, problem.sinusoids, np.zeros((count, EVENT_SIZE)), state_for(problem),
-        np.zeros(SAMPLE_SIZE))
-    p, pieces, sinusoids, events, state, sample = arrays if IS_COMPILED else tuple(a.tolist() for a in arrays)
+    of = solver.records
+    position, velocity, rest = problem.start.tolist()
+    _, v, v_rate, f, f_rate = problem.pieces[0].tolist()
+    p, s = of.Parameters(problem.parameters.tolist()), state_for(problem, of)
+    sinusoids = of.Sinusoids(problem.sinusoids.tolist())
+    events, sample = of.Events(len(problem.event_rows())), of.SampleRow()
+    run = UNIT.walk if UNIT is not None and solver is exact.SOLVER else partial(_walk, solver)
 
     def simulate() -> Outcome:
-        rows = solver.start(p, state, *begin, *pieces[0][1:], sinusoids, events, 0)
-        rows, end = run(p, state, pieces, sinusoids, duration, events, rows, sample)
+        rows = solver.start(p, s, position, velocity, rest, v, v_rate, f, f_rate, sinusoids, events, 0)
+        rows, end = run(p, s, problem.pieces, sinusoids, problem.duration, events, rows, sample)
         if end != DONE:
             raise SolverError(f'{solver.name} gave up after {rows} events')
-        return Outcome(events[:rows], float(sample[_POSITION]), _event_columns)
+        return Outcome([events.row(i) for i in range(rows)], float(sample.tolist()[_POSITION]), _event_columns)
 
     return simulate
 
 
 def _event_columns(rows: Any) -> Numbers:
-    table = np.array(rows).reshape(-1, EVENT_SIZE)
-    times = table[:, EVENT_SECOND] + table[:, EVENT_FRACTION]
-    return np.column_stack([times, table[:, (EVENT_KIND, EVENT_DIRECTION, EVENT_POSITION, EVENT_VELOCITY)]])
+    return np.array([(e[0] + e[1], e[2], e[4], e[5], e[6]) for e in rows]).reshape(-1, 5)
 
 
-@cache
-def _driver(advance: Callable[..., Any], set_inputs: Callable[..., Any],
-            sample_at: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a loop over the pieces of the inputs, compiled if the solver is."""
-
-    def run(p: Any, s: Any, pieces: Any, sinusoids: Any, duration: Any, events: Any, rows: Any, sample: Any) -> Any:
-        state = DONE
-        for k in range(len(pieces)):
-            piece = pieces[k]
-            if k > 0:
-                whole = math.floor(piece[0])
-                rows = set_inputs(p, s, float(whole), piece[0] - whole, piece[1], piece[2], piece[3], piece[4],
-                                  sinusoids,
-                                  events, rows)
-            end = pieces[k + 1][0] if k + 1 < len(pieces) else duration
-            whole = math.floor(end)
-            rows, state = advance(p, s, float(whole), end - whole, events, rows)
-            if state != DONE:
-                return rows, state
-        whole = math.floor(duration)
-        sample_at(p, s, float(whole), duration - whole, sample)
-        return rows, state
-
-    if not hasattr(advance, 'py_func'):
-        return run
-    import numba
-    compiled: Callable[..., Any] = numba.njit(error_model='numpy')(run)
-    return compiled
+def _walk(solver: Solver, p: Any, s: Any, pieces: Any, sinusoids: Any, duration: float, events: Any, rows: int,
+          sample: Any) -> tuple[int, int]:
+    """Bring a state through the pieces of its inputs, as `walk` of the compiled unit does."""
+    end = DONE
+    for k in range(len(pieces)):
+        begin, v, v_rate, f, f_rate = pieces[k]
+        if k > 0:
+            whole = math.floor(begin)
+            rows = solver.set_inputs(p, s, float(whole), begin - whole, v, v_rate, f, f_rate, sinusoids, events, rows)
+        until = pieces[k + 1][0] if k + 1 < len(pieces) else duration
+        whole = math.floor(until)
+        rows, end = solver.advance(p, s, float(whole), until - whole, events, rows)
+        if end != DONE:
+            return rows, end
+    whole = math.floor(duration)
+    solver.sample(p, s, float(whole), duration - whole, sample)
+    return rows, end

@@ -3,8 +3,6 @@
 """`stickslip bench`: cost and error of every solver, against the reference and beside its peers."""
 
 import json
-import os
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -27,7 +25,6 @@ def bench(chosen: tuple[str, ...], more: tuple[str, ...], out: str | None, round
     if more and not chosen:
         raise click.UsageError('name the scenes after --scenes.')
     folder = _made(out) if out is not None else None
-    _compile_here()
     from ..bench.cases import case_names, make_case
     from ..bench.contestants import contestants
     from ..bench.outside import outside_ratios
@@ -49,12 +46,6 @@ def bench(chosen: tuple[str, ...], more: tuple[str, ...], out: str | None, round
     print('\n\n'.join([*map(text_table, data['cases']), *([marks_table(data['ratios'])] if figures else [])]))
     if folder is not None:
         _write(folder, data)
-
-
-def _compile_here() -> None:
-    """Have numba compile the hot path as it compiles the rivals: the race runs loops of its own around it."""
-    if 'stickslip_sim.core.jit' not in sys.modules:
-        os.environ.setdefault('STICKSLIP_COMPILED', 'jit')
 
 
 def _made(path: str) -> Path:

@@ -14,6 +14,7 @@
 import math
 from dataclasses import dataclass
 from enum import IntEnum
+from typing import NamedTuple
 
 from ..core import ranges
 from ..core.errors import InputError
@@ -74,7 +75,7 @@ class StaticLaw:
 
 
 @inlined
-def static_coefficient(kind, initial, limit, tau, exponent, rest):
+def static_coefficient(kind: float, initial: float, limit: float, tau: float, exponent: float, rest: float) -> float:
     """Return mu_s(rest)."""
     if kind == CONSTANT or rest == 0.0:
         return initial
@@ -90,34 +91,40 @@ def static_coefficient(kind, initial, limit, tau, exponent, rest):
     return initial + rise * math.log1p(rest / tau)
 
 
-@inlined
-def static_growth(kind, initial, limit, tau, exponent, rest):
-    """Return mu_s(rest), mu_s′(rest), and a bound on −mu_s″ from `rest` on.
+class StaticGrowth(NamedTuple):
+    """mu_s at a rest time, and how it grows; under Kato's law with n < 1 the last two are infinite at rest 0."""
 
-    The bound is −mu_s″ itself for a concave law.  Under Kato's law with n < 1 the last two are infinite at rest 0.
-    """
+    coefficient: float
+    rate: float        # 1/s
+    curvature: float   # 1/s², a bound on −mu_s″ from there on; −mu_s″ itself for a concave law
+
+
+@inlined
+def static_growth(kind: float, initial: float, limit: float, tau: float, exponent: float, rest: float
+                 ) -> StaticGrowth:
+    """Return mu_s and how it grows at `rest`."""
     if kind == CONSTANT or limit == initial:
-        return initial, 0.0, 0.0
+        return StaticGrowth(initial, 0.0, 0.0)
     if rest == math.inf:
-        return limit, 0.0, 0.0
+        return StaticGrowth(limit, 0.0, 0.0)
     rise = limit - initial
     z = rest / tau
     if kind == EXPONENTIAL:
         risen = math.expm1(-z)
         slope = rise / tau * (1.0 + risen)
-        return initial - rise * risen, slope, slope / tau
+        return StaticGrowth(initial - rise * risen, slope, slope / tau)
     if kind == KATO:
         slope, curvature = _kato_growth(rise / tau, tau, exponent, z)
-        return static_coefficient(kind, initial, limit, tau, exponent, rest), slope, curvature
+        return StaticGrowth(static_coefficient(kind, initial, limit, tau, exponent, rest), slope, curvature)
     if kind == HYPERBOLIC:
         slope = rise / tau / ((1.0 + z) * (1.0 + z))
-        return initial + rise * (rest / (rest + tau)), slope, 2.0 * slope / (tau * (1.0 + z))
+        return StaticGrowth(initial + rise * (rest / (rest + tau)), slope, 2.0 * slope / (tau * (1.0 + z)))
     slope = rise / tau / (1.0 + z)
-    return initial + rise * math.log1p(z), slope, slope / (tau * (1.0 + z))
+    return StaticGrowth(initial + rise * math.log1p(z), slope, slope / (tau * (1.0 + z)))
 
 
 @compiled
-def _power(z, n):
+def _power(z: float, n: float) -> float:
     """Return zⁿ for z >= 0, and infinity where it leaves the range of numbers."""
     if z == 0.0:
         return 0.0 if n > 0.0 else math.inf
@@ -125,7 +132,7 @@ def _power(z, n):
 
 
 @compiled
-def _kato_growth(rise, tau, n, z):
+def _kato_growth(rise: float, tau: float, n: float, z: float) -> tuple[float, float]:
     """Return the last two of `static_growth`.
 
     −mu_s″ τ²/Δmu = exp(−s) (n² s^(2−2/n) + n (1−n) s^(1−2/n)) with s = zⁿ; for n > 1 its first term peaks at

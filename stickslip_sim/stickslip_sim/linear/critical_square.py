@@ -7,14 +7,14 @@ span follows from it, and so on.
 """
 
 from ..core.jit import compiled
-from .oscillator import impulse
+from .oscillator import Oscillator, impulse
 
 _STRETCH = 0.25      # ω t of the first span
 _TERMS = 60          # never reached: 20 terms are below rounding
 
 
 @compiled
-def free_square(osc, z, rate, t):
+def free_square(osc: Oscillator, z: float, rate: float, t: float) -> float:
     """Return ∫z² from 0 to t of a free motion near critical damping, from its value and rate at 0."""
     gamma, omega2, _, _, _ = osc
     doublings = 0
@@ -43,7 +43,7 @@ def free_square(osc, z, rate, t):
 
 
 @compiled
-def _impulse_square(gamma, omega2, t):
+def _impulse_square(gamma: float, omega2: float, t: float) -> float:
     """Return ∫g² of the impulse response over a short span, by the power series of g²."""
     a, b, c = -6.0 * gamma * t, -(8.0 * gamma * gamma + 4.0 * omega2) * t * t, -8.0 * gamma * omega2 * t * t * t
     first, second, third = 0.0, 0.0, 2.0

@@ -9,12 +9,14 @@ nothing divides by a λ₁ that is small.
 import math
 
 from ..core.jit import compiled
+from .oscillator import Oscillator
 
 _TERMS = 60          # never reached: 25 terms are below rounding
 
 
 @compiled
-def far_apart(osc, x, rate, k0, k1, t):
+def far_apart(osc: Oscillator, x: float, rate: float, k0: float, k1: float, t: float
+             ) -> tuple[float, float, float, float, float, float]:
     """Return what `moments` does, from x = a e^(λ₁t) + q₀ φ₁ + q₁ φ₂ + c e^(λ₂t).
 
     φₙ are the repeated integrals of e^(λ₁t).
@@ -39,7 +41,7 @@ def far_apart(osc, x, rate, k0, k1, t):
 
 
 @compiled
-def _slow_square(rate, t, a, q0, q1, p1, p2, p3):
+def _slow_square(rate: float, t: float, a: float, q0: float, q1: float, p1: float, p2: float, p3: float) -> float:
     """Return ∫(a e^(λ₁t) + q₀ φ₁ + q₁ φ₂)².
 
     Beyond a time constant it is made from where the motion settles: a² t would leave nothing of what has faded.
@@ -56,12 +58,12 @@ def _slow_square(rate, t, a, q0, q1, p1, p2, p3):
 
 
 @compiled
-def _exponential(rate, t):
+def _exponential(rate: float, t: float) -> float:
     return t if rate == 0.0 else math.expm1(rate * t) / rate
 
 
 @compiled
-def _repeated(rate, t):
+def _repeated(rate: float, t: float) -> tuple[float, float, float, float, float, float]:
     """Return exp(rate t) and its first five repeated integrals from 0."""
     z = rate * t
     if abs(z) > 1.0:
@@ -87,7 +89,7 @@ def _repeated(rate, t):
 
 
 @compiled
-def _first_square(rate, t):
+def _first_square(rate: float, t: float) -> float:
     """Return ∫φ₁² of the first integral of exp(rate t), |rate t| no more than 1."""
     z = rate * t
     power, weight, total, n = 4.0, 0.5, 1.0 / 3.0, 2.0
@@ -103,7 +105,7 @@ def _first_square(rate, t):
 
 
 @compiled
-def _second_square(rate, t):
+def _second_square(rate: float, t: float) -> float:
     """Return ∫φ₂² of the second integral of exp(rate t), |rate t| no more than 1."""
     z = rate * t
     power, weight, total, n = 16.0, 1.0 / 24.0, 0.05, 4.0

@@ -15,7 +15,7 @@ import math
 from ..core.jit import compiled
 from .critical_square import free_square
 from .far_apart import far_apart
-from .oscillator import impulse
+from .oscillator import Oscillator, impulse
 
 _SHORT = 0.15        # (|γ| + |ν|) t up to which five nodes and ten powers are exact to rounding
 _APART = 0.09        # (ν/ω)² from which on the eigenvalues are far enough apart to be split
@@ -26,7 +26,8 @@ _WEIGHTS = (0.11846344252809454376, 0.23931433524968323402, 0.284444444444444444
 
 
 @compiled
-def moments(osc, x, rate, k0, k1, t):
+def moments(osc: Oscillator, x: float, rate: float, k0: float, k1: float, t: float
+           ) -> tuple[float, float, float, float, float, float]:
     """Return x and x′ at t, and from 0 to t ∫x, ∫∫x, ∫∫∫x and ∫x²."""
     gamma, omega2, nu, _, _ = osc
     if (abs(gamma) + abs(nu)) * t < _SHORT:
@@ -56,13 +57,14 @@ def moments(osc, x, rate, k0, k1, t):
 
 
 @compiled
-def _integral(gamma, omega2, z, rate):
+def _integral(gamma: float, omega2: float, z: float, rate: float) -> float:
     """Return the integral of a free motion that is a free motion itself."""
     return -(rate + 2.0 * gamma * z) / omega2
 
 
 @compiled
-def _short(gamma, omega2, x, rate, k0, k1, t):
+def _short(gamma: float, omega2: float, x: float, rate: float, k0: float, k1: float, t: float
+          ) -> tuple[float, float, float, float, float, float]:
     a, b = -2.0 * gamma * t, -omega2 * t * t
     x1 = rate * t
     x2 = k0 * t * t + a * x1 + b * x      # the derivatives times powers of t
@@ -98,7 +100,7 @@ def _short(gamma, omega2, x, rate, k0, k1, t):
 
 
 @compiled
-def _swing(gamma, nu, z, rate, t):
+def _swing(gamma: float, nu: float, z: float, rate: float, t: float) -> tuple[float, float, float]:
     """Return the free motion and its rate at t, and ∫z² of z = e^(−γt) (a cos νt + b sin νt)."""
     lost = math.expm1(-gamma * t)
     decay, sine, cosine = 1.0 + lost, math.sin(nu * t), math.cos(nu * t)

@@ -16,11 +16,12 @@ critical damping are ordinary cases.  The integrals obey
 They are read upwards when ω t is large; for small times their power series are summed and they are read downwards; a
 strongly over-damped mode takes divided differences of the φ-functions (Hochbruck and Ostermann, Acta Numerica 2010).
 
-An oscillator is the tuple (γ, ω², ν, λ₁, λ₂): ν > 0 is the damped angular frequency of an under-damped one; otherwise
-−ν >= 0 is half the distance of the real eigenvalues λ₁ >= λ₂.
+An `Oscillator` is (γ, ω², ν, λ₁, λ₂): ν > 0 is the damped angular frequency of an under-damped one; otherwise −ν >= 0
+is half the distance of the real eigenvalues λ₁ >= λ₂.
 """
 
 import math
+from typing import NamedTuple
 
 from ..core.jit import compiled, inlined
 
@@ -29,23 +30,52 @@ _SHORT_SERIES_BELOW = 0.4   # where G₃ is not asked for
 _SERIES_TERMS = 60    # never reached: 30 terms are below rounding at the bound above
 
 
+class Oscillator(NamedTuple):
+    """y″ + 2γ y′ + ω² y."""
+
+    gamma: float    # 1/s
+    omega2: float   # 1/s²
+    nu: float       # 1/s: > 0 the damped angular frequency, else minus half the distance of the eigenvalues
+    slow: float     # 1/s, λ₁, where ν <= 0
+    fast: float     # 1/s, λ₂
+
+
+class Integrals(NamedTuple):
+    """The impulse response, its rate and its repeated integrals at a time."""
+
+    g: float        # s
+    rate: float
+    first: float    # s², G₁
+    second: float   # s³, G₂
+    third: float    # s⁴, G₃
+
+
+class ShortIntegrals(NamedTuple):
+    """`Integrals` without G₃."""
+
+    g: float        # s
+    rate: float
+    first: float    # s², G₁
+    second: float   # s³, G₂
+
+
 @inlined
-def oscillator(gamma, omega2):
+def oscillator(gamma: float, omega2: float) -> Oscillator:
     """Return (γ, ω², ν, λ₁, λ₂) of y″ + 2γ y′ + ω² y."""
     omega = math.sqrt(omega2)
     gap = (gamma - omega) * (gamma + omega)
     if gap < 0.0:
-        return gamma, omega2, math.sqrt(-gap), 0.0, 0.0
+        return Oscillator(gamma, omega2, math.sqrt(-gap), 0.0, 0.0)
     nu = math.sqrt(gap)
     if gamma > 0.0:
-        return gamma, omega2, -nu, -omega2 / (gamma + nu), -(gamma + nu)
+        return Oscillator(gamma, omega2, -nu, -omega2 / (gamma + nu), -(gamma + nu))
     if gamma < 0.0:
-        return gamma, omega2, -nu, nu - gamma, omega2 / (nu - gamma)
-    return 0.0, omega2, 0.0, 0.0, 0.0
+        return Oscillator(gamma, omega2, -nu, nu - gamma, omega2 / (nu - gamma))
+    return Oscillator(0.0, omega2, 0.0, 0.0, 0.0)
 
 
 @compiled
-def impulse(osc, t):
+def impulse(osc: Oscillator, t: float) -> tuple[float, float]:
     """Return g(t) and g′(t)."""
     gamma, _, nu, slow, fast = osc
     if nu > 0.0:
@@ -59,7 +89,7 @@ def impulse(osc, t):
 
 
 @compiled
-def integrals(osc, t):
+def integrals(osc: Oscillator, t: float) -> Integrals:
     """Return g, g′, G₁, G₂ and G₃ at t."""
     gamma, omega2, nu, slow, fast = osc
     if (abs(gamma) + abs(nu)) * t < _SERIES_BELOW:
@@ -69,29 +99,29 @@ def integrals(osc, t):
         first1, second1, third1 = _phi(slow, t)
         first2, second2, third2 = _phi(fast, t)
         distance = -2.0 * nu
-        return (g, rate, (first1 - first2) / distance, (second1 - second2) / distance,
-                (third1 - third2) / distance)
+        return Integrals(g, rate, (first1 - first2) / distance, (second1 - second2) / distance,
+                         (third1 - third2) / distance)
     first = (1.0 - rate - 2.0 * gamma * g) / omega2
     second = (t - g - 2.0 * gamma * first) / omega2
     third = (0.5 * t * t - first - 2.0 * gamma * second) / omega2
-    return g, rate, first, second, third
+    return Integrals(g, rate, first, second, third)
 
 
 @compiled
-def short_integrals(osc, t):
+def short_integrals(osc: Oscillator, t: float) -> ShortIntegrals:
     """Return g, g′, G₁ and G₂ at t; where G₃ is not asked for, less is lost to cancellation."""
     gamma, omega2, nu, _, _ = osc
     if (abs(gamma) + abs(nu)) * t < _SHORT_SERIES_BELOW or (nu <= 0.0 and 4.0 * omega2 < gamma * gamma):
         g, rate, first, second, _ = integrals(osc, t)
-        return g, rate, first, second
+        return ShortIntegrals(g, rate, first, second)
     g, rate = impulse(osc, t)
     inverse = 1.0 / omega2
     first = (1.0 - rate - 2.0 * gamma * g) * inverse
-    return g, rate, first, (t - g - 2.0 * gamma * first) * inverse
+    return ShortIntegrals(g, rate, first, (t - g - 2.0 * gamma * first) * inverse)
 
 
 @compiled
-def _series(gamma, omega2, t):
+def _series(gamma: float, omega2: float, t: float) -> Integrals:
     a = -2.0 * gamma * t
     b = -omega2 * t * t
     before, term = 0.0, 1.0      # c_n t^(n-1) of g = Σ c_n tⁿ/n!
@@ -111,11 +141,11 @@ def _series(gamma, omega2, t):
     second *= square * t
     first = 0.5 * square - 2.0 * gamma * second - omega2 * third
     g = t - 2.0 * gamma * first - omega2 * second
-    return g, 1.0 - 2.0 * gamma * g - omega2 * first, first, second, third
+    return Integrals(g, 1.0 - 2.0 * gamma * g - omega2 * first, first, second, third)
 
 
 @compiled
-def _phi(rate, t):
+def _phi(rate: float, t: float) -> tuple[float, float, float]:
     """Return the first three repeated integrals of exp(rate t) from 0."""
     z = rate * t
     if abs(z) > 1.0:
@@ -135,7 +165,7 @@ def _phi(rate, t):
 
 
 @inlined
-def bound(osc, z, rate):
+def bound(osc: Oscillator, z: float, rate: float) -> float:
     """Return a bound on |z(t + s)| for all s >= 0 of a free motion with γ >= 0 from its value and rate at t."""
     gamma, _, nu, slow, _ = osc
     drift = abs(rate + gamma * z) if nu > 0.0 else abs(rate - slow * z)
@@ -147,7 +177,7 @@ def bound(osc, z, rate):
 
 
 @compiled
-def amplitude(osc, z, rate):
+def amplitude(osc: Oscillator, z: float, rate: float) -> tuple[float, float]:
     """Return (A, d) with |z(t + s)| <= A exp(−d s) for all s >= 0 of a free motion with its value and rate at t."""
     gamma, _, nu, slow, _ = osc
     if nu > 0.0:

@@ -16,33 +16,33 @@ _TERMS = 15         # of them
 
 
 @compiled
-def over(a, b):
+def over(a: complex, b: complex) -> complex:
     """Return a/b."""
     size = b.real * b.real + b.imag * b.imag
     return complex((a.real * b.real + a.imag * b.imag) / size, (a.imag * b.real - a.real * b.imag) / size)
 
 
 @compiled
-def mirrored(a):
+def mirrored(a: complex) -> complex:
     """Return the conjugate."""
     return complex(a.real, -a.imag)
 
 
 @compiled
-def phase_products(phase, other, alike):
+def phase_products(phase: complex, other: complex, alike: bool) -> tuple[complex, complex]:
     """Return e^(i(θ − θ′)) and e^(i(θ + θ′)); the first is 1, without rounding, of a wave and itself."""
     return complex(1.0, 0.0) if alike else phase * mirrored(other), phase * other
 
 
 @compiled
-def cycle_within(frequency, t):
+def cycle_within(frequency: float, t: float) -> float:
     """Return frequency · t less its whole turns."""
     few = frequency * t
     return few if abs(few) < 0.5 else turns(frequency, t)
 
 
 @compiled
-def wave_integral(frequency, cycle, t):
+def wave_integral(frequency: float, cycle: float, t: float) -> complex:
     """Return ∫e^(iwτ) dτ from 0 to t."""
     if frequency == 0.0:
         return complex(t, 0.0)
@@ -52,7 +52,7 @@ def wave_integral(frequency, cycle, t):
 
 
 @compiled
-def wave_moment(w, wave, zero, t):
+def wave_moment(w: float, wave: complex, zero: complex, t: float) -> complex:
     """Return ∫τ e^(iwτ) dτ from 0 to t; `wave` is e^(iwt), and `zero` the integral without τ."""
     if abs(w * t) >= _SERIES:
         return (t * wave - zero) * complex(0.0, -1.0 / w)
@@ -64,7 +64,7 @@ def wave_moment(w, wave, zero, t):
 
 
 @compiled
-def swept_integral(w, v, rate, zero, one, t):
+def swept_integral(w: float, v: float, rate: float, zero: complex, one: complex, t: float) -> complex:
     """Return ∫(v + rate τ) φ(τ) dτ with φ the integral of e^(iwτ), from 0 to t."""
     if abs(w * t) >= _SERIES:
         return (v * (zero - t) + rate * (one - 0.5 * t * t)) * complex(0.0, -1.0 / w)
@@ -77,7 +77,8 @@ def swept_integral(w, v, rate, zero, one, t):
 
 
 @compiled
-def ramped_integral(w, wave, zero, other, other_zero, product, t):
+def ramped_integral(w: float, wave: complex, zero: complex, other: float, other_zero: complex, product: complex,
+                    t: float) -> complex:
     """Return ∫e^(iwτ) φ(τ) dτ, with φ the integral of e^(iw′τ); `product` is ∫e^(i(w + w′)τ)."""
     if abs(other * t) >= _SERIES:
         return (product - zero) * complex(0.0, -1.0 / other)
@@ -94,7 +95,8 @@ def ramped_integral(w, wave, zero, other, other_zero, product, t):
 
 
 @compiled
-def wave_products(frequency, cycle, other, other_cycle, t):
+def wave_products(frequency: float, cycle: float, other: float, other_cycle: float, t: float
+                 ) -> tuple[complex, complex]:
     """Return the integrals of e^(i(w − w′)τ) and of e^(i(w + w′)τ) from 0 to t."""
     few = (frequency - other) * t
     same = wave_integral(frequency - other, few if abs(few) < 0.5 else cycle - other_cycle, t)

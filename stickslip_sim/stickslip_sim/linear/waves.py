@@ -22,6 +22,7 @@ that late times and high frequencies keep their phase.
 import math
 
 from ..core.jit import compiled
+from .oscillator import Oscillator
 
 TURN = 2.0 * math.pi
 _SERIES_BELOW = 2.0
@@ -30,7 +31,7 @@ _SPLIT = 134217729.0
 
 
 @compiled
-def turns(frequency, time):
+def turns(frequency: float, time: float) -> float:
     """Return frequency · time less its whole turns, to the rounding of one turn."""
     product = frequency * time
     big = _SPLIT * frequency
@@ -45,14 +46,15 @@ def turns(frequency, time):
 
 
 @compiled
-def phase_at(frequency, phase, second, fraction):
+def phase_at(frequency: float, phase: float, second: float, fraction: float) -> float:
     """Return the phase in turns, from 0 to 1, of a wave with `phase` at time 0, at the time second + fraction."""
     phase = turns(frequency, second) + turns(frequency, fraction) + phase
     return phase - math.floor(phase)
 
 
 @compiled
-def wave_response(osc, w, cycle, t, g, rate, first):
+def wave_response(osc: Oscillator, w: float, cycle: float, t: float, g: float, rate: float, first: float
+                 ) -> tuple[float, float, float, float, float, float]:
     """Return (I, I′, K) at t as six reals; `cycle` is w t in turns, and g, g′, G₁ are those of `oscillator`."""
     gamma, _, nu, _, _ = osc
     if (abs(gamma) + abs(nu) + w) * t < _SERIES_BELOW:
@@ -66,7 +68,8 @@ def wave_response(osc, w, cycle, t, g, rate, first):
 
 
 @compiled
-def _response(osc, w, sine, cosine, t, g, rate):
+def _response(osc: Oscillator, w: float, sine: float, cosine: float, t: float, g: float, rate: float
+             ) -> tuple[float, float]:
     gamma, _, nu, slow, fast = osc
     if nu > 0.0:   # λ₁ = −γ + i ν, and e^{λ₁t} follows from g and g′
         re, im = _phi(gamma, w - nu, sine, cosine, rate + gamma * g, nu * g, t)
@@ -82,7 +85,8 @@ def _response(osc, w, sine, cosine, t, g, rate):
 
 
 @compiled
-def _phi(d_re, d_im, sine, cosine, e_re, e_im, t):
+def _phi(d_re: float, d_im: float, sine: float, cosine: float, e_re: float, e_im: float, t: float
+        ) -> tuple[float, float]:
     """Return (e^{iwt} − e)/d, with d = i w − λ₁, e = e^{λ₁t}."""
     x, y = d_re * t, d_im * t
     near = abs(x) + abs(y)
@@ -100,7 +104,8 @@ def _phi(d_re, d_im, sine, cosine, e_re, e_im, t):
 
 
 @compiled
-def _slow_wave_integral(osc, w, sine, cosine, t, re, im, g):
+def _slow_wave_integral(osc: Oscillator, w: float, sine: float, cosine: float, t: float, re: float, im: float, g: float
+                       ) -> tuple[float, float]:
     """Return K where w t is small and the oscillator is not slow."""
     gamma, omega2, nu, slow, fast = osc
     wave_re = sine / w
@@ -113,7 +118,8 @@ def _slow_wave_integral(osc, w, sine, cosine, t, re, im, g):
 
 
 @compiled
-def _first_order_integral(eigenvalue, w, wave_re, wave_im, sine, cosine, t):
+def _first_order_integral(eigenvalue: float, w: float, wave_re: float, wave_im: float, sine: float, cosine: float,
+                          t: float) -> tuple[float, float]:
     """Return ∫∫ e^{λ(τ−s)} e^{iws} ds dτ, the divided difference of exp(t ·) at 0, λ and i w."""
     z = eigenvalue * t
     if abs(z) > 1.0:
@@ -133,26 +139,26 @@ def _first_order_integral(eigenvalue, w, wave_re, wave_im, sine, cosine, t):
 
 
 @compiled
-def _series(osc, w, t):
-    a, b, turn = -2.0 * osc[0] * t, -osc[1] * t * t, w * t
+def _series(osc: Oscillator, w: float, t: float) -> tuple[float, float, float, float, float, float]:
+    a, b, turn = -2.0 * osc.gamma * t, -osc.omega2 * t * t, w * t
     p_re, p_im = 1.0, 0.0            # (i w t)ⁿ
     before_re, before_im = 0.0, 0.0
     re, im = 1.0, 0.0                # cₙ tⁿ of I = Σ cₙ tⁿ⁺²/(n + 2)!
     weight = 1.0 / 6.0               # 1/(n + 3)!
-    sums = (3.0 * weight, 0.0)
-    rates = (6.0 * weight, 0.0)
-    integrals = (weight, 0.0)
+    sum_re, sum_im = 3.0 * weight, 0.0               # of I,
+    rate_re, rate_im = 6.0 * weight, 0.0             # I′
+    integral_re, integral_im = weight, 0.0           # and K
     n = 3.0
     for _ in range(_SERIES_TERMS):
         p_re, p_im = -turn * p_im, turn * p_re
         re, im, before_re, before_im = a * re + b * before_re + p_re, a * im + b * before_im + p_im, re, im
         n += 1.0
         weight /= n
-        integrals = (integrals[0] + re * weight, integrals[1] + im * weight)
-        sums = (sums[0] + n * re * weight, sums[1] + n * im * weight)
-        rates = (rates[0] + n * (n - 1.0) * re * weight, rates[1] + n * (n - 1.0) * im * weight)
+        integral_re, integral_im = integral_re + re * weight, integral_im + im * weight
+        sum_re, sum_im = sum_re + n * re * weight, sum_im + n * im * weight
+        rate_re, rate_im = rate_re + n * (n - 1.0) * re * weight, rate_im + n * (n - 1.0) * im * weight
         if (abs(re) + abs(im) + abs(before_re) + abs(before_im)) * n * n * weight < 1e-18:
             break
     square = t * t
-    return (square * sums[0], square * sums[1], t * rates[0], t * rates[1],
-            square * t * integrals[0], square * t * integrals[1])
+    return (square * sum_re, square * sum_im, t * rate_re, t * rate_im,
+            square * t * integral_re, square * t * integral_im)

@@ -11,6 +11,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..core.jit import hot_path
 from ..core.version import __version__
 from ..runs.receipt import plain
 from .bag import BagWriter
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 SCENE_FILE = 'scene.yaml'
 RECEIPT_FILE = 'receipt.json'
 CHECKPOINT_FILE = 'checkpoint.json'
-_LIBRARIES = ('numpy', 'numba', 'mcap', 'rosbags')
+_LIBRARIES = ('numpy', 'mcap', 'rosbags')
 
 
 @dataclass(frozen=True)
@@ -62,6 +63,7 @@ class RunFacts:
             'python': platform.python_version(),
             'platform': platform.platform(),
             'ros_distro': ros_distro(),
+            'hot_path': hot_path(),
             **{name: _version(name) for name in _LIBRARIES},
         }
 

@@ -20,15 +20,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..axis import Axis, InitialState, check_start, pack
 from ..axis.layout import (
-    ACCOUNTING,
     COMPLIANT,
     CONTACT_DAMPING,
     CONTACT_STIFFNESS,
     DAMPING,
-    EVENT_SIZE,
     MASS,
     NORMAL,
-    STATE_SIZE,
     STATIC_EXPONENT,
     STATIC_INITIAL,
     STATIC_LIMIT,
@@ -179,10 +176,11 @@ def _run(parameters: Numbers, inputs: Numbers, starts: Numbers, duration: float,
     out = np.full((count, many_axes.ROW_SIZE + many_axes.ROUND_SIZE * window), np.nan)
 
     def work(first: int) -> None:
-        state = np.zeros(STATE_SIZE)
-        state[ACCOUNTING] = 1.0
-        exact.run_axes(parameters, inputs, starts, duration, first, min(first + _AT_A_TIME, count), state,
-                       np.empty((_ROWS, EVENT_SIZE)), np.empty(0), out)
+        of = exact.SOLVER.records
+        state = of.State()
+        state.accounting = 1.0
+        exact.run_axes(parameters, inputs, starts, duration, first, min(first + _AT_A_TIME, count),
+                       of.Parameters(parameters[0].tolist()), state, of.Events(_ROWS), of.Sinusoids([]), out)
 
     if threads == 1 or count <= _AT_A_TIME:   # starting a thread takes longer than many a run
         for first in range(0, count, _AT_A_TIME):

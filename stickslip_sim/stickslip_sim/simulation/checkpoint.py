@@ -8,21 +8,25 @@ A solver takes some of its numbers as places in tables and does not look twice.
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from ..axis.layout import INPUT_WAVES, KNOTS, MODE, PIECE, STATE_SIZE, WAVE_INPUTS, WAVE_SIZE, WAVES
 from ..core.types import Event, EventKind, Mode
 
 
-def state_of(saved: Iterable[Any], size: int, parameters: Sequence[float]) -> list[float]:
-    """Return a saved state of this size for an axis with these parameters; raises TypeError or ValueError."""
-    state = [float(number) for number in saved]
-    if len(state) != size:
-        raise ValueError(f'a state of {len(state)} numbers where {size} are expected')
-    sinusoids = (size - STATE_SIZE) // WAVE_SIZE
-    for name, place, highest in (('mode', MODE, max(Mode)), ('piece', PIECE, int(parameters[KNOTS]) - 1),
-                                 ('waves', WAVES, sinusoids), ('waves', INPUT_WAVES, sinusoids * WAVE_INPUTS)):
-        if state[place] not in range(highest + 1):
-            raise ValueError(f'{name} = {state[place]!r} is none of this scene')
-    return state
+def numbers_of(saved: Iterable[Any], state: Any) -> list[float]:
+    """Return saved numbers for a state of this size; raises TypeError or ValueError."""
+    numbers, size = [float(number) for number in saved], len(state.numbers())
+    if len(numbers) != size:
+        raise ValueError(f'a state of {len(numbers)} numbers where {size} are expected')
+    return numbers
+
+
+def check_state(state: Any, sinusoids: int, parameters: Any) -> None:
+    """Raise ValueError when a state is none of an axis with these parameters and so many waves."""
+    for name, number, highest in (('mode', state.mode, max(Mode)),
+                                  ('segment', state.segment, int(parameters.segment_count) - 1),
+                                  ('sinusoids', state.sinusoid_count, sinusoids),
+                                  ('sinusoids', state.given_sinusoids, sinusoids)):
+        if number not in range(highest + 1):
+            raise ValueError(f'{name} = {number!r} is none of this scene')
 
 
 def event_of(saved: Sequence[Any]) -> Event:

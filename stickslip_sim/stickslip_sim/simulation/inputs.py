@@ -10,10 +10,10 @@ from ..core.input_profile import Input, InputProfile, Piece, Sinusoid
 
 
 class Inputs:
-    """Two courses over simulation time, and what commands made of them; `until` (s) is where their pieces end.
+    """Two input profiles over simulation time, and what commands made of them; `until` (s) is where their pieces end.
 
     `drive` and `force` are in force; the simulator has yet to enter them when `are_commanded`.  Raises InputError when
-    a course has no meaning.
+    an input profile has no meaning.
     """
 
     def __init__(self, drive: InputProfile, force: InputProfile) -> None:
@@ -24,7 +24,7 @@ class Inputs:
         self.reset()
 
     def reset(self) -> tuple[Piece, Piece]:
-        """Take the original courses again; return their first pieces."""
+        """Take the original input profiles again; return their first pieces."""
         drive, force = self._first
         self.drive: Input = drive
         self.force: Input = force
@@ -60,7 +60,7 @@ class Inputs:
         self.until = until
 
     def sinusoids(self) -> list[float]:
-        """Return the waves of both inputs as `solvers.Solver` wants them, without those that are nothing."""
+        """Return the sinusoids of both inputs, in a row, but for those of no amplitude."""
         waves = [(wave.frequency, wave.phase, wave.amplitude, 0.0) for wave in _sinusoids(self.drive)]
         waves += [(wave.frequency, wave.phase, 0.0, wave.amplitude) for wave in _sinusoids(self.force)]
         return [number for frequency, phase, v, f in waves
@@ -83,6 +83,6 @@ def _check(name: str, value: Input, unit: str, first: InputProfile) -> None:
         if len(value.sinusoids) > len(first.sinusoids):
             raise InputError(f'{name}.sinusoids', len(value.sinusoids),
                              f'at most {len(first.sinusoids)}, as at the start',
-                             'give the simulator a course with as many waves at its start')
+                             'give the simulator an input profile with as many sinusoids at its start')
     elif not math.isfinite(value):
         raise InputError(name, value, f'finite, in {unit}', 'the command before it stays in force')

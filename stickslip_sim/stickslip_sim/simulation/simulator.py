@@ -7,25 +7,12 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from ..axis import Axis, InitialState, check_start, pack
-from ..axis.layout import (
-    ACCOUNTING,
-    ENERGY_SIZE,
-    EVENT_SIZE,
-    FRACTION,
-    ITERATIONS,
-    MODE,
-    SAMPLE_SIZE,
-    SECOND,
-    STATE_SIZE,
-    WAVE_SIZE,
-)
 from ..core.energy import EnergyBalance
 from ..core.errors import InputError, SolverError, UnsoundError
 from ..core.input_profile import Input, InputProfile
-from ..core.jit import IS_COMPILED
 from ..core.types import Event, EventKind, Instant, Mode, Sample, tuple_of
 from ..solvers import DONE, FULL, OUT_OF_RANGE, UNSOUND, Solver, exact
-from .checkpoint import event_of, state_of
+from .checkpoint import check_state, event_of, numbers_of
 from .inputs import Inputs
 
 SolverOf = Callable[[Axis], Solver]
@@ -38,10 +25,10 @@ MAX_EVENTS_PER_ADVANCE = 100_000
 class Simulator:
     """The state of one axis, brought from time to time.
 
-    `drive` (m/s) and `force` (N) are courses over simulation time; a command replaces a course by a constant from the
-    present time on.  Events come back from the call in which they fall, in the order of time.  `solver` is one for any
-    axis, or makes the one for an axis, as those must that take its smooth law.  With `accounting` the solver keeps the
-    account of energy, if it can; the motion is the same to the last bit.
+    `drive` (m/s) and `force` (N) are input profiles over simulation time; a command replaces an input profile by a
+    constant from the present time on.  Events come back from the call in which they fall, in the order of time.
+    `solver` is one for any axis, or makes the one for an axis, as those must that take its smooth law.  With
+    `accounting` the solver keeps the account of energy, if it can; the motion is the same to the last bit.
     """
 
     def __init__(self, axis: Axis, initial: InitialState, drive: InputProfile, force: InputProfile,
@@ -51,17 +38,18 @@ class Simulator:
         self._solver_of: SolverOf = (lambda _: solver) if isinstance(solver, Solver) else solver
         self._initial = initial
         self._take_axis(axis)
-        self._state = _numbers([0.0] * (STATE_SIZE + WAVE_SIZE * self._inputs.most_sinusoids))
-        self._state[ACCOUNTING] = float(accounting and self._solver.energy is not None)
-        self._row = _numbers([0.0] * SAMPLE_SIZE)
-        self._energies = _numbers([0.0] * ENERGY_SIZE)
-        self._table = _table(_ROWS, EVENT_SIZE)
+        records = self._solver.records
+        self._state = records.State(self._inputs.most_sinusoids)
+        self._state.accounting = float(accounting and self._solver.energy is not None)
+        self._row = records.SampleRow()
+        self._energies = records.EnergyRow()
+        self._table = records.Events(_ROWS)
         self.reset()
 
     def reset(self) -> list[Event]:
-        """Begin anew at time 0 with the initial state and the original courses; return the events at time 0."""
+        """Begin anew at time 0 with the initial state and the original input profiles; return the events at time 0."""
         v, f = self._inputs.reset()
-        self._sinusoids = _numbers(self._inputs.sinusoids())
+        self._sinusoids = self._solver.records.Sinusoids(self._inputs.sinusoids())
         self._time = Instant(0.0, 0.0)
         start = self._initial
         rows = self._solver.start(self._parameters, self._state, start.position, start.velocity, start.rest_time,
@@ -88,7 +76,7 @@ class Simulator:
     @property
     def root_iterations(self) -> int:
         """Iterations of all searches for event times so far."""
-        return int(self._state[ITERATIONS])
+        return int(self._state.iterations)
 
     @property
     def event_counts(self) -> dict[EventKind, int]:
@@ -98,22 +86,22 @@ class Simulator:
     @property
     def energy(self) -> EnergyBalance | None:
         """The energies from the start up to the present time; None without an account."""
-        if self._solver.energy is None or not self._state[ACCOUNTING]:
+        if self._solver.energy is None or not self._state.accounting:
             return None
         self._solver.energy(self._parameters, self._state, *self._time, self._energies)
-        return EnergyBalance(*map(float, self._energies))
+        return EnergyBalance(*self._energies.tolist())
 
     def judge(self) -> None:
         """Raise UnsoundError when the state contradicts its own mode or balance of energy; needs an account.
 
         Each event is judged as the run goes on; this is for its end, or any time that its figures are looked at.
         """
-        if self._solver.is_sound is not None and self._state[ACCOUNTING] and not self._solver.is_sound(
+        if self._solver.is_sound is not None and self._state.accounting and not self._solver.is_sound(
                 self._parameters, self._state, *self._time):
             raise self._unsound()
 
     def _unsound(self) -> UnsoundError:
-        mode = _MODES[int(self._state[MODE])].name
+        mode = _MODES[int(self._state.mode)].name
         return UnsoundError(f'the run contradicts its own motion or balance of energy at t = {self._time.seconds!r} s, '
                             f'in mode {mode}: none of its figures can be trusted; the solver is at fault, not the '
                             'scene: please report both')
@@ -140,15 +128,15 @@ class Simulator:
         return events
 
     def command_drive(self, velocity: Input) -> None:
-        """Let the drive move at a constant velocity (m/s), or after a course over simulation time, from now on.
+        """Let the drive move at a constant velocity (m/s), or after an input profile over simulation time, from now on.
 
-        Events that this causes come with `advance`.  Raises InputError; a course must have no more waves than that of
-        the start.
+        Events that this causes come with `advance`.  Raises InputError; an input profile must have no more sinusoids
+        than that of the start.
         """
         self._inputs.command_drive(velocity)
 
     def command_force(self, force: Input) -> None:
-        """Let a constant external force (N), or a course over simulation time, act from now on, as `command_drive`."""
+        """Let a constant external force (N), or an input profile, act from now on, as `command_drive`."""
         self._inputs.command_force(force)
 
     def set_inputs(self, drive: Input, force: Input) -> None:
@@ -173,7 +161,7 @@ class Simulator:
             self._obey()
         second, fraction = self._time
         self._solver.sample(self._parameters, self._state, second, fraction, self._row)
-        row = self._row.tolist() if IS_COMPILED else [*self._row]
+        row = self._row.tolist()
         if not math.isfinite(sum(row)) and not all(map(math.isfinite, row[4:12])):    # what does not move may be inf
             raise SolverError(f'the state leaves the range of numbers at t = {second + fraction!r} s; '
                               f'{self._solver.advice}')
@@ -185,32 +173,35 @@ class Simulator:
         if self._inputs.are_commanded:
             self._obey()
         return {'time': list(self._time), 'until': self._inputs.until,
-                'state': [float(number) for number in self._state],
+                'state': self._state.numbers(),
                 'waiting': [[*map(float, event)] for event in self._waiting]}
 
     def restore(self, saved: Mapping[str, Any], axis: Axis, drive: Input, force: Input) -> None:
-        """Go on from a checkpoint that was taken with this axis and these courses in force.
+        """Go on from a checkpoint that was taken with this axis and these input profiles in force.
 
-        Raises InputError on impossible courses; KeyError, TypeError or ValueError when it is no checkpoint.
+        Raises InputError on impossible input profiles; KeyError, TypeError or ValueError when it is no checkpoint.
         """
         self._inputs.command_drive(drive)
         self._inputs.command_force(force)
         self._take_axis(axis)
-        state = state_of(saved['state'], len(self._state), self._parameters)
+        state = self._solver.records.State(self._inputs.most_sinusoids)
+        state.take(numbers_of(saved['state'], self._state))
+        check_state(state, self._inputs.most_sinusoids, self._parameters)
         second, fraction = map(float, saved['time'])
         until, self._waiting = float(saved['until']), [event_of(event) for event in saved['waiting']]
-        self._state = _numbers(state)
+        self._state = state
         self._inputs.go_on(until)
-        self._sinusoids = _numbers(self._inputs.sinusoids())
+        self._sinusoids = self._solver.records.Sinusoids(self._inputs.sinusoids())
         self._time = Instant(second, fraction)
 
     def _take_axis(self, axis: Axis) -> None:
-        self._axis, self._parameters, self._solver = axis, _numbers(pack(axis)), self._solver_of(axis)
+        self._axis, self._solver = axis, self._solver_of(axis)
+        self._parameters = self._solver.records.Parameters(pack(axis))
 
     def _obey(self) -> None:
         """Let the commands of this instant take effect, all at once: their order does not matter."""
         if self._inputs.most_sinusoids:
-            self._sinusoids = _numbers(self._inputs.sinusoids())
+            self._sinusoids = self._solver.records.Sinusoids(self._inputs.sinusoids())
         self._enter_pieces(self._waiting)
 
     def _advance(self, to: Instant, events: list[Event]) -> None:
@@ -224,7 +215,7 @@ class Simulator:
             if end == DONE:
                 self._time = to
                 return
-            self._time = max(self._time, Instant(float(self._state[SECOND]), float(self._state[FRACTION])))
+            self._time = max(self._time, Instant(float(self._state.second), float(self._state.fraction)))
             if end == OUT_OF_RANGE:
                 raise SolverError(f'the state leaves the range of numbers after t = {self._time.seconds!r} s; '
                                   f'{self._solver.advice}')
@@ -243,20 +234,5 @@ class Simulator:
 
     def _rows(self, count: int) -> Iterator[Event]:
         for i in range(count):
-            row = self._table[i]
-            second, fraction, kind, mode, direction, *rest = row.tolist() if IS_COMPILED else row
+            second, fraction, kind, mode, direction, *rest = self._table.row(i)
             yield Event(second, fraction, _KINDS[int(kind)], _MODES[int(mode)], int(direction), *rest)
-
-
-def _numbers(values: Any) -> Any:
-    if not IS_COMPILED:
-        return list(values)
-    import numpy as np
-    return np.array(values, dtype=np.float64)
-
-
-def _table(rows: int, columns: int) -> Any:
-    if not IS_COMPILED:
-        return [[0.0] * columns for _ in range(rows)]
-    import numpy as np
-    return np.zeros((rows, columns))

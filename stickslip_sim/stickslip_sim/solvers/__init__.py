@@ -1,42 +1,98 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Solvers: each brings a state to a time and writes the events on the way; all behind the same functions."""
+"""Solvers: each brings a state to a time and writes the events on the way; all behind the same methods."""
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol, runtime_checkable
+
+from ..axis import layout
+from ..axis.layout import EnergyRow, Events, Parameters, SampleRow, Sinusoids, State
 
 # how `advance` ended: at its time, with a full event table, stuck, before a state beyond the range of numbers, or at an
 # event that contradicts the motion or its energy
 DONE, FULL, NO_PROGRESS, OUT_OF_RANGE, UNSOUND = 0, 1, 2, 3, 4
 
 
-class Solver(NamedTuple):
-    """The functions of a solver.  `p` parameters and `s` state are flat arrays, see `axis.layout`.
+class Records(Protocol):
+    """Where the classes of records are that a solver works on: those of `axis.layout`, or of the compiled unit."""
 
-    `waves` is a flat array of four numbers a wave: frequency in Hz, phase in turns, amplitude of the drive velocity in
-    m/s and of the external force in N.  Functions with `events, row` write rows into the table and return the rows in
-    use.  `advice` says what to try when the solver gives up.
+    Parameters: type[Parameters]
+    State: type[State]
+    Events: type[Events]
+    Sinusoids: type[Sinusoids]
+    SampleRow: type[SampleRow]
+    EnergyRow: type[EnergyRow]
 
-    | function       | arguments                                                                              |
-    |----------------|----------------------------------------------------------------------------------------|
-    | start          | p, s, position, velocity, rest, v, v_rate, f, f_rate, waves, events, row               |
-    | advance        | p, s, second, fraction, events, row; returns (rows, how it ended)                      |
-    | set_inputs     | p, s, second, fraction, v, v_rate, f, f_rate, waves, events, row                       |
-    | set_parameters | p, new p, s, second, fraction, events, row                                             |
-    | sample         | p, s, second, fraction, out                                                            |
-    | energy         | p, s, second, fraction, out; a row of `energy.EnergyBalance`                           |
-    | is_sound       | p, s, second, fraction; whether the state contradicts neither its mode nor its energy  |
 
-    A solver with `energy` and `is_sound` keeps the account, and judges its run by it, while s[ACCOUNTING], which
-    `start` leaves as it is, is not 0.
+@runtime_checkable
+class Solver(Protocol):
+    """What brings a state through time.
+
+    A time is two numbers: whole seconds and the fraction of one.  Inputs are v + v_rate t and f + f_rate t (m/s, m/s²,
+    N, N/s) from a time on, and sinusoids.  A method with `events, row` writes rows into that table from `row` on and
+    returns the rows in use.
     """
 
+    @property
+    def name(self) -> str:
+        """As `solver.name` of a scene."""
+
+    @property
+    def records(self) -> Records:
+        """The records that it works on."""
+
+    @property
+    def advice(self) -> str:
+        """What to try when it gives up."""
+
+    def start(self, p: Parameters, s: State, position: float, velocity: float, rest: float, v: float, v_rate: float,
+              f: float, f_rate: float, sinusoids: Sinusoids, events: Events, row: int, /) -> int:
+        """Set the state at time 0: the spring unstretched; position in m, velocity in m/s, rest time in s."""
+
+    def advance(self, p: Parameters, s: State, second: float, fraction: float, events: Events, row: int, /
+                ) -> tuple[int, int]:
+        """Bring the state to a time that is not before it; return the rows in use and how it ended (DONE, ...)."""
+
+    def set_inputs(self, p: Parameters, s: State, second: float, fraction: float, v: float, v_rate: float, f: float,
+                   f_rate: float, sinusoids: Sinusoids, events: Events, row: int, /) -> int:
+        """Let the inputs be others from a time on, up to which the state was advanced."""
+
+    def set_parameters(self, p: Parameters, new: Parameters, s: State, second: float, fraction: float, events: Events,
+                       row: int, /) -> int:
+        """Let the axis have other parameters from a time on, up to which the state was advanced with the old ones."""
+
+    def sample(self, p: Parameters, s: State, second: float, fraction: float, out: SampleRow, /) -> None:
+        """Fill a row with the state at the time that it was advanced to."""
+
+    @property
+    def energy(self) -> Callable[[Parameters, State, float, float, EnergyRow], None] | None:
+        """What fills a row with the energies up to a time, as `sample` does; None of a solver without an account.
+
+        A solver with `energy` and `is_sound` keeps the account, and judges its run by it, while `accounting` of the
+        state, which `start` leaves as it is, is not 0.
+        """
+
+    @property
+    def is_sound(self) -> Callable[[Parameters, State, float, float], bool] | None:
+        """What says whether the state at a time obeys its mode and the balance of energy; None without an account."""
+
+
+class SolverOfFunctions(NamedTuple):
+    """A solver whose methods are functions, compiled or not."""
+
     name: str
-    start: Callable[..., Any]
-    advance: Callable[..., Any]
-    set_inputs: Callable[..., Any]
-    set_parameters: Callable[..., Any]
-    sample: Callable[..., Any]
-    energy: Callable[..., Any] | None = None
-    is_sound: Callable[..., Any] | None = None
+    start: Callable[..., int]
+    advance: Callable[..., tuple[int, int]]
+    set_inputs: Callable[..., int]
+    set_parameters: Callable[..., int]
+    sample: Callable[..., None]
+    energy: Callable[[Parameters, State, float, float, EnergyRow], None] | None = None
+    is_sound: Callable[[Parameters, State, float, float], bool] | None = None
+    records: Any = layout
     advice: str = 'a parameter or an input is too extreme for this axis: check the scene'
+
+
+def with_advance(solver: Solver, advance: Callable[..., tuple[int, int]]) -> Solver:
+    """Return a solver that advances in another way."""
+    return SolverOfFunctions(solver.name, solver.start, advance, solver.set_inputs, solver.set_parameters,
+                             solver.sample, solver.energy, solver.is_sound, solver.records, solver.advice)

@@ -1,67 +1,65 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The inputs of solvers that step: v(t) and F_e(t) at any time, from what `set_inputs` gave them.
-
-Waves stand after the state, four numbers each.
-"""
+"""The inputs of solvers that step: v(t) and F_e(t) at any time, from what `set_inputs` gave them."""
 
 import math
 
-from ..axis.layout import (
-    F, FRACTION, F_RATE, INPUT_F, INPUT_FRACTION, INPUT_F_RATE, INPUT_SECOND, INPUT_V, INPUT_V_RATE, INPUT_WAVES,
-    SECOND, STATE_SIZE, V, V_RATE, WAVE_INPUTS,
-)
+from ..axis.layout import Sinusoids, State
 from ..core.jit import compiled
 from ..linear.waves import TURN, phase_at
 
 
 @compiled
-def hold_inputs(s, second, fraction, v, v_rate, f, f_rate, waves):
-    """Let the inputs be v + v_rate t, f + f_rate t and the waves from a time on."""
-    s[INPUT_SECOND], s[INPUT_FRACTION] = second, fraction
-    s[INPUT_V], s[INPUT_V_RATE], s[INPUT_F], s[INPUT_F_RATE] = v, v_rate, f, f_rate
-    s[INPUT_WAVES] = float(len(waves))
-    for i in range(len(waves)):
-        s[STATE_SIZE + i] = waves[i]
+def hold_inputs(s: State, second: float, fraction: float, v: float, v_rate: float, f: float, f_rate: float,
+                sinusoids: Sinusoids) -> None:
+    """Let the inputs be v + v_rate t, f + f_rate t and the sinusoids from a time on."""
+    s.given.second, s.given.fraction = second, fraction
+    s.given.v, s.given.v_rate, s.given.f, s.given.f_rate = v, v_rate, f, f_rate
+    s.given_sinusoids = float(sinusoids.count)
+    for k in range(sinusoids.count):
+        s.sinusoids[k].frequency, s.sinusoids[k].phase = sinusoids.rows[k].frequency, sinusoids.rows[k].phase
+        s.sinusoids[k].v, s.sinusoids[k].f = sinusoids.rows[k].v, sinusoids.rows[k].f
 
 
 @compiled
-def same_inputs(s, v, v_rate, f, f_rate, waves):
-    """Whether the inputs hold already and do not change but for the same waves."""
-    if (s[INPUT_V] != v or s[INPUT_F] != f or s[INPUT_V_RATE] != 0.0 or s[INPUT_F_RATE] != 0.0 or v_rate != 0.0
-            or f_rate != 0.0 or s[INPUT_WAVES] != len(waves)):
+def same_inputs(s: State, v: float, v_rate: float, f: float, f_rate: float, sinusoids: Sinusoids) -> bool:
+    """Whether the inputs hold already and do not change but for the same sinusoids."""
+    if (s.given.v != v or s.given.f != f or s.given.v_rate != 0.0 or s.given.f_rate != 0.0 or v_rate != 0.0
+            or f_rate != 0.0 or s.given_sinusoids != sinusoids.count):
         return False
-    changed = 0
-    for i in range(len(waves)):
-        changed += s[STATE_SIZE + i] != waves[i]
-    return changed == 0
+    for k in range(sinusoids.count):
+        if (s.sinusoids[k].frequency != sinusoids.rows[k].frequency or s.sinusoids[k].phase != sinusoids.rows[k].phase
+                or s.sinusoids[k].v != sinusoids.rows[k].v or s.sinusoids[k].f != sinusoids.rows[k].f):
+            return False
+    return True
 
 
 @compiled
-def inputs_vary(s):
+def inputs_vary(s: State) -> bool:
     """Whether the inputs change by themselves."""
-    return s[INPUT_V_RATE] != 0.0 or s[INPUT_F_RATE] != 0.0 or s[INPUT_WAVES] != 0.0
+    return s.given.v_rate != 0.0 or s.given.f_rate != 0.0 or s.given_sinusoids != 0.0
 
 
 @compiled
-def inputs_at(s, second, fraction):
+def inputs_at(s: State, second: float, fraction: float) -> tuple[float, float]:
     """Return v and F_e at a time."""
-    t = (second - s[INPUT_SECOND]) + (fraction - s[INPUT_FRACTION])
-    v = s[INPUT_V] + s[INPUT_V_RATE] * t
-    f = s[INPUT_F] + s[INPUT_F_RATE] * t
-    for at in range(STATE_SIZE, STATE_SIZE + int(s[INPUT_WAVES]), WAVE_INPUTS):
-        wave = math.sin(TURN * phase_at(s[at], s[at + 1], second, fraction))
-        v += s[at + 2] * wave
-        f += s[at + 3] * wave
+    t = (second - s.given.second) + (fraction - s.given.fraction)
+    v = s.given.v + s.given.v_rate * t
+    f = s.given.f + s.given.f_rate * t
+    for k in range(int(s.given_sinusoids)):
+        sine = math.sin(TURN * phase_at(s.sinusoids[k].frequency, s.sinusoids[k].phase, second, fraction))
+        v += s.sinusoids[k].v * sine
+        f += s.sinusoids[k].f * sine
     return v, f
 
 
 @compiled
-def refresh_inputs(s):
+def refresh_inputs(s: State) -> None:
     """Set V, F and their rates to those at the time of the state."""
-    s[V], s[F] = inputs_at(s, s[SECOND], s[FRACTION])
-    s[V_RATE], s[F_RATE] = s[INPUT_V_RATE], s[INPUT_F_RATE]
-    for at in range(STATE_SIZE, STATE_SIZE + int(s[INPUT_WAVES]), WAVE_INPUTS):
-        slope = TURN * s[at] * math.cos(TURN * phase_at(s[at], s[at + 1], s[SECOND], s[FRACTION]))
-        s[V_RATE] += s[at + 2] * slope
-        s[F_RATE] += s[at + 3] * slope
+    s.v, s.f = inputs_at(s, s.second, s.fraction)
+    s.v_rate, s.f_rate = s.given.v_rate, s.given.f_rate
+    for k in range(int(s.given_sinusoids)):
+        frequency = s.sinusoids[k].frequency
+        slope = TURN * frequency * math.cos(TURN * phase_at(frequency, s.sinusoids[k].phase, s.second, s.fraction))
+        s.v_rate += s.sinusoids[k].v * slope
+        s.f_rate += s.sinusoids[k].f * slope

@@ -2,27 +2,28 @@
 # SPDX-License-Identifier: Apache-2.0
 """The row of a sample, for every solver."""
 
-from ..axis.layout import COMPLIANT, DEFLECTION, DIRECTION, DRIVE, MODE, NORMAL, ORIGIN, POSITION, REST
+from ..axis.layout import Parameters, SampleRow, State
 from ..axis.motion import STICK
 from ..core.jit import inlined
 
 
 @inlined
-def write_sample(p, s, second, fraction, t, y, u, a, drive, v, pull, force, friction, out):
+def write_sample(p: Parameters, s: State, second: float, fraction: float, t: float, y: float, u: float, a: float,
+                 drive: float, v: float, drive_force: float, force: float, friction: float, out: SampleRow) -> None:
     """Fill a row (`types.Sample` names the columns): t, travel y and drive travel since the state s, the rest at t."""
-    stuck = s[MODE] == STICK
-    out[0] = second
-    out[1] = fraction
-    out[2] = s[MODE]
-    out[3] = s[DIRECTION]
-    out[4] = s[ORIGIN] + (s[POSITION] + y)
-    out[5] = u
-    out[6] = a
-    out[7] = s[ORIGIN] + (s[DRIVE] + drive)
-    out[8] = v
-    out[9] = pull
-    out[10] = force
-    out[11] = friction
-    out[12] = abs(friction) / p[NORMAL] if p[NORMAL] > 0.0 else 0.0
-    out[13] = s[DEFLECTION] + y if stuck and p[COMPLIANT] != 0.0 else 0.0
-    out[14] = s[REST] + t if stuck else 0.0
+    stuck = s.mode == STICK
+    out.second = second
+    out.fraction = fraction
+    out.mode = s.mode
+    out.direction = s.direction
+    out.position = s.origin + (s.position + y)
+    out.velocity = u
+    out.acceleration = a
+    out.drive = s.origin + (s.drive + drive)
+    out.drive_velocity = v
+    out.drive_force = drive_force
+    out.external = force
+    out.friction = friction
+    out.coefficient = abs(friction) / p.normal_force if p.normal_force > 0.0 else 0.0
+    out.deflection = s.deflection + y if stuck and p.compliant != 0.0 else 0.0
+    out.rest = s.rest + t if stuck else 0.0

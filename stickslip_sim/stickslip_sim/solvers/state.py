@@ -2,33 +2,30 @@
 # SPDX-License-Identifier: Apache-2.0
 """How a state begins, and how it takes another contact, for solvers that step."""
 
-from ..axis.layout import (
-    COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DEFLECTION, DIRECTION, MODE, ORIGIN, REST, STATE_SIZE, VELOCITY,
-)
+from ..axis.layout import Parameters, State, clear_state
 from ..axis.motion import DECELERATING, STICK
 from ..core.jit import compiled
 
 
 @compiled
-def begin_state(s, position, velocity, rest):
+def begin_state(s: State, position: float, velocity: float, rest: float) -> None:
     """Set the state at time 0, the spring unstretched: at rest, or slipping with E = 0 on some branch."""
-    for i in range(STATE_SIZE):
-        s[i] = 0.0
-    s[ORIGIN], s[VELOCITY], s[MODE] = position, velocity, STICK
+    clear_state(s)
+    s.origin, s.velocity, s.mode = position, velocity, STICK
     if velocity == 0.0:
-        s[REST] = rest
+        s.rest = rest
     else:
-        s[DIRECTION] = 1.0 if velocity > 0.0 else -1.0
-        s[MODE] = DECELERATING
+        s.direction = 1.0 if velocity > 0.0 else -1.0
+        s.mode = DECELERATING
 
 
 @compiled
-def change_contact(new, s, force):
+def change_contact(new: Parameters, s: State, force: float) -> None:
     """Let a stuck slider go on with the contact of other parameters; a compliant one carries the same force, N."""
-    if s[MODE] != STICK:
+    if s.mode != STICK:
         return
-    if new[COMPLIANT] != 0.0:
-        s[DEFLECTION] = (force - new[CONTACT_DAMPING] * s[VELOCITY]) / new[CONTACT_STIFFNESS]
+    if new.compliant != 0.0:
+        s.deflection = (force - new.contact_damping * s.velocity) / new.contact_stiffness
     else:
-        s[VELOCITY] = 0.0
-        s[DEFLECTION] = 0.0
+        s.velocity = 0.0
+        s.deflection = 0.0

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ..axis.layout import EventRow
 from ..core.errors import InputError, SolverError
 from ..friction import StaticLawKind
 from ..runs import SimulatedRun, simulate_events
@@ -77,7 +78,7 @@ def runs_of_run(run: SimulatedRun) -> Runs:
     many_axes.clear(out[0])
     out[0][many_axes.FINAL_MODE] = run.scene.make_rig().simulator.sample().mode
     for event in run.events:
-        many_axes.book(out[0], np.array(event, dtype=float), 0.5 * run.duration)
+        many_axes.book(out[0], EventRow(*map(float, event)), 0.5 * run.duration, many_axes.ROW_SIZE)
     out[0][many_axes.COMPLETE] = 1.0
     found = runs_of(figures_in(out), rounds_in(out), run.duration)
     found.stick_share[0] = run.summary.stick_share

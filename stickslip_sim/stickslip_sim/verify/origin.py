@@ -13,7 +13,7 @@ from ..recording import RecordedRun
 from ..recording.bag import METADATA
 from ..recording.run import CHECKPOINT_FILE, SCENE_FILE, RunFacts
 
-_MAKERS = 'version', 'python', 'platform', 'numpy', 'numba'
+_MAKERS = 'version', 'python', 'platform', 'numpy', 'hot_path'
 
 
 class Offline(NamedTuple):

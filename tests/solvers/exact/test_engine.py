@@ -14,7 +14,6 @@ from stickslip_sim.core.errors import SolverError
 from stickslip_sim.core.input_profile import InputProfile, ramp, steps, table
 from stickslip_sim.core.types import Event, EventKind, Instant, Mode
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
-from tests.conftest import Program
 from tests.support.axes import COMPLIANT, RIGID, Contact, instant, make, of_kind, paper_axis, run_events
 
 
@@ -70,20 +69,6 @@ def test_reverses_at_once_where_a_rigid_contact_cannot_hold() -> None:
     assert events[-1].kind == EventKind.STICK
     amplitudes = [abs(e.position) for e in of_kind(events, EventKind.REVERSE)]
     assert all(b < a for a, b in pairwise(amplitudes))
-
-
-def test_compiled_and_plain_python_agree_bit_by_bit(in_a_process: Program) -> None:
-    """The same source with and without numba, in two processes."""
-    program = '''
-import random
-from tests.support.axes import random_axis, run, Contact
-for seed in range(25):
-    rng = random.Random(seed)
-    axis = random_axis(rng)
-    for event in run(axis, rng.choice((-1, 1)) * 10 ** rng.uniform(-3, -1.5), 3.0):
-        print([float(x).hex() for x in event])
-'''
-    assert in_a_process(program, compiled=True) == in_a_process(program, compiled=False)
 
 
 def test_grazing_the_limit_is_neither_missed_nor_invented() -> None:

@@ -194,11 +194,11 @@ def test_waves_without_friction_follow_the_linear_axis() -> None:
 PROGRAM = '''
 import random
 from tests.support.axes import make, instant, random_axis
-from tests.support.forced_courses import random_courses
+from tests.support.forced_courses import random_profiles
 for seed in range(6):
     rng = random.Random(seed)
     axis = random_axis(rng)
-    simulator = make(axis, *random_courses(rng, axis))
+    simulator = make(axis, *random_profiles(rng, axis))
     for event in simulator.advance(instant(1.0)):
         print(event.kind.name, [float(x).hex() for x in event[:2] + event[5:]])
     print([float(x).hex() for x in simulator.sample()[4:]])

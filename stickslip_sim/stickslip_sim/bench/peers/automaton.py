@@ -15,10 +15,10 @@ taken together in a tuple `q`, which machine code keeps in registers.
 import math
 
 from ...axis.layout import (
-    CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, END_SLOPE, KNOT_SIZE, KNOTS, MASS, NORMAL, STATIC_EXPONENT,
+    CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, END_SLOPE, SEGMENT_SIZE, SEGMENT_COUNT, MASS, NORMAL, STATIC_EXPONENT,
     STATIC_INITIAL, STATIC_LAW, STATIC_LIMIT, STATIC_TAU, STIFFNESS, TABLE,
 )
-from ...core.jit import always_compiled
+from .always_compiled import always_compiled
 from ...friction.static import CONSTANT, EXPONENTIAL, HYPERBOLIC, KATO
 from ...core.types import Mode
 
@@ -64,15 +64,15 @@ def static_coefficient(law, low, limit, tau, exponent, rest):
 @always_compiled
 def knot_at(p, piece):
     """Return the speed at which a piece of the friction table begins."""
-    return p[TABLE + KNOT_SIZE * int(piece)]
+    return p[TABLE + SEGMENT_SIZE * int(piece)]
 
 
 @always_compiled
 def piece_of(p, speed, rises):
     """Return the piece of the table that goes on from a speed, upwards or downwards."""
     piece = 0
-    for i in range(1, int(p[KNOTS])):
-        knot = p[TABLE + KNOT_SIZE * i]
+    for i in range(1, int(p[SEGMENT_COUNT])):
+        knot = p[TABLE + SEGMENT_SIZE * i]
         if knot < speed or (rises and knot == speed):
             piece = i
     return float(piece)
@@ -81,12 +81,12 @@ def piece_of(p, speed, rises):
 @always_compiled
 def friction_lines(p, piece):
     """Return mu_k, its slope, psi and its slope as lines through speed 0, along a piece of the table."""
-    at = TABLE + KNOT_SIZE * int(piece)
-    if piece + 1.0 >= p[KNOTS]:
+    at = TABLE + SEGMENT_SIZE * int(piece)
+    if piece + 1.0 >= p[SEGMENT_COUNT]:
         return p[at + 1] - p[END_SLOPE] * p[at], p[END_SLOPE], p[at + 2], 0.0
-    width = p[at + KNOT_SIZE] - p[at]
-    mu_slope = (p[at + KNOT_SIZE + 1] - p[at + 1]) / width
-    psi_slope = (p[at + KNOT_SIZE + 2] - p[at + 2]) / width
+    width = p[at + SEGMENT_SIZE] - p[at]
+    mu_slope = (p[at + SEGMENT_SIZE + 1] - p[at + 1]) / width
+    psi_slope = (p[at + SEGMENT_SIZE + 2] - p[at + 2]) / width
     return p[at + 1] - mu_slope * p[at], mu_slope, p[at + 2] - psi_slope * p[at], psi_slope
 
 
@@ -95,7 +95,7 @@ def motion_of(p, m):
     """Return the tuple q of the present mode."""
     normal, excess, piece = p[NORMAL], m[EXCESS], m[PIECE]
     mu, mu_slope, psi, psi_slope = friction_lines(p, piece)
-    above = knot_at(p, piece + 1.0) if piece + 1.0 < p[KNOTS] else math.inf
+    above = knot_at(p, piece + 1.0) if piece + 1.0 < p[SEGMENT_COUNT] else math.inf
     below = knot_at(p, piece) if piece > 0.0 else -math.inf
     return (m[MODE], m[DIRECTION], p[MASS], p[STIFFNESS], p[DAMPING],
             normal * mu, normal * mu_slope, normal * excess * psi, normal * excess * psi_slope, below, above,

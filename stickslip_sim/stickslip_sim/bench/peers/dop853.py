@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ...core.jit import always_compiled
+from .always_compiled import always_compiled
 from ...core.errors import SolverError
 from ..problem import Outcome, Problem
 from .automaton import GUARDS, MODE, SIZE, TIME, U, X, guard_scales, guards, motion_of, rates

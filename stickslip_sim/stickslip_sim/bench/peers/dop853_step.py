@@ -10,11 +10,11 @@ import math
 
 import numpy as np
 
-from ...core.jit import always_compiled
+from .always_compiled import NUMBA_MISSING, always_compiled
 from .automaton import rates
 
 _A = _B = _C = _E3 = _E5 = _D = np.zeros(0)
-MISSING: str | None = None
+MISSING: str | None = NUMBA_MISSING
 try:
     from scipy.integrate._ivp import dop853_coefficients as _table
     _A, _B, _C, _E3, _E5, _D = _table.A, _table.B, _table.C, _table.E3, _table.E5, _table.D

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ...core.jit import always_compiled
+from .always_compiled import NUMBA_MISSING, always_compiled
 from ...core.errors import SolverError
 from ..problem import Outcome, Problem
 from .automaton import Q_MASS, Q_MODE, SIZE, STICK, TIME, U, X, applied, is_compliant, motion_of
@@ -80,4 +80,4 @@ def _version() -> str:
     return f'this repository, numba {numba.__version__}'
 
 
-PEER = Peer('semi-implicit Euler, numba', time_steps(1e-3, 1e-4, 1e-5), None, _version, _prepare)
+PEER = Peer('semi-implicit Euler, numba', time_steps(1e-3, 1e-4, 1e-5), NUMBA_MISSING, _version, _prepare)

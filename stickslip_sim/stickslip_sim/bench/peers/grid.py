@@ -7,7 +7,7 @@ An event that falls within a step is acted on at its end, as in every simulator 
 
 import math
 
-from ...core.jit import always_compiled
+from .always_compiled import always_compiled
 from .automaton import (
     ACCELERATING, COASTING, DIRECTION, F, F_RATE, Q_BAND, Q_BAND_SLOPE, Q_DIRECTION, Q_INITIAL, Q_KNOT_ABOVE,
     Q_KNOT_BELOW, Q_LOWER, Q_LOWER_SLOPE, Q_MODE, Q_NORMAL, SPEED_SCALE, STICK, TIME, U, V, V_RATE, applied,

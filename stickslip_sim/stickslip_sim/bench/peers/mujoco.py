@@ -14,6 +14,7 @@ import numpy as np
 from ...axis.layout import MASS
 from ...core.errors import SolverError
 from ..problem import Outcome, Problem
+from .always_compiled import NUMBA_MISSING
 from .automaton import SIZE, U, X, motion_of
 from .grid import act, begin, look, next_piece
 from .peer import Peer, Setting, time_steps
@@ -32,7 +33,7 @@ _MODEL = """
 </mujoco>
 """
 _UNIT = 1.0   # of mass: the force is wanted, not the acceleration
-_MISSING = None if importlib.util.find_spec('mujoco') else 'pip install mujoco'
+_MISSING = NUMBA_MISSING if importlib.util.find_spec('mujoco') else 'pip install mujoco'
 
 
 class _Run:

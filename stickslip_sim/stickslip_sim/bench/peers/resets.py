@@ -8,7 +8,7 @@ from ...axis.layout import (
     BRANCHES, COMPLIANT, CONTACT_STIFFNESS, DAMPING, NORMAL, STATIC_EXPONENT, STATIC_INITIAL, STATIC_LAW, STATIC_LIMIT,
     STATIC_TAU, STIFFNESS, TABLE,
 )
-from ...core.jit import always_compiled
+from .always_compiled import always_compiled
 from ...core.types import EventKind
 from .automaton import (
     ACCELERATING, COASTING, DECELERATING, DEFLECTION, DIRECTION, EXCESS, F, F_RATE, MODE, PIECE, REST, ROUNDING, S,

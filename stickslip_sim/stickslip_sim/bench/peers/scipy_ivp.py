@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ...core.jit import always_compiled
+from .always_compiled import NUMBA_MISSING, always_compiled
 from ...core.errors import SolverError
 from ..problem import Outcome, Problem
 from .automaton import GUARDS, guards, rates
@@ -17,7 +17,7 @@ from .segments import run_segments
 try:
     import scipy
     from scipy.integrate import solve_ivp
-    _MISSING = None
+    _MISSING = NUMBA_MISSING
 except ImportError:
     _MISSING = 'pip install scipy'
 

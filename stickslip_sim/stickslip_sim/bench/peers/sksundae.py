@@ -9,14 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from ...core.jit import always_compiled
+from .always_compiled import NUMBA_MISSING, always_compiled
 from ...core.errors import SolverError
 from ..problem import Outcome, Problem
 from .automaton import GUARDS, guards, rates
 from .peer import Peer, Setting, tolerances
 from .segments import run_segments
 
-_MISSING = None if importlib.util.find_spec('sksundae') else 'pip install scikit-sundae'
+_MISSING = NUMBA_MISSING if importlib.util.find_spec('sksundae') else 'pip install scikit-sundae'
 _MAX_STEPS = 10_000   # memory for as many is taken anew at each event
 
 

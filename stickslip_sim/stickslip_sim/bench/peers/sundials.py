@@ -19,6 +19,7 @@ import numpy as np
 
 from ...core.errors import SolverError
 from ..problem import Outcome, Problem
+from .always_compiled import NUMBA_MISSING
 from .automaton import GUARDS, Q_F_RATE, SIZE, TIME, U, X, guards, motion_of, rates
 from .peer import Peer, Setting, tolerances
 from .resets import end_of_piece, enter_piece, move, note, reset
@@ -32,11 +33,7 @@ _WORD, _REAL, _INT = ctypes.c_size_t, ctypes.c_double, ctypes.c_int   # a pointe
 def _missing() -> str | None:
     if importlib.util.find_spec('sksundae') is None:
         return 'pip install scikit-sundae'
-    try:
-        import numba  # noqa: F401
-    except ImportError:
-        return 'pip install numba'
-    return None
+    return NUMBA_MISSING
 
 
 def _library(name: str) -> ctypes.CDLL:

@@ -23,7 +23,7 @@ class Program(NamedTuple):
 
 
 def live(args: Sequence[str], signals: 'Signals', program: Program) -> int:
-    """Bring a node up and down; return the exit code.  ROS and numba are imported in here, where errors are met."""
+    """Bring a node up and down; return the exit code.  ROS is imported in here, where errors are met."""
     from ...core.errors import StickslipError, internal_error
     from .environment import check_environment
 

@@ -12,7 +12,7 @@
 
 An event is where a guard changes its sign over a step, found to rounding on the interpolant of that step: what comes
 and goes within one step is missed, and a guard that is within the tolerance of zero may fire early, late or once too
-often.  Steps are at most an eighth of the period of the fastest wave.  Every call restarts the integration, so that
+often.  Steps are at most an eighth of the period of the fastest sinusoid.  Every call restarts the integration, so that
 a motion depends on how often it is asked for, within the tolerance.
 
 When to use it: to check the exact engine by other means, and for a smooth law of kinetic friction itself in place of
@@ -46,9 +46,7 @@ def solver(method: str = 'DOP853', rtol: float = 1e-8, atol: float = 1e-10, kine
         raise InputError('solver.rtol', rtol, f'>= {MIN_RTOL:g} and <= 0.01', '1e-8 is the default')
     if not 1e-300 <= atol <= 1.0:
         raise InputError('solver.atol', atol, '>= 1e-300 and <= 1 m, m/s', '1e-10 is the default')
-    engine = Engine(method, rtol, atol, kinetic)
-    return Solver('adaptive', engine.start, engine.advance, engine.set_inputs, engine.set_parameters, engine.sample,
-                  advice='try another solver.method or other tolerances, or check the scene')
+    return Engine(method, rtol, atol, kinetic)
 
 
 __all__ = ['METHODS', 'MIN_RTOL', 'solver']

@@ -4,44 +4,72 @@
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from ...axis.layout import (
-    ACCELERATION, DEFLECTION, DIRECTION, DRIVE, EVENT_FRICTION, EVENT_MODE, EXCESS, FRACTION, MODE, NORMAL, PIECE,
-    POSITION, RESIDUAL, REST, SECOND, SPRING, STATIC_INITIAL, VELOCITY,
-)
-from ...axis.motion import ACCELERATING, COASTING, STICK, drive_force, friction_line, piece_above
+from ...axis import layout
+from ...axis.layout import EventRow, Events, Parameters, SampleRow, Sinusoids, State
+from ...axis.motion import ACCELERATING, COASTING, STICK, drive_force, friction_line, segment_above
 from ...axis.transitions import (
-    ACCELERATE, ARREST, BREAKAWAY, COAST, DECELERATE, KNOT, applied_force, apply_inputs, arrest, choose_slip,
-    cross_knot, force_rounding, leave_coast, release, turn, write_event,
+    ACCELERATE,
+    ARREST,
+    BREAKAWAY,
+    COAST,
+    DECELERATE,
+    KNOT,
+    applied_force,
+    apply_inputs,
+    arrest,
+    choose_slip,
+    cross_breakpoint,
+    force_rounding,
+    leave_coast,
+    release,
+    turn,
+    write_event,
 )
 from .. import DONE, FULL, NO_PROGRESS, OUT_OF_RANGE
 from ..inputs import hold_inputs, refresh_inputs, same_inputs
 from ..sampling import write_sample
 from ..state import begin_state, change_contact
-from .mode_problem import Motion
+from .mode_problem import Motion, SmoothLaw
 
 _SAME_INSTANT = 64   # events without progress in time; a sound model needs three
 
 _QUIET = np.errstate(all='ignore')   # what overflows ends as OUT_OF_RANGE
 
 
+class _Reached(NamedTuple):
+    """Where an integration came to."""
+
+    time: float          # s
+    travel: float        # m
+    velocity: float      # m/s
+    kind: float | None   # of the event there; None: none
+
+
 @dataclass(frozen=True, slots=True)
 class Engine:
-    """The functions of the solver; `law` is a smooth mu_k, or None for the table in the parameters."""
+    """The solver; `law` is a smooth mu_k, or None for the table in the parameters."""
 
     method: str
     rtol: float
     atol: float
-    law: Any
+    law: SmoothLaw | None
+
+    name: ClassVar[str] = 'adaptive'
+    records: ClassVar[Any] = layout
+    advice: ClassVar[str] = 'try another solver.method or other tolerances, or check the scene'
+    energy: ClassVar[None] = None
+    is_sound: ClassVar[None] = None
 
     @_QUIET
-    def start(self, p, s, position, velocity, rest, v, v_rate, f, f_rate, waves, events, row):
+    def start(self, p: Parameters, s: State, position: float, velocity: float, rest: float, v: float, v_rate: float,
+              f: float, f_rate: float, sinusoids: Sinusoids, events: Events, row: int) -> int:
         """Set the state at time 0: the spring unstretched, at rest (it may break away at once) or sliding."""
         begin_state(s, position, velocity, rest)
-        hold_inputs(s, 0.0, 0.0, v, v_rate, f, f_rate, waves)
+        hold_inputs(s, 0.0, 0.0, v, v_rate, f, f_rate, sinusoids)
         refresh_inputs(s)
         if velocity == 0.0:
             return self._apply(p, s, events, row)
@@ -49,17 +77,18 @@ class Engine:
         return row
 
     @_QUIET
-    def advance(self, p, s, second, fraction, events, row):
+    def advance(self, p: Parameters, s: State, second: float, fraction: float, events: Events, row: int
+                ) -> tuple[int, int]:
         """Bring the state to a time; return the rows in use and how it ended."""
         same_instant = 0
         while True:
-            t = float((second - s[SECOND]) + (fraction - s[FRACTION]))
+            t = float((second - s.second) + (fraction - s.fraction))
             if t <= 0.0:
                 return row, DONE
-            if row >= len(events):
+            if row >= events.count:
                 return row, FULL
             motion = Motion(p, s, self.law)
-            reached = self._integrate(motion, t, float(s[VELOCITY]))
+            reached = self._integrate(motion, t, s.velocity)
             if reached is None:
                 return row, OUT_OF_RANGE
             due, y, u, kind = reached
@@ -69,40 +98,42 @@ class Engine:
             same_instant = same_instant + 1 if due == 0.0 else 0
             if same_instant >= _SAME_INSTANT:   # no more: the table is full with 64, and the next call counts anew
                 return row, NO_PROGRESS
-            later = s[FRACTION] + due
+            later = s.fraction + due
             whole = math.floor(later)
-            _move(s, motion, s[SECOND] + whole, later - whole, due, (y, u))
+            _move(s, motion, s.second + whole, later - whole, due, (y, u))
             self._transition(p, s, events, row, kind)
             row += 1
 
     @_QUIET
-    def set_inputs(self, p, s, second, fraction, v, v_rate, f, f_rate, waves, events, row):
+    def set_inputs(self, p: Parameters, s: State, second: float, fraction: float, v: float, v_rate: float, f: float,
+                   f_rate: float, sinusoids: Sinusoids, events: Events, row: int) -> int:
         """Let the inputs be others from a time on, to which the state was advanced."""
-        if same_inputs(s, v, v_rate, f, f_rate, waves):
+        if same_inputs(s, v, v_rate, f, f_rate, sinusoids):
             return row
-        hold_inputs(s, second, fraction, v, v_rate, f, f_rate, waves)
+        hold_inputs(s, second, fraction, v, v_rate, f, f_rate, sinusoids)
         refresh_inputs(s)
         return self._apply(p, s, events, row)
 
     @_QUIET
-    def set_parameters(self, p, new, s, second, fraction, events, row):
+    def set_parameters(self, p: Parameters, new: Parameters, s: State, second: float, fraction: float, events: Events,
+                       row: int) -> int:
         """Let the axis have other parameters from a time on, to which the state was advanced with the old ones."""
-        change_contact(new, s, Motion(p, s, self.law).friction(0.0, (0.0, float(s[VELOCITY]))))
+        change_contact(new, s, Motion(p, s, self.law).friction(0.0, (0.0, s.velocity)))
         return self._apply(new, s, events, row)
 
     @_QUIET
-    def sample(self, p, s, second, fraction, out):
+    def sample(self, p: Parameters, s: State, second: float, fraction: float, out: SampleRow) -> None:
         """Fill a row with the state; the time is the one that it was advanced to."""
         motion = Motion(p, s, self.law)
-        now = (0.0, float(s[VELOCITY]))
+        now = (0.0, s.velocity)
         v, f = motion.inputs.at(0.0)
         write_sample(p, s, second, fraction, 0.0, 0.0, now[1], motion.rates(0.0, now)[1], 0.0, v,
-                     drive_force(p, s[SPRING], v, now[1]), f,
+                     drive_force(p, s.spring, v, now[1]), f,
                      motion.friction(0.0, now), out)
 
-    def _integrate(self, motion, t, u):
-        """Return time, travel, velocity and kind (None: none) of the next event up to t; None where it fails."""
-        from scipy.integrate import solve_ivp   # a second that a user of the other solvers need not wait
+    def _integrate(self, motion: Motion, t: float, u: float) -> _Reached | None:
+        """Return the next event up to t, or t; None where the integration fails."""
+        from scipy.integrate import solve_ivp  # a second that a user of the other solvers need not wait
 
         guards = motion.guards()
         try:
@@ -115,94 +146,97 @@ class Engine:
             return None
         for (kind, _), times, states in zip(guards, run.t_events, run.y_events):
             if len(times):
-                return float(times[-1]), *map(float, states[-1]), kind
-        return t, *map(float, run.y[:, -1]), None
+                y, velocity = map(float, states[-1])
+                return _Reached(float(times[-1]), y, velocity, kind)
+        y, velocity = map(float, run.y[:, -1])
+        return _Reached(t, y, velocity, None)
 
-    def _transition(self, p, s, events, row, kind):
+    def _transition(self, p: Parameters, s: State, events: Events, row: int, kind: float) -> None:
         if kind == BREAKAWAY:
             release(p, s, events, row)
-            self._correct_excess(p, s, events[row])
+            self._correct_excess(p, s, events.rows[row])
         elif kind == ARREST:
             arrest(p, s, events, row)
         elif kind == KNOT:
-            cross_knot(p, s, events, row, 0.0)
-        elif s[MODE] == COASTING:
+            cross_breakpoint(p, s, events, row, 0.0)
+        elif s.mode == COASTING:
             leave_coast(p, s, events, row, kind)
         else:
-            self._find_piece(p, s)
+            self._find_segment(p, s)
             friction = self._friction(p, s)
             turn(p, s, events, row)
-            events[row][EVENT_FRICTION] = friction
+            events.rows[row].friction = friction
 
-    def _apply(self, p, s, events, row):
+    def _apply(self, p: Parameters, s: State, events: Events, row: int) -> int:
         """Choose the mode anew after a jump; return the rows in use."""
-        if s[MODE] == STICK:
+        if s.mode == STICK:
             _set_acceleration(p, s, self.law)
             if not apply_inputs(p, s, events, row):
                 return row
-            self._correct_excess(p, s, events[row])
+            self._correct_excess(p, s, events.rows[row])
             return row + 1
-        mode = s[MODE]
+        mode = s.mode
         if not self._choose(p, s):
             arrest(p, s, events, row)
             return row + 1
-        if s[MODE] == mode:
+        if s.mode == mode:
             return row
-        kind = COAST if s[MODE] == COASTING else (ACCELERATE if s[MODE] == ACCELERATING else DECELERATE)
-        write_event(p, s, events, row, kind, s[DIRECTION], self._friction(p, s), p[STATIC_INITIAL])
-        events[row][EVENT_MODE] = s[MODE]
+        kind = COAST if s.mode == COASTING else (ACCELERATE if s.mode == ACCELERATING else DECELERATE)
+        write_event(p, s, events, row, kind, s.direction, self._friction(p, s), p.static_initial)
+        events.rows[row].mode = s.mode
         return row + 1
 
-    def _choose(self, p, s):
+    def _choose(self, p: Parameters, s: State) -> bool:
         """Set the sub-mode of a slip from the forces; return False when the slider comes to rest instead."""
         coefficient, psi = self._coefficients(p, s)
-        upper = coefficient + s[EXCESS] * psi
-        push = s[DIRECTION] * applied_force(p, s)
-        return choose_slip(p, s, push - p[NORMAL] * upper, push - p[NORMAL] * coefficient, force_rounding(p, s, upper))
+        upper = coefficient + s.excess * psi
+        push = s.direction * applied_force(p, s)
+        return choose_slip(p, s, push - p.normal_force * upper, push - p.normal_force * coefficient,
+                           force_rounding(p, s, upper))
 
-    def _friction(self, p, s):
+    def _friction(self, p: Parameters, s: State) -> float:
         """Return the friction force at the state, N."""
-        if s[MODE] == COASTING:
+        if s.mode == COASTING:
             return applied_force(p, s)
         coefficient, psi = self._coefficients(p, s)
-        return s[DIRECTION] * p[NORMAL] * (coefficient + (s[EXCESS] * psi if s[MODE] == ACCELERATING else 0.0))
+        return s.direction * p.normal_force * (coefficient + (s.excess * psi if s.mode == ACCELERATING else 0.0))
 
-    def _coefficients(self, p, s):
-        speed = abs(float(s[VELOCITY]))
-        coefficient, _, psi, _ = friction_line(p, piece_above(p, speed), speed)
+    def _coefficients(self, p: Parameters, s: State) -> tuple[float, float]:
+        speed = abs(s.velocity)
+        coefficient, _, psi, _ = friction_line(p, segment_above(p, speed), speed)
         return (coefficient if self.law is None else self.law.coefficient(speed)), psi
 
-    def _correct_excess(self, p, s, event):
+    def _correct_excess(self, p: Parameters, s: State, event: EventRow) -> None:
         """Let E make friction continuous with the smooth law, where the transition took its table."""
-        if self.law is None or s[MODE] == STICK or s[EXCESS] == 0.0:
+        if self.law is None or s.mode == STICK or s.excess == 0.0:
             return
         coefficient, psi = self._coefficients(p, s)
-        s[EXCESS] = (abs(float(event[EVENT_FRICTION])) / float(p[NORMAL]) - coefficient) / psi
+        s.excess = (abs(event.friction) / p.normal_force - coefficient) / psi
 
-    def _find_piece(self, p, s):
-        """Set the piece for psi, which no knot keeps up to date with a smooth law."""
+    def _find_segment(self, p: Parameters, s: State) -> None:
+        """Set the segment for psi, which no breakpoint keeps up to date with a smooth law."""
         if self.law is not None:
-            s[PIECE] = float(piece_above(p, abs(float(s[VELOCITY]))))
+            s.segment = float(segment_above(p, abs(s.velocity)))
 
 
-def _set_acceleration(p, s, law):
+def _set_acceleration(p: Parameters, s: State, law: SmoothLaw | None) -> None:
     """Set the acceleration that a break-away from a compliant contact begins with."""
-    s[ACCELERATION] = Motion(p, s, law).rates(0.0, (0.0, float(s[VELOCITY])))[1]
+    s.acceleration = Motion(p, s, law).rates(0.0, (0.0, s.velocity))[1]
 
 
-def _move(s, motion, second, fraction, t, state):
+def _move(s: State, motion: Motion, second: float, fraction: float, t: float, state: tuple[float, float]) -> None:
     """Bring the state to a time, t later, where travel and velocity are `state`."""
     y, u = state
     drive = motion.inputs.travel(t)
-    if s[MODE] == STICK:
-        s[REST] += t
-        s[DEFLECTION] += y
-    elif s[MODE] == COASTING:
-        s[RESIDUAL] = motion.coasting_residual(t, state)
-    s[POSITION] += y
-    s[DRIVE] += drive
-    s[SPRING] += drive - y
-    s[VELOCITY] = u
-    s[ACCELERATION] = motion.rates(t, state)[1]
-    s[SECOND], s[FRACTION] = second, fraction
+    if s.mode == STICK:
+        s.rest += t
+        s.deflection += y
+    elif s.mode == COASTING:
+        s.residual = motion.coasting_residual(t, state)
+    s.position += y
+    s.drive += drive
+    s.spring += drive - y
+    s.velocity = u
+    s.acceleration = motion.rates(t, state)[1]
+    s.second, s.fraction = second, fraction
     refresh_inputs(s)

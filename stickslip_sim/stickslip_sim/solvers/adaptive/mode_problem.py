@@ -9,15 +9,18 @@ rounding at once is lifted to zero: it fires if it falls, and never if it rises.
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Protocol
 
-from ...axis.layout import (
-    CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, DEFLECTION, DIRECTION, EXCESS, F, FRACTION, INPUT_F_RATE, INPUT_V_RATE,
-    INPUT_WAVES, KNOTS, MASS, MODE, NORMAL, PIECE, RESIDUAL, REST, SECOND, SPRING, STATE_SIZE, STIFFNESS, V, VELOCITY,
-    WAVE_INPUTS,
-)
+from ...axis.layout import Parameters, State
 from ...axis.motion import (
-    ACCELERATING, COASTING, STICK, friction_line, is_rigid_stick, knot_speed, piece_above, static_limit,
+    ACCELERATING,
+    COASTING,
+    STICK,
+    breakpoint_speed,
+    friction_line,
+    is_rigid_stick,
+    segment_above,
+    static_limit,
 )
 from ...axis.transitions import ACCELERATE, ARREST, BREAKAWAY, COAST, DECELERATE, KNOT
 from ...linear.waves import TURN, phase_at
@@ -25,22 +28,29 @@ from ...linear.waves import TURN, phase_at
 _STEPS_PER_WAVE = 8.0
 
 
+class SmoothLaw(Protocol):
+    """A smooth mu_k."""
+
+    def coefficient(self, speed: float, /) -> float:
+        """Return mu_k at a speed in m/s."""
+
+
 class Inputs:
     """v(t), F_e(t) and the drive's travel from the time of a state on."""
 
-    def __init__(self, s: Any) -> None:
+    def __init__(self, s: State) -> None:
         self._waves = []
-        v, f = float(s[V]), float(s[F])
-        for at in range(STATE_SIZE, STATE_SIZE + int(s[INPUT_WAVES]), WAVE_INPUTS):
-            phase = TURN * float(phase_at(s[at], s[at + 1], s[SECOND], s[FRACTION]))
-            self._waves.append((TURN * float(s[at]), phase, float(s[at + 2]), float(s[at + 3])))
-            v -= float(s[at + 2]) * math.sin(phase)
-            f -= float(s[at + 3]) * math.sin(phase)
-        self._v, self._v_rate, self._f, self._f_rate = v, float(s[INPUT_V_RATE]), f, float(s[INPUT_F_RATE])
+        v, f = s.v, s.f
+        for given in s.sinusoids[:int(s.given_sinusoids)]:
+            phase = TURN * phase_at(given.frequency, given.phase, s.second, s.fraction)
+            self._waves.append((TURN * given.frequency, phase, given.v, given.f))
+            v -= given.v * math.sin(phase)
+            f -= given.f * math.sin(phase)
+        self._v, self._v_rate, self._f, self._f_rate = v, float(s.given.v_rate), f, float(s.given.f_rate)
 
     @property
     def longest_step(self) -> float:
-        """The longest step that does not pass over a wave, s."""
+        """The longest step that does not pass over a sinusoid, s."""
         fastest = max((omega for omega, _, _, _ in self._waves), default=0.0)
         return 2.0 * math.pi / fastest / _STEPS_PER_WAVE if fastest > 0.0 else math.inf
 
@@ -54,7 +64,7 @@ class Inputs:
         return v, f
 
     def travel(self, t: float) -> float:
-        """Return the drive's travel: of a wave it is A t sin(φ + ω t/2) times sin(ω t/2)/(ω t/2)."""
+        """Return the drive's travel: of a sinusoid it is A t sin(φ + ω t/2) times sin(ω t/2)/(ω t/2)."""
         travel = (self._v + 0.5 * self._v_rate * t) * t
         for omega, phase, of_drive, _ in self._waves:
             half = 0.5 * omega * t
@@ -63,20 +73,19 @@ class Inputs:
 
 
 class Motion:
-    """One mode from a state on; `law` is a smooth mu_k, or None for the piece of the table that the state is on."""
+    """One mode from a state on; `law` is a smooth mu_k, or None for the segment of the table that the state is on."""
 
-    def __init__(self, p: Any, s: Any, law: Any) -> None:
+    def __init__(self, p: Parameters, s: State, law: SmoothLaw | None) -> None:
         self._p, self._law = p, law
         self.inputs = Inputs(s)
-        self._mass, self._normal = float(p[MASS]), float(p[NORMAL])
-        self._stiffness, self._damping = float(p[STIFFNESS]), float(p[DAMPING])
-        self._contact = (float(p[CONTACT_STIFFNESS]), float(p[CONTACT_DAMPING]))
-        self._spring, self._u, self._deflection = float(s[SPRING]), float(s[VELOCITY]), float(s[DEFLECTION])
-        self._mode, self._direction, self._rest = float(s[MODE]), float(s[DIRECTION]), float(s[REST])
-        self._excess, self._residual, self._piece = float(s[EXCESS]), float(s[RESIDUAL]), int(s[PIECE])
-        self._stands = bool(is_rigid_stick(p, s))
-        mu, slope, psi, psi_slope = friction_line(p, self._piece, 0.0)
-        self._line = (float(mu), float(slope), float(psi), float(psi_slope))
+        self._mass, self._normal = p.mass, p.normal_force
+        self._stiffness, self._damping = p.stiffness, p.damping
+        self._contact = (p.contact_stiffness, p.contact_damping)
+        self._spring, self._u, self._deflection = s.spring, s.velocity, s.deflection
+        self._mode, self._direction, self._rest = s.mode, s.direction, s.rest
+        self._excess, self._residual, self._segment = s.excess, s.residual, int(s.segment)
+        self._stands = is_rigid_stick(p, s)
+        self._line = friction_line(p, self._segment, 0.0)
 
     def rates(self, t: float, state: Sequence[float]) -> tuple[float, float]:
         """Return ẏ and ÿ."""
@@ -109,11 +118,11 @@ class Motion:
             found = [(ACCELERATE, self._below_upper), (DECELERATE, self.coasting_residual)]
         elif self._mode == ACCELERATING:
             found = [(COAST, self._pull)]
-            if self._law is None and self._piece + 1 < self._p[KNOTS]:
-                found.append((KNOT, self._below_knot))
+            if self._law is None and self._segment + 1 < self._p.segment_count:
+                found.append((KNOT, self._below_breakpoint))
         else:
             found = [(COAST, self._brake)]
-            found.append((ARREST if self._law is not None or self._piece == 0 else KNOT, self._above_knot))
+            found.append((ARREST if self._law is not None or self._segment == 0 else KNOT, self._above_breakpoint))
         return [(kind, _falling(guard, (0.0, self._u))) for kind, guard in found]
 
     def _applied(self, t: float, y: float, u: float) -> float:
@@ -137,12 +146,12 @@ class Motion:
         speed = self._direction * u
         psi = self._line[2] + self._line[3] * speed
         if self._law is not None:
-            psi = float(friction_line(self._p, piece_above(self._p, speed), speed)[2])
+            _, _, psi, _ = friction_line(self._p, segment_above(self._p, speed), speed)
         return self._normal * self._excess * psi
 
     def _hold(self, t: float, state: Sequence[float]) -> float:
         force = self._applied(t, *state) if self._stands else self._contact_force(*state)
-        return self._normal * float(static_limit(self._p, self._rest + t)) - abs(force)
+        return self._normal * static_limit(self._p, self._rest + t) - abs(force)
 
     def _below_upper(self, t: float, state: Sequence[float]) -> float:
         return self._band(self._u) - self.coasting_residual(t, state)
@@ -153,11 +162,11 @@ class Motion:
     def _brake(self, t: float, state: Sequence[float]) -> float:
         return -self._residual_of(t, *state)
 
-    def _below_knot(self, _: float, state: Sequence[float]) -> float:
-        return float(knot_speed(self._p, self._piece + 1)) - self._direction * state[1]
+    def _below_breakpoint(self, _: float, state: Sequence[float]) -> float:
+        return breakpoint_speed(self._p, self._segment + 1) - self._direction * state[1]
 
-    def _above_knot(self, _: float, state: Sequence[float]) -> float:
-        return self._direction * state[1] - (float(knot_speed(self._p, self._piece)) if self._law is None else 0.0)
+    def _above_breakpoint(self, _: float, state: Sequence[float]) -> float:
+        return self._direction * state[1] - (breakpoint_speed(self._p, self._segment) if self._law is None else 0.0)
 
 
 def _falling(guard: Callable[..., float], start: tuple[float, float]) -> Callable[..., float]:

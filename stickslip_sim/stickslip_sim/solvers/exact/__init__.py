@@ -2,15 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """The exact solver: from event to event in closed form."""
 
+from ...axis.records import RECORDS
 from ...core.jit import entry
-from .. import Solver
-from . import many_axes, engine, judge
+from .. import SolverOfFunctions
+from . import engine, judge, many_axes
 
-start, advance, set_inputs, set_parameters, sample, energy, is_sound = (
-    entry('exact', function) for function in (engine.start, engine.advance, engine.set_inputs, engine.set_parameters,
-                                              engine.sample, engine.energy, judge.is_sound))
-run_axes = entry('exact', many_axes.run_axes)
+start, advance = entry(engine.start), entry(engine.advance)
+set_inputs, set_parameters = entry(engine.set_inputs), entry(engine.set_parameters)
+sample, energy, is_sound = entry(engine.sample), entry(engine.energy), entry(judge.is_sound)
+run_axes = getattr(RECORDS, 'run_axes', many_axes.run_axes)
 
-SOLVER = Solver('exact', start, advance, set_inputs, set_parameters, sample, energy, is_sound)
+SOLVER = SolverOfFunctions('exact', start, advance, set_inputs, set_parameters, sample, energy, is_sound, RECORDS)
 
 __all__ = ['SOLVER', 'advance', 'energy', 'is_sound', 'sample', 'set_inputs', 'set_parameters', 'start']

@@ -2,29 +2,46 @@
 # SPDX-License-Identifier: Apache-2.0
 """Advance a state to a time, event by event; read it in between; change its inputs.
 
-The anchor moves only at events and at jumps of an input.  Times between are read off the closed form, so that the
-motion does not depend on how often it is asked for.
+The segment start moves only at events and at jumps of an input.  Times between are read off the closed form, so that
+the motion does not depend on how often it is asked for.
 
 Arrays: `p` parameters of the axis, `s` state (both `axis.layout`), `events` a table of rows.  All functions change `s`
-in place and return the number of rows in use; `advance` also tells how it ended.
+in place and return the number of rows in use; `advance` also says how it ended.
 """
 
 import math
 
-from ...axis.layout import (
-    ACCELERATION, ACCOUNTING, AT, COMPLIANT, CONTACT_DAMPING, CONTACT_STIFFNESS, DEFLECTION, DIRECTION, F, FRACTION,
-    F_RATE, NEAR, LAST, MASS, MODE, NEXT, NEXT_KIND, NORMAL, ORIGIN, PROGRESS, REST, SEARCHED, SECOND, STATE_SIZE,
-    STORED_AT_START, V, VELOCITY, V_RATE, WAVES,
-)
+from ...axis.layout import EnergyRow, Events, Parameters, SampleRow, Sinusoids, State, clear_state
 from ...axis.motion import (
-    COASTING, STAMP, STICK, begin_motion, drive_force, drive_travel, friction_force, friction_line, move_anchor,
-    piece_above, spring_after, travel,
+    COASTING,
+    STAMP,
+    STICK,
+    begin_motion,
+    drive_force,
+    drive_travel,
+    friction_force,
+    friction_line,
+    move_start,
+    segment_above,
+    spring_after,
+    travel,
 )
+from ...axis.sinusoids import inputs_at, load_sinusoids, same_sinusoids
 from ...axis.transitions import (
-    ARREST, BREAKAWAY, COAST, KNOT, applied_force, apply_inputs, arrest, choose_slip, cross_knot, force_rounding,
-    leave_coast, release, turn,
+    ARREST,
+    BREAKAWAY,
+    COAST,
+    KNOT,
+    applied_force,
+    apply_inputs,
+    arrest,
+    choose_slip,
+    cross_breakpoint,
+    force_rounding,
+    leave_coast,
+    release,
+    turn,
 )
-from ...axis.waves import inputs_at, load_waves, same_waves
 from ...core.jit import compiled, inlined
 from .. import DONE, FULL, NO_PROGRESS, UNSOUND
 from ..sampling import write_sample
@@ -37,73 +54,73 @@ _SAME_INSTANT = 64   # events without progress in time; a sound model needs thre
 
 
 @compiled
-def start(p, s, position, velocity, rest, v, v_rate, f, f_rate, waves, events, row):
+def start(p: Parameters, s: State, position: float, velocity: float, rest: float, v: float, v_rate: float, f: float,
+          f_rate: float, sinusoids: Sinusoids, events: Events, row: int) -> int:
     """Set the state at time 0: the spring unstretched, at rest (it may break away at once) or sliding."""
-    accounting = s[ACCOUNTING]
-    for i in range(STATE_SIZE):
-        s[i] = 0.0
-    s[ACCOUNTING] = accounting
-    s[NEAR] = -1.0
-    s[ORIGIN] = position
-    s[VELOCITY] = velocity
-    s[REST] = rest
-    s[V], s[V_RATE], s[F], s[F_RATE] = v, v_rate, f, f_rate
-    load_waves(s, waves)
-    s[MODE] = STICK
-    s[STORED_AT_START] = 0.5 * p[MASS] * velocity * velocity
+    accounting = s.accounting
+    clear_state(s)
+    s.accounting = accounting
+    s.near.time = -1.0
+    s.origin = position
+    s.velocity = velocity
+    s.rest = rest
+    s.v, s.v_rate, s.f, s.f_rate = v, v_rate, f, f_rate
+    load_sinusoids(s, sinusoids)
+    s.mode = STICK
+    s.stored_at_start = 0.5 * p.mass * velocity * velocity
     if velocity == 0.0:
         row = _apply(p, s, events, row)
     else:
-        s[REST] = 0.0
-        s[DIRECTION] = 1.0 if velocity > 0.0 else -1.0
+        s.rest = 0.0
+        s.direction = 1.0 if velocity > 0.0 else -1.0
         speed = abs(velocity)
-        coefficient, _, _, _ = friction_line(p, piece_above(p, speed), speed)
-        residual = s[DIRECTION] * applied_force(p, s) - p[NORMAL] * coefficient
+        coefficient, _, _, _ = friction_line(p, segment_above(p, speed), speed)
+        residual = s.direction * applied_force(p, s) - p.normal_force * coefficient
         choose_slip(p, s, residual, residual, force_rounding(p, s, coefficient))
     _begin(p, s)
     return row
 
 
 @compiled
-def advance(p, s, second, fraction, events, row):
-    """Bring the state to a time, which is not before its anchor; return the rows in use and how it ended."""
+def advance(p: Parameters, s: State, second: float, fraction: float, events: Events, row: int) -> tuple[int, int]:
+    """Bring the state to a time, which is not before its segment start; return the rows in use and how it ended."""
     same_instant = 0
     while True:
-        t = (second - s[SECOND]) + (fraction - s[FRACTION])
+        t = (second - s.second) + (fraction - s.fraction)
         reach = t + STAMP
-        if s[SEARCHED] < reach:
+        if s.searched < reach:
             find_event(p, s, reach)
-        due = s[NEXT]
+        due = s.next
         if due > reach:
             return row, DONE
         if not due >= 0.0:   # given up, or no number
             return row, NO_PROGRESS
-        later = s[FRACTION] + due
+        later = s.fraction + due
         whole = 0.0 if later < 1.0 else math.floor(later)
-        if (s[SECOND] + whole - second) + ((later - whole) - fraction) > 0.0:
+        if (s.second + whole - second) + ((later - whole) - fraction) > 0.0:
             return row, DONE   # its time, as it is written down, is still to come
-        if row >= len(events):
+        if row >= events.count:
             return row, FULL
         same_instant = same_instant + 1 if due == 0.0 else 0
         if same_instant > _SAME_INSTANT:
             return row, NO_PROGRESS
-        if not _pass_event(p, s, due, s[SECOND] + whole, later - whole, events, row):
+        if not _pass_event(p, s, due, s.second + whole, later - whole, events, row):
             return row, UNSOUND
         row += 1
         _begin(p, s)
 
 
 @inlined
-def _pass_event(p, s, due, second, fraction, events, row):
+def _pass_event(p: Parameters, s: State, due: float, second: float, fraction: float, events: Events, row: int) -> bool:
     """Go through the event that is due; return False, and stay before it, when the run is no longer sound."""
-    mode, begin, acceleration = int(s[MODE]), s[VELOCITY], s[ACCELERATION]
-    accounting = s[ACCOUNTING] != 0.0
+    mode, begin, acceleration = int(s.mode), s.velocity, s.acceleration
+    accounting = s.accounting != 0.0
     if accounting:
         book_works(p, s, due)
-    move_anchor(p, s, second, fraction, due)
+    move_start(p, s, second, fraction, due)
     if accounting and not event_is_sound(p, s, begin):
         return False
-    s[LAST + mode] = due if s[NEXT_KIND] != COAST else 0.0
+    s.last[mode] = due if s.next_kind != COAST else 0.0
     contact = contact_energy(p, s, 0.0) if accounting else 0.0
     _transition(p, s, events, row, acceleration)
     if accounting:
@@ -112,34 +129,36 @@ def _pass_event(p, s, due, second, fraction, events, row):
 
 
 @compiled
-def set_inputs(p, s, second, fraction, v, v_rate, f, f_rate, waves, events, row):
-    """Let the inputs be v + v_rate t, f + f_rate t and waves from a time on, up to which the state was advanced."""
-    steady = s[V_RATE] == 0.0 and s[F_RATE] == 0.0 and v_rate == 0.0 and f_rate == 0.0
-    if s[WAVES] == 0.0 and len(waves) == 0:
-        if steady and s[V] == v and s[F] == f:
+def set_inputs(p: Parameters, s: State, second: float, fraction: float, v: float, v_rate: float, f: float,
+               f_rate: float, sinusoids: Sinusoids, events: Events, row: int) -> int:
+    """Let the inputs be v + v_rate t, f + f_rate t and sinusoids from a time on, up to which the state was advanced."""
+    steady = s.v_rate == 0.0 and s.f_rate == 0.0 and v_rate == 0.0 and f_rate == 0.0
+    if s.sinusoid_count == 0.0 and sinusoids.count == 0:
+        if steady and s.v == v and s.f == f:
             return row
-    elif steady and same_waves(s, v, f, waves):
+    elif steady and same_sinusoids(s, v, f, sinusoids):
         return row
-    _anchor_at(p, s, second, fraction)
-    s[V], s[V_RATE], s[F], s[F_RATE] = v, v_rate, f, f_rate
-    load_waves(s, waves)
+    _start_at(p, s, second, fraction)
+    s.v, s.v_rate, s.f, s.f_rate = v, v_rate, f, f_rate
+    load_sinusoids(s, sinusoids)
     row = _apply(p, s, events, row)
     _begin(p, s)
     return row
 
 
 @compiled
-def set_parameters(p, new, s, second, fraction, events, row):
+def set_parameters(p: Parameters, new: Parameters, s: State, second: float, fraction: float, events: Events, row: int
+                  ) -> int:
     """Let the axis have other parameters from a time on, up to which the state was advanced with the old ones."""
-    _anchor_at(p, s, second, fraction)
+    _start_at(p, s, second, fraction)
     stored = stored_energy(p, s, 0.0)
-    if s[MODE] == STICK and new[COMPLIANT] != 0.0:
-        force = friction_force(p, s, s[DEFLECTION], s[VELOCITY], applied_force(p, s))
-        s[DEFLECTION] = (force - new[CONTACT_DAMPING] * s[VELOCITY]) / new[CONTACT_STIFFNESS]
-    if s[MODE] == STICK and new[COMPLIANT] == 0.0:
-        s[VELOCITY] = 0.0
-        s[DEFLECTION] = 0.0
-    if s[ACCOUNTING] != 0.0:
+    if s.mode == STICK and new.compliant != 0.0:
+        force = friction_force(p, s, s.deflection, s.velocity, applied_force(p, s))
+        s.deflection = (force - new.contact_damping * s.velocity) / new.contact_stiffness
+    if s.mode == STICK and new.compliant == 0.0:
+        s.velocity = 0.0
+        s.deflection = 0.0
+    if s.accounting != 0.0:
         book_parameters(new, s, stored)
     row = _apply(new, s, events, row)
     _begin(new, s)
@@ -147,64 +166,64 @@ def set_parameters(p, new, s, second, fraction, events, row):
 
 
 @compiled
-def sample(p, s, second, fraction, out):
-    """Fill a row with the state at a time between the anchor and the next event (`types.Sample` names the columns)."""
-    t = (second - s[SECOND]) + (fraction - s[FRACTION])
+def sample(p: Parameters, s: State, second: float, fraction: float, out: SampleRow) -> None:
+    """Fill a row with the state at a time before the next event."""
+    t = (second - s.second) + (fraction - s.fraction)
     y, u, a = travel(p, s, t)
     drive = drive_travel(s, t)
-    v = s[V] + s[V_RATE] * t
-    force = s[F] + s[F_RATE] * t
-    if s[WAVES] != 0.0:
+    v = s.v + s.v_rate * t
+    force = s.f + s.f_rate * t
+    if s.sinusoid_count != 0.0:
         v, force = inputs_at(s, second, fraction, t)
-    pull = drive_force(p, spring_after(p, s, t, drive, y, u, a), v, u)
-    friction = friction_force(p, s, s[DEFLECTION] + y, u, pull + force)
-    write_sample(p, s, second, fraction, t, y, u, a, drive, v, pull, force, friction, out)
+    of_drive = drive_force(p, spring_after(p, s, t, drive, y, u, a), v, u)
+    friction = friction_force(p, s, s.deflection + y, u, of_drive + force)
+    write_sample(p, s, second, fraction, t, y, u, a, drive, v, of_drive, force, friction, out)
 
 
 @compiled
-def energy(p, s, second, fraction, out):
-    """Fill a row with the energies up to a time between the anchor and the next event (`energy.EnergyBalance`)."""
-    t = (second - s[SECOND]) + (fraction - s[FRACTION])
+def energy(p: Parameters, s: State, second: float, fraction: float, out: EnergyRow) -> None:
+    """Fill a row with the energies up to a time before the next event (`energy.EnergyBalance`)."""
+    t = (second - s.second) + (fraction - s.fraction)
     read_account(p, s, t, out)
 
 
 @inlined
-def _begin(p, s):
+def _begin(p: Parameters, s: State) -> None:
     begin_motion(p, s)
-    s[SEARCHED] = -1.0
-    s[PROGRESS] = 0.0
-    s[NEXT] = math.inf
-    s[AT] = -1.0
+    s.searched = -1.0
+    s.progress = 0.0
+    s.next = math.inf
+    s.at.time = -1.0
 
 
 @inlined
-def _apply(p, s, events, row):
+def _apply(p: Parameters, s: State, events: Events, row: int) -> int:
     contact = contact_energy(p, s, 0.0)
     if apply_inputs(p, s, events, row):
         row += 1
-    if s[ACCOUNTING] != 0.0:
+    if s.accounting != 0.0:
         book_contact(p, s, contact)
     return row
 
 
 @inlined
-def _anchor_at(p, s, second, fraction):
-    t = (second - s[SECOND]) + (fraction - s[FRACTION])
-    if s[ACCOUNTING] != 0.0:
+def _start_at(p: Parameters, s: State, second: float, fraction: float) -> None:
+    t = (second - s.second) + (fraction - s.fraction)
+    if s.accounting != 0.0:
         book_works(p, s, t)
-    move_anchor(p, s, second, fraction, t)
+    move_start(p, s, second, fraction, t)
 
 
 @inlined
-def _transition(p, s, events, row, before):
-    kind = s[NEXT_KIND]
+def _transition(p: Parameters, s: State, events: Events, row: int, before: float) -> None:
+    kind = s.next_kind
     if kind == BREAKAWAY:
         release(p, s, events, row)
     elif kind == ARREST:
         arrest(p, s, events, row)
     elif kind == KNOT:
-        cross_knot(p, s, events, row, before)
-    elif s[MODE] == COASTING:
+        cross_breakpoint(p, s, events, row, before)
+    elif s.mode == COASTING:
         leave_coast(p, s, events, row, kind)
     else:
         turn(p, s, events, row)

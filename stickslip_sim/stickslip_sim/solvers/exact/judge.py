@@ -10,17 +10,23 @@ What is allowed is far above rounding, and far below what a figure would show.
 
 import math
 
-from ...axis.layout import (
-    ACCELERATION, CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, DEFLECTION, DIRECTION, DRIVE, F, FRACTION, F_RATE, GAMMA,
-    KNOTS, MASS, MODE, NEXT, NEXT_KIND, NORMAL, PIECE, POSITION, REST, SECOND, SPRING, STATIC_INITIAL, STATIC_LIMIT,
-    STIFFNESS, V, VELOCITY, V_RATE, WAVES,
-)
+from ...axis.layout import Parameters, State
 from ...axis.motion import (
-    ACCELERATING, COASTING, STICK, contact_force, drive_force, drive_travel, friction_line, is_rigid_stick, knot_speed,
-    spring_after, static_limit, travel,
+    ACCELERATING,
+    COASTING,
+    STICK,
+    breakpoint_speed,
+    contact_force,
+    drive_force,
+    drive_travel,
+    friction_line,
+    is_rigid_stick,
+    spring_after,
+    static_limit,
+    travel,
 )
+from ...axis.sinusoids import inputs_at
 from ...axis.transitions import ACCELERATE, COAST, band_of
-from ...axis.waves import inputs_at
 from ...core.jit import compiled, inlined
 from .account import balance
 
@@ -30,99 +36,102 @@ _TIME = 8.0 * 2.220446049250313e-16        # of a time
 
 
 @compiled
-def event_is_sound(p, s, begin):
-    """Whether the anchor, moved to an event that began at the velocity `begin`, is where the event says, in balance."""
-    if s[MODE] == STICK:
-        sound = _holds(p, s, s[NEXT], s[SPRING], s[DEFLECTION], s[VELOCITY], s[ACCELERATION], s[V], s[F], s[REST], 1.0)
-    elif s[MODE] == COASTING:
-        end = band_of(p, s) if s[NEXT_KIND] == ACCELERATE else 0.0
-        sound = _coasts(p, s, 0.0, s[SPRING], s[V], s[F], end, end)
+def event_is_sound(p: Parameters, s: State, begin: float) -> bool:
+    """Whether the state at an event, in a mode that began at the velocity `begin`, is where that says, in balance."""
+    if s.mode == STICK:
+        sound = _holds(p, s, s.next, s.spring, s.deflection, s.velocity, s.acceleration, s.v, s.f, s.rest, 1.0)
+    elif s.mode == COASTING:
+        end = band_of(p, s) if s.next_kind == ACCELERATE else 0.0
+        sound = _coasts(p, s, 0.0, s.spring, s.v, s.f, end, end)
     else:
-        sound = _slips(p, s, s[VELOCITY], begin, s[NEXT_KIND] != COAST)
-    return sound and _balances(p, s, 0.0, s[SPRING], s[V], s[VELOCITY], begin, s[F])
+        sound = _slips(p, s, s.velocity, begin, s.next_kind != COAST)
+    return sound and _balances(p, s, 0.0, s.spring, s.v, s.velocity, begin, s.f)
 
 
 @compiled
-def is_sound(p, s, second, fraction):
-    """Whether the state at a time between the anchor and the next event is within its mode, and in balance."""
-    t = (second - s[SECOND]) + (fraction - s[FRACTION])
+def is_sound(p: Parameters, s: State, second: float, fraction: float) -> bool:
+    """Whether the state at a time between the segment start and the next event is within its mode, and in balance."""
+    t = (second - s.second) + (fraction - s.fraction)
     y, u, a = travel(p, s, t)
-    v, force = s[V] + s[V_RATE] * t, s[F] + s[F_RATE] * t
-    if s[WAVES] != 0.0:
+    v, force = s.v + s.v_rate * t, s.f + s.f_rate * t
+    if s.sinusoid_count != 0.0:
         v, force = inputs_at(s, second, fraction, t)
     spring = spring_after(p, s, t, drive_travel(s, t), y, u, a)
-    if s[MODE] == STICK:
-        sound = _holds(p, s, t, spring, s[DEFLECTION] + y, u, a, v, force, s[REST] + t, 0.0)
-    elif s[MODE] == COASTING:
+    if s.mode == STICK:
+        sound = _holds(p, s, t, spring, s.deflection + y, u, a, v, force, s.rest + t, 0.0)
+    elif s.mode == COASTING:
         sound = _coasts(p, s, t, spring, v, force, 0.0, band_of(p, s))
     else:
-        sound = _slips(p, s, u, s[VELOCITY], False)
-    return sound and _balances(p, s, t, spring, v, u, s[VELOCITY], force)
+        sound = _slips(p, s, u, s.velocity, False)
+    return sound and _balances(p, s, t, spring, v, u, s.velocity, force)
 
 
 @inlined
-def _holds(p, s, t, spring, deflection, u, a, v, force, rest, share):
+def _holds(p: Parameters, s: State, t: float, spring: float, deflection: float, u: float, a: float, v: float,
+           force: float, rest: float, share: float) -> bool:
     """Whether the force in stick is at most N mu_s, and at least `share` of that."""
-    pull = drive_force(p, spring, v, u) + force
-    top = p[NORMAL] * static_limit(p, rest)
+    held = drive_force(p, spring, v, u) + force
+    top = p.normal_force * static_limit(p, rest)
     slack = ALLOWED * _forces(p, spring, v, u, force, top)
     if not is_rigid_stick(p, s):   # what a stiff one does within the rounding of the time
-        pull = contact_force(p, deflection, u)
-        slack += _TIME * t * (p[CONTACT_STIFFNESS] * abs(u) + p[CONTACT_DAMPING] * abs(a))
-    return share * top - slack <= abs(pull) <= top + slack
+        held = contact_force(p, deflection, u)
+        slack += _TIME * t * (p.contact_stiffness * abs(u) + p.contact_damping * abs(a))
+    return share * top - slack <= abs(held) <= top + slack
 
 
 @inlined
-def _coasts(p, s, t, spring, v, force, low, high):
+def _coasts(p: Parameters, s: State, t: float, spring: float, v: float, force: float, low: float, high: float) -> bool:
     """Whether the residual while coasting is between two ends of its band.
 
-    It began at one of them; the spring's stretch is the difference of two ways, and knows that end no better.
+    It began at one of them; the spring's stretch is the difference of two paths, and knows that end no better.
     """
-    u = s[VELOCITY]
-    friction = p[NORMAL] * friction_line(p, int(s[PIECE]), abs(u))[0]
-    residual = s[DIRECTION] * (drive_force(p, spring, v, u) + force) - friction
-    slack = ALLOWED * _forces(p, spring, v, u, force, p[NORMAL] * p[STATIC_INITIAL])
-    slack += _ROUNDING * p[STIFFNESS] * _way(s, t, v, u)
+    u = s.velocity
+    friction = p.normal_force * friction_line(p, int(s.segment), abs(u))[0]
+    residual = s.direction * (drive_force(p, spring, v, u) + force) - friction
+    slack = ALLOWED * _forces(p, spring, v, u, force, p.normal_force * p.static_initial)
+    slack += _ROUNDING * p.stiffness * _path(s, t, v, u)
     return low - slack <= residual <= high + slack
 
 
 @inlined
-def _slips(p, s, u, begin, at_an_end):
-    """Whether the speed of a slip is on its piece of the table, or at the end of it to which it goes."""
-    speed, piece = s[DIRECTION] * u, int(s[PIECE])
-    slack = ALLOWED * (abs(u) + abs(begin) + abs(s[V]))
-    low = knot_speed(p, piece)
+def _slips(p: Parameters, s: State, u: float, begin: float, at_an_end: bool) -> bool:
+    """Whether the speed of a slip is on its segment of the table, or at the end of it to which it goes."""
+    speed, segment = s.direction * u, int(s.segment)
+    slack = ALLOWED * (abs(u) + abs(begin) + abs(s.v))
+    low = breakpoint_speed(p, segment)
     if at_an_end:
-        end = knot_speed(p, piece + 1) if s[MODE] == ACCELERATING else low
+        end = breakpoint_speed(p, segment + 1) if s.mode == ACCELERATING else low
         return abs(speed - end) <= slack
-    return low - slack <= speed and (piece + 1.0 >= p[KNOTS] or speed <= knot_speed(p, piece + 1) + slack)
+    return low - slack <= speed and (segment + 1.0 >= p.segment_count
+                                     or speed <= breakpoint_speed(p, segment + 1) + slack)
 
 
 @inlined
-def _balances(p, s, t, spring, v, u, begin, force):
+def _balances(p: Parameters, s: State, t: float, spring: float, v: float, u: float, begin: float,
+              force: float) -> bool:
     """Whether the balance of energy is open by no more than a share of what went through, or than forces round to.
 
     A load that comes and goes within one stick goes through without a trace: what the spring holds at the limit counts.
-    What rounding leaves of the forces at the velocity `begin`, where the motion began, is lost along its whole way.
+    What rounding leaves of the forces at the velocity `begin`, where the motion began, is lost along its whole path.
     """
     left, scale = balance(p, s, t)
-    top = p[NORMAL] * p[STATIC_LIMIT]
-    if p[STIFFNESS] > 0.0:
-        scale = max(scale, 0.5 * top * top / p[STIFFNESS])
+    top = p.normal_force * p.static_limit
+    if p.stiffness > 0.0:
+        scale = max(scale, 0.5 * top * top / p.stiffness)
     fastest = max(abs(u), abs(begin))
     forces = _forces(p, spring, v, fastest, force, top)
-    if s[MODE] != STICK and s[MODE] != COASTING:   # on a steep piece of the table
-        forces += 2.0 * p[MASS] * abs(s[GAMMA]) * (abs(v) + fastest)
-    return left <= ALLOWED * scale + _ROUNDING * forces * _way(s, t, v, u) and scale < math.inf
+    if s.mode != STICK and s.mode != COASTING:   # on a steep segment of the table
+        forces += 2.0 * p.mass * abs(s.gamma) * (abs(v) + fastest)
+    return left <= ALLOWED * scale + _ROUNDING * forces * _path(s, t, v, u) and scale < math.inf
 
 
 @inlined
-def _way(s, t, v, u):
+def _path(s: State, t: float, v: float, u: float) -> float:
     """Return how far drive and slider went, m."""
-    return abs(s[DRIVE]) + abs(s[POSITION]) + (abs(v) + abs(u)) * t
+    return abs(s.drive) + abs(s.position) + (abs(v) + abs(u)) * t
 
 
 @inlined
-def _forces(p, spring, v, u, force, friction):
+def _forces(p: Parameters, spring: float, v: float, u: float, force: float, friction: float) -> float:
     """Return the size of the forces that add up."""
-    return p[STIFFNESS] * abs(spring) + p[DAMPING] * (abs(v) + abs(u)) + abs(force) + friction
+    return p.stiffness * abs(spring) + p.damping * (abs(v) + abs(u)) + abs(force) + friction

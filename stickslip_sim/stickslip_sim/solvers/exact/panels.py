@@ -3,10 +3,11 @@
 """The works of a short motion under sines, by Gauss and Legendre's rule over the powers."""
 
 import math
+from typing import NamedTuple
 
-from ...axis.layout import CONTACT_DAMPING, DAMPING, DIRECTION, FRACTION, MODE, NORMAL, SECOND, SPRING, STIFFNESS
+from ...axis.layout import Parameters, State
 from ...axis.motion import STICK, drive_travel, slip_friction, travel
-from ...axis.waves import inputs_at
+from ...axis.sinusoids import inputs_at
 from ...core.jit import compiled
 
 # eight nodes of Gauss and Legendre's rule
@@ -14,11 +15,22 @@ _NODES = (-0.96028985649753623168, -0.79666647741362673959, -0.52553240991632898
           0.18343464249564980494, 0.52553240991632898582, 0.79666647741362673959, 0.96028985649753623168)
 _WEIGHTS = (0.10122853629037625915, 0.22238103445337447054, 0.31370664587788728734, 0.36268378337836198297,
             0.36268378337836198297, 0.31370664587788728734, 0.22238103445337447054, 0.10122853629037625915)
-_RADIANS = 1.5      # of a panel: the error for a product of two waves is then below 1e-15
+_RADIANS = 1.5      # of a panel: the error for a product of two sinusoids is then below 1e-15
+
+
+
+class Works(NamedTuple):
+    """Works from the segment start on, J: the first two are positive when they give, the others when they take."""
+
+    drive: float
+    external: float
+    friction: float
+    damper: float    # of the drive
+    contact: float   # the contact's damper
 
 
 @compiled
-def panels(p, s, t, rate):
+def panels(p: Parameters, s: State, t: float, rate: float) -> Works:
     """Return the works of a moving mode up to t, from eight nodes a panel; `rate` is its fastest rate, rad/s."""
     drive, external, friction, damper, contact = 0.0, 0.0, 0.0, 0.0, 0.0
     count = math.floor(rate * t / _RADIANS) + 1.0
@@ -35,19 +47,19 @@ def panels(p, s, t, rate):
             damper += weight * of_damper
             contact += weight * of_contact
         panel += 1.0
-    return drive, external, friction, damper, contact
+    return Works(drive, external, friction, damper, contact)
 
 
 @compiled
-def _powers(p, s, t):
+def _powers(p: Parameters, s: State, t: float) -> Works:
     y, u, _ = travel(p, s, t)
-    v, force = inputs_at(s, s[SECOND], s[FRACTION] + t, t)
+    v, force = inputs_at(s, s.second, s.fraction + t, t)
     ahead = v - u
-    pull = p[STIFFNESS] * (s[SPRING] + (drive_travel(s, t) - y)) + p[DAMPING] * ahead
+    drive_force = p.stiffness * (s.spring + (drive_travel(s, t) - y)) + p.damping * ahead
     friction, contact = 0.0, 0.0
-    if s[MODE] == STICK:
-        contact = p[CONTACT_DAMPING] * u * u
+    if s.mode == STICK:
+        contact = p.contact_damping * u * u
     else:
         steady, slope = slip_friction(p, s)
-        friction = p[NORMAL] * (s[DIRECTION] * steady + slope * u) * u
-    return pull * v, force * u, friction, p[DAMPING] * ahead * ahead, contact
+        friction = p.normal_force * (s.direction * steady + slope * u) * u
+    return Works(drive_force * v, force * u, friction, p.damping * ahead * ahead, contact)

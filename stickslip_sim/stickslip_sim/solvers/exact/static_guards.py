@@ -12,75 +12,74 @@ grows or dies out but exp(−t/τ), and where that is 0 the guard is a straight 
 
 import math
 
-from ...axis.layout import (
-    ITERATIONS, LAST, NORMAL, REST, STATIC_EXPONENT, STATIC_INITIAL, STATIC_LAW, STATIC_LIMIT, STATIC_TAU,
-)
+from ...axis.layout import Parameters, State
 from ...axis.motion import static_limit
 from ...axis.transitions import applied_force, force_rate
 from ...core.jit import compiled, inlined
-from ...friction.static import CONSTANT, EXPONENTIAL, KATO, LOGARITHMIC, static_growth
-from ...linear.roots import first_crossing, householder, safe_step
+from ...friction.static import CONSTANT, EXPONENTIAL, KATO, LOGARITHMIC, StaticGrowth, static_growth
+from ...linear.polynomials import first_crossing, safe_step
+from ...linear.steps import EPSILON, householder, householder_settles
 
-_EPSILON = 2.220446049250313e-16
 STEPS = 100_000
 _DIRECT_STEPS = 8
 GAVE_UP = -1.0     # instead of a time: the steps were used up
 
 
 @inlined
-def rigid_stick(p, s, horizon):
+def rigid_stick(p: Parameters, s: State, horizon: float) -> float:
     """Return when |F_d + F_e| reaches N mu_s; both are known in closed form."""
     force = applied_force(p, s)
-    rate, bend = force_rate(p, s)
-    if bend == 0.0:
+    rate, second_rate = force_rate(p, s)
+    if second_rate == 0.0:
         if rate == 0.0:
             return math.inf
-        if p[STATIC_LAW] == EXPONENTIAL and s[REST] < math.inf:
+        if p.static_law == EXPONENTIAL and s.rest < math.inf:
             t = _exponential_root(p, s, force if rate > 0.0 else -force, abs(rate), horizon)
             if t >= 0.0:
                 return t if t <= horizon else math.inf
-    return min(_one_side(p, s, force, rate, bend, horizon), _one_side(p, s, -force, -rate, -bend, horizon))
+    return min(_one_side(p, s, force, rate, second_rate, horizon),
+               _one_side(p, s, -force, -rate, -second_rate, horizon))
 
 
 @compiled
-def _one_side(p, s, force, rate, bend, horizon):
+def _one_side(p: Parameters, s: State, force: float, rate: float, second_rate: float, horizon: float) -> float:
     """Return when N mu_s − force comes down to 0."""
-    normal, rest = p[NORMAL], s[REST]
-    if p[STATIC_LAW] == CONSTANT or rest == math.inf:
-        t = first_crossing(max(normal * static_limit(p, rest) - force, 0.0), -rate, -bend)
+    normal, rest = p.normal_force, s.rest
+    if p.static_law == CONSTANT or rest == math.inf:
+        t = first_crossing(max(normal * static_limit(p, rest) - force, 0.0), -rate, -second_rate)
         return t if t <= horizon else math.inf
-    if rate <= 0.0 and bend <= 0.0:
+    if rate <= 0.0 and second_rate <= 0.0:
         return math.inf
-    if bend >= 0.0 and is_concave(p):
-        return concave_root(p, s, rest, force, rate, 0.0, 0.0, bend, horizon)
-    return _stepped_side(p, s, force, rate, bend, horizon)
+    if second_rate >= 0.0 and is_concave(p):
+        return concave_root(p, s, rest, force, rate, 0.0, 0.0, second_rate, horizon)
+    return _stepped_side(p, s, force, rate, second_rate, horizon)
 
 
 @inlined
-def _exponential_root(p, s, force, rate, horizon):
+def _exponential_root(p: Parameters, s: State, force: float, rate: float, horizon: float) -> float:
     """Return when force + rate t, rate > 0, reaches N mu_s of the exponential law; −1 where the steps do not settle.
 
     With z = t/τ the guard is a − d (exp(−z) − 1) − b z: concave and not negative at 0, so that of its zeros after 0
     there is but one at which it falls.  Householder's step, from the last stick's time or else from above: 1 − exp(−z)
     is less than 2z/(2 + z), with which the guard is a quadratic.
     """
-    normal, rest, tau = p[NORMAL], s[REST], p[STATIC_TAU]
+    normal, rest, tau = p.normal_force, s.rest, p.static_tau
     gap = max(normal * static_limit(p, rest) - force, 0.0)
     if rate * horizon < gap:
         return math.inf   # even the limit of now is out of reach
-    d = normal * (p[STATIC_LIMIT] - p[STATIC_INITIAL])
+    d = normal * (p.static_limit - p.static_initial)
     if rest > 0.0:
         d *= math.exp(-rest / tau)
     b = rate * tau
     if gap == 0.0 and d < b:
         return 0.0
-    z = s[LAST] / tau
+    z = s.last[0] / tau
     if z <= 0.0:
         q = 2.0 * (b - d) - gap
         root = math.sqrt(q * q + 8.0 * b * gap)
         z = min(4.0 * gap / (q + root) if q > 0.0 else 0.5 * (root - q) / b, (gap + d) / b)
     for _ in range(_DIRECT_STEPS):
-        s[ITERATIONS] += 1.0
+        s.iterations += 1.0
         fading = math.expm1(-z)
         wane = d * (1.0 + fading)
         fall = b - wane
@@ -92,61 +91,62 @@ def _exponential_root(p, s, force, rate, horizon):
         z -= step
         if z <= 0.0 or not sharpness < 0.5:
             break
-        if abs(step) * sharpness * sharpness * sharpness <= 0.1 * _EPSILON * z and (step != 0.0 or value == 0.0):
+        if householder_settles(abs(step), sharpness, z) and (step != 0.0 or value == 0.0):
             return z * tau
     return -1.0
 
 
 @inlined
-def law(p, rest):
+def law(p: Parameters, rest: float) -> StaticGrowth:
     """Return mu_s, its rate and a bound on −mu_s″ after a rest time."""
-    return static_growth(p[STATIC_LAW], p[STATIC_INITIAL], p[STATIC_LIMIT], p[STATIC_TAU], p[STATIC_EXPONENT], rest)
+    return static_growth(p.static_law, p.static_initial, p.static_limit, p.static_tau, p.static_exponent, rest)
 
 
 @compiled
-def is_concave(p):
+def is_concave(p: Parameters) -> bool:
     """Whether mu_s rises ever more slowly from the start."""
-    return p[STATIC_LAW] != KATO or p[STATIC_EXPONENT] <= 1.0
+    return p.static_law != KATO or p.static_exponent <= 1.0
 
 
 @compiled
-def concave_root(p, s, rest, force, rate, wave, decay, bend, horizon):
-    """Return the root of N mu_s(rest + t) − force − rate t − bend t²/2 − wave exp(−decay t), a concave function of t.
+def concave_root(p: Parameters, s: State, rest: float, force: float, rate: float, size: float, decay: float,
+                 second_rate: float, horizon: float) -> float:
+    """Return the root of N mu_s(rest + t) − force − rate t − second_rate t²/2 − size exp(−decay t), concave in t.
 
     It is not negative at 0, or within rounding of it, so it has one root at the most where it comes down; infinity when
     that lies behind the horizon.  Halley's step inside a shrinking bracket, whose end does not depend on the horizon.
     """
-    normal = p[NORMAL]
+    normal = p.normal_force
     limit, growth, _ = law(p, rest)
-    if normal * limit - force - wave <= 0.0 and normal * growth < rate - decay * wave:
+    if normal * limit - force - size <= 0.0 and normal * growth < rate - decay * size:
         return 0.0
-    fading = wave * math.exp(-decay * horizon) if wave > 0.0 else 0.0
+    fading = size * math.exp(-decay * horizon) if size > 0.0 else 0.0
     if horizon == 0.0 or normal * static_limit(p, rest + horizon) - force - (
-            rate + 0.5 * bend * horizon) * horizon - fading > 0.0:
+            rate + 0.5 * second_rate * horizon) * horizon - fading > 0.0:
         return math.inf
     low = 0.0
-    t = high = _time_to_pass(p, rest, force, rate, bend)
+    t = high = _time_to_pass(p, rest, force, rate, second_rate)
     for _ in range(STEPS):
         limit, growth, curvature = law(p, rest + t)
-        fading = wave * math.exp(-decay * t) if wave > 0.0 else 0.0
-        value = normal * limit - force - (rate + 0.5 * bend * t) * t - fading
+        fading = size * math.exp(-decay * t) if size > 0.0 else 0.0
+        value = normal * limit - force - (rate + 0.5 * second_rate * t) * t - fading
         if value > 0.0:
             low = t
         else:
             high = t
         if low >= high:
             return t
-        s[ITERATIONS] += 1.0
-        slope = normal * growth - rate - bend * t + decay * fading
-        bow = -(normal * curvature + bend + decay * decay * fading)
+        s.iterations += 1.0
+        slope = normal * growth - rate - second_rate * t + decay * fading
+        bow = -(normal * curvature + second_rate + decay * decay * fading)
         step = guess = math.inf
         if slope < 0.0:
             step = value / slope
             step /= max(1.0 - 0.5 * step * bow / slope, 0.5)
             guess = t - step
         if low <= guess <= high:
-            sharpness = bow / slope + 1.0 / p[STATIC_TAU] + 3.0 / (rest + guess) + decay
-            if abs(step) <= 2.0 * _EPSILON * t or abs(step) * (step * sharpness) ** 2 <= 0.1 * _EPSILON * guess:
+            sharpness = bow / slope + 1.0 / p.static_tau + 3.0 / (rest + guess) + decay
+            if abs(step) <= 2.0 * EPSILON * t or abs(step) * (step * sharpness) ** 2 <= 0.1 * EPSILON * guess:
                 return guess
         else:
             guess = 0.5 * (low + high)
@@ -157,30 +157,30 @@ def concave_root(p, s, rest, force, rate, wave, decay, bend, horizon):
 
 
 @compiled
-def _time_to_pass(p, rest, force, rate, bend):
-    """Return a time by which force + rate t + bend t²/2 has passed N mu_s(rest + t), given that it does."""
-    if p[STATIC_LAW] != LOGARITHMIC:
-        return first_crossing(max(p[NORMAL] * static_limit(p, math.inf) - force, 0.0), -rate, -bend)
-    t = p[STATIC_TAU]
-    while p[NORMAL] * static_limit(p, rest + t) > force + (rate + 0.5 * bend * t) * t:
+def _time_to_pass(p: Parameters, rest: float, force: float, rate: float, second_rate: float) -> float:
+    """Return a time by which force + rate t + second_rate t²/2 has passed N mu_s(rest + t), given that it does."""
+    if p.static_law != LOGARITHMIC:
+        return first_crossing(max(p.normal_force * static_limit(p, math.inf) - force, 0.0), -rate, -second_rate)
+    t = p.static_tau
+    while p.normal_force * static_limit(p, rest + t) > force + (rate + 0.5 * second_rate * t) * t:
         t *= 2.0
     return t
 
 
 @compiled
-def _stepped_side(p, s, force, rate, bend, horizon):
-    normal, rest = p[NORMAL], s[REST]
+def _stepped_side(p: Parameters, s: State, force: float, rate: float, second_rate: float, horizon: float) -> float:
+    normal, rest = p.normal_force, s.rest
     t = 0.0
     for _ in range(STEPS):
         limit, growth, curvature = law(p, rest + t)
-        now = force + (rate + 0.5 * bend * t) * t
+        now = force + (rate + 0.5 * second_rate * t) * t
         value = max(normal * limit - now, 0.0)
-        slope = normal * growth - rate - bend * t
-        step = safe_step(value, slope, normal * curvature + max(bend, 0.0))
+        slope = normal * growth - rate - second_rate * t
+        step = safe_step(value, slope, normal * curvature + max(second_rate, 0.0))
         if curvature == math.inf:
-            step = steep_start(p, value, abs(rate), abs(bend))
-        s[ITERATIONS] += 1.0
-        if step <= 2.0 * _EPSILON * t or (value <= 4.0 * _EPSILON * normal * limit and slope < 0.0):
+            step = steep_start(p, value, abs(rate), abs(second_rate))
+        s.iterations += 1.0
+        if step <= 2.0 * EPSILON * t or (value <= 4.0 * EPSILON * normal * limit and slope < 0.0):
             return t
         t += step
         if t > horizon:
@@ -189,13 +189,13 @@ def _stepped_side(p, s, force, rate, bend, horizon):
 
 
 @compiled
-def steep_start(p, value, rate, bend):
+def steep_start(p: Parameters, value: float, rate: float, second_rate: float) -> float:
     """Return a safe step from rest time 0 under Kato's law with n < 1, whose rate is infinite there.
 
     The law is concave: on [0, d] it rises at least as fast as at d, so that it stays above a force that rises less.
     It never falls, so a force that is off the limit by `value` takes its time as well.
     """
-    step = p[STATIC_TAU]
-    while p[NORMAL] * law(p, step)[1] < rate + bend * step and step > 0.0:
+    step = p.static_tau
+    while p.normal_force * law(p, step).rate < rate + second_rate * step and step > 0.0:
         step *= 0.125
-    return max(step, safe_step(value, -rate, bend))
+    return max(step, safe_step(value, -rate, second_rate))

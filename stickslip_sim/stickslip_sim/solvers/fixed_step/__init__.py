@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Fixed steps: the loop that most engineers would write, told honestly.
+"""Fixed steps: the loop that most engineers would write, with its limits stated.
 
 | method | a step                                           | order in a mode | across transitions | evaluations |
 |--------|--------------------------------------------------|-----------------|--------------------|-------------|
@@ -24,16 +24,16 @@ import math
 from fractions import Fraction
 from typing import Any
 
-from ...core.jit import entry
+from ...axis.records import RECORDS
 from ...core.errors import InputError
-from .. import Solver
+from ...core.jit import entry
+from .. import Solver, SolverOfFunctions
 from . import loop
 from .stability import check_step
 from .steps import EULER, RK4
 
-start, advance, set_inputs, set_parameters, sample = (
-    entry('fixed_step', function) for function in (loop.start, loop.advance, loop.set_inputs, loop.set_parameters,
-                                                   loop.sample))
+start, advance = entry(loop.start), entry(loop.advance)
+set_inputs, set_parameters, sample = entry(loop.set_inputs), entry(loop.set_parameters), entry(loop.sample)
 
 METHODS = {'euler': EULER, 'rk4': RK4}
 MIN_STEP, MAX_STEP = 1e-9, 1.0   # s
@@ -51,11 +51,11 @@ def solver(method: str = 'euler', step: float = 1e-3) -> Solver:
     ticks = Fraction(repr(float(step))).limit_denominator(_LARGEST)
     settings = (METHODS[method], float(ticks.numerator), float(ticks.denominator))
 
-    def begin(*state_and_inputs: Any) -> Any:
+    def begin(*state_and_inputs: Any) -> int:
         return start(*(*state_and_inputs, *settings))
 
-    return Solver('fixed_step', begin, advance, set_inputs, set_parameters, sample,
-                  advice=f'try a step shorter than solver.step = {step:g} s, or check the scene')
+    return SolverOfFunctions('fixed_step', begin, advance, set_inputs, set_parameters, sample, records=RECORDS,
+                             advice=f'try a step shorter than solver.step = {step:g} s, or check the scene')
 
 
 __all__ = ['MAX_STEP', 'METHODS', 'MIN_STEP', 'check_step', 'solver']

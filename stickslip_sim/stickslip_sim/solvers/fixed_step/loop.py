@@ -8,23 +8,34 @@ between two points is a step of its own from the last one, which changes nothing
 often it is asked for.
 """
 
-from ...axis.layout import (
-    ACCELERATION, DEFLECTION, DIRECTION, DRIVE, EVENT_MODE, EXCESS, F, FRACTION, GRID_SECOND, GRID_TICKS, LEAD, MASS,
-    METHOD, MODE, NORMAL, PIECE, POSITION, REST, SECOND, SECOND_TICKS, SPRING, STATIC_INITIAL, STEP_TICKS, V, VELOCITY,
-)
+from ...axis.layout import Events, Parameters, SampleRow, Sinusoids, State
 from ...axis.motion import (
-    ACCELERATING, COASTING, DECELERATING, STICK, contact_force, drive_force, friction_line, is_rigid_stick,
+    ACCELERATING,
+    COASTING,
+    DECELERATING,
+    STICK,
+    contact_force,
+    drive_force,
+    friction_line,
+    is_rigid_stick,
     static_limit,
 )
 from ...axis.transitions import (
-    ACCELERATE, COAST, DECELERATE, applied_force, arrest, force_rounding, release, write_event,
+    ACCELERATE,
+    COAST,
+    DECELERATE,
+    applied_force,
+    arrest,
+    force_rounding,
+    release,
+    write_event,
 )
 from ...core.jit import compiled
 from .. import DONE, FULL, OUT_OF_RANGE
 from ..inputs import hold_inputs, inputs_at, inputs_vary, refresh_inputs, same_inputs
 from ..sampling import write_sample
 from ..state import begin_state, change_contact
-from .steps import friction_at, piece_near, step
+from .steps import friction_at, segment_near, step
 
 _BAND = 0.5   # of a step of the deceleration by N mu_s(0): stops are noted, on the average, when they happen
 
@@ -32,158 +43,162 @@ _FAR = 1e100   # m, m/s: so far that forces overflow soon
 
 
 @compiled
-def start(p, s, position, velocity, rest, v, v_rate, f, f_rate, waves, events, row, method, step_ticks, second_ticks):
+def start(p: Parameters, s: State, position: float, velocity: float, rest: float, v: float, v_rate: float, f: float,
+          f_rate: float, sinusoids: Sinusoids, events: Events, row: int, method: float, step_ticks: float,
+          second_ticks: float) -> int:
     """Set the state at time 0, as the exact engine does; a step lasts step_ticks / second_ticks seconds."""
     begin_state(s, position, velocity, rest)
-    s[METHOD], s[STEP_TICKS], s[SECOND_TICKS] = method, step_ticks, second_ticks
-    hold_inputs(s, 0.0, 0.0, v, v_rate, f, f_rate, waves)
+    s.grid.method, s.grid.step_ticks, s.grid.second_ticks = method, step_ticks, second_ticks
+    hold_inputs(s, 0.0, 0.0, v, v_rate, f, f_rate, sinusoids)
     refresh_inputs(s)
     if velocity == 0.0:
         return _look(p, s, events, row)
     residual, _, tolerance = _residual(p, s)
-    s[MODE] = _sub_mode(s[MODE], residual, 0.0, tolerance)
+    s.mode = _sub_mode(s.mode, residual, 0.0, tolerance)
     return row
 
 
 @compiled
-def advance(p, s, second, fraction, events, row):
+def advance(p: Parameters, s: State, second: float, fraction: float, events: Events, row: int) -> tuple[int, int]:
     """Go to the last grid point that is not after a time; return the rows in use and how it ended."""
     while True:
-        ticks = s[GRID_TICKS] + s[STEP_TICKS]
-        whole = s[GRID_SECOND]
-        if ticks >= s[SECOND_TICKS]:
-            ticks -= s[SECOND_TICKS]
+        ticks = s.grid.ticks + s.grid.step_ticks
+        whole = s.grid.second
+        if ticks >= s.grid.second_ticks:
+            ticks -= s.grid.second_ticks
             whole += 1.0
-        part = ticks / s[SECOND_TICKS]
+        part = ticks / s.grid.second_ticks
         if (whole - second) + (part - fraction) > 0.0:
             return row, DONE
-        if row >= len(events):
+        if row >= events.count:
             return row, FULL
-        if not _move(p, s, whole, part, s[STEP_TICKS] / s[SECOND_TICKS] - s[LEAD]):
+        if not _move(p, s, whole, part, s.grid.step_ticks / s.grid.second_ticks - s.grid.lead):
             return row, OUT_OF_RANGE
-        s[GRID_SECOND], s[GRID_TICKS], s[LEAD] = whole, ticks, 0.0
+        s.grid.second, s.grid.ticks, s.grid.lead = whole, ticks, 0.0
         row = _look(p, s, events, row)
 
 
 @compiled
-def set_inputs(p, s, second, fraction, v, v_rate, f, f_rate, waves, events, row):
+def set_inputs(p: Parameters, s: State, second: float, fraction: float, v: float, v_rate: float, f: float,
+               f_rate: float, sinusoids: Sinusoids, events: Events, row: int) -> int:
     """Let the inputs be others from a time on, up to which the state was advanced."""
-    if same_inputs(s, v, v_rate, f, f_rate, waves):
+    if same_inputs(s, v, v_rate, f, f_rate, sinusoids):
         return row
     _catch_up(p, s, second, fraction)
-    hold_inputs(s, second, fraction, v, v_rate, f, f_rate, waves)
+    hold_inputs(s, second, fraction, v, v_rate, f, f_rate, sinusoids)
     refresh_inputs(s)
     return _look(p, s, events, row)
 
 
 @compiled
-def set_parameters(p, new, s, second, fraction, events, row):
+def set_parameters(p: Parameters, new: Parameters, s: State, second: float, fraction: float, events: Events, row: int
+                  ) -> int:
     """Let the axis have other parameters from a time on, up to which the state was advanced with the old ones."""
     _catch_up(p, s, second, fraction)
-    change_contact(new, s, friction_at(p, s, applied_force(p, s), s[VELOCITY], s[DEFLECTION]))
-    s[PIECE] = 0.0
+    change_contact(new, s, friction_at(p, s, applied_force(p, s), s.velocity, s.deflection))
+    s.segment = 0.0
     return _look(new, s, events, row)
 
 
 @compiled
-def sample(p, s, second, fraction, out):
+def sample(p: Parameters, s: State, second: float, fraction: float, out: SampleRow) -> None:
     """Fill a row with the state at a time from that of the state on, before the next grid point."""
-    t = (second - s[SECOND]) + (fraction - s[FRACTION])
-    y, u, drive = 0.0, s[VELOCITY], 0.0
+    t = (second - s.second) + (fraction - s.fraction)
+    y, u, drive = 0.0, s.velocity, 0.0
     if t > 0.0:
         y, u, drive = step(p, s, t)
     v, f = inputs_at(s, second, fraction)
-    pull = drive_force(p, s[SPRING] + (drive - y), v, u)
-    applied = pull + f
-    friction = friction_at(p, s, applied, u, s[DEFLECTION] + y)
-    write_sample(p, s, second, fraction, t, y, u, (applied - friction) / p[MASS], drive, v, pull, f, friction, out)
+    of_drive = drive_force(p, s.spring + (drive - y), v, u)
+    applied = of_drive + f
+    friction = friction_at(p, s, applied, u, s.deflection + y)
+    write_sample(p, s, second, fraction, t, y, u, (applied - friction) / p.mass, drive, v, of_drive, f, friction, out)
 
 
 @compiled
-def _move(p, s, second, fraction, h):
+def _move(p: Parameters, s: State, second: float, fraction: float, h: float) -> bool:
     """Bring the state to a time, h later; return False, and leave it, where the numbers end."""
     y, u, drive = step(p, s, h)
     if not abs(y) + abs(u) + abs(drive) < _FAR:   # nor where it is no number
         return False
-    if s[MODE] == STICK:
-        s[REST] += h
-        s[DEFLECTION] += y
-    s[POSITION] += y
-    s[DRIVE] += drive
-    s[SPRING] += drive - y
-    s[VELOCITY] = u
-    s[SECOND], s[FRACTION] = second, fraction
+    if s.mode == STICK:
+        s.rest += h
+        s.deflection += y
+    s.position += y
+    s.drive += drive
+    s.spring += drive - y
+    s.velocity = u
+    s.second, s.fraction = second, fraction
     if inputs_vary(s):
         refresh_inputs(s)
     return True
 
 
 @compiled
-def _catch_up(p, s, second, fraction):
-    t = (second - s[SECOND]) + (fraction - s[FRACTION])
+def _catch_up(p: Parameters, s: State, second: float, fraction: float) -> None:
+    t = (second - s.second) + (fraction - s.fraction)
     if t > 0.0 and _move(p, s, second, fraction, t):
-        s[LEAD] += t
+        s.grid.lead += t
 
 
 @compiled
-def _look(p, s, events, row):
+def _look(p: Parameters, s: State, events: Events, row: int) -> int:
     """Make the transition that is due at the state, if any; return the rows in use."""
-    if s[MODE] == STICK:
+    if s.mode == STICK:
         return _look_at_stick(p, s, events, row)
     residual, band, tolerance = _residual(p, s)
     if _has_stopped(p, s, residual):
         arrest(p, s, events, row)
         return row + 1
-    mode = _sub_mode(s[MODE], residual, band, tolerance)
-    if mode == s[MODE]:
+    mode = _sub_mode(s.mode, residual, band, tolerance)
+    if mode == s.mode:
         return row
     applied = applied_force(p, s)
     kind = ACCELERATE if mode == ACCELERATING else (COAST if mode == COASTING else DECELERATE)
-    friction = friction_at(p, s, applied, s[VELOCITY], 0.0)
-    write_event(p, s, events, row, kind, s[DIRECTION], friction, p[STATIC_INITIAL])
-    s[MODE] = mode
-    events[row][EVENT_MODE] = mode
+    friction = friction_at(p, s, applied, s.velocity, 0.0)
+    write_event(p, s, events, row, kind, s.direction, friction, p.static_initial)
+    s.mode = mode
+    events.rows[row].mode = mode
     return row + 1
 
 
 @compiled
-def _look_at_stick(p, s, events, row):
+def _look_at_stick(p: Parameters, s: State, events: Events, row: int) -> int:
     applied = applied_force(p, s)
-    force = applied if is_rigid_stick(p, s) else contact_force(p, s[DEFLECTION], s[VELOCITY])
-    limit = static_limit(p, s[REST])
-    margin = abs(force) - p[NORMAL] * limit
+    force = applied if is_rigid_stick(p, s) else contact_force(p, s.deflection, s.velocity)
+    limit = static_limit(p, s.rest)
+    margin = abs(force) - p.normal_force * limit
     if margin <= 0.0 or margin <= force_rounding(p, s, limit):
         return row
-    s[ACCELERATION] = (applied - force) / p[MASS]
+    s.acceleration = (applied - force) / p.mass
     release(p, s, events, row)
     return row + 1
 
 
 @compiled
-def _residual(p, s):
+def _residual(p: Parameters, s: State) -> tuple[float, float, float]:
     """Return R along the slip, the width B of the coasting band, and the rounding of R, N (docs/model.md)."""
-    speed = s[DIRECTION] * s[VELOCITY]
-    piece = piece_near(p, int(s[PIECE]), speed)
-    s[PIECE] = float(piece)
-    coefficient, _, psi, _ = friction_line(p, piece, speed)
-    return (s[DIRECTION] * applied_force(p, s) - p[NORMAL] * coefficient, p[NORMAL] * s[EXCESS] * psi,
+    speed = s.direction * s.velocity
+    segment = segment_near(p, int(s.segment), speed)
+    s.segment = float(segment)
+    coefficient, _, psi, _ = friction_line(p, segment, speed)
+    return (s.direction * applied_force(p, s) - p.normal_force * coefficient, p.normal_force * s.excess * psi,
             force_rounding(p, s, coefficient))
 
 
 @compiled
-def _has_stopped(p, s, residual):
+def _has_stopped(p: Parameters, s: State, residual: float) -> bool:
     """Whether a slip ends: it was reversed, or it slows down in Karnopp's band and friction could hold it at rest."""
-    speed = s[DIRECTION] * s[VELOCITY]
+    speed = s.direction * s.velocity
     if speed < 0.0:
         return True
-    holds = p[NORMAL] * static_limit(p, 0.0)
-    band = _BAND * s[STEP_TICKS] / s[SECOND_TICKS] * holds / p[MASS]
-    at_rest = drive_force(p, s[SPRING], s[V], 0.0) + s[F]
+    holds = p.normal_force * static_limit(p, 0.0)
+    band = _BAND * s.grid.step_ticks / s.grid.second_ticks * holds / p.mass
+    at_rest = drive_force(p, s.spring, s.v, 0.0) + s.f
     return residual < 0.0 and speed < band and abs(at_rest) <= holds
 
 
 @compiled
-def _sub_mode(mode, residual, band, tolerance):
+def _sub_mode(mode: float, residual: float, band: float, tolerance: float) -> float:
     """Return the sub-mode of slip; within rounding of a border it stays what it was."""
     if residual - band > tolerance:
         return ACCELERATING

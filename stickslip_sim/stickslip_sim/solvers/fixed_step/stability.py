@@ -42,8 +42,8 @@ def _modes(axis: Axis) -> Iterator[tuple[str, float, float]]:
 
 
 def _longest_euler(gamma: float, omega2: float) -> float:
-    bend = gamma + math.sqrt(gamma * gamma + omega2)
-    return 2.0 / bend if bend > 0.0 else math.inf
+    second_rate = gamma + math.sqrt(gamma * gamma + omega2)
+    return 2.0 / second_rate if second_rate > 0.0 else math.inf
 
 
 def _longest_rk4(gamma: float, omega2: float) -> float:

@@ -5,13 +5,11 @@
 The branches of friction are the set-valued law of docs/model.md, evaluated wherever the force is: along the slip,
 friction = N mu_k + min(max(R, 0), N e) with R = ±(F_d + F_e) − N mu_k.  Choosing a branch by the sign of the last
 acceleration instead chatters where the branches lie apart, and converges to another motion.  Beyond standstill within a
-step the first piece of the table is continued.
+step the first segment of the table is continued.
 """
 
-from ...axis.layout import (
-    DEFLECTION, DIRECTION, EXCESS, F, FRACTION, KNOTS, MASS, METHOD, MODE, NORMAL, PIECE, SECOND, SPRING, V, VELOCITY,
-)
-from ...axis.motion import STICK, contact_force, drive_force, friction_line, is_rigid_stick, knot_speed
+from ...axis.layout import Parameters, State
+from ...axis.motion import STICK, breakpoint_speed, contact_force, drive_force, friction_line, is_rigid_stick
 from ...core.jit import compiled
 from ..inputs import inputs_at
 
@@ -19,61 +17,61 @@ EULER, RK4 = 0.0, 1.0
 
 
 @compiled
-def piece_near(p, piece, speed):
-    """Return `motion.piece_above` of a speed, looking around from a piece."""
-    while piece + 1 < p[KNOTS] and knot_speed(p, piece + 1) <= speed:
-        piece += 1
-    while piece > 0 and knot_speed(p, piece) > speed:
-        piece -= 1
-    return piece
+def segment_near(p: Parameters, segment: int, speed: float) -> int:
+    """Return `motion.segment_above` of a speed, looking around from a segment."""
+    while segment + 1 < p.segment_count and breakpoint_speed(p, segment + 1) <= speed:
+        segment += 1
+    while segment > 0 and breakpoint_speed(p, segment) > speed:
+        segment -= 1
+    return segment
 
 
 @compiled
-def friction_at(p, s, applied, u, deflection):
+def friction_at(p: Parameters, s: State, applied: float, u: float, deflection: float) -> float:
     """Return the friction force at velocity u under `applied` = F_d + F_e, N."""
-    if s[MODE] == STICK:
+    if s.mode == STICK:
         return applied if is_rigid_stick(p, s) else contact_force(p, deflection, u)
-    speed = s[DIRECTION] * u
-    coefficient, _, psi, _ = friction_line(p, piece_near(p, int(s[PIECE]), speed), speed)
-    lower = p[NORMAL] * coefficient
-    rest = min(max(s[DIRECTION] * applied - lower, 0.0), p[NORMAL] * s[EXCESS] * psi)
-    return s[DIRECTION] * (lower + rest)
+    speed = s.direction * u
+    coefficient, _, psi, _ = friction_line(p, segment_near(p, int(s.segment), speed), speed)
+    lower = p.normal_force * coefficient
+    rest = min(max(s.direction * applied - lower, 0.0), p.normal_force * s.excess * psi)
+    return s.direction * (lower + rest)
 
 
 @compiled
-def acceleration_at(p, s, spring, u, deflection, v, f):
+def acceleration_at(p: Parameters, s: State, spring: float, u: float, deflection: float, v: float, f: float) -> float:
     """Return the acceleration of a moving mode, m/s²."""
     applied = drive_force(p, spring, v, u) + f
-    return (applied - friction_at(p, s, applied, u, deflection)) / p[MASS]
+    return (applied - friction_at(p, s, applied, u, deflection)) / p.mass
 
 
 @compiled
-def step(p, s, h):
+def step(p: Parameters, s: State, h: float) -> tuple[float, float, float]:
     """Return travel, velocity and travel of the drive after a step of h from the state."""
-    return _euler(p, s, h) if s[METHOD] == EULER else _rk4(p, s, h)
+    return _euler(p, s, h) if s.grid.method == EULER else _rk4(p, s, h)
 
 
 @compiled
-def _euler(p, s, h):
+def _euler(p: Parameters, s: State, h: float) -> tuple[float, float, float]:
     """Semi-implicit Euler: the new velocity moves the slider."""
-    drive = h * s[V]
+    drive = h * s.v
     if is_rigid_stick(p, s):
         return 0.0, 0.0, drive
-    u = s[VELOCITY] + h * acceleration_at(p, s, s[SPRING], s[VELOCITY], s[DEFLECTION], s[V], s[F])
+    u = s.velocity + h * acceleration_at(p, s, s.spring, s.velocity, s.deflection, s.v, s.f)
     return h * u, u, drive
 
 
 @compiled
-def _rk4(p, s, h):
+def _rk4(p: Parameters, s: State, h: float) -> tuple[float, float, float]:
     """Classical Runge-Kutta; the drive's travel is then Simpson's rule."""
     half = 0.5 * h
-    v0, f0 = s[V], s[F]
-    v1, f1 = inputs_at(s, s[SECOND], s[FRACTION] + half)
-    v2, f2 = inputs_at(s, s[SECOND], s[FRACTION] + h)
+    v0, f0 = s.v, s.f
+    v1, f1 = inputs_at(s, s.second, s.fraction + half)
+    v2, f2 = inputs_at(s, s.second, s.fraction + h)
     drive = h / 6.0 * (v0 + 4.0 * v1 + v2)
     if is_rigid_stick(p, s):
         return 0.0, 0.0, drive
-    w, d, ua = s[SPRING], s[DEFLECTION], s[VELOCITY]
+    w, d, ua = s.spring, s.deflection, s.velocity
     a = acceleration_at(p, s, w, ua, d, v0, f0)
     yb, ub = half * ua, ua + half * a
     b = acceleration_at(p, s, w + half * v0 - yb, ub, d + yb, v1, f1)

@@ -1,0 +1,70 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The command of setuptools that writes the unit; Cython translates it there, and the C compiler does the rest."""
+
+import os
+import shutil
+import sysconfig
+from pathlib import Path
+
+from setuptools import Extension
+from setuptools.command.build_ext import build_ext
+from setuptools.errors import SetupError
+
+from .errors import UnitError
+from .unit import write_unit
+
+PACKAGE = 'stickslip_sim'
+SWITCH = 'STICKSLIP_COMPILED'
+OLDEST_CYTHON = (3, 0, 8)
+# No contraction of a product and a sum into one rounding: plain Python gives the same bits.  No error numbers and no
+# traps of the C library: nobody asks for them, and they keep calculations in their place.  Much inlining: that is what
+# the one unit is for.
+FLAGS = ['-O3', '-g0', '-ffp-contract=off', '-fno-math-errno', '-fno-trapping-math', '-finline-limit=2000',
+         '--param', 'inline-unit-growth=200', '--param', 'large-function-growth=1000']
+
+
+def extensions() -> list[Extension]:
+    """Return the unit as an extension module, written when it is built; none on STICKSLIP_COMPILED=0."""
+    return [] if os.environ.get(SWITCH) == '0' else [Extension(f'{PACKAGE}._hot', [], extra_compile_args=FLAGS)]
+
+
+class BuildUnit(build_ext):  # type: ignore[misc]
+    """Builds the unit; its text in Cython and in C stays in the folder for what is in between."""
+
+    def build_extension(self, ext: Extension) -> None:
+        """Write the unit and build it; raises SetupError, one line that says what to install or to change."""
+        _require_cython()
+        _require_compiler(self.compiler.compiler_so[0])
+        source = Path(self.build_temp) / '_hot.pyx'
+        try:
+            text = write_unit(Path(__file__).resolve().parents[1] / PACKAGE)
+        except UnitError as error:
+            raise SetupError(str(error)) from None
+        if not source.is_file() or source.read_text(encoding='utf-8') != text:
+            source.parent.mkdir(parents=True, exist_ok=True)
+            source.write_text(text, encoding='utf-8')
+        ext.sources = [str(source)]
+        super().build_extension(ext)
+
+
+def _require_cython() -> None:
+    wanted = '.'.join(map(str, OLDEST_CYTHON))
+    try:
+        from Cython import __version__
+    except ImportError:
+        raise _missing('Cython is missing', f"pip install 'cython>={wanted}', or apt install cython3") from None
+    if tuple(int(part) for part in __version__.split('.')[:3] if part.isdigit()) < OLDEST_CYTHON:
+        raise _missing(f'Cython {__version__} is older than {wanted}', f"pip install 'cython>={wanted}'")
+
+
+def _require_compiler(compiler: str) -> None:
+    if shutil.which(compiler) is None:
+        raise _missing(f'the C compiler {compiler} is missing', 'apt install gcc')
+    if not (Path(sysconfig.get_path('include')) / 'Python.h').is_file():
+        raise _missing('the Python header Python.h is missing', 'apt install python3-dev')
+
+
+def _missing(what: str, command: str) -> SetupError:
+    return SetupError(f'{what}, which compiles the hot path: {command}; or build without, hundreds of times slower: '
+                      f'{SWITCH}=0')

@@ -1,0 +1,91 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The force of a compliant contact in stick, F_c = P(t) + H(t), see `compliant_stick`."""
+
+from typing import NamedTuple
+
+from ...axis.layout import Parameters, State
+from ...axis.motion import static_limit, travel
+from ...core.jit import compiled
+from ...linear.oscillator import Oscillator, amplitude, impulse
+
+
+class ContactMotion(NamedTuple):
+    """A travel y₀ + y₁ t + y₂ t²/2 and a free motion that starts at −y₀ with `free_u`.
+
+    P is steady + rate t + second t²/2.
+    """
+
+    y0: float       # m
+    free_u: float   # m/s
+    steady: float   # N
+    rate: float     # N/s
+    second: float   # N/s²
+
+
+class ContactForce(NamedTuple):
+    """P and its rate, H and its first three derivatives at a time: N, N/s, ..."""
+
+    sag: float
+    rate: float
+    free: float
+    free_rate: float
+    free_second: float
+    free_third: float
+
+
+@compiled
+def contact_motion(p: Parameters, s: State, osc: Oscillator) -> ContactMotion:
+    """Return the motion of the contact from the segment start on."""
+    stiffness, damping = p.contact_stiffness, p.contact_damping
+    gamma, omega2 = osc.gamma, osc.omega2
+    u = s.velocity
+    y2 = s.snap / omega2
+    # u + JERK/ω² without the difference: 0 to the last bit while the drive rests
+    force_rate = p.stiffness * s.v + p.damping * s.v_rate + s.f_rate
+    y1 = force_rate / (p.stiffness + stiffness) - 2.0 * gamma * y2 / omega2
+    y0 = (s.acceleration + 2.0 * gamma * (u - y1) - y2) / omega2
+    return ContactMotion(y0, u - y1, stiffness * (s.deflection + y0) + damping * y1, stiffness * y1 + damping * y2,
+                         stiffness * y2)
+
+
+@compiled
+def contact_at(p: Parameters, osc: Oscillator, motion: ContactMotion, t: float) -> ContactForce:
+    """Return the contact force at t, in its two parts."""
+    stiffness, damping = p.contact_stiffness, p.contact_damping
+    gamma, omega2 = osc.gamma, osc.omega2
+    y0, free_u, steady, rate, second = motion
+    g, slope = impulse(osc, t)
+    y = free_u * g - y0 * (slope + 2.0 * gamma * g)
+    v = free_u * slope + omega2 * y0 * g
+    acc = -2.0 * gamma * v - omega2 * y
+    jerk = -2.0 * gamma * acc - omega2 * v
+    return ContactForce(steady + (rate + 0.5 * second * t) * t, rate + second * t, stiffness * y + damping * v,
+                        stiffness * v + damping * acc, stiffness * acc + damping * jerk,
+                        stiffness * jerk - damping * (2.0 * gamma * jerk + omega2 * acc))
+
+
+@compiled
+def force_at(p: Parameters, s: State, t: float) -> tuple[float, float]:
+    """Return F_c and its rate at t, from the travel: P + H may cancel."""
+    y, u, a = (0.0, s.velocity, s.acceleration) if t == 0.0 else travel(p, s, t)
+    stiffness, damping = p.contact_stiffness, p.contact_damping
+    return stiffness * (s.deflection + y) + damping * u, stiffness * u + damping * a
+
+
+@compiled
+def moves(s: State) -> bool:
+    """Whether a contact that holds nothing gives way: it does with the first derivative of its force that is not 0."""
+    return not (s.deflection == 0.0 and s.velocity == 0.0 and s.acceleration == 0.0 and s.jerk == 0.0
+                and s.snap == 0.0)
+
+
+@compiled
+def rings_within(p: Parameters, s: State, osc: Oscillator, motion: ContactMotion, rounding: float) -> bool:
+    """Whether a contact that the drive does not load any further stays within the limit of now, which never falls.
+
+    Without a damper it may come back to the limit in every period, and touch it: no break-away, whatever rounding says.
+    """
+    _, _, free, free_rate, _, _ = contact_at(p, osc, motion, 0.0)
+    size, _ = amplitude(osc, free, free_rate)
+    return abs(motion.steady) + size <= p.normal_force * static_limit(p, s.rest) + 2.0 * rounding

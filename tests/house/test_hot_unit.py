@@ -1,0 +1,123 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The tool that writes and builds the compiled hot path: what it takes, and what it refuses in one line."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from stickslip_sim.core import jit
+from tests.support.repository import ROOT
+
+PROJECT = ROOT / 'stickslip_sim'
+PACKAGE = PROJECT / 'stickslip_sim'
+ROOMS = ('core', 'friction', 'linear', 'axis', 'solvers')
+HOST = 'linear/oscillator.py'
+NO_CYTHON = 'import sys; sys.modules["Cython"] = None'
+
+
+def unit_of(package: Path, folder: Path) -> tuple[str, str]:
+    """Return the unit of a package and what was said instead."""
+    out = folder / 'unit.pyx'
+    done = subprocess.run([sys.executable, '-m', 'hot_unit', package, out], cwd=PROJECT, capture_output=True, text=True,
+                          timeout=60, check=False)
+    assert (done.returncode == 0) == out.exists()
+    return out.read_text(encoding='utf-8') if out.exists() else '', done.stderr
+
+
+def package_with(function: str, folder: Path) -> Path:
+    """Return a copy of the package with one more function of the hot path."""
+    for room in ROOMS:
+        shutil.copytree(PACKAGE / room, folder / room, ignore=shutil.ignore_patterns('__pycache__'))
+    host = folder / HOST
+    host.write_text(f'{host.read_text(encoding="utf-8")}\n\n@compiled\n{function}\n', encoding='utf-8')
+    return folder
+
+
+def test_every_marked_function_is_in_the_unit(tmp_path: Path) -> None:
+    text, said = unit_of(PACKAGE, tmp_path)
+    assert said == ''
+    for name in ('friction_static_static_coefficient', 'axis_motion_travel', 'solvers_fixed_step_steps_step'):
+        assert f' {name}(' in text
+    assert 'cpdef (long, long) solvers_exact_engine_advance(Parameters p, State s, ' in text
+    if jit.UNIT is not None:
+        assert f"DIGEST = '{jit.UNIT.DIGEST}'" in text
+        assert f'SOURCES = {jit.UNIT.SOURCES!r}' in text
+
+
+def test_a_name_for_a_tuple_is_one_in_c_too(tmp_path: Path) -> None:
+    text, said = unit_of(package_with('''
+def swapped(osc: Oscillator, both: bool) -> tuple[float, int]:
+    """Return two."""
+    first, count = (osc.gamma, 1) if both else (osc[1], 2)
+    return (first, count) if both else (float(count), int(first))
+''', tmp_path / 'package'), tmp_path)
+    assert said == ''
+    _, _, rest = text.partition('cdef (double, long) linear_oscillator_swapped(')
+    head, *body = rest.split('\n\n')[0].split('\n')
+    assert head == '(double, double, double, double, double) osc, bint both) noexcept nogil:'
+    assert '\n'.join(body) == '''
+    cdef long count
+    cdef double first
+    if both:
+        first, count = (osc[0], 1)
+    else:
+        first, count = (osc[1], 2)
+    if both:
+        return (first, count)
+    else:
+        return (cast(double, count), cast(long, first))'''.removeprefix('\n')
+
+
+@pytest.mark.parametrize(('function', 'what'), [
+    ('def f(t) -> float: return t', 'the argument t of f has no type; annotate it'),
+    ('def f(t: float): return t', 'what f returns has no type; annotate it'),
+    ('def f(t: dict[str, float]) -> float: return 0.0', 'the argument t of f has the type dict[str, float], which C '
+     'does not have; take float, int, bool, complex, a tuple of them or a record of axis/layout.py'),
+    ('def f(t: float = 1.0) -> float: return t',
+     'f has more than plain arguments; write each one out, without defaults'),
+    ('def f(t: float) -> float: return math.gamma(t)', 'f uses math.gamma, which the unit does not take from C'),
+    ('def f(t: float) -> float: return Path(t)', 'f uses Path, which is neither a number nor a marked function'),
+    ('def f(t: float) -> float: return bound(osc=t)', 'f uses bound with names of arguments; give them in order'),
+])
+def test_what_c_does_not_have_is_refused_in_one_line(function: str, what: str, tmp_path: Path) -> None:
+    package = package_with(function, tmp_path / 'package')
+    _, said = unit_of(package, tmp_path)
+    place, _, told = said.removeprefix('error: ').partition(': ')
+    assert told == f'{what}\n'
+    file, _, line = place.rpartition(':')
+    assert Path(file) == package / HOST
+    assert function in (package / HOST).read_text(encoding='utf-8').split('\n')[int(line) - 1]
+
+
+class TestBuild:
+
+    @staticmethod
+    def build(folder: Path, before: str = '', **environment: str) -> tuple[int, str]:
+        """Return the exit code of `setup.py build_ext` and the last line that it wrote."""
+        arguments = ['setup.py', '-q', 'build_ext', '--build-temp', str(folder), '--build-lib', str(folder)]
+        program = (f'{before}\nimport runpy, sys\nsys.argv = {arguments}\n'
+                   'runpy.run_path("setup.py", run_name="__main__")')
+        done = subprocess.run([sys.executable, '-c', program], cwd=PROJECT, env={**os.environ, **environment},
+                              capture_output=True, text=True, timeout=60, check=False)
+        return done.returncode, (done.stderr.strip().split('\n') or [''])[-1]
+
+    def test_says_that_cython_is_missing(self, tmp_path: Path) -> None:
+        code, said = self.build(tmp_path, NO_CYTHON)
+        assert code == 1
+        assert said == ("error: Cython is missing, which compiles the hot path: pip install 'cython>=3.0.8', or apt "
+                        'install cython3; or build without, hundreds of times slower: STICKSLIP_COMPILED=0')
+
+    def test_says_that_the_compiler_is_missing(self, tmp_path: Path) -> None:
+        pytest.importorskip('Cython')
+        code, said = self.build(tmp_path, CC='no-such-compiler')
+        assert code == 1
+        assert said.startswith('error: the C compiler no-such-compiler is missing, which compiles the hot path: ')
+
+    def test_leaves_the_unit_out_on_purpose(self, tmp_path: Path) -> None:
+        assert self.build(tmp_path, NO_CYTHON, STICKSLIP_COMPILED='0') == (0, '')
+        assert not list(tmp_path.iterdir())

@@ -1,0 +1,49 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The same source compiled and as plain Python: the same bits of all events, samples and energies."""
+
+import pytest
+
+from stickslip_sim.core import jit
+from tests.conftest import Program
+
+pytestmark = pytest.mark.skipif(jit.UNIT is None, reason='no compiled code in this source tree; `make test` tests the '
+                                'installed copy')
+TOLD = '''
+import json
+def told(rows):
+    for row in rows:
+        print(*(float(number).hex() for number in row))
+'''
+SCENES = TOLD + '''
+from fractions import Fraction
+from stickslip_sim.runs.offline import run_offline
+from stickslip_sim.scene import load_scene, scene_names
+for name in scene_names():
+    run = run_offline(load_scene(name, OVERRIDES), 2.0, Fraction(1, 10))
+    told(run.events)
+    told(run.sample_rows())
+    print(name, len(run.events), json.dumps(run.receipt['energy']))
+'''
+RANDOM = TOLD + '''
+import random
+from tests.support.axes import random_axis, run
+for seed in range(25):
+    rng = random.Random(seed)
+    axis = random_axis(rng)
+    told(run(axis, rng.choice((-1, 1)) * 10 ** rng.uniform(-3, -1.5), 3.0))
+'''
+STEPS = [(method, {'solver.name': 'fixed_step', 'solver.method': method, 'solver.step': 1e-3})
+         for method in ('euler', 'rk4')]
+
+
+@pytest.mark.parametrize('program', [
+    *(pytest.param(SCENES.replace('OVERRIDES', repr(overrides)), id=name)
+      for name, overrides in (('exact', {}), *STEPS)),
+    pytest.param(RANDOM, id='random axes'),
+])
+def test_compiled_and_plain_python_agree_bit_by_bit(program: str, in_a_process: Program) -> None:
+    program = 'from stickslip_sim.core.jit import hot_path\nassert hot_path() == WORDS\n' + program
+    compiled = in_a_process(program.replace('WORDS', '"compiled"'), compiled=True)
+    assert compiled.count('\n') > 200
+    assert compiled == in_a_process(program.replace('WORDS', '"plain python"'), compiled=False)
