@@ -45,7 +45,8 @@ _SAME = 1e-12        # of the least speed of a swing: one that loses less is the
 (HAS_SLOWED, HAS_ROUND, FROM_SECOND, FROM_FRACTION, TRAVEL_SO_FAR, PEAK_SO_FAR, FORCE_AT_FIRST) = range(47, 54)
 FIGURES = 32
 ROW_SIZE = 54
-# a longer row has the latest rounds behind that, in turn: stick time, period, and drive force and speed at the end
+# a longer row has the latest rounds behind that, in turn, each with these columns; force and speed are those at its end
+KEPT_STICK, KEPT_PERIOD, KEPT_FORCE, KEPT_SPEED = range(4)
 ROUND_SIZE = 4
 
 
@@ -181,6 +182,6 @@ def _end_round(row: Row, e: EventRow, half: float, width: int) -> None:
     kept = (width - ROW_SIZE) // ROUND_SIZE
     if kept > 0:
         at = ROW_SIZE + ROUND_SIZE * int(row[ROUND_COUNT] % kept)
-        row[at], row[at + 1] = row[ROUND_STICK], row[ROUND_PERIOD]
-        row[at + 2], row[at + 3] = e.drive_force, e.velocity
+        row[at + KEPT_STICK], row[at + KEPT_PERIOD] = row[ROUND_STICK], row[ROUND_PERIOD]
+        row[at + KEPT_FORCE], row[at + KEPT_SPEED] = e.drive_force, e.velocity
     row[ROUND_COUNT] += 1.0

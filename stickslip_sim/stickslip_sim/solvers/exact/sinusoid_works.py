@@ -12,11 +12,12 @@ frequency even there; they are interpolated, from where nothing cancels.  What i
 """
 
 import math
+from typing import NamedTuple
 
 from ...axis.layout import Parameters, State
 from ...axis.motion import COASTING, STICK, oscillator_of, slip_friction
 from ...axis.sinusoids import fastest_sinusoid
-from ...core.jit import compiled
+from ...core.jit import compiled, inlined
 from ...linear.moments import moments
 from ...linear.oscillator import Oscillator
 from ...linear.wave_products import (
@@ -47,6 +48,46 @@ _POINTS = (0.996917333733127976, 0.972369920397676602, 0.923879532511286756, 0.8
 _SHARES = (-0.0039350853412309224, 0.012003937954005802, -0.0207106781186547524, 0.0306400394069965998,
            -0.0427040342731733319, 0.0585424783056269613, -0.0815925843564394809, 0.120710678118654752,
            -0.20826498850452086, 0.635310236808735232)
+
+
+class Answer(NamedTuple):
+    """A sinusoid, and the steady answer to it at phase 0."""
+
+    frequency: float    # Hz
+    cycle: float        # turns within the time
+    phase: complex      # factor at the segment start
+    v: float            # m/s, amplitude
+    f: float            # N, amplitude
+    at_x: complex       # m/s, amplitude of x
+    lead: complex       # m/s, amplitude of v − ẋ
+    against: complex    # what the integral of the rest is divided by
+
+
+class Rest(NamedTuple):
+    """x without the steady answers, x″ + 2γ x′ + ω² x = k₀ + k₁ t: how it begins and ends, and its integrals."""
+
+    k0: float
+    k1: float
+    x: float
+    rate: float
+    end: float
+    end_rate: float
+    once: float     # ∫x
+    twice: float    # ∫∫x
+    thrice: float   # ∫∫∫x
+    square: float   # ∫x²
+
+
+class Products(NamedTuple):
+    """Integrals of products of x, of the drive's velocity v, the force f and the stretch w; and the slider's path."""
+
+    xx: float
+    v_x: float
+    v_v: float
+    f_x: float
+    f_v: float
+    v_w: float
+    path: float
 
 
 @compiled
@@ -118,81 +159,116 @@ def _is_close(osc: Oscillator, w: float, t: float) -> bool:
 @compiled
 def _closed(p: Parameters, s: State, osc: Oscillator, t: float, shift: float) -> Works:
     """Return the works; sinusoids that are close have their frequency shifted, Hz."""
+    steady, slope = (0.0, 0.0) if s.mode == STICK else slip_friction(p, s)
+    rest = _rest_of(p, s, osc, t, shift, slope)
+    products = _of_the_inputs(s, rest, t)
+    for k in range(int(s.sinusoid_count)):
+        one = _answer(p, s, osc, k, t, shift, slope)
+        wave = complex(math.cos(TURN * one.cycle), math.sin(TURN * one.cycle))
+        zero = wave_integral(one.frequency, one.cycle, t)
+        products = _with_a_sinusoid(s, osc, rest, one, wave, zero, products, t)
+        for j in range(k + 1):
+            other = _answer(p, s, osc, j, t, shift, slope)
+            products = _with_two(one, other, j == k, wave, zero, products, t)
+    v_x, v_v, xx = products.v_x, products.v_v, products.xx
+    if s.mode == STICK:
+        return Works(p.stiffness * products.v_w + p.damping * (v_v - v_x), products.f_x, 0.0,
+                     p.damping * (v_v - 2.0 * v_x + xx), p.contact_damping * xx)
+    friction = p.normal_force * (s.direction * steady * products.path + slope * (v_v - 2.0 * v_x + xx))
+    return Works(p.stiffness * products.v_w + p.damping * v_x, products.f_v - products.f_x, friction,
+                 p.damping * xx, 0.0)
+
+
+@compiled
+def _rest_of(p: Parameters, s: State, osc: Oscillator, t: float, shift: float, slope: float) -> Rest:
+    """Return the motion without the steady answers to the sinusoids."""
     stuck = s.mode == STICK
-    gamma, count = osc.gamma, int(s.sinusoid_count)
-    steady, slope = (0.0, 0.0) if stuck else slip_friction(p, s)
-    v0, v1, f0, f1 = s.base_v, s.v_rate, s.base_f, s.f_rate
+    v0, v1, f1 = s.base_v, s.v_rate, s.f_rate
     if stuck:
         k0, k1 = (p.stiffness * v0 + p.damping * v1 + f1) / p.mass, p.stiffness * v1 / p.mass
         x, rate = s.velocity, s.acceleration
     else:
         k0, k1 = (p.normal_force * slope * v1 - f1) / p.mass, 0.0
         x, rate = s.v - s.velocity, v1 - s.acceleration
-    spring = s.spring
-    for k in range(count):
-        frequency, _, phase, v, _, at_x, _, _ = _answer(p, s, osc, k, t, shift, slope)
-        x -= (phase * at_x).imag
-        rate -= TURN * frequency * (phase * (at_x if stuck else at_x - v)).real
-    end, end_rate, once, twice, thrice, xx = moments(osc, x, rate, k0, k1, t)
-    once1, twice1 = t * once - twice, t * twice - thrice     # ∫ t x and ∫ t ∫x
+    for k in range(int(s.sinusoid_count)):
+        one = _answer(p, s, osc, k, t, shift, slope)
+        at_rate = one.at_x if stuck else one.at_x - one.v
+        x -= (one.phase * one.at_x).imag
+        rate -= TURN * one.frequency * (one.phase * at_rate).real
+    end, end_rate, once, twice, thrice, square = moments(osc, x, rate, k0, k1, t)
+    return Rest(k0, k1, x, rate, end, end_rate, once, twice, thrice, square)
+
+
+@compiled
+def _of_the_inputs(s: State, rest: Rest, t: float) -> Products:
+    """Return the products of the rest of the motion, and of the inputs without sinusoids."""
+    v0, v1, f0, f1, spring = s.base_v, s.v_rate, s.base_f, s.f_rate, s.spring
+    once, twice = rest.once, rest.twice
+    once1, twice1 = t * once - twice, t * twice - rest.thrice     # ∫ t x and ∫ t ∫x
     v_x, f_x = v0 * once + v1 * once1, f0 * once + f1 * once1
     v_v = (v0 * v0 + (v0 + v1 * t / 3.0) * v1 * t) * t
     f_v = (f0 * v0 + (0.5 * (f0 * v1 + f1 * v0) + f1 * v1 * t / 3.0) * t) * t
-    if stuck:
+    if s.mode == STICK:
         v_w = (v0 * ((spring + (0.5 * v0 + v1 * t / 6.0) * t) * t - twice)
                + v1 * ((0.5 * spring + (v0 / 3.0 + 0.125 * v1 * t) * t) * t * t - twice1))
     else:
         v_w = v0 * (spring * t + twice) + v1 * (0.5 * spring * t * t + twice1)
-    path = (v0 + 0.5 * v1 * t) * t - once                      # of the slider, in slip
-    for k in range(count):
-        frequency, cycle, phase, v, f, at_x, lead, against = _answer(p, s, osc, k, t, shift, slope)
-        w = TURN * frequency
-        wave = complex(math.cos(TURN * cycle), math.sin(TURN * cycle))
-        zero = wave_integral(frequency, cycle, t)
-        one = wave_moment(w, wave, zero, t)
-        lag = complex(2.0 * gamma, -w)
-        of_x = over(k0 * zero + k1 * one - ((end_rate + lag * end) * wave - (rate + lag * x)), against)
-        of_path = (once * wave - of_x) * complex(0.0, -1.0 / w)
-        if stuck:
-            square = (t * t * wave - 2.0 * one) * complex(0.0, -1.0 / w)
-            of_stretch = phase * (spring * zero + v0 * one + 0.5 * v1 * square - of_path)
-        else:
-            of_stretch = phase * (spring * zero + of_path)
-        of_x, of_v, of_f = phase * of_x, phase * (v0 * zero + v1 * one), phase * (f0 * zero + f1 * one)
-        xx += 2.0 * (at_x * of_x).imag
-        v_x += v * of_x.imag + (at_x * of_v).imag
-        v_v += 2.0 * v * of_v.imag
-        f_x += f * of_x.imag + (at_x * of_f).imag
-        f_v += v * of_f.imag + f * of_v.imag
-        v_w += v * of_stretch.imag + (lead * phase * swept_integral(w, v0, v1, zero, one, t)).imag
-        path += ((v - at_x) * (phase * zero)).imag
-        for j in range(k + 1):
-            other, cycle_j, phase_j, v_j, f_j, x_j, lead_j, _ = _answer(p, s, osc, j, t, shift, slope)
-            same, sum_ = wave_products(frequency, cycle, other, cycle_j, t)
-            apart, joint = phase_products(phase, phase_j, j == k)
-            w_j, zero_j = TURN * other, wave_integral(other, cycle_j, t)
-            swept = joint * ramped_integral(w, wave, zero, w_j, zero_j, sum_, t)
-            away = mirrored(apart) * ramped_integral(-w, mirrored(wave), mirrored(zero), w_j, zero_j, mirrored(same), t)
-            v_w += 0.5 * v * (lead_j * (away - swept)).real
-            if j < k:
-                wave_j = complex(math.cos(TURN * cycle_j), math.sin(TURN * cycle_j))
-                swept = joint * ramped_integral(w_j, wave_j, zero_j, w, zero, sum_, t)
-                away = apart * ramped_integral(-w_j, mirrored(wave_j), mirrored(zero_j), w, zero, same, t)
-                v_w += 0.5 * v_j * (lead * (away - swept)).real
-            half = 0.25 if j == k else 0.5
-            same, sum_ = apart * same, joint * sum_
-            real = same - sum_                       # of two sinusoids in phase with the inputs
-            with_x = mirrored(x_j) * same - x_j * sum_
-            xx += 2.0 * half * (at_x * with_x).real
-            v_v += 2.0 * half * v * v_j * real.real
-            f_v += half * (f * v_j + v * f_j) * real.real
-            v_x += half * (v * with_x.real + v_j * (at_x * real).real)
-            f_x += half * (f * with_x.real + f_j * (at_x * real).real)
-    if stuck:
-        return Works(p.stiffness * v_w + p.damping * (v_v - v_x), f_x, 0.0, p.damping * (v_v - 2.0 * v_x + xx),
-                     p.contact_damping * xx)
-    friction = p.normal_force * (s.direction * steady * path + slope * (v_v - 2.0 * v_x + xx))
-    return Works(p.stiffness * v_w + p.damping * v_x, f_v - f_x, friction, p.damping * xx, 0.0)
+    return Products(rest.square, v_x, v_v, f_x, f_v, v_w, (v0 + 0.5 * v1 * t) * t - once)
+
+
+@inlined
+def _with_a_sinusoid(s: State, osc: Oscillator, rest: Rest, one: Answer, wave: complex, zero: complex,
+                     before: Products, t: float) -> Products:
+    """Add the products of a sinusoid with the rest and the inputs; `wave` is e^(iwt) and `zero` its integral."""
+    v0, v1, f0, f1 = s.base_v, s.v_rate, s.base_f, s.f_rate
+    v, f, at_x, phase, w = one.v, one.f, one.at_x, one.phase, TURN * one.frequency
+    moment = wave_moment(w, wave, zero, t)
+    lag = complex(2.0 * osc.gamma, -w)
+    ends = (rest.end_rate + lag * rest.end) * wave - (rest.rate + lag * rest.x)
+    of_x = over(rest.k0 * zero + rest.k1 * moment - ends, one.against)
+    of_path = (rest.once * wave - of_x) * complex(0.0, -1.0 / w)
+    if s.mode == STICK:
+        square = (t * t * wave - 2.0 * moment) * complex(0.0, -1.0 / w)
+        of_stretch = phase * (s.spring * zero + v0 * moment + 0.5 * v1 * square - of_path)
+    else:
+        of_stretch = phase * (s.spring * zero + of_path)
+    of_x, of_v, of_f = phase * of_x, phase * (v0 * zero + v1 * moment), phase * (f0 * zero + f1 * moment)
+    swept = one.lead * phase * swept_integral(w, v0, v1, zero, moment, t)
+    return Products(before.xx + 2.0 * (at_x * of_x).imag,
+                    before.v_x + (v * of_x.imag + (at_x * of_v).imag),
+                    before.v_v + 2.0 * v * of_v.imag,
+                    before.f_x + (f * of_x.imag + (at_x * of_f).imag),
+                    before.f_v + (v * of_f.imag + f * of_v.imag),
+                    before.v_w + (v * of_stretch.imag + swept.imag),
+                    before.path + ((v - at_x) * (phase * zero)).imag)
+
+
+@inlined
+def _with_two(one: Answer, other: Answer, alike: bool, wave: complex, zero: complex, before: Products, t: float
+              ) -> Products:
+    """Add the products of two sinusoids, or of one with itself."""
+    w, w_j = TURN * one.frequency, TURN * other.frequency
+    same, sum_ = wave_products(one.frequency, one.cycle, other.frequency, other.cycle, t)
+    apart, joint = phase_products(one.phase, other.phase, alike)
+    zero_j = wave_integral(other.frequency, other.cycle, t)
+    swept = joint * ramped_integral(w, wave, zero, w_j, zero_j, sum_, t)
+    away = mirrored(apart) * ramped_integral(-w, mirrored(wave), mirrored(zero), w_j, zero_j, mirrored(same), t)
+    v_w = before.v_w + 0.5 * one.v * (other.lead * (away - swept)).real
+    if not alike:
+        wave_j = complex(math.cos(TURN * other.cycle), math.sin(TURN * other.cycle))
+        swept = joint * ramped_integral(w_j, wave_j, zero_j, w, zero, sum_, t)
+        away = apart * ramped_integral(-w_j, mirrored(wave_j), mirrored(zero_j), w, zero, same, t)
+        v_w += 0.5 * other.v * (one.lead * (away - swept)).real
+    half = 0.25 if alike else 0.5
+    same, sum_ = apart * same, joint * sum_
+    real = same - sum_                       # of two sinusoids in phase with the inputs
+    with_x = mirrored(other.at_x) * same - other.at_x * sum_
+    return Products(before.xx + 2.0 * half * (one.at_x * with_x).real,
+                    before.v_x + half * (one.v * with_x.real + other.v * (one.at_x * real).real),
+                    before.v_v + 2.0 * half * one.v * other.v * real.real,
+                    before.f_x + half * (one.f * with_x.real + other.f * (one.at_x * real).real),
+                    before.f_v + half * (one.f * other.v + one.v * other.f) * real.real,
+                    v_w, before.path)
 
 
 @compiled
@@ -204,11 +280,11 @@ def _given(s: State, k: int) -> tuple[float, complex, float, float]:
 
 @compiled
 def _answer(p: Parameters, s: State, osc: Oscillator, k: int, t: float, shift: float, slope: float
-           ) -> tuple[float, float, complex, float, float, complex, complex, complex]:
-    """Return frequency, turns within t, phase factor, amplitudes of v and F_e, and the answer to them at phase 0.
+           ) -> Answer:
+    """Return a sinusoid and the answer to it.
 
-    That is the amplitudes of x and of v − ẋ, and what the integral of the rest is divided by.  What distinguishes a
-    sinusoid near resonance from the oscillator's own is taken once: phases and divisor agree on it to the last digit.
+    What distinguishes a sinusoid near resonance from the oscillator's own is taken once: phases and divisor agree on it
+    to the last digit.
     """
     gamma, _, nu, near, far = osc
     frequency, phase, v, f = _given(s, k)
@@ -226,6 +302,6 @@ def _answer(p: Parameters, s: State, osc: Oscillator, k: int, t: float, shift: f
     if s.mode == STICK:
         at_x = over(complex(p.stiffness * v, (p.damping * v + f) * w), p.mass * divisor)
         lead = complex((p.contact_stiffness - p.mass * w * w) * v, (p.contact_damping * v - f) * w)
-        return frequency, cycle, phase, v, f, at_x, over(lead, p.mass * divisor), against
+        return Answer(frequency, cycle, phase, v, f, at_x, over(lead, p.mass * divisor), against)
     lead = over(complex(-p.mass * w * w * v, (p.normal_force * slope * v - f) * w), p.mass * divisor)
-    return frequency, cycle, phase, v, f, lead, lead, against
+    return Answer(frequency, cycle, phase, v, f, lead, lead, against)

@@ -18,7 +18,7 @@ from ...axis.transitions import applied_force, force_rate
 from ...core.jit import compiled, inlined
 from ...friction.static import CONSTANT, EXPONENTIAL, KATO, LOGARITHMIC, StaticGrowth, static_growth
 from ...linear.polynomials import first_crossing, safe_step
-from ...linear.steps import EPSILON, householder, householder_settles
+from ...linear.steps import EPSILON, halley, householder, householder_settles
 
 STEPS = 100_000
 _DIRECT_STEPS = 8
@@ -127,9 +127,7 @@ def concave_root(p: Parameters, s: State, rest: float, force: float, rate: float
     low = 0.0
     t = high = _time_to_pass(p, rest, force, rate, second_rate)
     for _ in range(STEPS):
-        limit, growth, curvature = law(p, rest + t)
-        fading = size * math.exp(-decay * t) if size > 0.0 else 0.0
-        value = normal * limit - force - (rate + 0.5 * second_rate * t) * t - fading
+        value, slope, bow = _concave_guard(p, rest, force, rate, size, decay, second_rate, t)
         if value > 0.0:
             low = t
         else:
@@ -137,13 +135,8 @@ def concave_root(p: Parameters, s: State, rest: float, force: float, rate: float
         if low >= high:
             return t
         s.iterations += 1.0
-        slope = normal * growth - rate - second_rate * t + decay * fading
-        bow = -(normal * curvature + second_rate + decay * decay * fading)
-        step = guess = math.inf
-        if slope < 0.0:
-            step = value / slope
-            step /= max(1.0 - 0.5 * step * bow / slope, 0.5)
-            guess = t - step
+        step = halley(value, slope, bow) if slope < 0.0 else math.inf
+        guess = t - step if slope < 0.0 else math.inf
         if low <= guess <= high:
             sharpness = bow / slope + 1.0 / p.static_tau + 3.0 / (rest + guess) + decay
             if abs(step) <= 2.0 * EPSILON * t or abs(step) * (step * sharpness) ** 2 <= 0.1 * EPSILON * guess:
@@ -154,6 +147,17 @@ def concave_root(p: Parameters, s: State, rest: float, force: float, rate: float
                 return guess
         t = guess
     return t
+
+
+@inlined
+def _concave_guard(p: Parameters, rest: float, force: float, rate: float, size: float, decay: float,
+                   second_rate: float, t: float) -> tuple[float, float, float]:
+    """Return the concave function of `concave_root` at t, its rate and its second rate."""
+    limit, growth, curvature = law(p, rest + t)
+    fading = size * math.exp(-decay * t) if size > 0.0 else 0.0
+    return (p.normal_force * limit - force - (rate + 0.5 * second_rate * t) * t - fading,
+            p.normal_force * growth - rate - second_rate * t + decay * fading,
+            -(p.normal_force * curvature + second_rate + decay * decay * fading))
 
 
 @compiled
