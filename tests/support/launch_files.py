@@ -3,7 +3,8 @@
 """What `ros2 launch` would start: the launch files run on a small double of launch, which has no wheels.
 
 It knows what these files use and no more, with the rules of launch: a configuration that is set stays, a declared
-argument sets it otherwise, and what a file includes shares all of them.
+argument sets it otherwise, and what a file includes shares all of them.  Where launch is installed,
+tests/house/test_launch_for_real.py holds it to what launch starts and declares.
 """
 
 import os
@@ -148,15 +149,17 @@ class _Node(NamedTuple):
     package: str
     executable: Any
     name: str = ''
-    namespace: Any = ''
+    namespace: Any = None
     arguments: Iterable[Any] = ()
     parameters: Iterable[Any] = ()
     remappings: Iterable[tuple[Any, Any]] = ()
     output: str = 'log'
 
     def __call__(self, context: Context, result: Launched) -> None:
-        namespace = '/' + _text(self.namespace, context).lstrip('/')
-        renamed = [*([('__node', self.name)] if self.name else []), ('__ns', namespace), *self.remappings]
+        renamed = [('__node', self.name)] if self.name else []
+        if self.namespace is not None:
+            renamed.append(('__ns', '/' + _text(self.namespace, context).lstrip('/')))
+        renamed += self.remappings
         rules = [f'{before}:={_text(after, context)}' for before, after in renamed]
         files = [self._file(entry, context) for entry in self.parameters]
         words = [_text(word, context) for word in self.arguments]
