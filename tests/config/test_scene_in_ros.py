@@ -4,12 +4,12 @@
 
 import array
 import pathlib
+from importlib.resources import files
 
 import pytest
 
 from stickslip_sim.config.ros_yaml import plain_value
 from stickslip_sim.scene import load_scene, scene_from_values, scene_names
-from stickslip_sim.scene.load import _SHIPPED
 from tests.support.scene_files import HEAD, write
 
 rclpy = pytest.importorskip('rclpy')
@@ -41,7 +41,7 @@ def parameters(path: str) -> dict[str, object]:
 @pytest.mark.parametrize('name', scene_names())
 def test_a_node_gets_the_same_scene(name: str, tmp_path: pathlib.Path) -> None:
     scene = load_scene(name)
-    assert scene_from_values(parameters(str(_SHIPPED / f'{name}.yaml'))) == scene
+    assert scene_from_values(parameters(str(files('stickslip_sim') / 'scenes' / f'{name}.yaml'))) == scene
     assert parameters(write(tmp_path, scene.text, '')) == scene.values
 
 

@@ -34,7 +34,7 @@ class TestNeighbours:
     def test_controllers_come_and_go(self) -> None:
         with running(*ON) as process, client() as axis:
             axis.connect()
-            axis.node.destroy_publisher(axis._velocity)
+            axis.stop_commanding()
             with hardware_interface(always(0.003), name='first'):
                 with hardware_interface(always(0.004), name='second'):
                     status = trouble(axis, '2 controllers at once')
