@@ -10,8 +10,8 @@ import mpmath as mp
 import pytest
 
 from stickslip_sim.linear.oscillator import Oscillator, integrals, oscillator
+from stickslip_sim.linear.root_steps import householder
 from stickslip_sim.linear.roots import first_passage
-from stickslip_sim.linear.steps import householder
 from stickslip_sim.linear.zeros import finite_horizon
 
 

@@ -89,7 +89,7 @@ class TickEvaluation:
 
 
 @dataclass(slots=True)
-class Account:
+class EnergySums:
     """Sums of the works, the exchanges and the throughput of `energy.EnergyBalance`, J."""
 
     drive: float = 0.0
@@ -115,7 +115,7 @@ class GivenInputs:
 
 
 @dataclass(slots=True)
-class Grid:
+class StepGrid:
     """The grid of fixed steps."""
 
     method: float = 0.0         # `fixed_step.steps.EULER` or `RK4`
@@ -200,13 +200,13 @@ class State:
     # the account of energy up to the segment start; sums and lost are 0 where none is kept
     accounting: float         # 1 where it is kept
     stored_at_start: float    # J
-    sums: Account
-    lost: Account             # what rounding lost of each sum
+    sums: EnergySums
+    lost: EnergySums             # what rounding lost of each sum
     spare: float
     # for solvers that step; v, f and their rates are then those at the state
     given: GivenInputs
     given_sinusoids: float    # how many
-    grid: Grid
+    grid: StepGrid
     kept: list[OscillatorRecord]   # that each mode had last
     sinusoids: list[SinusoidRecord]
 

@@ -6,7 +6,7 @@ import math
 
 from ..core.jit import compiled, inlined
 from .oscillator import Oscillator, integrals, short_integrals
-from .steps import EPSILON, ITERATIONS, householder, householder_settles
+from .root_steps import EPSILON, ITERATIONS, householder, householder_settles
 from .zeros import finite_horizon, first_zero, next_zero
 
 

@@ -17,7 +17,7 @@ Three arguments cover every guard of a linear mode; none of them scans:
 What the arguments assume of floating point (tests/test_floating_point.py holds each to it):
 
 a. *Overflow*: nothing is evaluated where a growing mode has grown by more than e⁶⁰⁰; it has left every bounded piece
-   before.  There a value is a number, a product of two is not, so that steps are taken in ratios (`steps`).
+   before.  There a value is a number, a product of two is not, so that steps are taken in ratios (`root_steps`).
 b. *Underflow*: the rate of a mode that has died out may be 0 or have lost its digits.  A step from there is infinite
    or beyond the bracket, and the bracket is halved; a value that is not 0 never gives a step of 0.
 c. *When a root is accepted*: inside a bracket whose ends have been evaluated and differ in sign, or where argument 2
@@ -33,7 +33,7 @@ from typing import NamedTuple
 from ..core.jit import inlined
 from .monotone import bracket, first_guess, monotone_root, passage_under_ramp
 from .oscillator import Oscillator, short_integrals
-from .steps import householder, householder_settles
+from .root_steps import householder, householder_settles
 from .zeros import finite_horizon, first_zero, half_period
 
 _DIRECT_STEPS = 8

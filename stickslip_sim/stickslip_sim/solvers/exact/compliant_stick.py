@@ -29,7 +29,7 @@ from ...axis.transitions import force_rounding
 from ...core.jit import compiled, inlined
 from ...linear.oscillator import Oscillator, amplitude, bound
 from ...linear.polynomials import first_crossing, safe_step
-from ...linear.steps import EPSILON
+from ...linear.root_steps import EPSILON
 from .compliant_root import bracketed_root, direct_root
 from .contact_force import ContactForce, contact_at, contact_motion, force_at, moves, rings_within
 from .static_guards import GAVE_UP, STEPS, concave_root, is_concave, law, steep_start

@@ -35,18 +35,17 @@ from ...core.jit import compiled, inlined
 from ...friction.static import CONSTANT
 from ...linear.oscillator import Oscillator
 from ...linear.polynomials import first_crossing, safe_step
-from ...linear.steps import EPSILON, ITERATIONS
+from ...linear.root_steps import EPSILON, ITERATIONS
 from ...linear.zeros import finite_horizon
 from .signal_readings import Reading, read_signal
-from .signals import Signal, signal_of
+from .signals import GuardSignal, signal_of
 from .static_guards import GAVE_UP, concave_root, is_concave, law, steep_start
 
 _STEPS = 10_000_000
 _WORTH_A_LEAP = 1e-6   # room between envelope and limit, as a part of what lies between the limits
 
 
-
-class Limits(NamedTuple):
+class GuardLimits(NamedTuple):
     """What the signal is to stay between."""
 
     top: float
@@ -117,7 +116,7 @@ def forced_event(p: Parameters, s: State, due: float) -> None:
 
 
 @inlined
-def _holds_nothing(s: State, limits: Limits) -> bool:
+def _holds_nothing(s: State, limits: GuardLimits) -> bool:
     """Whether stick has no friction at all."""
     return limits.top == limits.floor and limits.top_rate == 0.0 and limits.bow == 0.0 and s.mode == STICK
 
@@ -140,7 +139,7 @@ def _is_searched(s: State, t: float, searched: float, due: float, last: float) -
 
 
 @inlined
-def _guard_at(p: Parameters, now: Reading, limits: Limits, rounding: float, fastest: float) -> Guard:
+def _guard_at(p: Parameters, now: Reading, limits: GuardLimits, rounding: float, fastest: float) -> Guard:
     """Return the guard from a reading of the signal and its limits."""
     up, up_rate = limits.top - now.value, limits.top_rate - now.rate
     down, down_rate = now.value - limits.floor, now.rate - limits.floor_rate
@@ -183,21 +182,21 @@ def _rounding(p: Parameters, s: State, slips: bool) -> float:
 
 
 @compiled
-def _limits(p: Parameters, s: State, t: float) -> Limits:
+def _limits(p: Parameters, s: State, t: float) -> GuardLimits:
     """Return the limits of the signal at t."""
     if s.mode == STICK:
         limit, growth, curvature = law(p, s.rest + t)
         normal = p.normal_force
         if normal == 0.0:
-            return Limits(0.0, 0.0, 0.0, 0.0, 0.0)
-        return Limits(normal * limit, normal * growth, normal * curvature, -normal * limit, -normal * growth)
+            return GuardLimits(0.0, 0.0, 0.0, 0.0, 0.0)
+        return GuardLimits(normal * limit, normal * growth, normal * curvature, -normal * limit, -normal * growth)
     if s.mode == COASTING:
-        return Limits(band_of(p, s), 0.0, 0.0, 0.0, 0.0)
-    return Limits(math.inf, 0.0, 0.0, 0.0, 0.0)
+        return GuardLimits(band_of(p, s), 0.0, 0.0, 0.0, 0.0)
+    return GuardLimits(math.inf, 0.0, 0.0, 0.0, 0.0)
 
 
 @compiled
-def _leap(p: Parameters, s: State, signal: Signal, now: Reading, limits: Limits, t: float, noise: float,
+def _leap(p: Parameters, s: State, signal: GuardSignal, now: Reading, limits: GuardLimits, t: float, noise: float,
           horizon: float) -> float:
     """Return how long the envelope keeps off both limits for certain: 0 without room, infinity up to the horizon.
 
@@ -269,7 +268,7 @@ def _root_at_last(p: Parameters, s: State, value: float, fall: float, swing: flo
 
 
 @compiled
-def _root(p: Parameters, s: State, osc: Oscillator, signal: Signal, side: float, gap: float, t: float, low: float,
+def _root(p: Parameters, s: State, osc: Oscillator, signal: GuardSignal, side: float, gap: float, t: float, low: float,
           high: float) -> float:
     """Return the root, between low and high, of what is positive at low and not at high; the search begins at t.
 
@@ -301,7 +300,7 @@ def _root(p: Parameters, s: State, osc: Oscillator, signal: Signal, side: float,
 
 
 @compiled
-def _reading(p: Parameters, s: State, osc: Oscillator, signal: Signal, side: float, gap: float, t: float
+def _reading(p: Parameters, s: State, osc: Oscillator, signal: GuardSignal, side: float, gap: float, t: float
             ) -> tuple[float, float, float, float]:
     """Return what `_root` seeks the zero of, its rate, and bounds on its second and third derivative at t."""
     now = read_signal(p, s, osc, signal, t)
@@ -314,7 +313,7 @@ def _reading(p: Parameters, s: State, osc: Oscillator, signal: Signal, side: flo
 
 
 @compiled
-def _conclude(p: Parameters, s: State, osc: Oscillator, signal: Signal, slips: bool, side: float, gap: float,
+def _conclude(p: Parameters, s: State, osc: Oscillator, signal: GuardSignal, slips: bool, side: float, gap: float,
               low: float, root: float) -> None:
     """Set the event that a root means."""
     if not slips:

@@ -18,7 +18,6 @@ _WEIGHTS = (0.10122853629037625915, 0.22238103445337447054, 0.313706645877887287
 _RADIANS = 1.5      # of a panel: the error for a product of two sinusoids is then below 1e-15
 
 
-
 class Works(NamedTuple):
     """Works from the segment start on, J: the first two are positive when they give, the others when they take."""
 

@@ -10,7 +10,7 @@ from ...axis.motion import STICK
 from ...axis.sinusoids import sinusoid_force, sinusoid_travel
 from ...core.jit import compiled
 from ...linear.oscillator import Oscillator, amplitude, integrals, short_integrals
-from .signals import Signal, is_still
+from .signals import GuardSignal, is_still
 
 _ROUNDING = 8.0 * 2.220446049250313e-16
 
@@ -29,7 +29,7 @@ class Reading(NamedTuple):
 
 
 @compiled
-def read_signal(p: Parameters, s: State, osc: Oscillator, signal: Signal, t: float) -> Reading:
+def read_signal(p: Parameters, s: State, osc: Oscillator, signal: GuardSignal, t: float) -> Reading:
     """Return a signal at t."""
     if is_still(p, s):
         return _read_force(p, s, signal, t)
@@ -39,7 +39,7 @@ def read_signal(p: Parameters, s: State, osc: Oscillator, signal: Signal, t: flo
 
 
 @compiled
-def _read_force(p: Parameters, s: State, signal: Signal, t: float) -> Reading:
+def _read_force(p: Parameters, s: State, signal: GuardSignal, t: float) -> Reading:
     sense, start, rate, second = signal.sense, signal.start, signal.rate, signal.second
     force, force_rate, size = sinusoid_force(p, s, t)
     ramp = (rate + 0.5 * second * t) * t
@@ -49,7 +49,7 @@ def _read_force(p: Parameters, s: State, signal: Signal, t: float) -> Reading:
 
 
 @compiled
-def _read_contact(p: Parameters, s: State, osc: Oscillator, signal: Signal, t: float) -> Reading:
+def _read_contact(p: Parameters, s: State, osc: Oscillator, signal: GuardSignal, t: float) -> Reading:
     stiffness, damping = p.contact_stiffness, p.contact_damping
     gamma, omega2 = osc.gamma, osc.omega2
     start, rate, second, y0, free_u = signal.start, signal.rate, signal.second, signal.y0, signal.free_u
@@ -71,7 +71,7 @@ def _read_contact(p: Parameters, s: State, osc: Oscillator, signal: Signal, t: f
 
 
 @compiled
-def _read_slip(p: Parameters, s: State, osc: Oscillator, signal: Signal, t: float) -> Reading:
+def _read_slip(p: Parameters, s: State, osc: Oscillator, signal: GuardSignal, t: float) -> Reading:
     sense = signal.sense
     a, jerk, snap = s.acceleration, s.jerk, s.snap
     g, slope, first, second, _ = integrals(osc, t)
@@ -92,7 +92,7 @@ def _free_motion(osc: Oscillator, z: float, rate: float, g: float, slope: float)
 
 
 @compiled
-def _curvature(osc: Oscillator, signal: Signal, t: float, g: float, slope: float) -> tuple[float, float]:
+def _curvature(osc: Oscillator, signal: GuardSignal, t: float, g: float, slope: float) -> tuple[float, float]:
     """Return (reach, bound): |f″| from t to t + reach stays below the bound."""
     gamma, _, nu, slow, _ = osc
     z, rate = _free_motion(osc, signal.z, signal.z_rate, g, slope)

@@ -25,7 +25,7 @@ from ...linear.waves import TURN
 _NEAR_RESONANCE = 0.25   # |ω² − w² + 2iγw| below this part of ω² + w²
 
 
-class Signal(NamedTuple):
+class GuardSignal(NamedTuple):
     """What a guard watches, and what bounds its second derivative.
 
     start + rate t + second t²/2 is its polynomial; y₀ and `free_u` belong to the free motion of a contact (but for the
@@ -57,7 +57,7 @@ def is_still(p: Parameters, s: State) -> bool:
 
 
 @compiled
-def signal_of(p: Parameters, s: State, osc: Oscillator) -> Signal:
+def signal_of(p: Parameters, s: State, osc: Oscillator) -> GuardSignal:
     """Return the signal of the present mode."""
     if is_still(p, s):
         return _force_signal(p, s)
@@ -67,7 +67,7 @@ def signal_of(p: Parameters, s: State, osc: Oscillator) -> Signal:
 
 
 @compiled
-def _force_signal(p: Parameters, s: State) -> Signal:
+def _force_signal(p: Parameters, s: State) -> GuardSignal:
     sense, start = 1.0, applied_force(p, s)
     if s.mode == COASTING:
         sense, start = s.direction, s.residual
@@ -82,13 +82,13 @@ def _force_signal(p: Parameters, s: State) -> Signal:
         fastest = max(fastest, w)
     rate = sense * (p.stiffness * (s.base_v - s.velocity) + p.damping * s.v_rate + s.f_rate)
     second = sense * p.stiffness * s.v_rate
-    return Signal(sense=sense, start=start, rate=rate, second=second, y0=0.0, free_u=0.0, mean=start + sense * mean,
-                  amplitude=swing, free=0.0, free_rate=0.0, z=0.0, z_rate=0.0, curvature=abs(second) + curvature,
-                  resonant=0.0, fastest=fastest)
+    return GuardSignal(sense=sense, start=start, rate=rate, second=second, y0=0.0, free_u=0.0,
+                       mean=start + sense * mean, amplitude=swing, free=0.0, free_rate=0.0, z=0.0, z_rate=0.0,
+                       curvature=abs(second) + curvature, resonant=0.0, fastest=fastest)
 
 
 @compiled
-def _contact_signal(p: Parameters, s: State, osc: Oscillator) -> Signal:
+def _contact_signal(p: Parameters, s: State, osc: Oscillator) -> GuardSignal:
     stiffness, damping = p.contact_stiffness, p.contact_damping
     gamma, omega2 = osc.gamma, osc.omega2
     u, a = s.velocity, s.acceleration
@@ -104,19 +104,19 @@ def _contact_signal(p: Parameters, s: State, osc: Oscillator) -> Signal:
     free_rate += stiffness * u + damping * a - rate
     z += stiffness * a + damping * a1 - second
     z_rate += stiffness * a1 + damping * a2
-    return Signal(sense=1.0, start=start, rate=rate, second=second, y0=y0, free_u=u - y1, mean=mean, amplitude=swing,
-                  free=free, free_rate=free_rate, z=z, z_rate=z_rate, curvature=abs(second) + curvature,
-                  resonant=resonant, fastest=fastest)
+    return GuardSignal(sense=1.0, start=start, rate=rate, second=second, y0=y0, free_u=u - y1, mean=mean,
+                       amplitude=swing, free=free, free_rate=free_rate, z=z, z_rate=z_rate,
+                       curvature=abs(second) + curvature, resonant=resonant, fastest=fastest)
 
 
 @compiled
-def _slip_signal(p: Parameters, s: State, osc: Oscillator) -> Signal:
+def _slip_signal(p: Parameters, s: State, osc: Oscillator) -> GuardSignal:
     sense = s.direction if s.mode == ACCELERATING else -s.direction
     _, a2, a3 = _acceleration_rates(p, s, osc)
     _, _, _, curvature, z, z_rate, resonant, fastest, _ = _steady(p, s, osc, 0.0, -1.0)
-    return Signal(sense=sense, start=0.0, rate=0.0, second=0.0, y0=0.0, free_u=0.0, mean=0.0, amplitude=math.inf,
-                  free=0.0, free_rate=0.0, z=z + a2, z_rate=z_rate + a3, curvature=curvature, resonant=resonant,
-                  fastest=fastest)
+    return GuardSignal(sense=sense, start=0.0, rate=0.0, second=0.0, y0=0.0, free_u=0.0, mean=0.0, amplitude=math.inf,
+                       free=0.0, free_rate=0.0, z=z + a2, z_rate=z_rate + a3, curvature=curvature, resonant=resonant,
+                       fastest=fastest)
 
 
 @compiled

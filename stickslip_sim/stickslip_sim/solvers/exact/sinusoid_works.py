@@ -50,7 +50,7 @@ _SHARES = (-0.0039350853412309224, 0.012003937954005802, -0.0207106781186547524,
            -0.20826498850452086, 0.635310236808735232)
 
 
-class Answer(NamedTuple):
+class SinusoidAnswer(NamedTuple):
     """A sinusoid, and the steady answer to it at phase 0."""
 
     frequency: float    # Hz
@@ -217,7 +217,7 @@ def _of_the_inputs(s: State, rest: Rest, t: float) -> Products:
 
 
 @inlined
-def _with_a_sinusoid(s: State, osc: Oscillator, rest: Rest, one: Answer, wave: complex, zero: complex,
+def _with_a_sinusoid(s: State, osc: Oscillator, rest: Rest, one: SinusoidAnswer, wave: complex, zero: complex,
                      before: Products, t: float) -> Products:
     """Add the products of a sinusoid with the rest and the inputs; `wave` is e^(iwt) and `zero` its integral."""
     v0, v1, f0, f1 = s.base_v, s.v_rate, s.base_f, s.f_rate
@@ -244,8 +244,8 @@ def _with_a_sinusoid(s: State, osc: Oscillator, rest: Rest, one: Answer, wave: c
 
 
 @inlined
-def _with_two(one: Answer, other: Answer, alike: bool, wave: complex, zero: complex, before: Products, t: float
-              ) -> Products:
+def _with_two(one: SinusoidAnswer, other: SinusoidAnswer, alike: bool, wave: complex, zero: complex,
+              before: Products, t: float) -> Products:
     """Add the products of two sinusoids, or of one with itself."""
     w, w_j = TURN * one.frequency, TURN * other.frequency
     same, sum_ = wave_products(one.frequency, one.cycle, other.frequency, other.cycle, t)
@@ -280,7 +280,7 @@ def _given(s: State, k: int) -> tuple[float, complex, float, float]:
 
 @compiled
 def _answer(p: Parameters, s: State, osc: Oscillator, k: int, t: float, shift: float, slope: float
-           ) -> Answer:
+           ) -> SinusoidAnswer:
     """Return a sinusoid and the answer to it.
 
     What distinguishes a sinusoid near resonance from the oscillator's own is taken once: phases and divisor agree on it
@@ -302,6 +302,6 @@ def _answer(p: Parameters, s: State, osc: Oscillator, k: int, t: float, shift: f
     if s.mode == STICK:
         at_x = over(complex(p.stiffness * v, (p.damping * v + f) * w), p.mass * divisor)
         lead = complex((p.contact_stiffness - p.mass * w * w) * v, (p.contact_damping * v - f) * w)
-        return Answer(frequency, cycle, phase, v, f, at_x, over(lead, p.mass * divisor), against)
+        return SinusoidAnswer(frequency, cycle, phase, v, f, at_x, over(lead, p.mass * divisor), against)
     lead = over(complex(-p.mass * w * w * v, (p.normal_force * slope * v - f) * w), p.mass * divisor)
-    return Answer(frequency, cycle, phase, v, f, lead, lead, against)
+    return SinusoidAnswer(frequency, cycle, phase, v, f, lead, lead, against)

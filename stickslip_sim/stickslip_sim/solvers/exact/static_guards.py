@@ -18,7 +18,7 @@ from ...axis.transitions import applied_force, force_rate
 from ...core.jit import compiled, inlined
 from ...friction.static import CONSTANT, EXPONENTIAL, KATO, LOGARITHMIC, StaticGrowth, static_growth
 from ...linear.polynomials import first_crossing, safe_step
-from ...linear.steps import EPSILON, halley, householder, householder_settles
+from ...linear.root_steps import EPSILON, halley, householder, householder_settles
 
 STEPS = 100_000
 _DIRECT_STEPS = 8

@@ -22,7 +22,6 @@ from .sinusoid_works import moving_works, still_works
 _FEW = 0.05   # of the drive's path: what is left of it with more than one digit less is integrated by itself
 
 
-
 class MotionIntegrals(NamedTuple):
     """Integrals over a motion with w = s − x and x = v − ẋ, the drive's lead."""
 
