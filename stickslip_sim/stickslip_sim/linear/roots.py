@@ -14,7 +14,7 @@ Three arguments cover every guard of a linear mode; none of them scans:
 
 `polynomials.first_crossing` is exact for polynomials of degree two.  "Never" is infinity.
 
-What the arguments assume of floating point (tests/test_floating_point.py holds each to it):
+What the arguments assume of floating point (tests/linear/test_floating_point.py holds each to it):
 
 a. *Overflow*: nothing is evaluated where a growing mode has grown by more than e⁶⁰⁰; it has left every bounded piece
    before.  There a value is a number, a product of two is not, so that steps are taken in ratios (`root_steps`).
