@@ -4,7 +4,6 @@
 
 import ast
 from collections.abc import Iterator
-from typing import Any
 
 from .c_types import BINT, COMPLEX, DOUBLE, LONG, Kind, TupleKind, declared
 from .scope import Scope
@@ -14,7 +13,7 @@ _RANK = (COMPLEX, DOUBLE, LONG, BINT)
 _COUNTS = frozenset({'count'})   # fields that are integers; all others are floats
 
 
-class LocalTypes:
+class LocalTypes(ast.NodeVisitor):
     """What the names and expressions of a function are."""
 
     def __init__(self, function: ast.FunctionDef, scope: Scope) -> None:
@@ -27,9 +26,11 @@ class LocalTypes:
 
     def kind(self, node: ast.expr) -> Kind | None:
         """Return the type of an expression, None where it is not known yet."""
-        find: Any = getattr(self, f'_{type(node).__name__.lower()}', None)
-        found: Kind | None = find(node) if find else None
+        found: Kind | None = self.visit(node)
         return found
+
+    def generic_visit(self, node: ast.AST) -> None:
+        """Return nothing of an expression that is none of those below."""
 
     def _take(self, target: ast.expr, kind: Kind | None) -> None:
         if isinstance(target, ast.Tuple):
@@ -57,19 +58,24 @@ class LocalTypes:
 
     # one method for each sort of expression
 
-    def _tuple(self, node: ast.Tuple) -> Kind:
+    def visit_Tuple(self, node: ast.Tuple) -> Kind:
+        """Return the types of its items."""
         return TupleKind(self.kind(item) or DOUBLE for item in node.elts)
 
-    def _compare(self, node: ast.Compare) -> Kind:
+    def visit_Compare(self, node: ast.Compare) -> Kind:
+        """Return a truth."""
         return BINT
 
-    def _boolop(self, node: ast.BoolOp) -> Kind:
+    def visit_BoolOp(self, node: ast.BoolOp) -> Kind:
+        """Return a truth."""
         return BINT
 
-    def _constant(self, node: ast.Constant) -> Kind:
+    def visit_Constant(self, node: ast.Constant) -> Kind:
+        """Return the type of a number."""
         return {bool: BINT, int: LONG}.get(type(node.value), DOUBLE)
 
-    def _call(self, node: ast.Call) -> Kind | None:
+    def visit_Call(self, node: ast.Call) -> Kind | None:
+        """Return what a function returns."""
         name = ast.unparse(node.func)
         if name in self._scope.results:
             return self._scope.results[name]
@@ -79,29 +85,35 @@ class LocalTypes:
             return _joined([self.kind(argument) for argument in node.args])
         return {'int': LONG, 'complex': COMPLEX}.get(name, DOUBLE)
 
-    def _name(self, node: ast.Name) -> Kind | None:
+    def visit_Name(self, node: ast.Name) -> Kind | None:
+        """Return what a name is."""
         known = self.arguments.get(node.id) or self.locals.get(node.id)
         value = self._scope.constants.get(node.id)
         return known or {int: LONG, float: DOUBLE}.get(type(value))
 
-    def _ifexp(self, node: ast.IfExp) -> Kind | None:
+    def visit_IfExp(self, node: ast.IfExp) -> Kind | None:
+        """Return the type of both sides."""
         return _joined([self.kind(node.body), self.kind(node.orelse)])
 
-    def _binop(self, node: ast.BinOp) -> Kind | None:
+    def visit_BinOp(self, node: ast.BinOp) -> Kind | None:
+        """Return the type of both operands; a quotient is a float."""
         found = _joined([self.kind(node.left), self.kind(node.right)])
         return DOUBLE if isinstance(node.op, ast.Div) and found == LONG else found
 
-    def _unaryop(self, node: ast.UnaryOp) -> Kind | None:
+    def visit_UnaryOp(self, node: ast.UnaryOp) -> Kind | None:
+        """Return the type of the operand, or a truth."""
         return BINT if isinstance(node.op, ast.Not) else self.kind(node.operand)
 
-    def _attribute(self, node: ast.Attribute) -> Kind:
+    def visit_Attribute(self, node: ast.Attribute) -> Kind:
+        """Return the type of a field."""
         whole = self.kind(node.value)
         place = whole.of_name(node.attr) if isinstance(whole, TupleKind) else None
         if isinstance(whole, TupleKind) and place is not None:
             return whole[place]
         return LONG if node.attr in _COUNTS else DOUBLE
 
-    def _subscript(self, node: ast.Subscript) -> Kind:
+    def visit_Subscript(self, node: ast.Subscript) -> Kind:
+        """Return the type of an item."""
         whole = self.kind(node.value)
         if isinstance(whole, TupleKind) and isinstance(node.slice, ast.Constant) and isinstance(node.slice.value, int):
             return whole[node.slice.value]
