@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from stickslip_sim.core import jit
+from stickslip_sim.core import hot_path
 from tests.support.repository import ROOT
 
 PROJECT = ROOT / 'stickslip_sim'
@@ -44,9 +44,9 @@ def test_every_marked_function_is_in_the_unit(tmp_path: Path) -> None:
     for name in ('friction_static_static_coefficient', 'axis_motion_travel', 'solvers_fixed_step_steps_step'):
         assert f' {name}(' in text
     assert 'cpdef (long, long) solvers_exact_engine_advance(Parameters p, State s, ' in text
-    if jit.UNIT is not None:
-        assert f"DIGEST = '{jit.UNIT.DIGEST}'" in text
-        assert f'SOURCES = {jit.UNIT.SOURCES!r}' in text
+    if hot_path.UNIT is not None:
+        assert f"DIGEST = '{hot_path.UNIT.DIGEST}'" in text
+        assert f'SOURCES = {hot_path.UNIT.SOURCES!r}' in text
 
 
 def test_a_name_for_a_tuple_is_one_in_c_too(tmp_path: Path) -> None:

@@ -4,11 +4,11 @@
 
 import pytest
 
-from stickslip_sim.core import jit
+from stickslip_sim.core import hot_path
 from tests.conftest import Program
 
-pytestmark = pytest.mark.skipif(jit.UNIT is None, reason='no compiled code in this source tree; `make test` tests the '
-                                'installed copy')
+pytestmark = pytest.mark.skipif(hot_path.UNIT is None, reason='no compiled code in this source tree; `make test` tests '
+                                'the installed copy')
 TOLD = '''
 import json
 def told(rows):
@@ -43,7 +43,7 @@ STEPS = [(method, {'solver.name': 'fixed_step', 'solver.method': method, 'solver
     pytest.param(RANDOM, id='random axes'),
 ])
 def test_compiled_and_plain_python_agree_bit_by_bit(program: str, in_a_process: Program) -> None:
-    program = 'from stickslip_sim.core.jit import hot_path\nassert hot_path() == WORDS\n' + program
+    program = 'from stickslip_sim.core.hot_path import hot_path\nassert hot_path() == WORDS\n' + program
     compiled = in_a_process(program.replace('WORDS', '"compiled"'), compiled=True)
     assert compiled.count('\n') > 200
     assert compiled == in_a_process(program.replace('WORDS', '"plain python"'), compiled=False)

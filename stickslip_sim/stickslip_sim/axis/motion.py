@@ -15,7 +15,7 @@ with w = s − x, and b the slope of the friction branch on the present segment 
 their own answer, see `sinusoids`.
 """
 
-from ..core.jit import compiled, inlined
+from ..core.hot_path import compiled, inlined
 from ..core.types import Mode
 from ..friction.static import static_coefficient
 from ..linear.oscillator import Oscillator, ShortIntegrals, integrals, oscillator, short_integrals

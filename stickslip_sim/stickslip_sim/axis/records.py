@@ -4,7 +4,7 @@
 
 from typing import Any
 
-from ..core.jit import UNIT
+from ..core.hot_path import UNIT
 from . import layout
 
 # the unit has its own Parameters, State, Events, Sinusoids, SampleRow and EnergyRow, with the same fields

@@ -15,7 +15,7 @@ so that they do not depend on how a run is split.
 import math
 from typing import NamedTuple
 
-from ..core.jit import compiled
+from ..core.hot_path import compiled
 from ..linear.oscillator import Oscillator
 from ..linear.waves import TURN, phase_at, turns, wave_response
 from .layout import Parameters, Sinusoids, State

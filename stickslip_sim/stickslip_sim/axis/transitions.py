@@ -6,7 +6,7 @@ Ties are decided by where the force moves next: a residual within rounding of ze
 rate, then of the rate's rate, decides.
 """
 
-from ..core.jit import compiled, inlined
+from ..core.hot_path import compiled, inlined
 from ..core.types import EventKind
 from .layout import Events, Parameters, State
 from .motion import (

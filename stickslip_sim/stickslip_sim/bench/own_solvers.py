@@ -11,7 +11,7 @@ import numpy as np
 
 from ..axis.layout import GIVEN_SINUSOID_FIELDS
 from ..core.errors import SolverError
-from ..core.jit import UNIT
+from ..core.hot_path import UNIT
 from ..core.types import Sample
 from ..core.version import __version__
 from ..solvers import DONE, Solver, adaptive, exact, fixed_step

@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 from ..core import ranges
 from ..core.errors import InputError
-from ..core.jit import compiled, inlined
+from ..core.hot_path import compiled, inlined
 
 
 class StaticLawKind(IntEnum):

@@ -6,7 +6,7 @@ Over a short span it is a quadratic form in value and rate at the begin, known f
 span follows from it, and so on.
 """
 
-from ..core.jit import compiled
+from ..core.hot_path import compiled
 from .oscillator import Oscillator, impulse
 
 _STRETCH = 0.25      # ω t of the first span

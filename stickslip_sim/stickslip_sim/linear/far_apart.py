@@ -8,7 +8,7 @@ nothing divides by a λ₁ that is small.
 
 import math
 
-from ..core.jit import compiled
+from ..core.hot_path import compiled
 from .oscillator import Oscillator
 
 _TERMS = 60          # never reached: 25 terms are below rounding

@@ -12,7 +12,7 @@ cases, so that none divides by what vanishes:
 
 import math
 
-from ..core.jit import compiled
+from ..core.hot_path import compiled
 from .critical_square import free_square
 from .far_apart import far_apart
 from .oscillator import Oscillator, impulse

@@ -4,7 +4,7 @@
 
 import math
 
-from ..core.jit import compiled, inlined
+from ..core.hot_path import compiled, inlined
 from .oscillator import Oscillator, integrals, short_integrals
 from .root_steps import EPSILON, ITERATIONS, householder, householder_settles
 from .zeros import finite_horizon, first_zero, next_zero

@@ -23,7 +23,7 @@ is half the distance of the real eigenvalues λ₁ >= λ₂.
 import math
 from typing import NamedTuple
 
-from ..core.jit import compiled, inlined
+from ..core.hot_path import compiled, inlined
 
 _SERIES_BELOW = 2.0   # (|γ| + |ν|) t up to which the power series is summed
 _SHORT_SERIES_BELOW = 0.4   # where G₃ is not asked for

@@ -4,7 +4,7 @@
 
 import math
 
-from ..core.jit import compiled
+from ..core.hot_path import compiled
 
 
 @compiled

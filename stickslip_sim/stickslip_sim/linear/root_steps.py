@@ -9,7 +9,7 @@ motion; d k is its sharpness.  A root is accepted when that error is rounding.
 
 import math
 
-from ..core.jit import inlined
+from ..core.hot_path import inlined
 
 EPSILON = 2.220446049250313e-16
 ITERATIONS = 2200   # halvings between any two numbers

@@ -30,7 +30,7 @@ d. *Signs at the ends* are those of computed values, right but within some 1e-15
 import math
 from typing import NamedTuple
 
-from ..core.jit import inlined
+from ..core.hot_path import inlined
 from .monotone import bracket, first_guess, monotone_root, passage_under_ramp
 from .oscillator import Oscillator, short_integrals
 from .root_steps import householder, householder_settles

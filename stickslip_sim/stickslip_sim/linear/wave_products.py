@@ -8,7 +8,7 @@ turns, as in `waves`; a wave e^(iwτ) begins at 1.
 
 import math
 
-from ..core.jit import compiled
+from ..core.hot_path import compiled
 from .waves import TURN, turns
 
 _SERIES = 0.5       # w t up to which powers are summed

@@ -21,7 +21,7 @@ that late times and high frequencies keep their phase.
 
 import math
 
-from ..core.jit import compiled
+from ..core.hot_path import compiled
 from .oscillator import Oscillator
 
 TURN = 2.0 * math.pi

@@ -4,7 +4,7 @@
 
 import math
 
-from ..core.jit import compiled, inlined
+from ..core.hot_path import compiled, inlined
 from .oscillator import Oscillator
 
 _OVERFLOW = 600.0   # largest exponent of a growing mode; by then it has left every bounded segment

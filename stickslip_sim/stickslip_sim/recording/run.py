@@ -11,7 +11,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..core.jit import hot_path
+from ..core.hot_path import hot_path
 from ..core.version import __version__
 from ..runs.receipt import plain
 from .bag import BagWriter

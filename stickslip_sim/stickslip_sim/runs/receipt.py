@@ -12,7 +12,7 @@ from typing import Any
 import numpy
 
 from ..core.energy import EnergyBalance
-from ..core.jit import hot_path
+from ..core.hot_path import hot_path
 from ..core.types import Mode, Sample
 from ..core.version import __version__
 from ..scene import Scene

@@ -5,7 +5,7 @@
 import math
 
 from ..axis.layout import Sinusoids, State
-from ..core.jit import compiled
+from ..core.hot_path import compiled
 from ..linear.waves import TURN, phase_at
 
 

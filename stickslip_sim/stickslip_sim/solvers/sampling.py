@@ -4,7 +4,7 @@
 
 from ..axis.layout import Parameters, SampleRow, State
 from ..axis.motion import STICK
-from ..core.jit import inlined
+from ..core.hot_path import inlined
 
 
 @inlined

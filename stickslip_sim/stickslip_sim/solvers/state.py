@@ -4,7 +4,7 @@
 
 from ..axis.layout import Parameters, State, clear_state
 from ..axis.motion import DECELERATING, STICK
-from ..core.jit import compiled
+from ..core.hot_path import compiled
 
 
 @compiled

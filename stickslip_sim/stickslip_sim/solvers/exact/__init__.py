@@ -3,7 +3,7 @@
 """The exact solver: from event to event in closed form."""
 
 from ...axis.records import RECORDS
-from ...core.jit import entry
+from ...core.hot_path import entry
 from .. import SolverOfFunctions
 from . import engine, judge, many_axes
 

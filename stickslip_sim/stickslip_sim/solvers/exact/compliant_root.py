@@ -6,7 +6,7 @@ import math
 
 from ...axis.layout import Parameters, State
 from ...axis.motion import static_limit, travel, travel_at
-from ...core.jit import compiled, inlined
+from ...core.hot_path import compiled, inlined
 from ...linear.oscillator import Oscillator, amplitude, short_integrals
 from ...linear.root_steps import EPSILON, halley, halley_settles
 from .contact_force import ContactForce, ContactMotion

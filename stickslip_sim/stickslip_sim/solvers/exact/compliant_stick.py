@@ -26,7 +26,7 @@ import math
 from ...axis.layout import Parameters, State
 from ...axis.motion import TICK, oscillator_of, static_limit
 from ...axis.transitions import force_rounding
-from ...core.jit import compiled, inlined
+from ...core.hot_path import compiled, inlined
 from ...linear.oscillator import Oscillator, amplitude, bound
 from ...linear.polynomials import first_crossing, safe_step
 from ...linear.root_steps import EPSILON

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from ...axis.layout import Parameters, State
 from ...axis.motion import static_limit, travel
-from ...core.jit import compiled
+from ...core.hot_path import compiled
 from ...linear.oscillator import Oscillator, amplitude, impulse
 
 

@@ -42,7 +42,7 @@ from ...axis.transitions import (
     release,
     turn,
 )
-from ...core.jit import compiled, inlined
+from ...core.hot_path import compiled, inlined
 from .. import DONE, FULL, NO_PROGRESS, UNSOUND
 from ..sampling import write_sample
 from .account import book_contact, book_parameters, book_works, read_account

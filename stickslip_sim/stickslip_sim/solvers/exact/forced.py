@@ -31,7 +31,7 @@ from typing import NamedTuple
 from ...axis.layout import Parameters, State
 from ...axis.motion import ACCELERATING, COASTING, STICK, breakpoint_speed, friction_line, oscillator_of, static_limit
 from ...axis.transitions import ACCELERATE, ARREST, BREAKAWAY, COAST, DECELERATE, KNOT, band_of, force_rounding
-from ...core.jit import compiled, inlined
+from ...core.hot_path import compiled, inlined
 from ...friction.static import CONSTANT
 from ...linear.oscillator import Oscillator
 from ...linear.polynomials import first_crossing, safe_step

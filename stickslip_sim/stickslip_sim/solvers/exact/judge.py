@@ -27,7 +27,7 @@ from ...axis.motion import (
 )
 from ...axis.sinusoids import inputs_at
 from ...axis.transitions import ACCELERATE, COAST, band_of
-from ...core.jit import compiled, inlined
+from ...core.hot_path import compiled, inlined
 from .account import balance
 
 ALLOWED = 1e-6   # of the throughput of energy; of the forces that add up; of the speeds that were passed

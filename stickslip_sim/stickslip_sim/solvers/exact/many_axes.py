@@ -21,7 +21,7 @@ from typing import Any
 from ...axis.layout import EventRow, Events, Parameters, Row, Sinusoids, State
 from ...axis.motion import ACCELERATING, STICK
 from ...axis.transitions import ACCELERATE, ARREST, BREAKAWAY, DECELERATE, REVERSE
-from ...core.jit import compiled
+from ...core.hot_path import compiled
 from .. import DONE, FULL
 from .engine import advance, start
 from .judge import is_sound

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from ...axis.layout import Parameters, State
 from ...axis.motion import STICK, drive_travel, slip_friction, travel
 from ...axis.sinusoids import inputs_at
-from ...core.jit import compiled
+from ...core.hot_path import compiled
 
 # eight nodes of Gauss and Legendre's rule
 _NODES = (-0.96028985649753623168, -0.79666647741362673959, -0.52553240991632898582, -0.18343464249564980494,

@@ -27,7 +27,7 @@ from ...axis.motion import (
     travel_at,
 )
 from ...axis.transitions import ACCELERATE, ARREST, BREAKAWAY, COAST, DECELERATE, KNOT, band_of, force_rate
-from ...core.jit import inlined
+from ...core.hot_path import inlined
 from ...linear.polynomials import first_crossing
 from ...linear.roots import first_passage
 from ...linear.zeros import finite_horizon, half_period

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from ...axis.layout import Parameters, State
 from ...axis.motion import STICK
 from ...axis.sinusoids import sinusoid_force, sinusoid_travel
-from ...core.jit import compiled
+from ...core.hot_path import compiled
 from ...linear.oscillator import Oscillator, amplitude, integrals, short_integrals
 from .signals import GuardSignal, is_still
 

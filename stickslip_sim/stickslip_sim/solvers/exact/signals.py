@@ -18,7 +18,7 @@ from typing import NamedTuple
 from ...axis.layout import Parameters, State
 from ...axis.motion import ACCELERATING, COASTING, STICK
 from ...axis.transitions import applied_force
-from ...core.jit import compiled
+from ...core.hot_path import compiled
 from ...linear.oscillator import Oscillator
 from ...linear.waves import TURN
 

@@ -17,7 +17,7 @@ from typing import NamedTuple
 from ...axis.layout import Parameters, State
 from ...axis.motion import COASTING, STICK, oscillator_of, slip_friction
 from ...axis.sinusoids import fastest_sinusoid
-from ...core.jit import compiled, inlined
+from ...core.hot_path import compiled, inlined
 from ...linear.moments import moments
 from ...linear.oscillator import Oscillator
 from ...linear.wave_products import (

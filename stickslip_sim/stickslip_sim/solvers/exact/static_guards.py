@@ -15,7 +15,7 @@ import math
 from ...axis.layout import Parameters, State
 from ...axis.motion import static_limit
 from ...axis.transitions import applied_force, force_rate
-from ...core.jit import compiled, inlined
+from ...core.hot_path import compiled, inlined
 from ...friction.static import CONSTANT, EXPONENTIAL, KATO, LOGARITHMIC, StaticGrowth, static_growth
 from ...linear.polynomials import first_crossing, safe_step
 from ...linear.root_steps import EPSILON, halley, householder, householder_settles

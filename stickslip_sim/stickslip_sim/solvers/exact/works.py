@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from ...axis.layout import Parameters, State
 from ...axis.motion import COASTING, STICK, drive_travel, is_rigid_stick, oscillator_of, slip_friction, travel
-from ...core.jit import compiled, inlined
+from ...core.hot_path import compiled, inlined
 from ...linear.moments import moments
 from .panels import Works
 from .sinusoid_works import moving_works, still_works

@@ -26,7 +26,7 @@ from typing import Any
 
 from ...axis.records import RECORDS
 from ...core.errors import InputError
-from ...core.jit import entry
+from ...core.hot_path import entry
 from .. import Solver, SolverOfFunctions
 from . import loop
 from .stability import check_step

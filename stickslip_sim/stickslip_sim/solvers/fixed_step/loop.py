@@ -30,7 +30,7 @@ from ...axis.transitions import (
     release,
     write_event,
 )
-from ...core.jit import compiled
+from ...core.hot_path import compiled
 from .. import DONE, FULL, OUT_OF_RANGE
 from ..inputs import hold_inputs, inputs_at, inputs_vary, refresh_inputs, same_inputs
 from ..sampling import write_sample

@@ -10,7 +10,7 @@ step the first segment of the table is continued.
 
 from ...axis.layout import Parameters, State
 from ...axis.motion import STICK, breakpoint_speed, contact_force, drive_force, friction_line, is_rigid_stick
-from ...core.jit import compiled
+from ...core.hot_path import compiled
 from ..inputs import inputs_at
 
 EULER, RK4 = 0.0, 1.0

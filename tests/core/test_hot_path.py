@@ -9,7 +9,7 @@ from tests.conftest import Program
 LOAD = '''
 import contextlib, io
 with contextlib.redirect_stderr(io.StringIO()) as said:
-    from stickslip_sim.core.jit import hot_path
+    from stickslip_sim.core.hot_path import hot_path
     from stickslip_sim.solvers import exact, fixed_step
 print(hot_path())
 print(said.getvalue(), end='')
