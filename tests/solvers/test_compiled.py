@@ -17,21 +17,20 @@ def told(rows):
 '''
 SCENES = TOLD + '''
 from fractions import Fraction
-from stickslip_sim.runs.offline import run_offline
-from stickslip_sim.scene import load_scene, scene_names
+from stickslip_sim import load_scene, scene_names, simulate
 for name in scene_names():
-    run = run_offline(load_scene(name, OVERRIDES), 2.0, Fraction(1, 10))
+    run = simulate(load_scene(name, OVERRIDES), 2.0, Fraction(1, 10))
     told(run.events)
     told(run.sample_rows())
     print(name, len(run.events), json.dumps(run.receipt['energy']))
 '''
 RANDOM = TOLD + '''
 import random
-from tests.support.axes import random_axis, run
+from tests.support.axes import random_axis, run_events
 for seed in range(25):
     rng = random.Random(seed)
     axis = random_axis(rng)
-    told(run(axis, rng.choice((-1, 1)) * 10 ** rng.uniform(-3, -1.5), 3.0))
+    told(run_events(axis, rng.choice((-1, 1)) * 10 ** rng.uniform(-3, -1.5), 3.0))
 '''
 STEPS = [(method, {'solver.name': 'fixed_step', 'solver.method': method, 'solver.step': 1e-3})
          for method in ('euler', 'rk4')]
