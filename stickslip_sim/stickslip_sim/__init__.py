@@ -36,10 +36,9 @@ floor down; each imports only from the floors below it:
     core         what every room uses: errors, events, samples, input profiles
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING
-
 from .core.version import __version__
+
+TYPE_CHECKING = False   # what type checkers take for true; `typing` itself is not imported before it is needed
 
 if TYPE_CHECKING:
     from .core.errors import (
@@ -88,6 +87,8 @@ if not TYPE_CHECKING:   # a type checker knows the names from above, and finds a
         """Import what is asked for the first time."""
         if name not in _HOMES:
             raise AttributeError(f'module {__name__!r} has no attribute {name!r}')
+        from importlib import import_module
+
         globals()[name] = found = getattr(import_module(_HOMES[name], __name__), name)
         return found
 
