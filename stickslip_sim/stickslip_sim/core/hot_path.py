@@ -53,18 +53,21 @@ def _load() -> ModuleType | None:
     except ImportError as error:
         _say(f'the compiled hot path is missing ({error})')
         return None
-    if _digest_of(unit.SOURCES) != unit.DIGEST:
+    if not _is_built_from(unit.SOURCES, unit.DIGEST):
         _say('the compiled hot path was built from other sources')
         return None
     return unit
 
 
-def _digest_of(names: tuple[str, ...]) -> str:
-    """Return the digest of files of this package, as the build takes it."""
+def _is_built_from(names: tuple[str, ...], wanted: str) -> bool:
+    """Whether files of this package, all still there, have this digest, as the build takes it."""
     digest, package = hashlib.sha256(), Path(__file__).parents[1]
-    for name in names:
-        digest.update((package / name).read_bytes())
-    return digest.hexdigest()
+    try:
+        for name in names:
+            digest.update((package / name).read_bytes())
+    except FileNotFoundError:
+        return False
+    return digest.hexdigest() == wanted
 
 
 def _say(what: str) -> None:
