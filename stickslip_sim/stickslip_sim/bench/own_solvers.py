@@ -53,7 +53,7 @@ def exact_solver() -> Peer:
 
 
 def state_for(problem: Problem, records: Any) -> Any:
-    """Return an empty state with room for the waves of a problem."""
+    """Return an empty state with room for the sinusoids of a problem."""
     return records.State(len(problem.sinusoids) // len(GIVEN_SINUSOID_FIELDS))
 
 

@@ -140,7 +140,7 @@ def _reference(given: object) -> Reference | None:
     values = section('reference', given, Reference._fields, _PAGE)
     for name in Reference._fields:
         if name not in values:
-            raise InputError(f'reference.{name}', None, 'given: times and positions make a course', 'add it')
+            raise InputError(f'reference.{name}', None, 'given: times and positions make a profile', 'add it')
     reference = Reference(_checked(_TIMES, 'reference', values['times']),
                           _checked(_POSITIONS, 'reference', values['positions']))
     if len(reference.times) != len(reference.positions):

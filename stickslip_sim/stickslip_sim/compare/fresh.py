@@ -75,7 +75,7 @@ def _of_sinusoids(scene: Scene, duration: float) -> Iterator[float]:
 
 
 def _borders(profile: InputProfile, duration: float) -> Iterator[float]:
-    """Yield where a course goes on to its next piece, as many times as are worth a look."""
+    """Yield where a profile goes on to its next piece, as many times as are worth a look."""
     time = profile.piece_at(0.0).end
     for _ in range(MAX_EVENTS):
         if not time < duration:

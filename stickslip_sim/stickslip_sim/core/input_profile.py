@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Input courses v(t) and F(t): piecewise linear, with jumps, held after the last piece or repeated, plus sines."""
+"""Input profiles v(t) and F(t): piecewise linear, with jumps, held after the last piece or repeated, plus sines."""
 
 import math
 from bisect import bisect_right
@@ -38,10 +38,10 @@ class Sinusoid(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class InputProfile:
-    """A course as pieces: `starts` (s, the first is 0), `values` there, `rates` (per s) from there; and `waves` on top.
+    """Pieces: `starts` (s, the first is 0), `values` there, `rates` (per s) from there; and `sinusoids` on top.
 
-    With a finite `period` the pieces start anew every `period` seconds; the waves go on.  Raises InputError on waves
-    out of range.
+    With a finite `period` the pieces start anew every `period` seconds; the sinusoids go on.  Raises InputError on
+    sinusoids out of range.
     """
 
     starts: tuple[float, ...]
@@ -56,7 +56,7 @@ class InputProfile:
 
     def _check_sinusoids(self) -> None:
         if len(self.sinusoids) > MAX_SINUSOIDS:
-            raise InputError('sinusoids', len(self.sinusoids), f'at most {MAX_SINUSOIDS} in a course',
+            raise InputError('sinusoids', len(self.sinusoids), f'at most {MAX_SINUSOIDS} in a profile',
                              'leave the weakest out')
         for sinusoid in self.sinusoids:
             if not all(map(math.isfinite, sinusoid)):
@@ -66,10 +66,10 @@ class InputProfile:
                                  'use pieces for a constant')
 
     def check(self, name: str) -> None:
-        """Raise InputError when a number of the course called `name` is not finite."""
+        """Raise InputError when a number of the profile called `name` is not finite."""
         for number in (*self.starts, *self.values, *self.rates):
             if not math.isfinite(number):
-                raise InputError(name, number, 'a course of finite times, values and rates', 'give numbers')
+                raise InputError(name, number, 'a profile of finite times, values and rates', 'give numbers')
 
     def piece_at(self, time: float) -> Piece:
         """Return the piece that holds from `time` >= 0 s on (at a border: the one that begins)."""
@@ -91,7 +91,7 @@ class InputProfile:
         return piece.value + piece.rate * (time - piece.start), piece.rate, piece.end
 
     def plus(self, value: float) -> 'InputProfile':
-        """Return the course with a constant added."""
+        """Return the profile with a constant added."""
         return replace(self, values=tuple(own + value for own in self.values))
 
     def value_at(self, time: float) -> float:
@@ -99,7 +99,7 @@ class InputProfile:
         return self.pieces_at(time)[0] + sum(sinusoid.at(time) for sinusoid in self.sinusoids)
 
 
-Input = InputProfile | float    # a course, or a number that holds
+Input = InputProfile | float    # a profile, or a number that holds
 
 
 def plain_of(given: Input) -> list[Any]:
@@ -110,36 +110,36 @@ def plain_of(given: Input) -> list[Any]:
 
 
 def profile_of(plain: Sequence[Any]) -> InputProfile:
-    """Return the course that `plain_of` made these of; raises TypeError or ValueError on anything else."""
+    """Return the profile that `plain_of` made these of; raises TypeError or ValueError on anything else."""
     starts, values, rates, period, sinusoids = plain
     if not starts or not len(starts) == len(values) == len(rates):
-        raise ValueError('a course needs as many values and rates as times')
+        raise ValueError('a profile needs as many values and rates as times')
     return InputProfile(_floats(starts), _floats(values), _floats(rates), float(period),
                   tuple(Sinusoid(*map(float, sinusoid)) for sinusoid in sinusoids))
 
 
 def constant(value: float) -> InputProfile:
-    """Return a course that never changes."""
+    """Return a profile that never changes."""
     return InputProfile((0.0,), (value,), (0.0,))
 
 
 def ramp(start: float, rate: float, duration: float) -> InputProfile:
-    """Return a course that changes by `rate` per second for `duration` seconds, then holds."""
+    """Return a profile that changes by `rate` per second for `duration` seconds, then holds."""
     if duration == math.inf:
         return InputProfile((0.0,), (start,), (rate,))
     return InputProfile((0.0, duration), (start, start + rate * duration), (rate, 0.0))
 
 
 def steps(name: str, times: Sequence[float], values: Sequence[float], period: float = math.inf) -> InputProfile:
-    """Return a course that jumps to values[i] at times[i]; raises InputError unless the times start at 0 and rise."""
+    """Return a profile that jumps to values[i] at times[i]; raises InputError unless the times start at 0 and rise."""
     _check_times(name, times, values, period)
     return InputProfile(tuple(times), tuple(values), (0.0,) * len(values), period)
 
 
 def table(name: str, times: Sequence[float], values: Sequence[float], period: float = math.inf) -> InputProfile:
-    """Return a course that is linear between (times[i], values[i]) and holds the last value.
+    """Return a profile that is linear between (times[i], values[i]) and holds the last value.
 
-    With a period it is linear from the last knot back to the first.  Raises InputError like `steps`.
+    With a period it is linear from the last value back to the first.  Raises InputError like `steps`.
     """
     _check_times(name, times, values, period)
     rates = [(b - a) / (t1 - t0) for (t0, t1), (a, b) in zip(pairwise(times), pairwise(values), strict=True)]
@@ -157,9 +157,9 @@ def sinusoids(name: str, amplitudes: Sequence[float], frequencies: Sequence[floa
     for what, given in (('frequencies', frequencies), ('phases', phases)):
         if len(given) != len(amplitudes):
             raise InputError(f'{name}.{what}', list(given), f'as many as there are amplitudes ({len(amplitudes)})',
-                             'give one for every wave')
+                             'give one for every sinusoid')
     if len(amplitudes) > MAX_SINUSOIDS:
-        raise InputError(f'{name}.amplitudes', len(amplitudes), f'at most {MAX_SINUSOIDS} waves',
+        raise InputError(f'{name}.amplitudes', len(amplitudes), f'at most {MAX_SINUSOIDS} sinusoids',
                          'leave the weakest out')
     return tuple(map(Sinusoid, amplitudes, frequencies, phases))
 
@@ -173,7 +173,7 @@ def _check_times(name: str, times: Sequence[float], values: Sequence[float], per
         raise InputError(f'{name}.times', list(times), f'as many numbers as there are values ({len(values)})',
                          'give one value for every time')
     if times[0] != 0.0:
-        raise InputError(f'{name}.times', times[0], '0 s at the first knot', 'a course starts with the run')
+        raise InputError(f'{name}.times', times[0], '0 s at the first value', 'a profile starts with the run')
     for before, after in pairwise([*times, period]):
         if not before < after:
             raise InputError(f'{name}.times', [*times], 'strictly increasing and below the period, in s',

@@ -39,7 +39,7 @@ class CommandInputs:
 
     @property
     def held(self) -> list[float | None]:
-        """The commands in force, by input; None where the course of the scene is."""
+        """The commands in force, by input; None where the input profile of the scene is."""
         return [command.value if command else None for command in (self._held_velocity, self._held_force)]
 
     def totals(self, counts: Counts) -> CommandTotals:

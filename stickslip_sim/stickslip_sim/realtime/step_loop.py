@@ -29,7 +29,7 @@ Sink = Callable[[StepResult], None]
 class StepLoop:
     """Runs the steps in a thread of its own; everything else asks for changes `at_boundary`.
 
-    `takers` get each product, in the loop's thread.  With `by_request` time moves with `run_steps` only.
+    `sinks` get each result, in the loop's thread.  With `by_request` time moves with `run_steps` only.
     """
 
     def __init__(self, rig: Rig, clock: StepClock, slots: tuple[CommandSlot, CommandSlot], sinks: Sequence[Sink],
@@ -63,7 +63,7 @@ class StepLoop:
 
     @property
     def held(self) -> list[float | None]:
-        """The commands in force, by input; None where the course of the scene is."""
+        """The commands in force, by input; None where the input profile of the scene is."""
         return self._inputs.held
 
     @property

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The timing ledger: how each step kept its time, summed up once a second, and the worst of the run with its time."""
+"""Timing statistics: how each step kept its time, summed up once a second, and the worst of the run with its time."""
 
 import math
 from collections import deque

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The drive: how it follows what it is told, within its limits.
 
-Its course is made of constants and ramps, so that the motion of the axis stays exact.
+Its profile is made of constants and ramps, so that the motion of the axis stays exact.
 """
 
 import math
@@ -23,7 +23,7 @@ class DriveLimits:
 
 
 class Drive:
-    """The course of the drive velocity from the present instant on; at first that of the scene."""
+    """The profile of the drive velocity from the present instant on; at first that of the scene."""
 
     def __init__(self, profile: InputProfile, limits: DriveLimits) -> None:
         self._limits = limits
@@ -32,11 +32,11 @@ class Drive:
         self._target: float | None = None
         self._acceleration = math.inf    # with which it makes for it
         self._frozen = False
-        self.is_new = False              # since its course was last taken
+        self.is_new = False              # since its profile was last taken
 
     @property
     def profile(self) -> Input:
-        """What it does: a velocity that holds, m/s, ramps, or the course of the scene."""
+        """What it does: a velocity that holds, m/s, ramps, or the profile of the scene."""
         return _STANDSTILL if self._frozen else self._profile
 
     def follow(self, velocity: float, now: Instant, acceleration: float = math.inf) -> bool:

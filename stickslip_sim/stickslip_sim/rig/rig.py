@@ -33,7 +33,7 @@ class Rig:
                  grid: Grid, settings: RigSettings) -> None:
         self.simulator = Simulator(axis, initial, drive, force, solver, accounting=True)
         self._grid, self._settings, self._measures = grid, settings, settings.measures
-        self._courses = drive, force
+        self._profiles = drive, force
         self._begin()
 
     def reset(self) -> None:
@@ -42,7 +42,7 @@ class Rig:
         self._begin()
 
     def _begin(self) -> None:
-        drive, force = self._courses
+        drive, force = self._profiles
         settings = self._settings
         self.step = -1                        # the last one made
         self.counts = Counts()

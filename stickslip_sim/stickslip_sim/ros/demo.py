@@ -48,7 +48,7 @@ _COURSE = (
 
 
 class Driver(Node):  # type: ignore[misc]
-    """Sends the course when simulation time has come for it, and tells the state once a second."""
+    """Sends each order when simulation time has come for it, and tells the state once a second."""
 
     def __init__(self, duration: float) -> None:
         super().__init__('demo')
@@ -151,7 +151,7 @@ def _driver(duration: float) -> Iterator[Driver]:
 
 
 def _drive(driver: Driver, process: subprocess.Popen[bytes], duration: float) -> None:
-    """Send the course; Ctrl-C ends it early and well."""
+    """Send the orders; Ctrl-C ends it early and well."""
     begin = time.monotonic()
     try:
         while driver.time < duration and process.poll() is None:

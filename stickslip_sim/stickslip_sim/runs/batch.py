@@ -67,7 +67,7 @@ COLUMNS: Mapping[str, _Column] = {
 
 @dataclass(frozen=True, slots=True)
 class BatchFigures:
-    """Arrays with one entry an axis; units and meaning are those of `analysis.Cycle` and `analysis.Summary`.
+    """Arrays with one entry an axis; units and meaning are those of `simulation.cycles`: `Cycle` and `Summary`.
 
     Those from `direction` to `static_coefficient` are of the last complete cycle, NaN without one.
     """
@@ -78,7 +78,7 @@ class BatchFigures:
     final_mode: Numbers          # `types.Mode`
     first_break_away: Numbers    # s
     stick_share: Numbers
-    settled: NDArray[np.bool_]   # the last two periods differ by less than `analysis.SETTLED`
+    settled: NDArray[np.bool_]   # the last two periods differ by less than SETTLED of `simulation.cycles`
     direction: Numbers
     rest_time: Numbers           # s
     slip_time: Numbers           # s

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The parameters of an input course: those of the drive and of the force are alike."""
+"""The parameters of an input profile: those of the drive and of the force are alike."""
 
 import math
 

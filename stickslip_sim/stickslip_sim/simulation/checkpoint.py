@@ -20,7 +20,7 @@ def numbers_of(saved: Iterable[Any], state: Any) -> list[float]:
 
 
 def check_state(state: Any, sinusoids: int, parameters: Any) -> None:
-    """Raise ValueError when a state is none of an axis with these parameters and so many waves."""
+    """Raise ValueError when a state is none of an axis with these parameters and so many sinusoids."""
     for name, number, highest in (('mode', state.mode, max(Mode)),
                                   ('segment', state.segment, int(parameters.segment_count) - 1),
                                   ('sinusoids', state.sinusoid_count, sinusoids),

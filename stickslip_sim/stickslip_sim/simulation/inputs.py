@@ -33,17 +33,17 @@ class Inputs:
         return v, f
 
     def set(self, drive: Input, force: Input) -> None:
-        """Let these be in force: finite, and with no more waves than the courses of the start."""
+        """Let these be in force: finite, and with no more sinusoids than the input profiles of the start."""
         self.drive, self.force = drive, force
         self.are_commanded = True
 
     def command_drive(self, velocity: Input) -> None:
-        """Replace the drive velocity by a constant, m/s, or a course; raises InputError."""
+        """Replace the drive velocity by a constant, m/s, or a profile; raises InputError."""
         _check('velocity', velocity, 'm/s', self._first[0])
         self.set(velocity, self.force)
 
     def command_force(self, force: Input) -> None:
-        """Replace the external force by a constant, N, or a course; raises InputError."""
+        """Replace the external force by a constant, N, or a profile; raises InputError."""
         _check('force', force, 'N', self._first[1])
         self.set(self.drive, force)
 
@@ -61,16 +61,16 @@ class Inputs:
 
     def sinusoids(self) -> list[float]:
         """Return the sinusoids of both inputs, in a row, but for those of no amplitude."""
-        waves = [(wave.frequency, wave.phase, wave.amplitude, 0.0) for wave in _sinusoids(self.drive)]
-        waves += [(wave.frequency, wave.phase, 0.0, wave.amplitude) for wave in _sinusoids(self.force)]
-        return [number for frequency, phase, v, f in waves
+        both = [(one.frequency, one.phase, one.amplitude, 0.0) for one in _sinusoids(self.drive)]
+        both += [(one.frequency, one.phase, 0.0, one.amplitude) for one in _sinusoids(self.force)]
+        return [number for frequency, phase, v, f in both
                 if v != 0.0 or f != 0.0 for number in (frequency, math.fmod(0.5 * phase / math.pi, 1.0), v, f)]
 
 
 def _pieces_at(given: Input, time: float) -> tuple[float, float, float]:
     if isinstance(given, InputProfile):
         return given.pieces_at(time)
-    return given + 0.0, 0.0, math.inf    # no -0.0, as in a course
+    return given + 0.0, 0.0, math.inf    # no -0.0, as in a profile
 
 
 def _sinusoids(given: Input) -> Sequence[Sinusoid]:

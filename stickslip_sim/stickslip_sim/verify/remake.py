@@ -87,7 +87,7 @@ def _rig(run: RecordedRun, scene: Scene) -> tuple[Rig, int]:
 
 
 class _OfflineMaker:
-    """Follows the courses of the scene."""
+    """Follows the input profiles of the scene."""
 
     start = -1
 

@@ -43,7 +43,7 @@ class Step(NamedTuple):
 def steps_of(run: RecordedRun, start: int) -> Iterator[Step]:
     """Yield the recorded steps after `start` (−1: all); raises RecordingError when they do not follow each other.
 
-    An offline run has no orders: its commands only tell what its courses did.
+    An offline run has no orders: its commands only tell what its input profiles did.
     """
     bag = run.bag
     ordered = () if offline_of(run) else [topic for topic in ORDERS if topic.type in bag.topics.values()]

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The neighbours: who else publishes on the topics of this node, looked at once a second.
+"""The graph monitor: who else publishes on the topics of this node, looked at once a second.
 
 ROS lets anyone publish anywhere: two nodes on one topic are no error to it, but seldom what was meant.
 """

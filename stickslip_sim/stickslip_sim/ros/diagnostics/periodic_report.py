@@ -23,7 +23,7 @@ _PERIOD = 1.0     # s
 
 
 class PeriodicReport:
-    """Looks at the loop, the bag and the neighbours; `stamp_ns` says what time the reports bear."""
+    """Looks at the loop, the bag and the graph; `stamp_ns` says what time the reports bear."""
 
     def __init__(self, node: SceneNode, loop: StepLoop, clock: StepClock, publishers: Publishers, rig_events: RigEvents,
                  record_service: RecordService, stamp_ns: Callable[[], int]) -> None:

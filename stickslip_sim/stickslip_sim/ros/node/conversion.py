@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""ROS messages that are sent now and then, to and from plain fields; those of every step are packed by the outlet."""
+"""ROS messages that are sent now and then, to and from plain fields; `publishers` packs those of every step."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -23,7 +23,7 @@ def set_stamp(stamp: Time, nanoseconds: int) -> None:
 
 
 def run_info_message(fields: Mapping[str, Any]) -> RunInfo:
-    """Return the message with these fields (`recording.RunFacts.as_message`)."""
+    """Return the message with these fields (`recording.messages.run_info`)."""
     message = RunInfo()
     for name, value in fields.items():
         if name == 'header':

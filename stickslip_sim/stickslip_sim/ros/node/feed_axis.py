@@ -134,7 +134,7 @@ class FeedAxis(SceneNode):
         return done
 
     def _begin_run(self) -> None:
-        """Let the outlet begin where the rig is before its first step."""
+        """Let the publishers begin where the rig is before its first step."""
         self._outputs.begin_run(self._start_ns(), self.loop.rig.simulator.sample().mode)
 
     def _receipt(self) -> dict[str, Any]:

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Where the products of the steps go: each message is packed once, and its bytes are published and recorded."""
+"""Where the results of the steps go: each message is packed once, and its bytes are published and recorded."""
 
 from typing import Any, Protocol
 

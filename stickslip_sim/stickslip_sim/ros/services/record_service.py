@@ -16,7 +16,7 @@ from .answers import BUSY, answer
 
 
 class RecordService:
-    """Attaches recordings to the outlet between two steps.
+    """Attaches recordings to the publishers between two steps.
 
     `tell` publishes what changed (run_info); `receipt` makes the receipt that ends a bag.
     """

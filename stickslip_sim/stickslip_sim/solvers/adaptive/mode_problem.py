@@ -25,7 +25,7 @@ from ...axis.motion import (
 from ...axis.transitions import ACCELERATE, ARREST, BREAKAWAY, COAST, DECELERATE, KNOT
 from ...linear.waves import TURN, phase_at
 
-_STEPS_PER_WAVE = 8.0
+_STEPS_PER_PERIOD = 8.0
 
 
 class SmoothLaw(Protocol):
@@ -39,11 +39,11 @@ class Inputs:
     """v(t), F_e(t) and the drive's travel from the time of a state on."""
 
     def __init__(self, s: State) -> None:
-        self._waves = []
+        self._sinusoids = []
         v, f = s.v, s.f
         for given in s.sinusoids[:int(s.given_sinusoids)]:
             phase = TURN * phase_at(given.frequency, given.phase, s.second, s.fraction)
-            self._waves.append((TURN * given.frequency, phase, given.v, given.f))
+            self._sinusoids.append((TURN * given.frequency, phase, given.v, given.f))
             v -= given.v * math.sin(phase)
             f -= given.f * math.sin(phase)
         self._v, self._v_rate, self._f, self._f_rate = v, float(s.given.v_rate), f, float(s.given.f_rate)
@@ -51,22 +51,22 @@ class Inputs:
     @property
     def longest_step(self) -> float:
         """The longest step that does not pass over a sinusoid, s."""
-        fastest = max((omega for omega, _, _, _ in self._waves), default=0.0)
-        return 2.0 * math.pi / fastest / _STEPS_PER_WAVE if fastest > 0.0 else math.inf
+        fastest = max((omega for omega, _, _, _ in self._sinusoids), default=0.0)
+        return 2.0 * math.pi / fastest / _STEPS_PER_PERIOD if fastest > 0.0 else math.inf
 
     def at(self, t: float) -> tuple[float, float]:
         """Return v and F_e."""
         v, f = self._v + self._v_rate * t, self._f + self._f_rate * t
-        for omega, phase, of_drive, of_force in self._waves:
-            wave = math.sin(omega * t + phase)
-            v += of_drive * wave
-            f += of_force * wave
+        for omega, phase, of_drive, of_force in self._sinusoids:
+            sine = math.sin(omega * t + phase)
+            v += of_drive * sine
+            f += of_force * sine
         return v, f
 
     def travel(self, t: float) -> float:
         """Return the drive's travel: of a sinusoid it is A t sin(φ + ω t/2) times sin(ω t/2)/(ω t/2)."""
         travel = (self._v + 0.5 * self._v_rate * t) * t
-        for omega, phase, of_drive, _ in self._waves:
+        for omega, phase, of_drive, _ in self._sinusoids:
             half = 0.5 * omega * t
             travel += of_drive * t * math.sin(phase + half) * (math.sin(half) / half if half != 0.0 else 1.0)
         return travel
