@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Scenes: everything that decides a run, as a ROS 2 parameter file that is read without ROS.  The only YAML door."""
+"""Scenes: everything that decides a run, as a ROS 2 parameter file that is read without ROS."""
 
 from ..config.parameter import Parameter, When
 from .load import changed, load_scene, parse_override, parse_scene, scene_from_values, scene_names

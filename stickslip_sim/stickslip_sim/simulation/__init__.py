@@ -1,3 +1,3 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Axes through time: the simulator of one, the batch of thousands, their inputs, checkpoints and cycle figures."""
+"""One axis through time: the simulator, its inputs, its checkpoints and its cycle figures."""
