@@ -74,7 +74,7 @@ class _Tape:
         """Make a step and write what came of it."""
         before = rig.time_ns
         result, self._velocity = rig.make_step(self._velocity), None
-        self._notes(result.notes, before, result.step)
+        self._rig_events(result.rig_events, before, result.step)
         for event in result.events:
             if event.kind == EventKind.KNOT:    # a node does not tell of them
                 continue
@@ -85,13 +85,13 @@ class _Tape:
             at = result.sample.instant.nanoseconds
             self._write(topic, self._packers[topic].pack(at, result.step, result.sample), at, result.step)
 
-    def _notes(self, notes: Iterable[RigEvent], at: int, step: int) -> None:
-        for note in notes:
-            fault = note.fault or Fault('', '', 0.0, 0.0, 0.0)
+    def _rig_events(self, rig_events: Iterable[RigEvent], at: int, step: int) -> None:
+        for event in rig_events:
+            fault = event.fault or Fault('', '', 0.0, 0.0, 0.0)
             self._encoded(topics.RIG_EVENT, {
-                'header': header(at), 'step': step, 'time': at * 1e-9, 'kind': int(note.kind), 'id': note.id,
-                'fault': fault.kind, 'start': fault.start, 'duration': fault.duration, 'value': note.value,
-                'count': note.number, 'text': note.text}, at, step)
+                'header': header(at), 'step': step, 'time': at * 1e-9, 'kind': int(event.kind), 'id': event.id,
+                'fault': fault.kind, 'start': fault.start, 'duration': fault.duration, 'value': event.value,
+                'count': event.number, 'text': event.text}, at, step)
 
     def _encoded(self, topic: topics.Topic, fields: dict[str, Any], at: int, step: int) -> None:
         self._write(topic, self._codec.encode(topic.type, fields), at, step)

@@ -80,9 +80,9 @@ class TestSilence:
     def test_is_told_at_the_first_step_that_begins_too_late(self, mode: str) -> None:
         bench = Bench(mode)
         assert bench.run(400, {9: command}) == [111]      # step 10 begins at 9 ms, step 111 at 110 ms
-        note = next(note for result in bench.results for note in result.notes)
-        assert note.value == pytest.approx(0.101, abs=1e-12)
-        assert 'no drive velocity for 0.101 s: the latest is held' in note.text
+        event = next(event for result in bench.results for event in result.rig_events)
+        assert event.value == pytest.approx(0.101, abs=1e-12)
+        assert 'no drive velocity for 0.101 s: the latest is held' in event.text
         assert bench.rig.counts.timed_out == 1
 
     @pytest.mark.parametrize('mode', MODES)

@@ -72,7 +72,7 @@ class TestFrictionScale:
 
 class TestForcePulse:
     @pytest.mark.parametrize('base', [0.0, 120.0])
-    def test_is_a_course_with_that_pulse(self, base: float) -> None:
+    def test_is_a_profile_with_that_pulse(self, base: float) -> None:
         results = run(make(force=base), 1500, {701: [inject('force_pulse', duration=0.1, value=400.0)]})
         profile = steps('force', [0.0, 0.7, 0.8], [base, base + 400.0, base])
         other = Simulator(AXIS, InitialState(), constant(0.002), profile)
@@ -125,7 +125,7 @@ class TestTimes:
         results = run(make(), 60, {10: [inject('force_pulse', 0.02, 0.01, 5.0, 'knock')]})
         assert told(results) == [(10, RigEventKind.FAULT_INJECTED), (30, RigEventKind.FAULT_BEGIN),
                                  (40, RigEventKind.FAULT_END)]
-        assert {(note.id, note.value, note.fault) for result in results for note in result.notes} == {
+        assert {(event.id, event.value, event.fault) for result in results for event in result.rig_events} == {
             ('knock', 5.0, Fault('knock', 'force_pulse', 0.02, 0.01, 5.0))}
 
     def test_inf_lasts_until_it_is_cleared(self) -> None:

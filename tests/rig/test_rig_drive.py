@@ -85,7 +85,7 @@ class TestRamp:
             later = Instant(second, 0.123 + k * 1e-3)
             simulator.advance(later)
             sample, time = simulator.sample(), k * 1e-3
-            ulp = math.ulp(second)     # of the instants that a course is made of
+            ulp = math.ulp(second)     # of the instants that a profile is made of
             assert sample.drive_velocity == pytest.approx(min(0.5 * time, 0.1), abs=0.5 * 4 * ulp)
             ramp = min(time, 0.2)
             assert sample.drive_position == pytest.approx(0.25 * ramp**2 + 0.1 * (time - ramp), abs=0.1 * 8 * ulp)
@@ -115,7 +115,7 @@ class TestLimits:
         results = run(rig, 20, script)
         assert (rig.counts.limited, rig.counts.heard) == (3, 4)
         assert told(results) == [(10, RigEventKind.COMMAND_LIMITED), (13, RigEventKind.COMMAND_LIMITED)]
-        assert [note.value for result in results for note in result.notes] == [0.5, -0.5]
+        assert [event.value for result in results for event in result.rig_events] == [0.5, -0.5]
 
     def test_of_acceleration_are_counted_while_the_drive_is_behind(self) -> None:
         rig = limited(acceleration=1.0)
@@ -128,7 +128,7 @@ class TestLimits:
         assert drive_velocities(results)[9:11] == [0.002, 0.9]
         assert (rig.counts.limited, told(results)) == (0, [])
 
-    def test_leave_the_course_of_the_scene_alone(self) -> None:
+    def test_leave_the_profile_of_the_scene_alone(self) -> None:
         assert bits(run(limited(1e-4, 1e-4, drive=WAVY), 100)) == bits(run(make(drive=WAVY), 100))
 
     def test_a_sine_of_the_scene_is_left_from_where_it_is(self) -> None:
@@ -151,7 +151,7 @@ class TestFreeze:
         assert (speeds[99], speeds[100], speeds[149]) == (0.005, 0.0, 0.0)
         assert speeds[150:200] == pytest.approx([k * 1e-4 for k in range(1, 51)], rel=1e-12)
 
-    def test_the_course_of_the_scene_goes_on_when_nothing_was_commanded(self) -> None:
+    def test_the_profile_of_the_scene_goes_on_when_nothing_was_commanded(self) -> None:
         results = run(make(drive=WAVY), 300, {100: [inject('drive_freeze')]})
         for result in results[:99] + results[150:]:
             assert result.sample.drive_velocity == pytest.approx(WAVY.value_at(result.sample.time), rel=1e-12)

@@ -82,8 +82,8 @@ def inject(kind: str, start: float = 0.0, duration: float = 0.05, value: float =
 
 
 def told(results: Iterable[StepResult]) -> list[tuple[int, RigEventKind]]:
-    """Return what the notes tell, by step."""
-    return [(result.step, note.kind) for result in results for note in result.notes]
+    """Return the kinds of the rig events, by step."""
+    return [(result.step, event.kind) for result in results for event in result.rig_events]
 
 
 def bits(results: Iterable[Any]) -> list[str]:

@@ -51,7 +51,7 @@ class Rig:
         self._channel = CommandChannel(self._grid, settings.seed)
         self._plant = Plant(self.simulator, Drive(drive, settings.limits), force, self._faults)
         self._encoder = Encoder(settings.encoder, self._grid.rate, settings.encoder_delay_steps, settings.seed)
-        self._notes: list[RigEvent] = []
+        self._rig_events: list[RigEvent] = []
         self.is_silent = False                # since a command time-out, until the next command
         self._is_limited = False
 
@@ -72,9 +72,8 @@ class Rig:
         self.counts.timed_out += 1
         self.is_silent = True
         reaction = self._settings.on_timeout
-        self._notes.append(RigEvent(RigEventKind.COMMAND_TIMEOUT, 'velocity', _TIMEOUT.format(silence,
-                                                                                              _REACTIONS[reaction]),
-                                silence))
+        self._rig_events.append(RigEvent(RigEventKind.COMMAND_TIMEOUT, 'velocity',
+                                         _TIMEOUT.format(silence, _REACTIONS[reaction]), silence))
         self.has_failed = reaction == 'fault'
         if reaction != 'hold':
             self._plant.follow(0.0, self._settings.timeout_deceleration)
@@ -82,15 +81,15 @@ class Rig:
     def inject(self, fault: Fault) -> Fault:
         """Plan a fault from now on; return it with its id.  Raises InputError."""
         fault = self._faults.inject(fault, max(self.step + 1, 1))
-        self._notes.append(RigEvent(RigEventKind.FAULT_INJECTED, fault.id, f'{fault.kind} planned', fault.value,
-                                    fault=fault))
+        self._rig_events.append(RigEvent(RigEventKind.FAULT_INJECTED, fault.id, f'{fault.kind} planned', fault.value,
+                                         fault=fault))
         return fault
 
     def clear_fault(self, fault_id: str) -> None:
         """End a fault now, or before it begins; raises InputError when there is none by that id."""
         fault = self._faults.clear(fault_id)
-        self._notes.append(RigEvent(RigEventKind.FAULT_CLEARED, fault.id, f'{fault.kind} cleared', fault.value,
-                                    fault=fault))
+        self._rig_events.append(RigEvent(RigEventKind.FAULT_CLEARED, fault.id, f'{fault.kind} cleared', fault.value,
+                                         fault=fault))
         self._plant.change_faults()
 
     def clear_faults(self) -> list[str]:
@@ -100,7 +99,7 @@ class Rig:
             self.clear_fault(fault_id)
         if self.has_failed:
             self.has_failed = False
-            self._notes.append(RigEvent(RigEventKind.FAULT_CLEARED, '', 'the drive takes commands again'))
+            self._rig_events.append(RigEvent(RigEventKind.FAULT_CLEARED, '', 'the drive takes commands again'))
         return ids
 
     def change_axis(self, axis: Axis) -> None:
@@ -116,7 +115,7 @@ class Rig:
         """
         self._plant.act()
         return {'step': self.step, 'wire': self._channel.checkpoint(), 'faults': self._faults.checkpoint(),
-                'has_failed': self.has_failed, 'notes': len(self._notes), **self._plant.checkpoint()}
+                'has_failed': self.has_failed, 'notes': len(self._rig_events), **self._plant.checkpoint()}
 
     def restore(self, saved: Mapping[str, Any]) -> None:
         """Go on from a checkpoint of a rig of the same scene, with the parameters of the axis that held then.
@@ -148,13 +147,13 @@ class Rig:
             self._plant.push(force)
         if self._plant.is_changed:
             self._plant.act()
-        notes, self._notes = self._notes, []
+        rig_events, self._rig_events = self._rig_events, []
         simulator = self.simulator
         events = simulator.advance(self._grid.instant(step))
         sample = simulator.sample()
         self.step = step
         measured = self._encoder.measure(sample, self._faults.active) if self._measures else None
-        return tuple_of(StepResult, (step, velocity, force, notes, events, sample, measured))
+        return tuple_of(StepResult, (step, velocity, force, rig_events, events, sample, measured))
 
     def advance(self, to: Instant) -> list[Event]:
         """Bring the axis to any time, through the faults of the scene; for runs without steps.  Returns its events."""
@@ -175,13 +174,13 @@ class Rig:
         self.counts.heard += 1
         if self.is_silent:
             self.is_silent = False
-            self._notes.append(RigEvent(RigEventKind.COMMAND_RESUMED, 'velocity', 'drive velocities come again',
-                                        velocity))
+            self._rig_events.append(RigEvent(RigEventKind.COMMAND_RESUMED, 'velocity', 'drive velocities come again',
+                                             velocity))
         was_limited, self._is_limited = self._is_limited, not self._plant.follow(velocity)
         self.counts.limited += self._is_limited
         if self._is_limited and not was_limited:
-            self._notes.append(RigEvent(RigEventKind.COMMAND_LIMITED, 'velocity',
-                                        'beyond the limits of the drive, which follows within them', velocity))
+            self._rig_events.append(RigEvent(RigEventKind.COMMAND_LIMITED, 'velocity',
+                                             'beyond the limits of the drive, which follows within them', velocity))
 
     def _through_channel(self, sent: float | None, step: int) -> float | None:
         """Return the velocity that reaches the drive before a step; without a fault the one that was sent."""
@@ -190,15 +189,15 @@ class Rig:
             return sent
         if sent is not None and not channel.put(sent, step, faults):
             self.counts.lost += 1
-            self._notes.append(RigEvent(RigEventKind.COMMAND_LOST, 'velocity', 'a fault ate a command', sent))
+            self._rig_events.append(RigEvent(RigEventKind.COMMAND_LOST, 'velocity', 'a fault ate a command', sent))
         return channel.take(step)
 
     def _enter_faults(self, step: int) -> None:
         ended, begun = self._faults.enter(step)
         for kind, word, faults in ((RigEventKind.FAULT_END, 'ends', ended), (RigEventKind.FAULT_BEGIN, 'begins',
                                                                              begun)):
-            self._notes.extend(RigEvent(kind, fault.id, f'{fault.kind} {word}', fault.value, fault=fault)
-                               for fault in faults)
+            self._rig_events.extend(RigEvent(kind, fault.id, f'{fault.kind} {word}', fault.value, fault=fault)
+                                    for fault in faults)
         self._plant.change_faults()
 
 

@@ -41,9 +41,9 @@ class StepResult(NamedTuple):
     """One step: what went in, and what came out.  Step n reaches from (n − 1)/rate to n/rate; step 0 is the start."""
 
     step: int
-    velocity: float | None       # m/s: the command taken at its begin, None without a new one
+    velocity: float | None       # m/s: the command taken at its start, None without a new one
     force: float | None          # N
-    notes: list[RigEvent]            # of its begin
+    rig_events: list[RigEvent]   # of its start
     events: list[Event]
     sample: Sample               # at its end
     measured: Measured | None    # at its end; None without encoders, or when the measurement was lost

@@ -65,13 +65,13 @@ class PeriodicReport:
         if second.skipped > 0.0:
             text = f'{second.skipped:.3f} s behind the clock were given up; simulation time lags by that much'
             log.warning(text)
-            self._note(RigEvent(RigEventKind.TIME_LOST, '', text, second.skipped))
+            self._tell(RigEvent(RigEventKind.TIME_LOST, '', text, second.skipped))
         for refusal in second.refusals:
-            self._note(RigEvent(RigEventKind.COMMAND_REFUSED, refusal.name, refusal.reason, number=refusal.number))
+            self._tell(RigEvent(RigEventKind.COMMAND_REFUSED, refusal.name, refusal.reason, number=refusal.number))
         if self._loop.failure and self._loop.failure != self._told:
             log.error(f'the axis stands still: {self._loop.failure}; ~/reset begins anew')
         self._told = self._loop.failure
         self._record_service.look()
 
-    def _note(self, note: RigEvent) -> None:
-        self._rig_events.tell(self._loop.step + 1, self._loop.time_ns, note)
+    def _tell(self, event: RigEvent) -> None:
+        self._rig_events.tell(self._loop.step + 1, self._loop.time_ns, event)

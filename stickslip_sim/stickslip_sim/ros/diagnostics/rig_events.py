@@ -19,7 +19,7 @@ _QUIET = 1.0   # s of simulation time between two lines of a kind in the log
 
 
 class RigEvents:
-    """Publishes, records and logs the notes of the steps, and those that come from elsewhere."""
+    """Publishes, records and logs the rig events of the steps, and those that come from elsewhere."""
 
     def __init__(self, node: Node, publishers: Publishers) -> None:
         self._log = node.get_logger()
@@ -34,26 +34,26 @@ class RigEvents:
         if result.step == 0:
             self._time_ns = 0
             self._quiet_until.clear()
-        for note in result.notes:
-            self.tell(result.step, self._time_ns, note)
+        for event in result.rig_events:
+            self.tell(result.step, self._time_ns, event)
         self._time_ns = result.sample.instant.nanoseconds
 
-    def tell(self, step: int, time_ns: int, note: RigEvent) -> None:
-        """Tell a note; it holds from the begin of a step on, which is at that simulation time."""
-        message = RigEventMessage(step=step, time=time_ns * 1e-9, kind=int(note.kind), id=note.id, value=note.value,
-                           count=note.number, text=note.text)
-        if note.fault is not None:
-            message.fault, message.start, message.duration = note.fault.kind, note.fault.start, note.fault.duration
+    def tell(self, step: int, time_ns: int, event: RigEvent) -> None:
+        """Tell a rig event; it holds from the begin of a step on, which is at that simulation time."""
+        message = RigEventMessage(step=step, time=time_ns * 1e-9, kind=int(event.kind), id=event.id, value=event.value,
+                                  count=event.number, text=event.text)
+        if event.fault is not None:
+            message.fault, message.start, message.duration = event.fault.kind, event.fault.start, event.fault.duration
         set_stamp(message.header.stamp, self._publishers.start_ns + time_ns)
         data = serialize_message(message)
         self._publish(data)
         self._publishers.record(self._index, data, time_ns, step)
-        self._write(time_ns * 1e-9, note)
+        self._write(time_ns * 1e-9, event)
 
-    def _write(self, time: float, note: RigEvent) -> None:
-        line = f't = {time:g} s: {note.id + ": " if note.id else ""}{note.text}'
-        if note.kind in _FAULTS:
+    def _write(self, time: float, event: RigEvent) -> None:
+        line = f't = {time:g} s: {event.id + ": " if event.id else ""}{event.text}'
+        if event.kind in _FAULTS:
             self._log.info(line)
-        elif note.kind in _WARNINGS and time >= self._quiet_until.get(note.kind, 0.0):
-            self._quiet_until[note.kind] = time + _QUIET
+        elif event.kind in _WARNINGS and time >= self._quiet_until.get(event.kind, 0.0):
+            self._quiet_until[event.kind] = time + _QUIET
             self._log.warning(line)
