@@ -294,7 +294,7 @@ def test_near_resonance_the_balance_closes(damping: float, detuned: float) -> No
 
 
 @pytest.mark.parametrize('damping', [0.0, 1.5e4, 1e6, 1e8, 1e9])
-def test_slow_and_fast_waves_together_over_stick_and_slip(damping: float) -> None:
+def test_slow_and_fast_sinusoids_together_over_stick_and_slip(damping: float) -> None:
     drive = InputProfile((0.0,), (0.002,), (1e-5,), sinusoids=(Sinusoid(1e-3, 3.0, 0.1), Sinusoid(1e-4, 0.01, 0.7)))
     force = InputProfile((0.0,), (0.0,), (0.0,), sinusoids=(Sinusoid(10.0, 400.0, 0.0), Sinusoid(10.0, NEAR, 0.0)))
     simulator = accounted(paper_axis(CompliantContact(5e6, damping)), drive, force)

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Input courses: pieces follow each other to the last bit, and are what they say."""
+"""Input profiles: pieces follow each other to the last bit, and are what they say."""
 
 import math
 import random
@@ -11,7 +11,7 @@ from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant, ramp, steps, table
 
 
-def test_pieces_of_a_periodic_course_follow_each_other_for_any_period() -> None:
+def test_pieces_of_a_periodic_profile_follow_each_other_for_any_period() -> None:
     rng = random.Random(1)
     for _ in range(100):
         period = rng.uniform(1e-3, 3.0)
@@ -35,7 +35,7 @@ def test_values() -> None:
 @pytest.mark.parametrize(('times', 'values', 'period', 'word'), [
     ([], [], math.inf, 'as many'), ([0.0, 1.0], [1.0], math.inf, 'as many'), ([1.0], [1.0], math.inf, '0 s at'),
     ([0.0, 1.0, 1.0], [1.0] * 3, math.inf, 'increasing'), ([0.0, 1.0], [1.0] * 2, 1.0, 'below the period')])
-def test_bad_knots_are_refused(times: list[float], values: list[float], period: float, word: str) -> None:
+def test_bad_times_are_refused(times: list[float], values: list[float], period: float, word: str) -> None:
     for make in (steps, table):
         with pytest.raises(InputError, match=word):
             make('drive', times, values, period)
@@ -44,7 +44,7 @@ def test_bad_knots_are_refused(times: list[float], values: list[float], period: 
 @pytest.mark.parametrize(('sinusoid', 'word'), [
     (Sinusoid(math.nan, 1.0, 0.0), 'finite'), (Sinusoid(1.0, 0.0, 0.0), 'Hz'), (Sinusoid(1.0, 1e7, 0.0), 'Hz'),
     (Sinusoid(1.0, 1.0, math.inf), 'finite')])
-def test_bad_waves_are_refused(sinusoid: Sinusoid, word: str) -> None:
+def test_bad_sinusoids_are_refused(sinusoid: Sinusoid, word: str) -> None:
     with pytest.raises(InputError, match=word):
         InputProfile((0.0,), (0.0,), (0.0,), sinusoids=(sinusoid,))
     with pytest.raises(InputError, match='at most 100'):

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Axes and courses of any kind, and rigid contacts with two branches under sines."""
+"""Axes and input profiles of any kind, and rigid contacts with two branches under sines."""
 
 import math
 from dataclasses import replace
@@ -39,8 +39,8 @@ def machines(draw: DrawFn) -> Case:
                 friction)
     swings = draw(st.floats(1.0, 60.0))
     duration = swings / omega
-    return Case(axis, draw(_starts(speed)), draw(_courses(speed, omega, duration)),
-                draw(_courses(load * draw(st.floats(0.0, 0.4)), omega, duration)), duration)
+    return Case(axis, draw(_starts(speed)), draw(_profiles(speed, omega, duration)),
+                draw(_profiles(load * draw(st.floats(0.0, 0.4)), omega, duration)), duration)
 
 
 @st.composite
@@ -98,7 +98,7 @@ def _starts(speed: float) -> SearchStrategy[InitialState]:
 
 
 @st.composite
-def _courses(draw: DrawFn, size: float, omega: float, duration: float) -> InputProfile:
+def _profiles(draw: DrawFn, size: float, omega: float, duration: float) -> InputProfile:
     size *= draw(_SIGNS)
     values = [size * draw(st.sampled_from((1.0, -1.0, 0.0, 0.3))) for _ in range(3)]
     times = [0.0, duration * draw(st.floats(0.01, 0.4)), duration * draw(st.floats(0.5, 0.8))]

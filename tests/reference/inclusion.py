@@ -140,7 +140,7 @@ def static_coefficient(law: Mapping[str, Any], age: mpf) -> mpf:
 
 
 def _rows(profile: Any, until: mpf) -> list[tuple[mpf, mpf, mpf]]:
-    """Return the pieces (start, value, slope) of a course up to a time, periods written out."""
+    """Return the pieces (start, value, slope) of a profile up to a time, periods written out."""
     given = profile if isinstance(profile, Mapping) else {'segments': profile}
     rows = [(mpf(a), mpf(b), mpf(c)) for a, b, c in given['segments']]
     if 'period' not in given:

@@ -136,7 +136,7 @@ def shaken(contact: str, **changes: Any) -> Parameters:
 
 
 @pytest.mark.parametrize('contact', ['rigid', 'compliant'])
-def test_sums_of_sines_on_a_periodic_course_keep_the_law(contact: str) -> None:
+def test_sums_of_sines_on_a_periodic_profile_keep_the_law(contact: str) -> None:
     parameters = shaken(contact)
     run = exact_run(parameters, 2.0, 30)
     assert len(run) > 15
@@ -181,7 +181,7 @@ def contact_gain(axis: Axis, omega: mpf) -> Any:
 # ---- periods, end slope, laws, long rests -------------------------------------------------------------
 
 
-def test_a_period_is_the_course_written_out() -> None:
+def test_a_period_is_the_profile_written_out() -> None:
     there = steps('drive', [0.0, 0.25], [0.004, -0.001], 0.75)
     back = table('force', [0.0, 0.125], [0.0, 100.0], 0.5)
     long = steps('drive', [n * 0.75 + t for n in range(4) for t in (0.0, 0.25)], [0.004, -0.001] * 4)

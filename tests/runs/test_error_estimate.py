@@ -158,7 +158,7 @@ def test_a_perturbed_scene_is_a_scene_with_every_number_moved(name: str) -> None
 
 
 def _numbers(scene: Scene) -> list[float]:
-    """Return the numbers of axis, start and courses."""
+    """Return the numbers of axis, start and input profiles."""
     text = json.dumps([dataclasses.asdict(part) for part in (scene.axis, scene.initial, scene.drive, scene.force)])
     found: list[float] = []
     json.loads(text, parse_float=lambda number: found.append(float(number)),

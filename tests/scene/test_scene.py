@@ -173,7 +173,7 @@ def test_all_static_laws(law: str, more: dict[str, float]) -> None:
     assert (static.coefficient(1.0) > 0.2) == (law != 'constant')
 
 
-def test_courses() -> None:
+def test_input_profiles() -> None:
     ramp = scene_from_values({'drive.course': 'ramp', 'drive.velocity': 0.01, 'drive.acceleration': -0.02,
                               'drive.duration': 1.0})
     assert (ramp.drive.value_at(0.5), ramp.drive.value_at(3.0)) == (0.0, -0.01)
@@ -184,7 +184,7 @@ def test_courses() -> None:
     assert [steps.force.value_at(time) for time in (0.5, 1.5, 2.5)] == [1.0, 2.0, 1.0]
 
 
-def test_sines_alone_and_on_top_of_any_course() -> None:
+def test_sines_alone_and_on_top_of_any_profile() -> None:
     scene = scene_from_values({
         'drive.course': 'sine', 'drive.velocity': 0.5, 'drive.amplitude': 2.0, 'drive.frequency': 3.0,
         'drive.phase': 0.25, 'drive.amplitudes': [1.0], 'drive.frequencies': [5.0],

@@ -88,7 +88,7 @@ def _most(profile: InputProfile, end: float) -> float:
 
 
 def _changes(profile: InputProfile, end: float) -> float:
-    """Return a bound on how much the course changes up to the end."""
+    """Return a bound on how much the profile changes up to the end."""
     stops = (*profile.starts[1:], min(profile.period, end))
     rise = sum(abs(r) * max(min(end, stop) - t, 0.0) for t, stop, r in zip(profile.starts, stops, profile.rates))
     finals = [v + r * (stop - t) for t, stop, v, r in zip(profile.starts, stops, profile.values, profile.rates)]

@@ -3,7 +3,7 @@
 """From a run to linear motions: one segment between two neighbouring events, borders of the inputs, or ends.
 
 z = (f, u, y, v, 1, sin and cosine of each wave): f is the force that accelerates the slider, or F_d + F_e where
-nothing moves it (a rigid stick, coasting); u its velocity, y its travel, v the drive's velocity without waves.
+nothing moves it (a rigid stick, coasting); u its velocity, y its travel, v the drive's velocity without sinusoids.
 """
 
 import math
@@ -281,7 +281,7 @@ def _balanced(rates: Any, start: Any, noise: Any, pace: Any, mass: Any) -> tuple
 
 
 def _size(profile: InputProfile, time: float) -> Any:
-    """Return a size of all values that a course had so far: their rounding adds up from piece to piece."""
+    """Return a size of all values that a profile had so far: their rounding adds up from piece to piece."""
     return Long(max(abs(value) + abs(rate) * max(time - start, 0.0) for start, value, rate in zip(
         profile.starts, profile.values, profile.rates)))
 

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The modes of time: the same course in real time, in lock-step, free and offline, with stalls thrown in; /clock."""
+"""The modes of time: the same profile in real time, in lock-step, free and offline, with stalls thrown in; /clock."""
 
 import itertools
 import math
@@ -141,7 +141,7 @@ class TestTheSameCourse:
         assert sum(results['events'].values()) > 20_000
         assert results == offline
 
-    def test_free_by_the_course_of_the_scene(self, tmp_path: Path) -> None:
+    def test_free_by_the_profile_of_the_scene(self, tmp_path: Path) -> None:
         scene = load_scene('positioning', {'faults.ids': ['dry'], 'faults.kinds': ['friction_scale'],
                                            'faults.starts': [1.0], 'faults.durations': [2.0], 'faults.values': [1.6]})
         with node_of(scene, tmp_path, 'free', 'free_run') as (process, axis), stalls(process):

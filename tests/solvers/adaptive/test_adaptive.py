@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The adaptive solver: near the exact engine within its tolerance, with smooth laws and waves, and it always ends."""
+"""The adaptive solver: near the exact engine within its tolerance, under sinusoids and smooth laws too, and it ends."""
 
 import math
 from dataclasses import dataclass, replace
@@ -40,7 +40,7 @@ class TestAgainstTheExactEngine:
     def test_shipped_scenes(self, name: str) -> None:
         scene = load_scene(name)
         if scene.drive.sinusoids or scene.force.sinusoids:
-            pytest.skip('exact needs waves for that')
+            pytest.skip('exact needs sinusoids for that')
         expected, found = of_scene(EXACT, scene, 3.0), of_scene(TIGHT, scene, 3.0)
         assert_near(found[0], expected[0], 2e-8)
         assert found[1].mode == expected[1].mode
@@ -66,7 +66,7 @@ class TestAgainstTheExactEngine:
         assert errors[-1] < 1e-9
 
     @pytest.mark.parametrize('contact', [RIGID, COMPLIANT])
-    def test_courses_commands_and_other_parameters(self, contact: object) -> None:
+    def test_profiles_commands_and_other_parameters(self, contact: object) -> None:
         axis = paper_axis(COMPLIANT if contact is COMPLIANT else RIGID)
         drive = table('drive', [0.0, 0.4, 0.9, 1.4], [0.0, 0.01, -0.02, -0.02])
         force = steps('force', [0.0, 0.3, 0.302], [0.0, 9000.0, -50.0])
@@ -163,7 +163,7 @@ class TestWaves:
         assert final.drive_position == pytest.approx(
             0.2 * 1.3 + 0.3 / omega * (math.cos(-0.2) - math.cos(omega * 1.3 - 0.2)), rel=1e-12)
 
-    def test_no_wave_of_a_stuck_axis_is_passed_over(self) -> None:
+    def test_no_sinusoid_of_a_stuck_axis_is_passed_over(self) -> None:
         """At rest nothing bounds the step but the wave itself; its first crest beyond the limit breaks the contact."""
         force = InputProfile((0.0,), (0.0,), (0.0,), sinusoids=(Sinusoid(900.0, 0.5, 0.0),))
         event = simulate(TIGHT, paper_axis(RIGID), 0.0, 3.0, force)[0][0]

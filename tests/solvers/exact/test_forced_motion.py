@@ -15,7 +15,7 @@ from stickslip_sim.axis import Axis, CompliantContact
 from stickslip_sim.core.input_profile import InputProfile, constant
 from stickslip_sim.core.types import Event, EventKind, Mode
 from tests.support.axes import COMPLIANT, RIGID, make, paper_axis, random_axis
-from tests.support.forced_courses import random_profiles, with_waves
+from tests.support.forced_profiles import random_profiles, with_sinusoids
 
 
 class Piece:
@@ -126,7 +126,7 @@ def follow(axis: Axis, drive: InputProfile, force: InputProfile, duration: float
 
 
 @pytest.mark.parametrize('seed', range(24))
-def test_random_axes_under_random_waves_follow_the_model(seed: int) -> None:
+def test_random_axes_under_random_sinusoids_follow_the_model(seed: int) -> None:
     rng = random.Random(seed)
     axis = random_axis(rng)
     drive, force = random_profiles(rng, axis)
@@ -134,7 +134,7 @@ def test_random_axes_under_random_waves_follow_the_model(seed: int) -> None:
 
 
 @pytest.mark.parametrize('contact', [RIGID, COMPLIANT])
-def test_paper_axis_under_waves_follows_the_model(contact: Any) -> None:
-    drive = with_waves(constant(0.002), (0.001, 3.0, 0.3))
-    force = with_waves(constant(0.0), (100.0, 20.0, 0.0), (50.0, 6.5896, 1.0))
+def test_paper_axis_under_sinusoids_follows_the_model(contact: Any) -> None:
+    drive = with_sinusoids(constant(0.002), (0.001, 3.0, 0.3))
+    force = with_sinusoids(constant(0.0), (100.0, 20.0, 0.0), (50.0, 6.5896, 1.0))
     assert follow(paper_axis(contact), drive, force, 3.0) > 40

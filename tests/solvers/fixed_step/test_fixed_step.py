@@ -50,8 +50,8 @@ class TestOrder:
         assert measured == pytest.approx(ORDER[method], rel=0.1)
 
     @pytest.mark.parametrize('method', METHODS)
-    def test_under_waves(self, method: str) -> None:
-        """Waves at the stages of a step; the adaptive solver, at a tight tolerance, is the judge."""
+    def test_under_sinusoids(self, method: str) -> None:
+        """Sinusoids at the stages of a step; the adaptive solver, at a tight tolerance, is the judge."""
         drive = InputProfile((0.0,), (0.05,), (0.0,), sinusoids=(Sinusoid(0.005, 3.0, 0.3),))
         force = InputProfile((0.0,), (0.0,), (0.0,), sinusoids=(Sinusoid(100.0, 5.0, 0.0), Sinusoid(50.0, 2.0, 1.0)))
         judge = adaptive.solver('DOP853', 1e-13, 1e-15)

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Courses with sines that several tests use."""
+"""Input profiles with sines that several tests use."""
 
 import math
 import random
@@ -10,12 +10,12 @@ from stickslip_sim.axis import Axis
 from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant, ramp, steps, table
 
 
-def with_waves(profile: InputProfile, *sinusoids: tuple[float, float, float]) -> InputProfile:
+def with_sinusoids(profile: InputProfile, *sinusoids: tuple[float, float, float]) -> InputProfile:
     return replace(profile, sinusoids=tuple(Sinusoid(*sinusoid) for sinusoid in sinusoids))
 
 
 def random_profiles(rng: random.Random, axis: Axis) -> tuple[InputProfile, InputProfile]:
-    """Return courses of all kinds with one to three waves; some are in resonance with the slip."""
+    """Return input profiles of all kinds with one to three sinusoids; some are in resonance with the slip."""
     speed = rng.choice((-1, 1)) * 10 ** rng.uniform(-3, -1.3)
     omega = math.sqrt(axis.drive_stiffness / axis.mass)
     frequencies = [rng.choice((omega / (2.0 * math.pi), rng.uniform(0.01, 2.0), 10 ** rng.uniform(-1, 2)))
@@ -27,4 +27,4 @@ def random_profiles(rng: random.Random, axis: Axis) -> tuple[InputProfile, Input
                         steps('force', [0.0, 0.7, 0.9], [0.0, rng.uniform(-0.5, 0.5) * axis.normal_force, 0.0])))
     pull = [(rng.uniform(0.0, 0.3) * axis.normal_force, f, rng.uniform(-7, 7)) for f in frequencies]
     shake = [(rng.uniform(0.0, 2.0) * abs(speed), f, rng.uniform(-7, 7)) for f in frequencies]
-    return with_waves(drive, *shake[:rng.randint(0, 2)]), with_waves(force, *pull[:rng.randint(1, 3)])
+    return with_sinusoids(drive, *shake[:rng.randint(0, 2)]), with_sinusoids(force, *pull[:rng.randint(1, 3)])
