@@ -76,7 +76,7 @@ class _Tape:
         result, self._velocity = rig.make_step(self._velocity), None
         self._rig_events(result.rig_events, before, result.step)
         for event in result.events:
-            if event.kind == EventKind.KNOT:    # a node does not tell of them
+            if event.kind == EventKind.KNOT:    # a node does not publish them
                 continue
             at = event.instant.nanoseconds
             self._write(topics.MODE_EVENT, self._packers[topics.MODE_EVENT].pack(at, result.step, event), at,

@@ -16,7 +16,7 @@ from stickslip_sim.realtime.watchdog import Watchdog
 from stickslip_sim.rig import RigEventKind, StepResult
 from stickslip_sim.scene import load_scene
 from tests.realtime.test_pacing import FakeClock
-from tests.support.rigs import make, told
+from tests.support.rigs import make, rig_events_of
 from tests.support.waiting import wait_for
 
 MS = 1_000_000
@@ -54,7 +54,7 @@ class Bench:
         wait_for(lambda: self.loop.step >= steps or self.loop.crash, 'the steps')
         self.loop.stop()
         assert self.loop.crash is None
-        return [step for step, kind in told(self.results) if kind == RigEventKind.COMMAND_TIMEOUT]
+        return [step for step, kind in rig_events_of(self.results) if kind == RigEventKind.COMMAND_TIMEOUT]
 
     def _take(self, result: StepResult) -> None:
         self.results.append(result)
@@ -103,7 +103,7 @@ class TestSilence:
     def test_is_told_again_only_after_a_command(self, mode: str) -> None:
         bench = Bench(mode)
         assert bench.run(900, {9: command, 599: command}) == [111, 701]
-        assert [kind for _, kind in told(bench.results)] == [
+        assert [kind for _, kind in rig_events_of(bench.results)] == [
             RigEventKind.COMMAND_TIMEOUT, RigEventKind.COMMAND_RESUMED, RigEventKind.COMMAND_TIMEOUT]
 
     @pytest.mark.parametrize('mode', MODES)
@@ -169,7 +169,7 @@ class TestPause:
             assert other.at_boundary(lambda: other.run_steps(200, None, None, lambda: False))
         other.stop()
         assert other.step == 650
-        assert told(bench.results) == []
+        assert rig_events_of(bench.results) == []
 
 
 def test_a_reset_forgets_the_commands() -> None:
@@ -181,7 +181,7 @@ def test_a_reset_forgets_the_commands() -> None:
     assert again.at_boundary(lambda: again.run_steps(300, None, None, lambda: False))
     again.stop()
     assert again.step == 300
-    assert told(bench.results) == []
+    assert rig_events_of(bench.results) == []
 
 
 @pytest.mark.parametrize(('timeout', 'is_refused'), [(0.0, False), (0.001, False), (0.0009, True), (1e-12, True),

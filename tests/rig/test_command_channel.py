@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from stickslip_sim.core.time_grid import Grid
 from stickslip_sim.rig import Fault, RigEventKind
 from stickslip_sim.rig.command_channel import CommandChannel
-from tests.support.rigs import Script, force, inject, make, run, told, velocity
+from tests.support.rigs import Script, force, inject, make, rig_events_of, run, velocity
 
 GRID = Grid(1000.0)
 
@@ -25,7 +25,7 @@ class TestLoss:
         results = run(rig, count + 1, {step: [velocity(0.01)] for step in range(1, count + 1)})
         assert rig.counts.lost + rig.counts.heard == count
         assert rig.counts.heard / count == pytest.approx(kept, abs=4 * math.sqrt(kept * (1 - kept) / count))
-        assert [kind for _, kind in told(results)].count(RigEventKind.COMMAND_LOST) == rig.counts.lost
+        assert [kind for _, kind in rig_events_of(results)].count(RigEventKind.COMMAND_LOST) == rig.counts.lost
 
     def test_of_all(self) -> None:
         results = run(make(), 60, {10: [inject('command_loss', duration=0.02, value=1.0)],

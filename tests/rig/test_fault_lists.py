@@ -12,7 +12,7 @@ from stickslip_sim.core.time_grid import Grid
 from stickslip_sim.rig import Fault, RigEventKind
 from stickslip_sim.rig.faults import MAX_FAULTS, RULES
 from stickslip_sim.scene import load_scene
-from tests.support.rigs import bits, inject, make, run, told, velocity
+from tests.support.rigs import bits, inject, make, rig_events_of, run, velocity
 from tests.support.scene_files import refusal
 
 GRID = Grid(1000.0)
@@ -111,7 +111,7 @@ class TestScene:
         injected = run(rig, 1500, {0: [inject('force_pulse', 0.5, 0.5, 300.0, 'a'),
                                        inject('drive_freeze', 1.0, math.inf, 0.0, 'b')]})
         assert bits(result.sample for result in of_scene) == bits(result.sample for result in injected)
-        assert told(of_scene) == [(501, RigEventKind.FAULT_BEGIN), (1001, RigEventKind.FAULT_END),
+        assert rig_events_of(of_scene) == [(501, RigEventKind.FAULT_BEGIN), (1001, RigEventKind.FAULT_END),
                                   (1001, RigEventKind.FAULT_BEGIN)]
 
     @pytest.mark.parametrize(('change', 'told'), [

@@ -18,7 +18,7 @@ from stickslip_sim.rig import Fault, RigEventKind
 from stickslip_sim.rig.faults import Faults
 from stickslip_sim.scene import load_scene
 from stickslip_sim.simulation.simulator import Simulator
-from tests.support.rigs import AXIS, STUCK, Script, bits, force, inject, make, run, told
+from tests.support.rigs import AXIS, STUCK, Script, bits, force, inject, make, rig_events_of, run
 
 GRID = Grid(1000.0)
 
@@ -123,7 +123,7 @@ class TestTimes:
 
     def test_are_told_with_their_step(self) -> None:
         results = run(make(), 60, {10: [inject('force_pulse', 0.02, 0.01, 5.0, 'knock')]})
-        assert told(results) == [(10, RigEventKind.FAULT_INJECTED), (30, RigEventKind.FAULT_BEGIN),
+        assert rig_events_of(results) == [(10, RigEventKind.FAULT_INJECTED), (30, RigEventKind.FAULT_BEGIN),
                                  (40, RigEventKind.FAULT_END)]
         assert {(event.id, event.value, event.fault) for result in results for event in result.rig_events} == {
             ('knock', 5.0, Fault('knock', 'force_pulse', 0.02, 0.01, 5.0))}
@@ -132,7 +132,7 @@ class TestTimes:
         results = run(make(), 500, {10: [inject('force_pulse', 0.0, math.inf, 5.0, 'a')],
                                      400: [lambda rig: rig.clear_fault('a')]})
         assert [result.step for result in results if result.sample.external_force] == [*range(10, 400)]
-        assert told(results)[-1] == (400, RigEventKind.FAULT_CLEARED)
+        assert rig_events_of(results)[-1] == (400, RigEventKind.FAULT_CLEARED)
 
     def test_one_begins_as_another_ends(self) -> None:
         script = {10: [inject('force_pulse', 0.0, 0.01, 5.0), inject('force_pulse', 0.01, 0.01, 7.0)]}

@@ -15,7 +15,7 @@ from stickslip_sim.core.types import Instant
 from stickslip_sim.rig import Fault, Rig, RigEventKind, StepResult
 from stickslip_sim.rig.drive import Drive, DriveLimits
 from stickslip_sim.simulation.simulator import Simulator
-from tests.support.rigs import AXIS, bits, inject, make, run, told, velocity
+from tests.support.rigs import AXIS, bits, inject, make, rig_events_of, run, velocity
 
 WAVY = InputProfile((0.0,), (0.002,), (0.0,), sinusoids=(Sinusoid(1e-3, 3.0, 0.4), Sinusoid(5e-4, 11.0, 0.0)))
 
@@ -114,7 +114,7 @@ class TestLimits:
         script = {10: [velocity(0.5)], 11: [velocity(0.6)], 12: [velocity(0.005)], 13: [velocity(-0.5)]}
         results = run(rig, 20, script)
         assert (rig.counts.limited, rig.counts.heard) == (3, 4)
-        assert told(results) == [(10, RigEventKind.COMMAND_LIMITED), (13, RigEventKind.COMMAND_LIMITED)]
+        assert rig_events_of(results) == [(10, RigEventKind.COMMAND_LIMITED), (13, RigEventKind.COMMAND_LIMITED)]
         assert [event.value for result in results for event in result.rig_events] == [0.5, -0.5]
 
     def test_of_acceleration_are_counted_while_the_drive_is_behind(self) -> None:
@@ -126,7 +126,7 @@ class TestLimits:
         rig = make()
         results = run(rig, 20, {10: [velocity(0.9)]})
         assert drive_velocities(results)[9:11] == [0.002, 0.9]
-        assert (rig.counts.limited, told(results)) == (0, [])
+        assert (rig.counts.limited, rig_events_of(results)) == (0, [])
 
     def test_leave_the_profile_of_the_scene_alone(self) -> None:
         assert bits(run(limited(1e-4, 1e-4, drive=WAVY), 100)) == bits(run(make(drive=WAVY), 100))
@@ -174,7 +174,7 @@ class TestTimeOut:
         rig = make()
         results = run(rig, 200, {50: [velocity(0.01)], 100: [lambda rig: rig.time_out(0.5)], 150: [velocity(0.02)]})
         assert set(drive_velocities(results)[100:150]) == {0.01}
-        assert told(results) == [(100, RigEventKind.COMMAND_TIMEOUT), (150, RigEventKind.COMMAND_RESUMED)]
+        assert rig_events_of(results) == [(100, RigEventKind.COMMAND_TIMEOUT), (150, RigEventKind.COMMAND_RESUMED)]
         assert (rig.counts.timed_out, rig.is_silent, rig.has_failed) == (1, False, False)
 
     @pytest.mark.parametrize(('limit', 'rate'), [(math.inf, 0.2), (0.1, 0.1)])
@@ -199,7 +199,7 @@ class TestTimeOut:
         assert set(speeds[103:160]) == {0.0}
         assert speeds[160] == 0.03
         assert (rig.counts.refused, rig.counts.heard, rig.has_failed) == (2, 1, False)
-        assert [kind for _, kind in told(results)] == [
+        assert [kind for _, kind in rig_events_of(results)] == [
             RigEventKind.COMMAND_TIMEOUT, RigEventKind.FAULT_CLEARED, RigEventKind.COMMAND_RESUMED]
 
     def test_fault_is_forgotten_by_reset(self) -> None:

@@ -81,8 +81,8 @@ def inject(kind: str, start: float = 0.0, duration: float = 0.05, value: float =
     return lambda rig: rig.inject(Fault(name, kind, start, duration, value))
 
 
-def told(results: Iterable[StepResult]) -> list[tuple[int, RigEventKind]]:
-    """Return the kinds of the rig events, by step."""
+def rig_events_of(results: Iterable[StepResult]) -> list[tuple[int, RigEventKind]]:
+    """Return the kinds of rig events, by step."""
     return [(result.step, event.kind) for result in results for event in result.rig_events]
 
 

@@ -37,7 +37,7 @@ class CommandSlot:
         return ''
 
     def refuse(self, reason: str) -> str:
-        """Count what arrived and is no command, for a reason; return what to tell.  The one before stays."""
+        """Count what arrived and is no command, for a reason; return what to log.  The one before stays."""
         self.received += 1
         self.last_refusal = f'{reason}; the previous command stays'
         self.refused += 1

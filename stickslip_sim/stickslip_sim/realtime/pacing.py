@@ -18,7 +18,7 @@ from ..core.time_grid import Grid, decimal
 NANOSECONDS = 1_000_000_000
 _MAX_BACKLOG = NANOSECONDS // 2   # ns that a stalled loop catches up
 _PR_SET_TIMERSLACK = 29
-_SLICE = 0.05                     # s: how soon a waiting loop notices that it shall stop
+_SLICE = 0.05                     # s: how soon a waiting loop notices that it must stop
 
 
 class Clock(Protocol):
@@ -50,7 +50,7 @@ def wake_precisely() -> None:
 
 
 class StepClock(Protocol):
-    """What tells the step loop when to make a step; durations in ns."""
+    """What releases the steps of the step loop; durations in ns."""
 
     period: int
     account: 'Account'

@@ -25,13 +25,13 @@ class Refusals:
 
     def forget(self) -> None:
         """Begin anew, as the counters do."""
-        self._told = [0] * len(self._so_far())
+        self._known = [0] * len(self._so_far())
 
     def look(self) -> list[Refusal]:
         """Return what was refused since the look before."""
         so_far = self._so_far()
-        new = [refusal._replace(number=refusal.number - told) for refusal, told in zip(so_far, self._told)]
-        self._told = [refusal.number for refusal in so_far]
+        new = [refusal._replace(number=refusal.number - known) for refusal, known in zip(so_far, self._known)]
+        self._known = [refusal.number for refusal in so_far]
         return [refusal for refusal in new if refusal.number > 0]
 
     def _so_far(self) -> list[Refusal]:

@@ -29,7 +29,7 @@ Sink = Callable[[StepResult], None]
 class StepLoop:
     """Runs the steps in a thread of its own; everything else asks for changes `at_boundary`.
 
-    `sinks` get each result, in the loop's thread.  With `by_request` time moves with `run_steps` only.
+    `sinks` get each step result, in the loop's thread.  With `by_request` time moves with `run_steps` only.
     """
 
     def __init__(self, rig: Rig, clock: StepClock, slots: tuple[CommandSlot, CommandSlot], sinks: Sequence[Sink],

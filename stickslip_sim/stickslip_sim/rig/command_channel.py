@@ -35,7 +35,7 @@ class CommandChannel:
         return True
 
     def checkpoint(self) -> list[Any]:
-        """Return what is under way and the state of the random stream, as plain data."""
+        """Return what is under way and the random numbers to come, as plain data."""
         return [[list(command) for command in self.under_way], state_of(self._stream)]
 
     def restore(self, saved: Sequence[Any]) -> None:

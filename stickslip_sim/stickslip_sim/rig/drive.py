@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The drive: how it follows what it is told, within its limits.
+"""The drive: how it follows its commands, within its limits.
 
 Its profile is made of constants and ramps, so that the motion of the axis stays exact.
 """
@@ -36,7 +36,7 @@ class Drive:
 
     @property
     def profile(self) -> Input:
-        """What it does: a velocity that holds, m/s, ramps, or the profile of the scene."""
+        """What it does: a velocity that holds, m/s, ramps, or the input profile of the scene."""
         return _STANDSTILL if self._frozen else self._profile
 
     def follow(self, velocity: float, now: Instant, acceleration: float = math.inf) -> bool:
@@ -67,7 +67,7 @@ class Drive:
         self._frozen = frozen
 
     def checkpoint(self) -> list[Any]:
-        """Return what it does and what it was told, as plain data."""
+        """Return what it does and what it was commanded, as plain data."""
         return [plain_of(self._profile), self._target, self._acceleration, self._frozen]
 
     def restore(self, saved: Sequence[Any]) -> None:

@@ -75,7 +75,7 @@ class Encoder:
 
 
 class _Ideal:
-    """Tells the truth, unless a fault is in force."""
+    """Reports the truth, unless a fault is in force."""
 
     def __init__(self) -> None:
         self._position = 0.0

@@ -12,7 +12,7 @@ from ..core.time_grid import Grid
 MAX_FAULTS = 1000      # planned or in force
 MAX_TIME = 1e9         # s
 _ID_LENGTH = 64        # characters
-_TOLD = 10             # ids in a refusal
+_LISTED = 10           # ids in a refusal
 
 
 class Fault(NamedTuple):
@@ -93,7 +93,7 @@ class Faults:
         return [fault.value for fault in self.active.values() if fault.kind == kind]
 
     def inject(self, fault: Fault, step: int) -> Fault:
-        """Plan a fault whose start counts from the begin of a step; return it with its id.  Raises InputError."""
+        """Plan a fault whose start counts from the start of a step; return it with its id.  Raises InputError."""
         fault = fault if fault.id else fault._replace(id=self._free_id(fault.kind))
         check(fault, 1.0 / self._grid.rate)
         if fault.id in self.ids:
@@ -169,5 +169,5 @@ class Faults:
 
 
 def _listed(ids: Sequence[str]) -> str:
-    more = f' and {len(ids) - _TOLD} more' if len(ids) > _TOLD else ''
-    return ', '.join(ids[:_TOLD]) + more or 'none at the moment'
+    more = f' and {len(ids) - _LISTED} more' if len(ids) > _LISTED else ''
+    return ', '.join(ids[:_LISTED]) + more or 'none at the moment'

@@ -27,7 +27,7 @@ class RigEventKind(IntEnum):
 
 
 class RigEvent(NamedTuple):
-    """One thing that happened; `value` in the unit of the thing, `number` where only the first of many is told."""
+    """One thing that happened; `value` in the unit of the thing, `number` where only the first of many is reported."""
 
     kind: RigEventKind
     id: str                      # of a fault, or the name of a command
@@ -43,7 +43,7 @@ class StepResult(NamedTuple):
     step: int
     velocity: float | None       # m/s: the command taken at its start, None without a new one
     force: float | None          # N
-    rig_events: list[RigEvent]   # of its start
+    rig_events: list[RigEvent]       # at its start
     events: list[Event]
     sample: Sample               # at its end
     measured: Measured | None    # at its end; None without encoders, or when the measurement was lost

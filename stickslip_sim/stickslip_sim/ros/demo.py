@@ -38,7 +38,7 @@ class Order(NamedTuple):
     message: DriveVelocity | ExternalForce
 
 
-_COURSE = (
+_COMMANDS = (
     Order(0.30, DriveVelocity(velocity=0.005)),
     Order(0.45, DriveVelocity(velocity=-0.003)),
     Order(0.60, DriveVelocity(velocity=0.002)),
@@ -48,14 +48,14 @@ _COURSE = (
 
 
 class Driver(Node):  # type: ignore[misc]
-    """Sends each order when simulation time has come for it, and tells the state once a second."""
+    """Sends the commands when simulation time has come for it, and prints the state once a second."""
 
     def __init__(self, duration: float) -> None:
         super().__init__('demo')
         self.time = -1.0
         self._duration = duration
-        self._orders = list(_COURSE)
-        self._told = -1
+        self._orders = list(_COMMANDS)
+        self._printed = -1
         self._out = {DriveVelocity: publisher(self, names.DRIVE_VELOCITY),
                      ExternalForce: publisher(self, names.EXTERNAL_FORCE)}
         subscription(self, names.SLIDER_STATE, self._take)
@@ -69,8 +69,8 @@ class Driver(Node):  # type: ignore[misc]
         self.time = state.time
         while self._orders and self.is_connected and self.time >= self._orders[0].share * self._duration:
             self._send(self._orders.pop(0).message)
-        if int(self.time) > self._told:
-            self._told = int(self.time)
+        if int(self.time) > self._printed:
+            self._printed = int(self.time)
             print(f'  t {state.time:5.1f} s   drive {state.drive_velocity * 1e3:5.1f} mm/s   slider '
                   f'{state.velocity * 1e3:6.2f} mm/s at {state.position * 1e3:6.2f} mm   '
                   f'{Mode(state.mode).name.lower()}',
@@ -80,8 +80,8 @@ class Driver(Node):  # type: ignore[misc]
         message.header.stamp = self.get_clock().now().to_msg()
         self._out[type(message)].publish(message)
         is_force = isinstance(message, ExternalForce)
-        told = f'force {message.force:g} N' if is_force else f'drive velocity {message.velocity * 1e3:g} mm/s'
-        print(f'  t {self.time:5.1f} s   sent: {told}', flush=True)
+        command = f'force {message.force:g} N' if is_force else f'drive velocity {message.velocity * 1e3:g} mm/s'
+        print(f'  t {self.time:5.1f} s   sent: {command}', flush=True)
 
 
 def main() -> int:
@@ -151,7 +151,7 @@ def _driver(duration: float) -> Iterator[Driver]:
 
 
 def _drive(driver: Driver, process: subprocess.Popen[bytes], duration: float) -> None:
-    """Send the orders; Ctrl-C ends it early and well."""
+    """Send the commands; Ctrl-C ends it early and well."""
     begin = time.monotonic()
     try:
         while driver.time < duration and process.poll() is None:

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""What the demonstration tells about its recorded run: read back from the bag, with nothing else to go by."""
+"""What the demonstration prints about its recorded run: read back from the bag, with nothing else to go by."""
 
 from pathlib import Path
 from typing import Any
@@ -22,7 +22,7 @@ _FIGURES = (
 
 
 def report(folder: Path) -> list[str]:
-    """Draw the picture of a run into its folder; return what to tell about the run, in lines."""
+    """Draw the picture of a run into its folder; return the lines to print about it."""
     bag = open_bag(folder)
     samples, events = sample_columns(bag), bag.events
     figures = summary(events, float(samples['time'][-1]), Mode(int(samples['mode'][0])))

@@ -153,7 +153,7 @@ def driven(kind: str) -> Iterator[tuple[Client, Any]]:
         assert_clean(*bench.end())
 
 
-def sticks_while_it_creeps(kind: str) -> int:
+def sticks_in_slow_feed(kind: str) -> int:
     """Let a controller move the axis by 0.8 mm, end it, and see the drive stop."""
     with driven(kind) as (axis, controller):
         last = axis.next('slider_state', lambda state: state.position > 0.0008)
@@ -167,7 +167,7 @@ def sticks_while_it_creeps(kind: str) -> int:
 @pytest.mark.slow
 def test_over_dds_the_compensated_one_sticks_less() -> None:
     with judged_by_time(0.05):
-        plain, compensated = (sticks_while_it_creeps(kind) for kind in NAMES)
+        plain, compensated = (sticks_in_slow_feed(kind) for kind in NAMES)
         assert plain >= 3
         assert compensated <= plain / 2    # none on a machine that keeps up
 

@@ -151,7 +151,7 @@ class TestLockStep:
             wait_for(lambda: states and states[-1].step == 49, 'the last step')
             assert_clean(*axis.end())
 
-    def test_a_recording_axis_that_is_not_at_its_begin(self, recorded: Path, tmp_path: Path) -> None:
+    def test_a_recording_axis_that_is_not_at_its_start(self, recorded: Path, tmp_path: Path) -> None:
         with running(*LOCKSTEP, *recording_into(tmp_path / 'run')) as axis, client() as viewer:
             viewer.connect(is_moving=False)
             assert viewer.call(Step, 'step', steps=5, velocity=0.0, force=0.0).success

@@ -89,7 +89,7 @@ class ControllerNode(ListedNode):
         return answer(response, True, 'the moves begin anew with the next measurement')
 
     def _report(self) -> None:
-        """Tell once a second what went wrong in it; silence is told once."""
+        """Log once a second what went wrong in it; silence is logged once."""
         log = self.get_logger()
         if self._heard == 0 and not self._is_deaf:
             log.warning(f'no {self.resolve_topic_name(JOINT_STATES.name)}: does the axis run, in this namespace, and'

@@ -21,7 +21,7 @@ _UNKNOWN = '_UNKNOWN_'   # in the name of such a node: ROS hears of it a moment 
 
 
 class GraphMonitor:
-    """Tells the log what changed since the look before, and returns what is not as it should be."""
+    """Logs what changed since the look before, and returns what is not as it should be."""
 
     def __init__(self, node: Node, scene: Scene, loop: StepLoop) -> None:
         velocity, force = loop.slots
@@ -80,10 +80,10 @@ class _Output:
             others = list(self._publishers.nodes)
             if self._own in others:
                 others.remove(self._own)    # once: a stranger may bear its name
-            self._tell(f'{", ".join(others)} publishes on {self._topic} too' if others else '')
+            self._log_change(f'{", ".join(others)} publishes on {self._topic} too' if others else '')
         return self._trouble
 
-    def _tell(self, trouble: str) -> None:
+    def _log_change(self, trouble: str) -> None:
         if trouble:
             self._log.warning(f'{trouble}: who listens there hears both')
         elif self._trouble:
@@ -104,12 +104,12 @@ class _Input:
 
     def look(self) -> str:
         if self._publishers.have_changed():
-            self._tell(self._publishers.nodes)
+            self._log_change(self._publishers.nodes)
         elif not self._publishers.nodes and self._held() is None:    # since a reset
             self._trouble = ''
         return self._trouble
 
-    def _tell(self, nodes: list[str]) -> None:
+    def _log_change(self, nodes: list[str]) -> None:
         self._trouble = ''
         if len(nodes) > 1:
             self._trouble = f'{len(nodes)} controllers at once on {self._topics}: {", ".join(nodes)}'

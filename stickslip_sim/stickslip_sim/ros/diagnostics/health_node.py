@@ -54,7 +54,7 @@ class Listener(ListedNode):
 def health_of(axis: str, statuses: Sequence[DiagnosticStatus]) -> str:
     """Return how an axis is in one line, by the worst of its statuses; raises StickslipError when it is not well."""
     worst = max(status.level for status in statuses)
-    told = '; '.join(f'{status.name}: {status.message}' for status in statuses if status.level == worst)
+    report = '; '.join(f'{status.name}: {status.message}' for status in statuses if status.level == worst)
     if worst >= DiagnosticStatus.ERROR:
-        raise StickslipError(f'{axis} is not well: {told}')
-    return f'{axis} is well{"" if worst == DiagnosticStatus.OK else ", with warnings"}: {told}'
+        raise StickslipError(f'{axis} is not well: {report}')
+    return f'{axis} is well{"" if worst == DiagnosticStatus.OK else ", with warnings"}: {report}'

@@ -23,7 +23,7 @@ _PERIOD = 1.0     # s
 
 
 class PeriodicReport:
-    """Looks at the loop, the bag and the graph; `stamp_ns` says what time the reports bear."""
+    """Looks at the loop, the bag and the graph; `stamp_ns` returns the time that the reports bear."""
 
     def __init__(self, node: SceneNode, loop: StepLoop, clock: StepClock, publishers: Publishers, rig_events: RigEvents,
                  record_service: RecordService, stamp_ns: Callable[[], int]) -> None:
@@ -31,10 +31,10 @@ class PeriodicReport:
         self._publishers, self._rig_events, self._record_service = publishers, rig_events, record_service
         self._reporter = reports.Reporter(loop)
         self._graph_monitor = GraphMonitor(node, node.scene, loop)
-        self._told = ''          # the failure of the solver that was logged
+        self._logged = ''        # the failure of the solver that was logged
         self._timing_out = publisher(node, names.TIMING)
         self._diagnostics_out = publisher(node, names.DIAGNOSTICS)
-        node.create_timer(_PERIOD, self.tell, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        node.create_timer(_PERIOD, self.report, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def begin(self) -> None:
         """Let the first second begin."""
@@ -44,12 +44,12 @@ class PeriodicReport:
         """Begin anew, as the counters of the loop do."""
         self._reporter.forget_counts()
 
-    def tell(self) -> None:
+    def report(self) -> None:
         """Report on the second that ends now."""
         stamp_ns = self._stamp_ns()
         second = self._reporter.look(self._clock.now())
         judged = verdict(self._node.scene, self._loop)
-        self._tell_troubles(second)
+        self._log_troubles(second)
         message = reports.timing_message(second, self._loop, self._clock.period * 1e-9, bool(judged.valid), stamp_ns)
         self._timing_out.publish(message)
         self._publishers.record_message(names.TIMING, message, self._loop.time_ns, max(self._loop.step, 0))
@@ -60,18 +60,18 @@ class PeriodicReport:
             reports.recorder_status(self._record_service.recordings),
             reports.neighbours_status(self._graph_monitor.look())]))
 
-    def _tell_troubles(self, second: reports.Second) -> None:
+    def _log_troubles(self, second: reports.Second) -> None:
         log = self._node.get_logger()
         if second.skipped > 0.0:
             text = f'{second.skipped:.3f} s behind the clock were given up; simulation time lags by that much'
             log.warning(text)
-            self._tell(RigEvent(RigEventKind.TIME_LOST, '', text, second.skipped))
+            self._report(RigEvent(RigEventKind.TIME_LOST, '', text, second.skipped))
         for refusal in second.refusals:
-            self._tell(RigEvent(RigEventKind.COMMAND_REFUSED, refusal.name, refusal.reason, number=refusal.number))
-        if self._loop.failure and self._loop.failure != self._told:
+            self._report(RigEvent(RigEventKind.COMMAND_REFUSED, refusal.name, refusal.reason, number=refusal.number))
+        if self._loop.failure and self._loop.failure != self._logged:
             log.error(f'the axis stands still: {self._loop.failure}; ~/reset begins anew')
-        self._told = self._loop.failure
+        self._logged = self._loop.failure
         self._record_service.look()
 
-    def _tell(self, event: RigEvent) -> None:
-        self._rig_events.tell(self._loop.step + 1, self._loop.time_ns, event)
+    def _report(self, event: RigEvent) -> None:
+        self._rig_events.report(self._loop.step + 1, self._loop.time_ns, event)

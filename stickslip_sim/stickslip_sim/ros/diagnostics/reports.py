@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""What the node tells about itself once a second: StepTiming and the statuses of /diagnostics."""
+"""What the node reports about itself once a second: StepTiming and the statuses of /diagnostics."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -92,7 +92,7 @@ def diagnostics(stamp_ns: int, hardware_id: str, statuses: Sequence[DiagnosticSt
 
 
 def loop_status(loop: StepLoop, second: Second, verdict: Verdict) -> DiagnosticStatus:
-    """Tell whether the steps keep their time."""
+    """Report whether the steps keep their time."""
     level, text = _pace(loop, second)
     account, window = loop.account, second.window
     worst = {f'worst {name} / s': f'{case.value:.9g} at t = {case.time:.9g} s'
@@ -125,7 +125,7 @@ def _pace(loop: StepLoop, second: Second) -> tuple[bytes, str]:
 
 
 def command_status(loop: StepLoop, second: Second) -> DiagnosticStatus:
-    """Tell what came in, and what was refused since the report before."""
+    """Report what came in, and what was refused since the report before."""
     slots, totals, rig = loop.slots, loop.command_totals, loop.rig
     level, text = OK, 'waiting for the first' if all(slot.latest is None for slot in slots) else 'in force'
     if second.refusals:
@@ -146,7 +146,7 @@ def command_status(loop: StepLoop, second: Second) -> DiagnosticStatus:
 
 
 def solver_status(loop: StepLoop, name: str, last_event: float | None) -> DiagnosticStatus:
-    """Tell whether the solver goes on, and what it located."""
+    """Report whether the solver goes on, and what it located."""
     return _status('solver', ERROR if loop.failure else OK, loop.failure or 'goes on', {
         'solver': name,
         **{f'events {kind.name.lower()}': count for kind, count in loop.rig.simulator.event_counts.items()},
@@ -155,7 +155,7 @@ def solver_status(loop: StepLoop, name: str, last_event: float | None) -> Diagno
 
 
 def recorder_status(recordings: Recordings) -> DiagnosticStatus:
-    """Tell where messages are written, and whether any were lost."""
+    """Report where messages are written, and whether any were lost."""
     recorder = recordings.recorder
     text = f'recording into {recordings.folder}' if recorder else 'not recording'
     level = WARN if recordings.total_dropped else OK
@@ -167,7 +167,7 @@ def recorder_status(recordings: Recordings) -> DiagnosticStatus:
 
 
 def neighbours_status(troubles: Sequence[str]) -> DiagnosticStatus:
-    """Tell who else publishes where one should, and who fell silent."""
+    """Report who else publishes where one should, and who fell silent."""
     return _status('neighbours', WARN if troubles else OK, '; '.join(troubles) or 'nobody in the way', {})
 
 

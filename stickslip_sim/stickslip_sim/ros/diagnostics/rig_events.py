@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""What happens to the rig, told on `rig_event` and in the bag."""
+"""What happens to the rig, published on `rig_event` and in the bag."""
 
 from rclpy.node import Node
 from rclpy.serialization import serialize_message
@@ -19,7 +19,7 @@ _QUIET = 1.0   # s of simulation time between two lines of a kind in the log
 
 
 class RigEvents:
-    """Publishes, records and logs the rig events of the steps, and those that come from elsewhere."""
+    """Publishes, records and logs the events of the steps, and those that come from elsewhere."""
 
     def __init__(self, node: Node, publishers: Publishers) -> None:
         self._log = node.get_logger()
@@ -30,18 +30,18 @@ class RigEvents:
         self._quiet_until: dict[RigEventKind, float] = {}
 
     def take(self, result: StepResult) -> None:
-        """Tell what happened at the begin of a step; called before its state goes out."""
+        """Report what happened at the start of a step; called before its state goes out."""
         if result.step == 0:
             self._time_ns = 0
             self._quiet_until.clear()
         for event in result.rig_events:
-            self.tell(result.step, self._time_ns, event)
+            self.report(result.step, self._time_ns, event)
         self._time_ns = result.sample.instant.nanoseconds
 
-    def tell(self, step: int, time_ns: int, event: RigEvent) -> None:
-        """Tell a rig event; it holds from the begin of a step on, which is at that simulation time."""
+    def report(self, step: int, time_ns: int, event: RigEvent) -> None:
+        """Report an event that holds from the start of a step, which is at that simulation time."""
         message = RigEventMessage(step=step, time=time_ns * 1e-9, kind=int(event.kind), id=event.id, value=event.value,
-                                  count=event.number, text=event.text)
+                           count=event.number, text=event.text)
         if event.fault is not None:
             message.fault, message.start, message.duration = event.fault.kind, event.fault.start, event.fault.duration
         set_stamp(message.header.stamp, self._publishers.start_ns + time_ns)

@@ -41,5 +41,5 @@ def check_sim_time(time: TimeSettings, wanted: object) -> str:
         return ''
     if time.makes_clock:
         raise InputError('use_sim_time', wanted, f'false on this node with time.mode: {time.mode}',
-                         'it publishes /clock itself: set use_sim_time on the nodes that shall follow')
+                         'it publishes /clock itself: set use_sim_time on the nodes that should follow')
     return 'use_sim_time with time.mode: realtime: stamps start from the /clock of another node, then keep real time'

@@ -36,7 +36,7 @@ def run_info_message(fields: Mapping[str, Any]) -> RunInfo:
 
 
 def parameter_event(node_name: str, stamp_ns: int, changed: list[ParameterMessage]) -> ParameterEvent:
-    """Return the event that tells of changed parameters."""
+    """Return the event that reports changed parameters."""
     message = ParameterEvent(node=node_name, changed_parameters=changed)
     set_stamp(message.stamp, stamp_ns)
     return message

@@ -81,7 +81,7 @@ class FeedAxis(SceneNode):
         """Stop the steps and close the bag; raises RecordingError when it could not be written to its end."""
         self.loop.stop()
         if self._record_service.is_recording:
-            self._report.tell()    # the second that was cut short
+            self._report.report()    # the second that was cut short
         if self.loop.step >= 0:
             self.get_logger().info(verdict(self.scene, self.loop).text)
         self._record_service.close()

@@ -89,7 +89,7 @@ class Publishers:
         return deserialize_message(self._event.pack(self.start_ns + event.instant.nanoseconds, step, event), ModeEvent)
 
     def command(self, kind: int, step: int, time_ns: int, value: float) -> None:
-        """Record a command that holds from the begin of a step on."""
+        """Record a command that holds from the start of a step."""
         index, layout = self._commands[kind]
         self.record(index, layout.pack(self.start_ns + time_ns, value), time_ns, step)
 

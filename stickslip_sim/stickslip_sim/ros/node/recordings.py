@@ -27,9 +27,9 @@ _RUNS = 'runs'
 
 
 class Recordings:
-    """At most one recording at a time; a failure ends the recording and is kept to be told, never raised.
+    """At most one recording at a time; a failure ends the recording and is kept to be reported, never raised.
 
-    All lie below the folder of the one that the scene names at the start, or below runs/: whoever may set parameters
+    All lie below the folder of the one that the scene names at the start, or below runs/: a user who may set parameters
     may not write anywhere.
     """
 
@@ -63,7 +63,7 @@ class Recordings:
         self.recorder, self.folder, self.failure = RecorderThread(writer), str(writer.folder), ''
 
     def continue_from(self, checkpoint: Mapping[str, object]) -> None:
-        """Let the recording that has just begun tell what the axis goes on from."""
+        """Let the recording that has just begun store the state from which the axis goes on."""
         if self.recorder is not None:
             self.recorder.begin(checkpoint_file(checkpoint))
 

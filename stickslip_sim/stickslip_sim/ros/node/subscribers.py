@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Where commands come in: what arrives goes into the slots of the step loop, and what is refused is told."""
+"""Where commands come in: what arrives goes into the slots of the step loop, and what is refused is logged."""
 
 from collections.abc import Callable
 
@@ -33,7 +33,7 @@ class Subscribers:
                 refusal = slot.offer(read(data), self._now())
             except InputError as error:
                 refusal = slot.refuse(str(error))
-            self._tell(slot, refusal)
+            self._log_refusal(slot, refusal)
 
         raw_subscription(node, topic, take)
 
@@ -44,7 +44,7 @@ class Subscribers:
             self._log.warning(f'joint_commands: {other} is disregarded; the velocity of {DRIVE} counts', once=True)
         return velocity
 
-    def _tell(self, slot: CommandSlot, refusal: str) -> None:
+    def _log_refusal(self, slot: CommandSlot, refusal: str) -> None:
         now = self._now()
         if refusal and now >= self._quiet_until.get(slot.name, now):
             self._quiet_until[slot.name] = now + _QUIET

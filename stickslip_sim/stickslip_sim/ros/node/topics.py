@@ -61,7 +61,7 @@ def subscription(node: Node, topic: Topic, callback: Callable[[Any], None]) -> A
 
 
 def raw_subscription(node: Node, topic: Topic, callback: Callable[[bytes], None]) -> Any:
-    """Create a subscription whose callback gets the bytes of each message: whatever anyone sends."""
+    """Create a subscription whose callback gets the bytes of each message, unchecked."""
     return node.create_subscription(message_type(topic), topic.name, callback, qos(topic.qos), raw=True)
 
 

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The life of the process around a node, from its arguments to the exit code."""
+"""The process around a node, from its arguments to the exit code."""
 
 import sys
 from collections.abc import Callable, Sequence

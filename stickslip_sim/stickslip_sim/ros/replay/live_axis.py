@@ -66,7 +66,7 @@ class LiveAxis:
         """Call a service and wait for the answer; a question that stays without one is put again."""
         answers: SimpleQueue[Any] = SimpleQueue()
         while True:
-            self.tell(service, answers.put, **request)
+            self.send(service, answers.put, **request)
             for _ in range(_LOOKS) if service == _QUESTION else count():
                 with suppress(Empty):
                     return answers.get(timeout=_LOOK)
@@ -75,7 +75,7 @@ class LiveAxis:
                 if not self._clients[service].service_is_ready():
                     raise InputError('axis', self.name, 'a sim_node that runs; it has gone', 'start it, and this again')
 
-    def tell(self, service: str, take: Callable[[Any], None], **request: Any) -> None:
+    def send(self, service: str, take: Callable[[Any], None], **request: Any) -> None:
         """Call a service; `take` gets the answer later, in another thread."""
         client = self._clients[service]
         if not wait_until(client.service_is_ready, self._stop, _PATIENCE):

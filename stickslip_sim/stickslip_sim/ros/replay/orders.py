@@ -70,12 +70,12 @@ def request_of(kind: Topic, data: bytes) -> Request | None:
 
 
 def is_timeout(kind: Topic, data: bytes) -> bool:
-    """Return whether a recorded message tells of a command time-out."""
+    """Return whether a recorded message reports a command time-out."""
     return kind is RIG_EVENT and bool(order_of(kind, data).kind == RigEventKind.COMMAND_TIMEOUT)
 
 
 def refusal_in(response: Any) -> str:
-    """Return why an axis did not do as it was told; empty when it did."""
+    """Return why an axis did not do as it was ordered; empty when it did."""
     if hasattr(response, 'result'):
         return '' if response.result.successful else str(response.result.reason)
     return '' if response.success else str(response.message)

@@ -14,7 +14,7 @@ _PATIENCE = 5.0     # s that the end waits for what is being done
 
 
 class StoppedError(Exception):
-    """The player is to stop; whoever waits in its thread raises it."""
+    """The player is to stop; raised by a wait in its thread."""
 
 
 class Act(NamedTuple):

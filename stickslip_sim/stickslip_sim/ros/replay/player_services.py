@@ -22,15 +22,15 @@ class Services:
         node.create_service(Trigger, '~/resume', lambda _, response: self._pause(False, response))
         node.create_service(Trigger, '~/toggle_paused',
                             lambda _, response: self._pause(not timeline.is_paused, response))
-        node.create_service(Trigger, '~/is_paused', lambda _, response: self._tell(timeline.is_paused, response))
+        node.create_service(Trigger, '~/is_paused', lambda _, response: self._answer(timeline.is_paused, response))
         node.create_service(Trigger, '~/play_next', self._play_next)
         node.create_service(Trigger, '~/stop', self._stop)
 
     def _pause(self, paused: bool, response: Any) -> Any:
         self._player.pause(paused)
-        return self._tell(True, response)
+        return self._answer(True, response)
 
-    def _tell(self, success: bool, response: Any) -> Any:
+    def _answer(self, success: bool, response: Any) -> Any:
         word = 'paused' if self._timeline.is_paused else 'running'
         return answer(response, success, f'{word} at {self._timeline.now() * 1e-9:g} s of the recording')
 

@@ -21,7 +21,7 @@ _PATIENCE = 10.0    # s for the axis to hear
 
 
 class InRealTime:
-    """The script of orders by time.  The commands in force at the begin of the span are given first."""
+    """The script of orders by time.  The commands in force at the start of the span are given first."""
 
     def __init__(self, node: Node, axis: LiveAxis, recording: Recording, orders: Mapping[str, Topic], span: PlayedSpan,
                  stop: Event) -> None:
@@ -54,7 +54,7 @@ class InRealTime:
         if message.topic in self._out:
             self._out[message.topic].publish(message.data)
         elif request := request_of(self._orders[message.topic], message.data):
-            self._axis.tell(request.service, self._look_at, **request.fields)
+            self._axis.send(request.service, self._look_at, **request.fields)
 
     def _look_at(self, response: object) -> None:
         refusal = refusal_in(response)

@@ -45,7 +45,7 @@ class Replay(ListedNode):
             self._open_clock(settings.clock)
 
     def begin(self) -> None:
-        """Tell what is played, and play."""
+        """Log what is played, and play."""
         settings, log = self._settings, self.get_logger()
         if not self._recording.is_complete:
             log.warning(f'{self._recording.path} was cut off: it is played as far as it goes,'

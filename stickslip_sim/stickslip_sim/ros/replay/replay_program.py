@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 _USAGE = """\
 usage: replay_node [--help] --ros-args -p bag:=RUN_FOLDER [-p NAME:=VALUE]... [-r TOPIC:=OTHER]...
 
-Plays a recorded run (node replay): all its topics for viewers, or with -p mode:=commands what the axis was told, into
+Plays a recorded run (node replay): all its topics for viewers, or with -p mode:=commands the orders it was given, into
 a live sim_node.  The other parameters are named as the flags of ros2 bag play: rate, loop, start_offset,
 playback_duration, clock, delay, start_paused, topics.
 """

@@ -12,14 +12,14 @@ STATES, COMMANDS = 'states', 'commands'
 
 PARAMETERS = (
     Parameter('bag', 'string', '', '', 'folder of the run, or an .mcap file'),
-    Parameter('mode', 'string', STATES, '', 'states: all that was recorded, onto its topics; commands: what the axis'
-              ' was told, into a live one', choices=(STATES, COMMANDS)),
+    Parameter('mode', 'string', STATES, '', 'states: all that was recorded, onto its topics; commands: the orders'
+              ' that the axis was given, into a live one', choices=(STATES, COMMANDS)),
     Parameter('rate', 'double', 1.0, '', 'seconds of the recording per second', 0.0, 1e6, low_open=True, live=True),
     Parameter('loop', 'bool', False, '', 'whether to begin anew at the end'),
-    Parameter('start_offset', 'double', 0.0, 's', 'of the recording that are left out at its begin', 0.0, 1e9),
+    Parameter('start_offset', 'double', 0.0, 's', 'of the recording that are left out at its start', 0.0, 1e9),
     Parameter('playback_duration', 'double', -1.0, 's', 'of the recording that are played; -1: to its end', -1.0, 1e9),
     Parameter('delay', 'double', 0.0, 's', 'before it is played, each time', 0.0, 1e6),
-    Parameter('start_paused', 'bool', False, '', 'whether to wait for ~/resume at the begin'),
+    Parameter('start_paused', 'bool', False, '', 'whether to wait for ~/resume at the start'),
     Parameter('clock', 'double', 0.0, 'Hz', 'how often /clock is published; 0: not at all', 0.0, 1e4),
     Parameter('topics', 'string_array', (), '', 'which are played; left out: all'),
     Parameter('axis', 'string', '', '', 'with mode: commands: the node that takes them; empty: feed_axis in the'

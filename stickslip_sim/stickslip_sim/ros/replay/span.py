@@ -33,7 +33,7 @@ def span_of(recording: Recording, settings: Settings) -> PlayedSpan:
 def chosen_topics(recording: Recording, wanted: Sequence[str]) -> list[str]:
     """Return the topics that are wanted, all when none is named; raises InputError on one that is not there.
 
-    A name without a slash at its begin is that of the one topic that ends so.
+    A name without a leading slash is that of the one topic that ends so.
     """
     return [_topic(recording, name) for name in wanted] or list(recording.topics)
 

@@ -49,7 +49,7 @@ class FaultServices:
 
         return self._at_boundary(response, clear, lambda: f'cleared: {", ".join(cleared) or "there were none"}')
 
-    def _at_boundary(self, response: Any, action: Callable[[], object], told: Callable[[], str]) -> Any:
+    def _at_boundary(self, response: Any, action: Callable[[], object], report: Callable[[], str]) -> Any:
         refusals: list[InputError] = []
 
         def do() -> None:
@@ -60,4 +60,4 @@ class FaultServices:
 
         if not self._loop.at_boundary(do):
             return answer(response, False, BUSY)
-        return answer(response, not refusals, str(refusals[0]) if refusals else told())
+        return answer(response, not refusals, str(refusals[0]) if refusals else report())

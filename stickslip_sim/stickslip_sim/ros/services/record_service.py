@@ -18,14 +18,14 @@ from .answers import BUSY, answer
 class RecordService:
     """Attaches recordings to the publishers between two steps.
 
-    `tell` publishes what changed (run_info); `receipt` makes the receipt that ends a bag.
+    `publish` publishes what changed (run_info); `receipt` makes the receipt that ends a bag.
     """
 
-    def __init__(self, node: SceneNode, loop: StepLoop, publishers: Publishers, tell: Callable[[], None],
+    def __init__(self, node: SceneNode, loop: StepLoop, publishers: Publishers, publish: Callable[[], None],
                  receipt: Callable[[], dict[str, Any]]) -> None:
         self.recordings = Recordings(node.get_namespace(), node.scene)
         self._node, self._loop, self._publishers = node, loop, publishers
-        self._tell, self._receipt = tell, receipt
+        self._publish, self._receipt = publish, receipt
         node.create_service(SetBool, '~/record', self._set_recording)
 
     @property
@@ -39,7 +39,7 @@ class RecordService:
             self.recordings.begin(self._node.scene)
         except RecordingError as error:
             self._node.get_logger().error(f'no recording: {error}')
-            self._tell()
+            self._publish()
             return str(error)
         if at_boundary(self._attach) is False:
             self.recordings.end({})
@@ -62,7 +62,7 @@ class RecordService:
             self._node.get_logger().error(f'recording failed: {error}')
             return str(error)
         finally:
-            self._tell()
+            self._publish()
         return ''
 
     def close(self) -> None:
@@ -79,13 +79,13 @@ class RecordService:
         if failure:
             self._publishers.recorder = None
             self._node.get_logger().error(f'recording failed, the axis goes on: {failure}')
-            self._tell()
+            self._publish()
 
     def _attach(self) -> None:
         if self._loop.step >= 0:
             self.recordings.continue_from(self._loop.rig.checkpoint())
         self._publishers.recorder = self.recordings.recorder
-        self._tell()
+        self._publish()
         for kind, value in enumerate(self._loop.held):
             if value is not None:
                 self._publishers.command(kind, self._loop.step, self._loop.time_ns, value)   # since then, or before

@@ -31,7 +31,7 @@ class TimeServices:
         node.create_service(Step, '~/step', self.step)
 
     def reset(self, _: Any, response: Any) -> Any:
-        """Begin anew at simulation time 0; a bag would then hold two runs, hence not while recording."""
+        """Begin anew at simulation time 0; a bag would then hold two runs, so not while recording."""
         if self._is_recording():
             return answer(response, False, 'refused while recording: a bag holds one run; stop it with ~/record first')
         done = self._restart()
@@ -65,7 +65,7 @@ class TimeServices:
             response.state, response.friction = self._publishers.state_messages(last.step, last.sample)
             response.events = [message for result in results for event in result.events
                                if (message := self._publishers.event_message(result.step, event))]
-        return answer(response, done and len(results) == request.steps, self._told(done, request.steps, len(results)))
+        return answer(response, done and len(results) == request.steps, self._report(done, request.steps, len(results)))
 
     def _refusal(self, request: Any) -> str:
         """Return why steps are not made, or an empty text."""
@@ -81,7 +81,7 @@ class TimeServices:
             return 'refused while time runs by itself: use time.mode: lockstep, or ~/set_paused first'
         return ''
 
-    def _told(self, done: bool, wanted: int, made: int) -> str:
+    def _report(self, done: bool, wanted: int, made: int) -> str:
         time = f'at simulation time {self._loop.time_ns * 1e-9:g} s'
         if self._loop.failure:
             return f'{made} of {wanted} steps made, then the solver gave up: {self._loop.failure}'
