@@ -54,7 +54,7 @@ class TestClosedForms:
         crossing = brentq(lambda time: abs(free_position(time)) - band, last, last + 0.6 * swing, xtol=1e-14)
         assert value == pytest.approx(crossing, abs=1e-9)
 
-    def test_settling_counts_from_the_begin_of_the_window(self) -> None:
+    def test_settling_counts_from_the_start_of_the_window(self) -> None:
         whole = measured('settling_time: {target: 0.0, band: 1.0e-4, max: 9.0}', simulated(FREE, 3.0))
         part = measured('settling_time: {target: 0.0, band: 1.0e-4, max: 9.0, window: {begin: 0.2}}',
                         simulated(FREE, 3.0))

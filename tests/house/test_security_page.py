@@ -23,7 +23,7 @@ ROWS = [line for line in (ROOT / 'docs/security.md').read_text().splitlines() if
     ('a text in a scene', (parameter.TEXT_LIMIT,)),
     ('breakpoints of a friction table', (MAX_KNOTS, MAX_SINUSOIDS, MAX_FAULTS)),
     ('a record of a bag', (records.SIZE_LIMIT >> 20,)),
-    ('schemas, attachments', (opening.MOST_TOLD >> 20,)),
+    ('schemas, attachments', (opening.MOST_BESIDE >> 20,)),
     ('a definition', (schemas.LONGEST, schemas.MOST_ELEMENTS)),
     ('a topic of a bag', (reader.MOST_HELD >> 20,)),
     ('the description of a sweep', (folder.LONGEST >> 20,)),

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""A bit turned in a bag that was finished: refused in one line by all that read it, whoever that is."""
+"""A bit turned in a bag that was finished: refused in one line by all that read it."""
 
 import struct
 import warnings

@@ -159,7 +159,7 @@ def test_a_scheduler_that_is_not_there_gets_one_line_and_no_folder(address: str,
 
 
 class Stranger(socketserver.BaseRequestHandler):
-    """Says one thing to whoever calls, and nothing more."""
+    """Says one thing to each caller, and nothing more."""
 
     answer = b''
 

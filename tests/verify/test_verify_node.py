@@ -139,7 +139,7 @@ def kinds(folder: Path) -> set[int]:
 
 
 def test_in_lock_step_with_what_happened_in_the_same_gap(tmp_path: Path) -> None:
-    """Between two steps: faults, parameters, the begin of the recording, and more of both."""
+    """Between two steps: faults, parameters, the start of the recording, and more of both."""
     with client() as axis, running(*parameters('time.mode:=lockstep', 'scene:=paper_fig7'), folder=tmp_path):
         axis.connect(is_moving=False)
         assert axis.call(Step, 'step', steps=1200, velocity=0.004, force=math.nan).success

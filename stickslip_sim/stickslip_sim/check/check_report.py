@@ -25,7 +25,7 @@ def failures(outcomes: Sequence[Outcome]) -> list[str]:
     return [outcome.name for outcome in outcomes if not outcome.passed]
 
 
-def told(outcome: Outcome) -> str:
+def line_of(outcome: Outcome) -> str:
     """Return what was measured, and the limit, in a sentence."""
     if outcome.limit is None or outcome.value is None:
         return outcome.remark

@@ -5,7 +5,7 @@
 from collections.abc import Sequence
 from xml.etree import ElementTree
 
-from .check_report import told
+from .check_report import line_of
 from .judgement import Outcome
 
 
@@ -16,10 +16,10 @@ def junit_text(name: str, outcomes: Sequence[Outcome]) -> str:
     for outcome in outcomes:
         case = ElementTree.SubElement(suite, 'testcase', name=outcome.name, classname=f'stickslip.check.{name}')
         if outcome.passed:
-            ElementTree.SubElement(case, 'system-out').text = told(outcome)
+            ElementTree.SubElement(case, 'system-out').text = line_of(outcome)
         else:
-            failure = ElementTree.SubElement(case, 'failure', type='limit', message=told(outcome))
-            failure.text = told(outcome)
+            failure = ElementTree.SubElement(case, 'failure', type='limit', message=line_of(outcome))
+            failure.text = line_of(outcome)
     ElementTree.indent(suite)
     document: bytes = ElementTree.tostring(suite, encoding='utf-8', xml_declaration=True)
     return document.decode() + '\n'

@@ -19,7 +19,7 @@ from .observed_motion import Motion, Points
 
 
 class Measured(NamedTuple):
-    """A figure, inf when what it tells of never came; `remark` says what it was taken from."""
+    """A figure, inf when its event never came; `remark` says what it was taken from."""
 
     value: float
     remark: str = ''
@@ -51,7 +51,7 @@ def overshoot(motion: Motion, target: float) -> Measured:
 
 
 def settling_time(motion: Motion, target: float, band: float) -> Measured:
-    """Return how long after the begin the slider comes within ± `band` of the target to stay, s; inf if it does not."""
+    """Return how long after the start the slider comes within ± `band` of the target to stay, s; inf if it does not."""
     points = motion.points
     outside = np.flatnonzero(np.abs(points.position - target) > band)
     if not outside.size:

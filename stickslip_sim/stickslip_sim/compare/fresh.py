@@ -22,7 +22,7 @@ MAX_EVENTS = 50_000
 _IN_SPAN = 8, 200          # samples between two events, at least and at most
 _SPAN_BUDGET = 200_000     # samples of all spans
 _PERIODS, _IN_PERIOD = 8, 32   # of the ring-down after each slip
-_WAVE_BUDGET = 100_000     # samples for the sines of the inputs
+_SINUSOID_BUDGET = 100_000     # samples for the sines of the inputs
 _BEFORE = 1e-9             # s: where an input jumps it is sampled that much before, too
 
 
@@ -70,12 +70,12 @@ def _ring_downs(scene: Scene, corners: list[float]) -> Iterator[float]:
 def _of_sinusoids(scene: Scene, duration: float) -> Iterator[float]:
     """Yield the times that show the sines of the inputs."""
     fastest = max((sinusoid.frequency for sinusoid in (*scene.drive.sinusoids, *scene.force.sinusoids)), default=0.0)
-    count = min(_IN_PERIOD * fastest * duration, _WAVE_BUDGET)
+    count = min(_IN_PERIOD * fastest * duration, _SINUSOID_BUDGET)
     yield from np.linspace(0.0, duration, math.ceil(count) + 1).tolist()
 
 
 def _borders(profile: InputProfile, duration: float) -> Iterator[float]:
-    """Yield where a profile goes on to its next piece, as many times as are worth a look."""
+    """Yield where an input profile goes on to its next segment, as many times as are worth a look."""
     time = profile.piece_at(0.0).end
     for _ in range(MAX_EVENTS):
         if not time < duration:

@@ -71,7 +71,7 @@ def _is_fit(run: Run, ring: RingDown, begin: Event, stop: Event, end: Event) -> 
 def _ringing(run: Run, begin: Event, stop: Event, end: Event) -> _Ringing:
     time, position, velocity, acceleration = (
         _part(run, stop, end, name) for name in ('time', 'position', 'velocity', 'acceleration'))
-    settled = position - position[-1] - velocity[-1] * (time - time[-1])   # from the line that it creeps along
+    settled = position - position[-1] - velocity[-1] * (time - time[-1])   # from the line along which it drifts
     size = np.abs(acceleration)
     signs = np.sign(acceleration[size > _VISIBLE * size.max()])
     last_quarter = time > time[-1] - 0.25 * (time[-1] - time[0])

@@ -17,7 +17,7 @@ from .schemas import schema
 from .topics import Topic
 
 CHUNK_SIZE = 64 * 1024  # a larger chunk takes longer to close than a step may wait
-METADATA = 'stickslip'  # the record that tells what simulated the run
+METADATA = 'stickslip'  # the record that says what simulated the run
 _MEDIA = {'.yaml': 'application/yaml', '.json': 'application/json'}
 _SEQUENCE_MASK = 0xFFFFFFFF  # MCAP has 32 bits for it; the message itself has the whole step
 

@@ -11,7 +11,7 @@ from ..core.errors import RecordingError, RecordingWarning
 from .reader import OVERHEAD, Bag
 from .records import records
 
-MOST_TOLD = 64 << 20   # bytes of all that a file holds beside messages
+MOST_BESIDE = 64 << 20   # bytes of all that a file holds beside messages
 
 
 def open_bag(path: Path | str) -> Bag:
@@ -21,8 +21,8 @@ def open_bag(path: Path | str) -> Bag:
     goes, with a RecordingWarning.
     """
     bag = bag_in(path)
-    for note in shortfalls(bag):
-        warnings.warn(note, RecordingWarning, stacklevel=2)
+    for shortfall in shortfalls(bag):
+        warnings.warn(shortfall, RecordingWarning, stacklevel=2)
     return bag
 
 
@@ -31,16 +31,16 @@ def bag_in(path: Path | str) -> Bag:
     bag = Bag(file_of(Path(path)))
     names: dict[int, str] = {}
     channels: dict[int, str] = {}
-    told = 0
+    beside = 0
     for record in records(bag.path):
         if isinstance(record, Message):
             if record.channel_id not in channels:
                 raise RecordingError(f'{bag.path}: damaged: a message on channel {record.channel_id}, which is nowhere')
             bag.counts[channels[record.channel_id]] += 1
             continue
-        told += _size(record)
-        if told > MOST_TOLD:
-            raise RecordingError(f'{bag.path}: more than {MOST_TOLD >> 20} MiB beside its messages; no run has that')
+        beside += _size(record)
+        if beside > MOST_BESIDE:
+            raise RecordingError(f'{bag.path}: more than {MOST_BESIDE >> 20} MiB beside its messages; no run has that')
         _note(bag, record, names, channels)
     return bag
 
@@ -54,7 +54,7 @@ def shortfalls(bag: Bag) -> tuple[str, ...]:
 
 
 def _note(bag: Bag, record: McapRecord, names: dict[int, str], channels: dict[int, str]) -> None:
-    """Take what a record tells of the bag; `names` of schemas and topics of `channels` by their numbers."""
+    """Take what a record says of the bag; `names` of schemas and topics of `channels` by their numbers."""
     if isinstance(record, Schema) and record.id not in names:    # the index repeats them
         names[record.id] = record.name
         if record.encoding == 'ros2msg':

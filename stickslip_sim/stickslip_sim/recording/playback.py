@@ -88,7 +88,7 @@ class Recording:
         return (record for record in records(self.path) if isinstance(record, Message))
 
     def _look_at_summary(self) -> tuple[int, int] | None:
-        """Take topics and index from the end of the file; return first and last time, None where that does not tell."""
+        """Take topics and index from the end of the file; return first and last time, None where that does not say."""
         try:
             with self.path.open('rb') as file:
                 summary = summary_of(file)

@@ -135,7 +135,7 @@ class Bag:
         return names[0]
 
     def columns_of(self, topic: Topic, fields: Sequence[str]) -> dict[str, NDArray[Any]]:
-        """Return fields of the one topic of this type, whatever the namespace of its node.
+        """Return fields of the one topic of this type, in any namespace of its node.
 
         Raises RecordingError when topic or fields are not there.
         """

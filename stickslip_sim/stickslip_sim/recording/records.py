@@ -96,12 +96,12 @@ def _is_finished(file: BinaryIO) -> bool:
 def _matches_checksum(file: BinaryIO) -> bool:
     """Return whether the end of a file, from its summary on, is what was written; true without a checksum."""
     file.seek(-len(MCAP0_MAGIC) - _FOOTER.size, os.SEEK_END)
-    begin, _, told = _FOOTER.unpack(file.read(_FOOTER.size))
+    begin, _, written = _FOOTER.unpack(file.read(_FOOTER.size))
     end = file.tell() - _CHECKSUM_SIZE
     checksum = 0
     for at in range(file.seek(begin), end, _BLOCK):
         checksum = crc32(file.read(min(_BLOCK, end - at)), checksum)
-    return told in (0, checksum)
+    return written in (0, checksum)
 
 
 def _unpacked(path: Path, record: McapRecord) -> Iterable[McapRecord]:

@@ -31,8 +31,8 @@ _LIBRARIES = ('numpy', 'mcap', 'rosbags')
 class RunFacts:
     """What is needed to run a recorded run again; `scene_text` is the whole effective scene.
 
-    An offline run follows the input profiles of its scene for `duration` s, with a sample every `sample_period` s; a
-    node (None) follows the recorded orders.
+    An offline run follows the input profiles of its scene for `duration` s, with a sample every `sample_period` s.
+    A run of a node (None) follows the recorded orders.
     """
 
     scene: str

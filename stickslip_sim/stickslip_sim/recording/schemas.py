@@ -62,7 +62,7 @@ def store_of(definitions: Mapping[str, str]) -> Typestore:
 
 @contextmanager
 def understood(what: str) -> Iterator[None]:
-    """Turn whatever rosbags stumbles over into a RecordingError: it makes Python code of definitions, and runs that."""
+    """Turn an error of rosbags into a RecordingError: it makes Python code of definitions, and runs that."""
     try:
         yield
     except Exception as error:

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""A thread that writes a bag, so that whoever produces messages never waits for a disk."""
+"""A thread that writes a bag, so that the producer of messages never waits for a disk."""
 
 from collections import deque
 from collections.abc import Mapping
@@ -75,7 +75,7 @@ class RecorderThread:
         try:
             self._record()
             self._writer.close(self._last)
-        except Exception as error:  # whatever it is, the axis goes on and `failure` tells
+        except Exception as error:  # of any kind: the axis goes on and `failure` reports it
             self._is_open = False
             self.failure = str(error) or type(error).__name__
             self._writer.abandon()

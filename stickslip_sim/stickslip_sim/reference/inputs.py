@@ -63,7 +63,7 @@ class Signal(NamedTuple):
 
     @property
     def reach(self) -> mpf:
-        """Return a size that its value does not exceed now, whatever the phases."""
+        """Return a size that its value does not exceed now, at any phases."""
         return abs(self.offset) + sum((abs(turn.amplitude) for turn in self.turns), mpf(0))
 
 

@@ -63,7 +63,7 @@ class StaticLaw:
         return (age + self.time_constant) / 16
 
     def _settled(self, age: mpf) -> bool:
-        """Tell whether an exponential rise is over to well below the working precision."""
+        """Return whether an exponential rise is over to well below the working precision."""
         if self.law == 'exponential':
             z = age / self.time_constant
         elif self.law == 'kato':

@@ -5,10 +5,10 @@
 The exact solver makes rounding errors only.  It runs again with every number of the scene off by one rounding unit,
 which also gives every operation of the run another rounding; how far the events move apart is what rounding does to
 this very run.  What the sums of time and position lose in every run alike is added, and so is what rounding of the
-speed does to a slip that ends with hardly any deceleration: its time is a double root, which symmetric data keep.
+speed does to a slip that ends with almost no deceleration: its time is a double root, which symmetric data keep.
 
 Other solvers are compared with the exact one on the same scene, and its own estimate is added.  A repeat with half the
-step or a tenth of the tolerances tells nothing: an event is noticed up to a step late, so that two runs may be late
+step or a tenth of the tolerances says nothing: an event is noticed up to a step late, so that two runs may be late
 alike; and where the calls bound the steps, both tolerances take the same ones.
 """
 
@@ -165,7 +165,7 @@ def _shift(run: SimulatedRun, judge: SimulatedRun, until: float) -> _Shift:
 
 
 def _lasting(events: Sequence[Event]) -> list[Event]:
-    """Return the events without those that tell the end of a coast of a moment, which rounding may decide."""
+    """Return the events without those that mark the end of a coast of a moment, which rounding may decide."""
     kept: list[Event] = []
     away = -math.inf
     for event in events:

@@ -45,7 +45,7 @@ class Run(Protocol):
 
     @property
     def duration(self) -> float:
-        """From the begin to the end, s."""
+        """From the start to the end, s."""
 
     @property
     def samples(self) -> Columns:

@@ -24,7 +24,7 @@ from .views import Views
 MAX_DURATION = 1e9         # s
 MAX_SAMPLES = 10_000_000   # 1.2 GB
 MAX_EVENTS = 5_000_000     # about as much
-_PARTS = 200               # of a run: progress is told, and Ctrl-C heard, this often
+_PARTS = 200               # of a run: progress is reported, and Ctrl-C heard, this often
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,7 +22,7 @@ class Views:
 
     @property
     def duration(self: Run) -> float:
-        """From the begin to the end, s."""
+        """From the start to the end, s."""
         return self.end - self.begin
 
     def cycles(self: Run) -> list[Cycle]:

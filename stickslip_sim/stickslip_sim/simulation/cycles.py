@@ -115,7 +115,7 @@ class EventTally:
             self._latest_cycles.append(cycle)
 
     def summary(self, duration: float) -> Summary:
-        """Return what it all amounts to, `duration` seconds after the begin."""
+        """Return what it all amounts to, `duration` seconds after the start."""
         cycles = list(self._latest_cycles)
         under_way = self._begin + duration - self._since if self._mode == Mode.STICK else 0.0
         return Summary(

@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 from ..axis import Axis, RigidContact
 from ..friction import KineticTable, StaticLaw, StaticLawKind
 
-_CREEPS = 0.9999   # damping ratio from which on no slip of a double comes to rest: A_c beyond 1e190
+_NO_REST = 0.9999   # damping ratio from which on no slip of a double comes to rest: A_c beyond 1e190
 
 
 class Oscillator(NamedTuple):
@@ -87,7 +87,7 @@ def feed_of_theory(axis: Axis) -> float | None:
 
 
 def _feed_of_a_drop(oscillator: Oscillator, drop: float) -> float:
-    if drop == 0.0 or oscillator.damping_ratio >= _CREEPS:
+    if drop == 0.0 or oscillator.damping_ratio >= _NO_REST:
         return 0.0
     return critical_feed(oscillator, drop) if oscillator.damping_ratio > 0.0 else math.inf
 

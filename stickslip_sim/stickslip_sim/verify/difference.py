@@ -90,7 +90,7 @@ class _Topic:
         if theirs is None or ours is None:
             raise RecordingError(f'{self._path}: {self.name}: {len(recorded)} bytes that are no message of its type')
         for name, a, b in zip(self._layout.names, theirs, ours):
-            if repr(a) != repr(b):     # tells 0.0 and −0.0 apart, and takes NaN for itself
+            if repr(a) != repr(b):     # separates 0.0 from −0.0, and takes NaN for itself
                 return Difference(number, time, self.name, name, a, b)
         a, b = (int.from_bytes(data[4:8], 'little') + 1e-9 * int.from_bytes(data[8:12], 'little')
                 for data in (recorded, made))

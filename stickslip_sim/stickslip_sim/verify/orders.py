@@ -22,7 +22,7 @@ def is_order(bag: Bag, message: RecordedMessage) -> bool:
 
 
 class Orders:
-    """Orders to a rig of a scene; `fixed` parameters stay as they are, whatever was changed while the axis ran."""
+    """Orders to a rig of a scene; `fixed` parameters stay as they are when others were changed while the axis ran."""
 
     def __init__(self, bag: Bag, scene: Scene, rig: Rig, fixed: Collection[str]) -> None:
         self._bag, self._rig, self._fixed = bag, rig, fixed

@@ -43,7 +43,7 @@ class Step(NamedTuple):
 def steps_of(run: RecordedRun, start: int) -> Iterator[Step]:
     """Yield the recorded steps after `start` (−1: all); raises RecordingError when they do not follow each other.
 
-    An offline run has no orders: its commands only tell what its input profiles did.
+    An offline run has no orders: its commands only repeat what its input profiles did.
     """
     bag = run.bag
     ordered = () if offline_of(run) else [topic for topic in ORDERS if topic.type in bag.topics.values()]
@@ -60,7 +60,7 @@ def steps_of(run: RecordedRun, start: int) -> Iterator[Step]:
             raise RecordingError(f'{bag.path}: step {number + ahead} after step {number}; a recording that lacks more '
                                  f'than {MOST_MISSING} steps is damaged')
         number += ahead
-        if number > start:     # what was in force at the checkpoint is told again
+        if number > start:     # what was in force at the checkpoint is recorded again
             yield _step(number, [message for _, message in group], kinds)
 
 

@@ -13,7 +13,7 @@ from .origin import offline_of
 from .remake import Maker, Progress, maker_of
 from .steps import Step, steps_of
 
-_TOLD_EVERY = 1000   # steps
+_REPORTED_EVERY = 1000   # steps
 
 
 class Verdict(NamedTuple):
@@ -64,5 +64,5 @@ class _Look:
             self.steps += 1
             self.missing = made.number + 1 - self._first - self.steps
             self.end = made.sample.time
-            if self._progress and self.steps % _TOLD_EVERY == 0:
+            if self._progress and self.steps % _REPORTED_EVERY == 0:
                 self._progress(self.steps / self._total)

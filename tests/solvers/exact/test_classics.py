@@ -118,7 +118,7 @@ def test_den_hartogs_oscillation_goes_on_from_its_own_start(ratio: float, fricti
 
 
 @pytest.mark.parametrize('phase', [0.0, 1.0, 2.5])
-def test_from_rest_den_hartogs_half_frequency_creeps_to_the_end_of_its_family(phase: float) -> None:
+def test_from_rest_den_hartogs_half_frequency_approaches_the_end_of_its_family(phase: float) -> None:
     """The family of w/ω = 1/2 ends where stops begin, at a shift of 1/3 − F/P: what is left of the way falls as 1/n."""
     turns = turning_points(forced_axis(0.3), shaken(0.5, phase), 4000.0 * 4.0 * math.pi)
     assert half_range(turns) == pytest.approx(4.0 / 3.0, rel=1e-6)
