@@ -85,7 +85,7 @@ def undamped_cycle() -> list[Result]:
 
 
 def damped_slip() -> list[Result]:
-    """The paper's damper and constant kinetic friction: the speed in the course of a slip."""
+    """The paper's damper and constant kinetic friction: the speed during a slip."""
     axis = coulomb_axis(PAPER, STATIC, KINETIC)
     start = run_events(axis, FEED, 1.0)[0].time
     return [Result(f'damped slip: speed after {time * 1e3:g} ms', 'm/s', slip_speed(PAPER, DROP, FEED, time),

@@ -34,7 +34,7 @@ class Run:
 class Figures(NamedTuple):
     """One period of the moves, out and back."""
 
-    sticks: int             # from the begin of a move until it slows down
+    sticks: int             # from the start of a move until it slows down
     largest_error: float    # m, of the position while the setpoint moves
     slowest: float          # m/s, along the move in the second half of its constant feed
     fastest: float          # m/s, there
@@ -44,7 +44,7 @@ class Figures(NamedTuple):
 
 def close_loop(axis: Axis, controller: Controller, moves: Moves, duration: float, delay: int = 0,
                encoder: EncoderSettings | None = None) -> Run:
-    """Let a controller drive an axis from prolonged rest for `duration` s, with ideal encoders unless told otherwise.
+    """Let a controller drive an axis from prolonged rest for `duration` s, with ideal encoders unless given others.
 
     The command made from the state after step n holds over step n + 1, or as many steps later as `delay` says.
     """

@@ -26,7 +26,7 @@ BEGIN, END = '<!-- generated: begin -->', '<!-- generated: end -->'
 AXIS = load_scene('positioning').axis
 MOVES = [Moves(travel, feed) for travel, feed in
          ((0.0005, 0.0001), (0.001, 0.0002), (0.002, 0.0005), (0.002, 0.001), (0.005, 0.002), (0.01, 0.01))]
-CREEP = Moves()
+SLOW_FEED = Moves()
 DELAYS = (0, 1, 2, 3)
 RESOLUTIONS = (1e-8, 1e-7, 1e-6)   # m
 GAINS = (2.0, 4.0, 8.0, 16.0, 25.0)
@@ -65,7 +65,7 @@ def by_gain() -> Iterator[str]:
     damping = AXIS.drive_damping / (2.0 * (AXIS.drive_stiffness * AXIS.mass) ** 0.5)
     for gain in GAINS:
         gains = Cascade(velocity_gain=gain)
-        for moves in (MOVES[1], CREEP):
+        for moves in (MOVES[1], SLOW_FEED):
             yield _row(f'{gain:g}', f'{damping * (1.0 + gain) ** 0.5:.2f}', most_delay(AXIS, gains),
                        f'{moves.feed * _MILLI:g} mm/s', *map(_brief, measure(moves, gains=gains).values()))
 
@@ -73,7 +73,7 @@ def by_gain() -> Iterator[str]:
 def by_delay() -> Iterator[str]:
     """Yield the table over the delay."""
     yield from _head('delay / steps', 'feed', 'cascade', 'compensated')
-    for moves in (MOVES[1], CREEP):
+    for moves in (MOVES[1], SLOW_FEED):
         for delay in DELAYS:
             yield _row(delay, f'{moves.feed * _MILLI:g} mm/s', *map(_brief, measure(moves, delay).values()))
 
@@ -81,7 +81,7 @@ def by_delay() -> Iterator[str]:
 def by_resolution() -> Iterator[str]:
     """Yield the table over the resolution of both encoders."""
     yield from _head('resolution', 'feed', 'cascade', 'compensated')
-    for moves in (MOVES[1], CREEP):
+    for moves in (MOVES[1], SLOW_FEED):
         for resolution in RESOLUTIONS:
             its = measure(moves, encoder=EncoderSettings(resolution=resolution))
             yield _row(f'{resolution * _MICRO:g} µm', f'{moves.feed * _MILLI:g} mm/s', *map(_brief, its.values()))
@@ -92,7 +92,7 @@ def by_model() -> Iterator[str]:
     yield from _head('the axis', 'cascade', 'compensated')
     for name, force, stiffness in WRONG:
         axis = replace(AXIS, normal_force=force * AXIS.normal_force, drive_stiffness=stiffness * AXIS.drive_stiffness)
-        yield _row(name, *map(_brief, measure(CREEP, axis=axis).values()))
+        yield _row(name, *map(_brief, measure(SLOW_FEED, axis=axis).values()))
 
 
 SECTIONS: dict[str, Callable[[], Iterator[str]]] = {
@@ -112,7 +112,7 @@ def main() -> None:
         raise SystemExit(f'{PAGE} lacks {BEGIN} or {END}')
     text = '\n\n'.join(f'### {heading}\n\n' + '\n'.join(table()) for heading, table in SECTIONS.items())
     PAGE.write_text(f'{before}{BEGIN}\n\n{text}\n\n{END}{after}', encoding='utf-8')
-    draw({name: close_loop(AXIS, controller, CREEP, CREEP.period) for name, controller in controllers().items()},
+    draw({name: close_loop(AXIS, each, SLOW_FEED, SLOW_FEED.period) for name, each in controllers().items()},
          AXIS, PICTURE)
 
 

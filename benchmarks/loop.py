@@ -119,7 +119,7 @@ def spin(executor: Any, seconds: float) -> None:
 
 
 def measure(case: str, rate: int, seconds: float, with_commands: bool) -> NoReturn:
-    """Run one case in this process and tell its figures."""
+    """Run one case in this process and print its figures."""
     if case == 'node':
         finish(watch_node(rate, seconds))
     form, executor_name = case.split('-')

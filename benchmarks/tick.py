@@ -79,7 +79,7 @@ def callback_cost() -> Callable[[], float]:
 
 
 def main() -> None:
-    """Measure in turns, tell, and add the ratio."""
+    """Measure in turns, print, and add the ratio."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('--json', type=pathlib.Path, help='a bench.json that the ratio is added to')
     path = parser.parse_args().json

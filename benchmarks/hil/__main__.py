@@ -28,7 +28,7 @@ def main() -> None:
     runs: dict[str, list[Figures]] = {case: [] for case in COMMANDS}
     for _ in range(options.repeats):
         for case in COMMANDS:
-            runs[case].append(tell(case, measure(case, RATE, options.seconds)))
+            runs[case].append(print_figures(case, measure(case, RATE, options.seconds)))
     rates = search(options.seconds)
     found = {'machine': machine(), 'seconds': options.seconds, 'repeats': options.repeats, 'runs': runs,
              'cases': {case: summary(figures) for case, figures in runs.items()}, 'rates': rates,
@@ -42,7 +42,7 @@ def search(seconds: float) -> dict[str, Figures]:
     """Return the figures of the node at higher and higher rates, up to the first at which steps are lost."""
     found: dict[str, Figures] = {}
     for rate in RATES:
-        found[str(rate)] = tell(f'{rate} 1/s', measure(SIMULATING, float(rate), seconds))
+        found[str(rate)] = print_figures(f'{rate} 1/s', measure(SIMULATING, float(rate), seconds))
         if loss(rate, found[str(rate)]):
             break
     return found
@@ -62,7 +62,7 @@ def lag(figures: Figures) -> str:
     return f'{figures["overruns"]:.1%} of the steps begin more than a period late'
 
 
-def tell(name: str, figures: Figures) -> Figures:
+def print_figures(name: str, figures: Figures) -> Figures:
     """Show that a run is over."""
     sys.stderr.write(f'{name}: {figures["cpu"] * 1e6:.0f} µs a step, {figures["rate"]:.1f} steps a second\n')
     return figures

@@ -119,7 +119,7 @@ def main() -> None:
 
 
 def spin(node: BareNode, stop: threading.Event) -> None:
-    """Step and run callbacks until told to stop."""
+    """Step and run callbacks until asked to stop."""
     executor = make_executor()
     executor.add_node(node)
     gc.collect()

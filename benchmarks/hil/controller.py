@@ -1,10 +1,10 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""A controller in a process of its own: answers states with drive velocities, and tells what came of it.
+"""A controller in a process of its own: answers states with drive velocities, and prints the figures.
 
     python3 -m benchmarks.hil.controller --pid PID --seconds 10
 
-Each answer is another velocity, so that the state which it moved first can be told.  Prints its figures as JSON.
+Each answer is another velocity, so that the state which it moved first can be recognised.  Prints its figures as JSON.
 """
 
 import argparse

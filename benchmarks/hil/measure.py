@@ -25,12 +25,12 @@ def measure(case: str, rate: float, seconds: float) -> dict[str, float]:
         with running(COMMANDS[case](rate, folder)) as process:
             figures = control(process.pid, seconds, max(round(rate / ANSWERS), 1))
         out = process.stdout.read() if process.stdout else ''
-        told = json.loads(out) if out else node_figures(folder)
-        return {**figures, **told, **(bag_figures(folder) if folder.exists() else {})}
+        of_node = json.loads(out) if out else node_figures(folder)
+        return {**figures, **of_node, **(bag_figures(folder) if folder.exists() else {})}
 
 
 def node_figures(folder: Path) -> dict[str, float]:
-    """Return what the node told on `timing`, without the second of its start and the one that was cut short.
+    """Return what the node published on `timing`, without the second of its start and the one that was cut short.
 
     Of the quantiles the median over the seconds; `overruns` is their share of the steps.
     """

@@ -97,8 +97,8 @@ def highest(troubles: Mapping[str, tuple[str, str]]) -> list[str]:
     """Say which rates hold, given for each what is lost and what is late, empty texts where nothing is."""
     whole = list(takewhile(lambda rate: not troubles[rate][0], troubles))
     valid = list(takewhile(lambda rate: not any(troubles[rate]), troubles))
-    told = {rate: '; '.join(filter(None, both)) or 'holds' for rate, both in troubles.items()}
-    return [*(f'* {rate} 1/s: {text}' for rate, text in told.items()), '',
+    texts = {rate: '; '.join(filter(None, both)) or 'holds' for rate, both in troubles.items()}
+    return [*(f'* {rate} 1/s: {text}' for rate, text in texts.items()), '',
             f'The highest rate with no more late steps than the scene allows (`timing.max_overruns`): {_last(valid)}.',
             f'The highest at which no step is lost: {_last(whole)}.']
 

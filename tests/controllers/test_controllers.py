@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from benchmarks.closed_loop import RATE, close_loop, figures
-from benchmarks.controllers import AXIS, CREEP, PAGE, by_model, controllers
+from benchmarks.controllers import AXIS, PAGE, SLOW_FEED, by_model, controllers
 from benchmarks.linear_loop import loop_matrix, most_delay
 from stickslip_sim.controllers import (
     AT_REST,
@@ -163,7 +163,7 @@ class TestCompensation:
         assert both[0] == both[1]
 
     def test_two_encoders_measure_the_force_of_the_spring(self) -> None:
-        run = close_loop(AXIS, controllers()['compensated'], CREEP, 1.0)
+        run = close_loop(AXIS, controllers()['compensated'], SLOW_FEED, 1.0)
         for sample in run.samples:
             measured = Measured(sample.position, sample.velocity, sample.drive_position, sample.drive_velocity)
             assert self.MODEL.drive_force(measured) == pytest.approx(sample.drive_force, abs=1e-6)
@@ -195,8 +195,8 @@ class TestFollowing:
         assert self.after(10.0, 10.1, 0.0, 0.001) == [True, False, True, False]
 
 
-@pytest.mark.parametrize(('moves', 'delay'), [(CREEP, 0), (CREEP, 1), (Moves(0.001, 0.0002), 0)])
-def test_creep_feed_sticks_without_compensation_only(moves: Moves, delay: int) -> None:
+@pytest.mark.parametrize(('moves', 'delay'), [(SLOW_FEED, 0), (SLOW_FEED, 1), (Moves(0.001, 0.0002), 0)])
+def test_a_slow_feed_sticks_without_compensation_only(moves: Moves, delay: int) -> None:
     plain, compensated = (figures(close_loop(AXIS, controller, moves, moves.period, delay))
                           for controller in controllers().values())
     assert plain.sticks >= 10
@@ -215,7 +215,7 @@ def test_positioning_ends_where_it_should_with_both() -> None:
 
 
 def test_the_same_run_twice() -> None:
-    first, second = (close_loop(AXIS, controllers()['compensated'], CREEP, 2.0) for _ in range(2))
+    first, second = (close_loop(AXIS, controllers()['compensated'], SLOW_FEED, 2.0) for _ in range(2))
     assert first == second
 
 

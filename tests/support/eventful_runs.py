@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Runs of the node in real time in which everything happens that a bag can tell of."""
+"""Runs of the node in real time in which everything happens that a bag can hold."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""What ros2_control's topic-based hardware interface does on the wire, with a robot description and a controller.
+"""What ros2_control's topic-based hardware interface sends and receives, with a robot description and a controller.
 
 Follows, in names and order, topic_based_system.cpp of PickNikRobotics/topic_based_ros2_control and
 joint_state_topic_hardware_interface.cpp of ros-controls/topic_based_hardware_interfaces (docs/ros2_control.md).
