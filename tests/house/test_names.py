@@ -19,7 +19,7 @@ JUDGE = 'the same thing, written again by the independent judge, which may impor
 RIVAL = 'the same thing, written again by a rival of the race'
 
 SAME_NAMES = {
-    'Event': JUDGE, 'Piece': JUDGE, 'Sample': JUDGE, 'Segment': JUDGE, 'State': JUDGE, 'StaticLaw': JUDGE,
+    'Event': JUDGE, 'Sample': JUDGE, 'Segment': JUDGE, 'State': JUDGE, 'StaticLaw': JUDGE,
     'choose_slip': RIVAL, 'static_coefficient': RIVAL, 'step': RIVAL, 'start': RIVAL,
     'sample': JUDGE,
     'advise': VERB, 'critical': VERB, 'simulate': f'{VERB}; the judge has it too', 'sweep': VERB,

@@ -61,7 +61,7 @@ class Sample:
 
 
 @dataclass(frozen=True)
-class Piece:
+class Stretch:
     """A stretch of one mode: it starts at ``start`` in ``state`` and is followed in closed form."""
 
     start: mpf
@@ -83,7 +83,7 @@ class Run(list[Event]):
         super().__init__()
         self.physics = physics
         self.digits = digits
-        self.pieces: list[Piece] = []
+        self.stretches: list[Stretch] = []
         self.disputed = 0
         self.final: Sample
 
@@ -93,13 +93,14 @@ class Run(list[Event]):
             return [self._sample(mpf(t)) for t in times]
 
     def _sample(self, t: mpf) -> Sample:
-        index = bisect_right(self.pieces, t, key=lambda p: p.start) - 1
-        if index < 0 or t > self.pieces[-1].start + self.pieces[-1].length:
+        index = bisect_right(self.stretches, t, key=lambda stretch: stretch.start) - 1
+        if index < 0 or t > self.stretches[-1].start + self.stretches[-1].length:
             raise ValueError('the time lies outside the simulated interval')
-        piece = self.pieces[index]
+        stretch = self.stretches[index]
         drive, force = self._inputs(t)
-        place = after(piece.state, piece.flow, piece.flow.expand(piece.state, piece.length), t - piece.start)
-        return sample(self.physics, piece.mode, t, State(*place, drive, force))
+        series = stretch.flow.expand(stretch.state, stretch.length)
+        place = after(stretch.state, stretch.flow, series, t - stretch.start)
+        return sample(self.physics, stretch.mode, t, State(*place, drive, force))
 
     def _inputs(self, t: mpf) -> tuple[Signal, Signal]:
         drive, force = Input(self.physics.axis.drive), Input(self.physics.axis.force)
@@ -141,7 +142,7 @@ class _Automaton:
         self.flow: Flow
 
     def run(self) -> Run:
-        """Follow the modes and the pieces of the inputs to the end."""
+        """Follow the modes and the segments of the inputs to the end."""
         if self.axis.velocity:
             self._enter_slip(1 if self.axis.velocity > 0 else -1, mpf(0))
         self.flow = self.physics.flow(self.mode)
@@ -156,7 +157,7 @@ class _Automaton:
         while self.t < stop:
             left = stop - self.t
             step = self._step(self.flow.longest_step(self.state, left))
-            self.result.pieces.append(Piece(self.t, step.length, self.state, self.flow, self.mode))
+            self.result.stretches.append(Stretch(self.t, step.length, self.state, self.flow, self.mode))
             self.t = stop if step.length == left else self.t + step.length
             self.state = State(*step.place, self.drive.at(self.t), self.force.at(self.t))
             if step.guard:
@@ -185,9 +186,9 @@ class _Automaton:
         if step.guard == LIMIT:
             self._break_away(step.sign)
         elif step.guard == SPEED_UP:
-            self._cross_knot(1)
-        elif step.guard == SPEED_DOWN and self._slip().piece > 0:
-            self._cross_knot(-1)
+            self._cross_breakpoint(1)
+        elif step.guard == SPEED_DOWN and self._slip().segment > 0:
+            self._cross_breakpoint(-1)
         elif step.guard == SPEED_DOWN:
             self._arrest()
         else:
@@ -208,24 +209,24 @@ class _Automaton:
 
     def _change_phase(self, phase: str) -> None:
         old = self._slip()
-        piece = self.physics.locate(abs(self.state.velocity), phase == ACCELERATE)
-        self.mode = replace(old, phase=phase, piece=piece, silent=False)
+        segment = self.physics.locate(abs(self.state.velocity), phase == ACCELERATE)
+        self.mode = replace(old, phase=phase, segment=segment, silent=False)
         if not (old.silent and phase == ACCELERATE):
             self._emit(phase, old.direction, self.physics.friction(self.mode, self.state))
 
-    def _cross_knot(self, way: int) -> None:
+    def _cross_breakpoint(self, way: int) -> None:
         slip = self._slip()
-        knot = self.physics.upper_knot(slip.piece) if way > 0 else self.physics.lower_knot(slip.piece)
-        assert knot is not None
-        self.state = self.state._replace(velocity=slip.direction * knot)
-        self.mode = replace(slip, piece=slip.piece + way)
+        bound = self.physics.upper_breakpoint(slip.segment) if way > 0 else self.physics.lower_breakpoint(slip.segment)
+        assert bound is not None
+        self.state = self.state._replace(velocity=slip.direction * bound)
+        self.mode = replace(slip, segment=slip.segment + way)
         self._emit('knot', slip.direction, self.physics.friction(self.mode, self.state))
 
     def _enter_slip(self, direction: int, excess: mpf) -> None:
         phase = self.physics.phase(direction, excess, self.state)
-        piece = self.physics.locate(abs(self.state.velocity), phase == ACCELERATE)
+        segment = self.physics.locate(abs(self.state.velocity), phase == ACCELERATE)
         self.state = self.state._replace(deflection=mpf(0))
-        self.mode = Slip(direction, phase, excess, piece)
+        self.mode = Slip(direction, phase, excess, segment)
 
     def _break_away(self, sign: int) -> None:
         """Leave the rest at |F| = N mu_s, in the direction of F (of the motion where the slider moves)."""

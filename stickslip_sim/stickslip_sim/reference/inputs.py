@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""An input profile in multiple precision: its pieces one after the other, with periods and sinusoids."""
+"""An input profile in multiple precision: its segments one after the other, with periods and sinusoids."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .series import Series
 
 
 class Segment(NamedTuple):
-    """A straight piece from one instant on: value + slope (t - start)."""
+    """A straight segment from one instant on: value + slope (t - start)."""
 
     start: mpf
     value: mpf
@@ -40,7 +40,7 @@ class Turn(NamedTuple):
 
 
 class Signal(NamedTuple):
-    """An input from an instant on, until the next piece begins."""
+    """An input from an instant on, until the next segment begins."""
 
     value: mpf
     offset: mpf
@@ -70,7 +70,7 @@ class Signal(NamedTuple):
 class Input:
     """An input profile v(t) or F(t), followed in time; right-continuous.
 
-    `until` is the instant at which the next piece begins (infinite behind the last).
+    `until` is the instant at which the next segment begins (infinite behind the last).
     """
 
     def __init__(self, profile: InputProfile) -> None:
@@ -81,16 +81,16 @@ class Input:
 
     @property
     def until(self) -> mpf:
-        """Return the end of the piece that holds."""
+        """Return the end of the segment that holds."""
         return self._next.start if self._next else inf
 
     def enter(self, t: mpf) -> None:
-        """Let the piece hold that begins at or before `t`; t never goes back."""
+        """Let the segment hold that begins at or before `t`; t never goes back."""
         while self._next and self._next.start <= t:
             self._here, self._next = self._next, next(self._segments, None)
 
     def at(self, t: mpf) -> Signal:
-        """Return the input from an instant of the present piece on; sinusoids run over absolute time."""
+        """Return the input from an instant of the present segment on; sinusoids run over absolute time."""
         here = self._here
         offset = here.value + here.slope * (t - here.start)
         turns = tuple(_turn(t, *map(mpf, sinusoid)) for sinusoid in self._sinusoids)
@@ -105,13 +105,13 @@ def _turn(t: mpf, amplitude: mpf, frequency: mpf, phase: mpf) -> Turn:
 
 
 def _segments(profile: InputProfile) -> Iterator[Segment]:
-    """Yield the pieces in the order of time, without end when the input profile is periodic."""
+    """Yield the segments in the order of time, without end when the input profile is periodic."""
     turn = 0
-    pieces = [Segment(*map(mpf, piece)) for piece in zip(profile.starts, profile.values, profile.rates)]
+    segments = [Segment(*map(mpf, segment)) for segment in zip(profile.starts, profile.values, profile.rates)]
     while True:
         begin = turn * mpf(profile.period) if turn else mpf(0)
-        for piece in pieces:
-            yield piece._replace(start=begin + piece.start)
+        for segment in segments:
+            yield segment._replace(start=begin + segment.start)
         if math.isinf(profile.period):
             return
         turn += 1

@@ -27,12 +27,12 @@ class Stick:
 
 @dataclass(frozen=True)
 class Slip:
-    """Motion in a direction: sub-mode, excess E of this slip, table piece; ``silent``: an unlisted coast."""
+    """Motion in a direction: sub-mode, excess E of this slip, table segment; ``silent``: an unlisted coast."""
 
     direction: int
     phase: str
     excess: mpf
-    piece: int
+    segment: int
     silent: bool = False
 
 

@@ -28,10 +28,10 @@ class Physics:
     """The equations of one axis."""
 
     axis: Problem
-    knots: list[mpf] = field(init=False)
+    breakpoints: list[mpf] = field(init=False)
 
     def __post_init__(self) -> None:
-        self.knots = self.axis.knots()
+        self.breakpoints = self.axis.breakpoints()
 
     # ---- forces -------------------------------------------------------------------------------
 
@@ -81,38 +81,38 @@ class Physics:
         inputs = state.force.reach + a.damping * state.drive.reach
         return a.normal * top + abs(a.stiffness * state.stretch) + inputs
 
-    # ---- friction pieces ----------------------------------------------------------------------
+    # ---- friction segments ----------------------------------------------------------------------
 
-    def lower_knot(self, piece: int) -> mpf:
-        """Return the speed at which a piece begins."""
-        return self.knots[piece - 1] if piece else mpf(0)
+    def lower_breakpoint(self, segment: int) -> mpf:
+        """Return the speed at which a segment begins."""
+        return self.breakpoints[segment - 1] if segment else mpf(0)
 
-    def upper_knot(self, piece: int) -> mpf | None:
-        """Return the speed at which a piece ends; None for the last one."""
-        return self.knots[piece] if piece < len(self.knots) else None
+    def upper_breakpoint(self, segment: int) -> mpf | None:
+        """Return the speed at which a segment ends; None for the last one."""
+        return self.breakpoints[segment] if segment < len(self.breakpoints) else None
 
     def locate(self, speed: mpf, rising: bool) -> int:
-        """Return the piece of a speed; on a knot the sign of the acceleration decides."""
+        """Return the segment of a speed; on a breakpoint the sign of the acceleration decides."""
         tiny = mpf(10) ** (18 - mp.dps)
         side = tiny if rising else -tiny
-        return sum(1 for k in self.knots if speed >= k * (1 - side))
+        return sum(1 for k in self.breakpoints if speed >= k * (1 - side))
 
-    def kinetic_line(self, piece: int) -> Line:
-        """Return mu_k(w) on a piece."""
-        return self.axis.kinetic.piece_above(self.lower_knot(piece))
+    def kinetic_line(self, segment: int) -> Line:
+        """Return mu_k(w) on a segment."""
+        return self.axis.kinetic.segment_above(self.lower_breakpoint(segment))
 
-    def psi_line(self, piece: int) -> Line:
-        """Return psi(w) on a piece."""
+    def psi_line(self, segment: int) -> Line:
+        """Return psi(w) on a segment."""
         if self.axis.excess is None:
             return Line(mpf(0), mpf(0))
-        return self.axis.excess.piece_above(self.lower_knot(piece))
+        return self.axis.excess.segment_above(self.lower_breakpoint(segment))
 
     def branch(self, slip: Slip) -> Line:
-        """mu(w) of the accelerating or decelerating branch on the slip's piece."""
-        kinetic = self.kinetic_line(slip.piece)
+        """mu(w) of the accelerating or decelerating branch on the slip's segment."""
+        kinetic = self.kinetic_line(slip.segment)
         if slip.phase != ACCELERATE or not slip.excess:
             return kinetic
-        psi = self.psi_line(slip.piece)
+        psi = self.psi_line(slip.segment)
         return Line(kinetic.offset + slip.excess * psi.offset, kinetic.slope + slip.excess * psi.slope)
 
     def surplus(self, direction: int, state: State) -> mpf:
@@ -127,11 +127,11 @@ class Physics:
 
     def excess_at(self, static: mpf, speed: mpf) -> mpf:
         """E with mu_k(w) + E psi(w) = mu_b; 0 where psi = 0; never negative."""
-        piece = self.locate(speed, True)
-        psi = self.psi_line(piece).at(speed)
+        segment = self.locate(speed, True)
+        psi = self.psi_line(segment).at(speed)
         if not psi > 0:
             return mpf(0)
-        return max(mpf(0), (static - self.kinetic_line(piece).at(speed)) / psi)
+        return max(mpf(0), (static - self.kinetic_line(segment).at(speed)) / psi)
 
     # ---- classification -----------------------------------------------------------------------
 

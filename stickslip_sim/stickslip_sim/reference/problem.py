@@ -19,7 +19,7 @@ from .statics import StaticLaw
 
 @dataclass(frozen=True)
 class Line:
-    """One straight piece of a table: offset + slope * w."""
+    """One straight segment of a table: offset + slope * w."""
 
     offset: mpf
     slope: mpf
@@ -31,14 +31,14 @@ class Line:
 
 @dataclass(frozen=True)
 class Table:
-    """Piecewise-linear function of speed; `end_slope` beyond the last knot."""
+    """Piecewise-linear function of speed; `end_slope` beyond the last breakpoint."""
 
     speeds: tuple[mpf, ...]
     values: tuple[mpf, ...]
     end_slope: mpf
 
-    def piece_above(self, w: mpf) -> Line:
-        """Return the straight piece that starts at, or contains, the speed w."""
+    def segment_above(self, w: mpf) -> Line:
+        """Return the straight segment that starts at, or contains, the speed w."""
         i = sum(1 for k in self.speeds if k <= w) - 1
         slope = self.end_slope
         if i + 1 < len(self.speeds):
@@ -66,7 +66,7 @@ class Problem:
     velocity: mpf
     rest_time: mpf
 
-    def knots(self) -> list[mpf]:
+    def breakpoints(self) -> list[mpf]:
         """Return the speeds above zero at which a friction table bends."""
         speeds = set(self.kinetic.speeds) | set(self.excess.speeds if self.excess else ())
         return sorted(k for k in speeds if k > 0)

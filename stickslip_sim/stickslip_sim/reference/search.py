@@ -64,16 +64,16 @@ def _coast_guards(physics: Physics, slip: Slip, state: State, series: Expansion)
 
 
 def _moving_guards(physics: Physics, slip: Slip, state: State, series: Expansion) -> list[Guard]:
-    """σ u' keeps its sign, and |u| its table piece (or stays above zero)."""
+    """σ u' keeps its sign, and |u| its table segment (or stays above zero)."""
     rising = slip.phase == ACCELERATE
     way = mpf(1 if rising else -1)
     acceleration = [way * slip.direction * c for c in derivative(series.velocity)]
     scale = physics.force_scale(state) / physics.axis.mass
     guards = [(SURPLUS_DOWN if rising else SURPLUS_UP, acceleration, scale)]
-    knot = physics.upper_knot(slip.piece) if rising else physics.lower_knot(slip.piece)
-    if knot is not None:
-        distance = combine((way * knot, [mpf(1)]), (-way * slip.direction, series.velocity))
-        guards.append((SPEED_UP if rising else SPEED_DOWN, distance, max(knot, abs(state.velocity))))
+    bound = physics.upper_breakpoint(slip.segment) if rising else physics.lower_breakpoint(slip.segment)
+    if bound is not None:
+        distance = combine((way * bound, [mpf(1)]), (-way * slip.direction, series.velocity))
+        guards.append((SPEED_UP if rising else SPEED_DOWN, distance, max(bound, abs(state.velocity))))
     return guards
 
 
