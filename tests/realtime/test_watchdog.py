@@ -45,7 +45,7 @@ class Bench:
         self.clock.time += milliseconds * MS
 
     def run(self, steps: int, acts: Mapping[int, Act]) -> list[int]:
-        """Make steps; return those before which silence was told."""
+        """Make steps; return those before which silence was reported."""
         self._acts, self._last = acts, steps
         self.loop.start()
         if self.loop.by_request:
@@ -77,7 +77,7 @@ MODES = ('realtime', 'lockstep', 'free_run')
 
 class TestSilence:
     @pytest.mark.parametrize('mode', MODES)
-    def test_is_told_at_the_first_step_that_begins_too_late(self, mode: str) -> None:
+    def test_is_reported_at_the_first_step_that_begins_too_late(self, mode: str) -> None:
         bench = Bench(mode)
         assert bench.run(400, {9: command}) == [111]      # step 10 begins at 9 ms, step 111 at 110 ms
         event = next(event for result in bench.results for event in result.rig_events)
@@ -100,7 +100,7 @@ class TestSilence:
         assert Bench(mode).run(400, {}) == []
 
     @pytest.mark.parametrize('mode', MODES)
-    def test_is_told_again_only_after_a_command(self, mode: str) -> None:
+    def test_is_reported_again_only_after_a_command(self, mode: str) -> None:
         bench = Bench(mode)
         assert bench.run(900, {9: command, 599: command}) == [111, 701]
         assert [kind for _, kind in rig_events_of(bench.results)] == [

@@ -160,13 +160,13 @@ class TestFaults:
 
 
 class TestScene:
-    @pytest.mark.parametrize(('name', 'value', 'told'), [
+    @pytest.mark.parametrize(('name', 'value', 'reason'), [
         ('delay', 0.0015, 'whole steps of 0.001 s'), ('delay', 1e-9, 'whole steps'), ('delay', -0.001, '>= 0'),
         ('resolution', 1e-16, '0, or at least 1e-15 m'), ('resolution', -1e-6, '>= 0'), ('noise', -1.0, '>= 0'),
         ('noise', math.inf, '<= 1'), ('resolution', math.nan, '>= 0'), ('velocity_steps', 0, '>= 1'),
     ])
-    def test_refused(self, name: str, value: float, told: str) -> None:
-        with pytest.raises(InputError, match=rf'encoder\.{name} = .*{told}'):
+    def test_refused(self, name: str, value: float, reason: str) -> None:
+        with pytest.raises(InputError, match=rf'encoder\.{name} = .*{reason}'):
             load_scene('paper_fig8', {f'encoder.{name}': value})
 
     @pytest.mark.parametrize(('rate', 'delay', 'steps'), [(1000.0, 0.003, 3), (333.3, 10.0 / 3333, 1), (3.0, 1.0, 3),

@@ -65,7 +65,7 @@ class TestIds:
 
 
 class TestRefused:
-    @pytest.mark.parametrize(('change', 'told'), [
+    @pytest.mark.parametrize(('change', 'reason'), [
         ({'kind': 'gremlin'}, "kind = 'gremlin'"), ({'kind': ''}, 'one of friction_scale'),
         ({'start': -1e-9}, 'start = -1e-09'), ({'start': math.nan}, 'start = nan'),
         ({'start': math.inf}, 'start = inf'),
@@ -74,10 +74,10 @@ class TestRefused:
         ({'value': math.nan}, 'value = nan'), ({'value': math.inf}, 'value = inf'),
         ({'id': 'a' * 65}, '1 to 64 characters'), ({'id': 'a\nb'}, 'printable'), ({'id': '\x00'}, 'printable'),
     ])
-    def test_without_a_meaning(self, change: dict[str, Any], told: str) -> None:
+    def test_without_a_meaning(self, change: dict[str, Any], reason: str) -> None:
         fault = Fault('a', 'force_pulse', 0.0, 1.0, 5.0)._replace(**change)
         rig = make()
-        assert told in str(refusal(lambda: rig.inject(fault)))
+        assert reason in str(refusal(lambda: rig.inject(fault)))
         assert list(rig.fault_ids) == []
         assert bits(run(rig, 20)) == bits(run(make(), 20))
 
@@ -114,7 +114,7 @@ class TestScene:
         assert rig_events_of(of_scene) == [(501, RigEventKind.FAULT_BEGIN), (1001, RigEventKind.FAULT_END),
                                   (1001, RigEventKind.FAULT_BEGIN)]
 
-    @pytest.mark.parametrize(('change', 'told'), [
+    @pytest.mark.parametrize(('change', 'reason'), [
         ({'faults.ids': ['a', 'a']}, "faults (a): id = 'a'"),
         ({'faults.ids': ['a', 'a'], 'faults.kinds': ['drive_freeze'] * 2, 'faults.starts': [1.0] * 2,
           'faults.durations': [1.0] * 2, 'faults.values': [0.0] * 2}, "faults (a): id = 'a'"),
@@ -124,9 +124,9 @@ class TestScene:
         ({'faults.starts': [0.5]}, 'faults.starts = [0.5]'),
         ({'faults.starts': [-0.5, 0.5]}, 'faults.starts'),
     ])
-    def test_refused_when_the_scene_is_read(self, change: dict[str, Any], told: str) -> None:
+    def test_refused_when_the_scene_is_read(self, change: dict[str, Any], reason: str) -> None:
         error = refusal(lambda: load_scene('paper_fig8', {**self.GIVEN, **change}))
-        assert told in str(error)
+        assert reason in str(error)
 
     @pytest.mark.parametrize('missing', ['ids', 'kinds', 'starts', 'durations'])
     def test_lists_belong_together(self, missing: str) -> None:

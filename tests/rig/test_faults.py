@@ -121,7 +121,7 @@ class TestTimes:
         assert [fault.id for fault in faults.enter(end)[0]] == ['a']
         assert faults.ids == []
 
-    def test_are_told_with_their_step(self) -> None:
+    def test_are_reported_with_their_step(self) -> None:
         results = run(make(), 60, {10: [inject('force_pulse', 0.02, 0.01, 5.0, 'knock')]})
         assert rig_events_of(results) == [(10, RigEventKind.FAULT_INJECTED), (30, RigEventKind.FAULT_BEGIN),
                                  (40, RigEventKind.FAULT_END)]

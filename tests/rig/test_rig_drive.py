@@ -109,7 +109,7 @@ class TestLimits:
         results = run(limited(0.01), 40, {10: [velocity(0.5)], 20: [velocity(-0.5)], 30: [velocity(0.01)]})
         assert [drive_velocities(results)[step] for step in (9, 10, 20, 30)] == [0.002, 0.01, -0.01, 0.01]
 
-    def test_are_counted_and_the_first_of_a_row_is_told(self) -> None:
+    def test_are_counted_and_the_first_of_a_row_is_reported(self) -> None:
         rig = limited(0.01)
         script = {10: [velocity(0.5)], 11: [velocity(0.6)], 12: [velocity(0.005)], 13: [velocity(-0.5)]}
         results = run(rig, 20, script)
@@ -122,7 +122,7 @@ class TestLimits:
         run(rig, 40, {step: [velocity(0.012)] for step in range(10, 30)})
         assert rig.counts.limited == 10      # 10 mm/s take 10 ms
 
-    def test_none_means_at_once_and_nothing_to_tell(self) -> None:
+    def test_none_means_at_once_and_nothing_to_report(self) -> None:
         rig = make()
         results = run(rig, 20, {10: [velocity(0.9)]})
         assert drive_velocities(results)[9:11] == [0.002, 0.9]

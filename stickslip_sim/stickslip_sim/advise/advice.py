@@ -79,7 +79,7 @@ def _finer_tables(reference: ExactRun) -> list[Trial]:
 
 
 class _Progress:
-    """Tells how far the work has come."""
+    """Reports how far the work has come."""
 
     def __init__(self, count: int, progress: Callable[[float], None] | None) -> None:
         self._count, self._progress, self._done = count, progress, 0
@@ -91,7 +91,7 @@ class _Progress:
             self.done(1)
 
     def done(self, count: int) -> None:
-        """Tell that so many more items are done."""
+        """Report that so many more items are done."""
         self._done += count
         if self._progress:
             self._progress(self._done / self._count)

@@ -32,7 +32,7 @@ simulator = Simulator(scene.axis, scene.initial, scene.drive, scene.force)
 simulator.advance(Instant(0.0, 0.8))
 sample = simulator.sample()
 '''
-_PLAIN = 'from stickslip_sim.bench.outside import tell_plain_ratios; tell_plain_ratios()'
+_PLAIN = 'from stickslip_sim.bench.outside import print_plain_ratios; print_plain_ratios()'
 
 
 def outside_ratios() -> Iterator[Ratio]:
@@ -53,7 +53,7 @@ def start_ratios() -> Iterator[Ratio]:
     yield Ratio('later start until the first slip, plain Python, s', '', plain)
 
 
-def tell_plain_ratios() -> None:
+def print_plain_ratios() -> None:
     """Print the cost of scipy over that of the exact engine by case; scipy's functions are compiled all the same."""
     peer = scipy_ivp.PEERS[0]
     ratios = {}

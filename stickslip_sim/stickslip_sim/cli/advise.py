@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 _ROUNDS = 5
 
 
-@click.command(short_help='Tell which parts and which solver a tolerance needs.')
+@click.command(short_help='Show which parts and which solver a tolerance needs.')
 @click.argument('scene', metavar='SCENE')
 @click.option('--tolerance', type=float, required=True, metavar='T', help='Relative error that is allowed, as 1e-3.')
 @click.option('--duration', type=float, metavar='S', help='Simulated time, s [default: 10 s, or more for 20 cycles].')

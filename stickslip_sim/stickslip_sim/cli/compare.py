@@ -43,7 +43,7 @@ def compare(runs: tuple[str, ...], out: str, duration: float | None, changes: tu
         with new_folder('--out', out) as folder:
             judged = write_report(_named_apart(sources), folder)
     for each in judged:
-        _tell(each)
+        _print_judged(each)
     print(f'written: {Path(out) / "report.html"}')
     failed = [f'{found.name}: {name}' for found in judged for name in found.failed]
     if failed:
@@ -88,7 +88,7 @@ def _named_apart(runs: list['Run']) -> dict[str, 'Run']:
     return named
 
 
-def _tell(judged: 'Judged') -> None:
+def _print_judged(judged: 'Judged') -> None:
     from ..runs.wording import headline
 
     print(f'{judged.name}: {headline(judged.run.summary)}')

@@ -52,15 +52,15 @@ def _lines(scene: 'Scene', found: 'Critical') -> list[str]:
     unit = f' {over.unit}'.rstrip()
     digits = max(3, math.ceil(-math.log10(found.accuracy)) + 1)
     lines = [f'{scene.name}: {over.name} from {over.low:g} to {over.high:g}{unit}, to {found.accuracy:g} of the value',
-             *_told('from rest', found.from_rest, unit, digits, 'stick-slip', 'no stick-slip'),
-             *_told('from sliding', found.from_sliding, unit, digits, 'sliding is lost', 'sliding lasts')]
+             *_start_lines('from rest', found.from_rest, unit, digits, 'stick-slip', 'no stick-slip'),
+             *_start_lines('from sliding', found.from_sliding, unit, digits, 'sliding is lost', 'sliding lasts')]
     lines += [f'{"bistable":14} from {low:.6g} to {high:.6g}{unit} both go on: the start decides'
               for low, high in found.both]
     theory = feed_of_theory(scene.axis) if over.name == 'drive.velocity' else None
     return lines if theory is None else [*lines, f'{"closed form":14} {theory:.{digits + 2}g}{unit}, from rest']
 
 
-def _told(start: str, findings: 'Findings', unit: str, digits: int, yes: str, no: str) -> list[str]:
+def _start_lines(start: str, findings: 'Findings', unit: str, digits: int, yes: str, no: str) -> list[str]:
     """Return a line for each transition of the findings, or one that there is none, and for each stretch in doubt."""
     from ..study.verdict_changes import NO, YES
 

@@ -31,9 +31,9 @@ def extremes(only: str | None, quick: bool, out: str | None) -> None:
     outcomes = []
     coming = iter(results(selected, Setup(full=not quick)))
     for extreme in selected:
-        _tell(f'{extreme.number} …')
+        _show(f'{extreme.number} …')
         outcome = next(coming)
-        _tell('')
+        _show('')
         print('\n'.join(row(outcome)), flush=True)
         outcomes.append(outcome)
     if out is not None:
@@ -59,7 +59,7 @@ def _check_mpmath() -> None:
         raise InputError('mpmath', None, 'installed: the figures are judged in its arithmetic', 'pip install mpmath')
 
 
-def _tell(text: str) -> None:
+def _show(text: str) -> None:
     """Show the present step on a terminal; an empty text removes it."""
     if sys.stderr.isatty():
         print(f'\r\x1b[K{text}', end='', file=sys.stderr, flush=True)

@@ -115,7 +115,7 @@ def _write(wishes: _Wishes, run: 'SimulatedRun') -> None:
         if path is not None:
             write_text(path, lines)
     if STDOUT not in (wishes.receipt, wishes.events, wishes.samples):
-        _tell(run)
+        _print_figures(run)
 
 
 def _write_bag(folder: str, run: 'SimulatedRun') -> None:
@@ -152,7 +152,7 @@ def _sampled(run: 'SimulatedRun', period: Fraction) -> 'SimulatedRun':
     return replace(again, receipt={**run.receipt, **again.receipt})
 
 
-def _tell(run: 'SimulatedRun') -> None:
+def _print_figures(run: 'SimulatedRun') -> None:
     from ..runs.wording import quantity
     from .format import summary_lines
 

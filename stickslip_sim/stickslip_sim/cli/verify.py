@@ -44,7 +44,7 @@ def verify(run: str, changes: tuple[str, ...], out: str | None) -> None:
         print(f'note: {doubt}')
     with progress_bar('verifying') as progress:
         verdict = judge(recorded, progress)
-    _tell(recorded, verdict)
+    _print_verdict(recorded, verdict)
     if given:
         _what_if(recorded, scene, given, out)
     if verdict.difference:
@@ -60,7 +60,7 @@ def _check(changes: tuple[str, ...], out: str | None) -> None:
     check_new_folder('--out', out)
 
 
-def _tell(run: 'RecordedRun', verdict: 'Verdict') -> None:
+def _print_verdict(run: 'RecordedRun', verdict: 'Verdict') -> None:
     from ..verify.origin import made_with
 
     if verdict.missing:

@@ -8,7 +8,7 @@ from ..axis import Axis, CompliantContact, RigidContact
 from ..runs import Run
 from ..simulation.cycles import Cycle
 from .drawn import steady_inputs
-from .reruns import last_cycles, lasts, longest_period
+from .long_runs import last_cycles, lasts, longest_period
 from .statement import Finding, Statement, found, not_applicable
 
 PAPER_CONTACT = CompliantContact(5.0e6, 15_000.0)   # N/m, N s/m

@@ -12,7 +12,7 @@ from ..runs import Run
 from ..runs.receipt import plain
 from ..simulation.cycles import Cycle
 from .drawn import slips, within
-from .reruns import difference
+from .long_runs import difference
 from .ring_down import closed_form, identified
 from .statement import Finding, Statement
 

@@ -9,7 +9,7 @@ from ..axis import InitialState
 from ..runs import Run
 from ..simulation.cycles import Cycle
 from .drawn import steady_inputs
-from .reruns import CYCLES, distance, last_cycles, lasts, longest_period
+from .long_runs import CYCLES, distance, last_cycles, lasts, longest_period
 from .statement import Finding, Statement, found, not_applicable
 
 _SAME = 1e-6   # relative difference of two limit cycles that are one

@@ -3,7 +3,7 @@
 """Compensation of friction that has one branch for acceleration and another for deceleration.
 
 A slide at speed v takes N mu_k(v) while it slows down, and up to the force that it broke away with while it speeds up
-(docs/model.md).  While the spring's force is between the two, the slider keeps its speed whatever the controller wants;
+(docs/model.md).  While the spring's force is between the two, the slider keeps its speed against the controller;
 a cascade crosses this gap by summing up an error, overshoots, and ends in stick-slip.  Both encoders together
 measure the spring's force, so that the gap can be crossed at once, as backlash is in a gear.  A reversal is the same:
 the spring is brought over to the friction of the new direction.

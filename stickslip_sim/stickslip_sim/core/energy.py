@@ -9,7 +9,7 @@ class EnergyBalance(NamedTuple):
     """Energies from the start of a run to the present time, all in J.
 
     The works are integrals over the motion and the stored energies are read off the state, so that what is left over
-    tells how well the motion obeys m ẍ = F_d + F_e − F.
+    shows how well the motion obeys m ẍ = F_d + F_e − F.
 
         drive_work + external_work + contact_exchange + parameter_exchange
             = friction_loss + drive_damper_loss + contact_damper_loss + (stored − stored_at_start) + residual

@@ -23,7 +23,7 @@ class StickslipError(Exception):
     exit_code = 1
 
     def __str__(self) -> str:
-        """Return one line of printable text, whatever names of files, topics and parameters are in it."""
+        """Return one line of printable text, with any names of files, topics and parameters in it."""
         return one_line(super().__str__())
 
 

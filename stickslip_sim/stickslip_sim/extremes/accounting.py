@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""X25: the account of energy costs at most as much again as the motion, whatever shakes the axis, and it closes."""
+"""X25: the account of energy costs at most as much again as the motion, however the axis is shaken, and it closes."""
 
 import math
 import statistics

@@ -78,7 +78,7 @@ def _refused_time(solver: Solver, contact: Contact, bad: float) -> float:
 
 
 def _refused_past(solver: Solver, contact: Contact) -> float:
-    """Time does not go back, whatever came late."""
+    """Time does not go back for a late command."""
     simulator = make(paper_axis(contact), 0.002, solver=solver)
     simulator.advance(instant(1.0))
     before = simulator.sample()

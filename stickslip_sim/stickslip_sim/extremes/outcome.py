@@ -80,7 +80,7 @@ class Tally:
         self._examples: dict[str, str] = {}
 
     def judge(self, case: Callable[..., float], *given: object) -> None:
-        """Run a case, which returns its error or raises; whatever it raises is a miss."""
+        """Run a case, which returns its error or raises; any exception is a miss."""
         self.cases += 1
         try:
             error = case(*given)

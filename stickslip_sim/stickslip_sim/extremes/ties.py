@@ -131,7 +131,7 @@ def _jumps_on_events(solver: Solver, axis: Axis) -> float:
 
 
 def _commands_in_any_order(solver: Solver, axis: Axis, seed: int) -> float:
-    """Commands of one instant give the same run in whatever order they are applied."""
+    """Commands of one instant give the same run in any order of application."""
     rng = random.Random(seed)
     v, f = rng.uniform(-0.1, 0.1), rng.uniform(-1000.0, 1000.0)
     when = instant(rng.uniform(0.0, 1.5))

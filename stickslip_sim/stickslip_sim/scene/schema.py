@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every parameter of a scene: the one list behind the check of files, the declaration in ROS, and the reference.
 
-Defaults are for what is left out.  The axis is the paper's; whatever else is left out is not modelled: no friction, a
+Defaults are for what is left out.  The axis is the paper's; all else left out is not modelled: no friction, a
 rigid contact, a drive that stands still, no force.  (A node without any file runs the scene `paper_fig8`, not this.)
 """
 

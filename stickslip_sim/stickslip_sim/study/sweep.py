@@ -60,7 +60,7 @@ def _figures(study: Study, stretches: Iterator[Stretch], workers: Workers | None
 
 
 def _by_workers(study: Study, stretches: Iterator[Stretch], workers: Workers) -> Iterator[Figures]:
-    """Yield figures in the order of the stretches, with a few under way for each worker, whatever their number."""
+    """Yield figures in the order of the stretches, with a few under way for each worker, for any number of workers."""
     waiting = deque(_submitted(study, islice(stretches, _AHEAD * workers.size), workers))
     while waiting:
         yield waiting.popleft().result()

@@ -105,7 +105,7 @@ class _OfflineMaker:
             yield Made(number, events, sample)
             if number == step.number:
                 return
-        raise RecordingError(f'{self._path}: step {step.number} is beyond its duration')
+        raise RecordingError(f'{self._path}: step {step.number} is beyond the duration of the run')
 
 
 def _without_knots(events: Sequence[Event]) -> list[Event]:

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The life of the node as a process: commands and parameters on the way, signals, and its end."""
+"""The node as a process: commands and parameters on the way, signals, and its end."""
 
 import signal
 import time

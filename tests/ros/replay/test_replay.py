@@ -197,7 +197,7 @@ class TestTime:
             assert_clean(*process.wait())
 
 
-class TestLife:
+class TestProcess:
     @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
     @pytest.mark.parametrize('arguments', [PAUSED, ('-p', 'loop:=true'), ('-p', 'delay:=1000.0')])
     def test_signals(self, bag: Path, number: int, arguments: tuple[str, ...]) -> None:

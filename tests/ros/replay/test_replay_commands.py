@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""replay_node with mode: commands: what an axis was told, into a live one."""
+"""replay_node with mode: commands: the orders of an axis, into a live one."""
 
 from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager

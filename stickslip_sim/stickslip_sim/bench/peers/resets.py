@@ -98,7 +98,7 @@ def _force_rate(p, m, w):
 
 @always_compiled
 def _break_away(p, m, w, direction, coefficient):
-    """Begin a slip at a coefficient; the excess makes friction continuous where branches are told apart."""
+    """Begin a slip at a coefficient; the excess makes friction continuous where branches are distinguished."""
     speed = abs(m[U])
     mu, psi = kinetic_and_shape(p, piece_of(p, speed, True), speed)
     m[EXCESS] = 0.0

@@ -59,7 +59,7 @@ class _Solver:
         if not done.success:
             raise SolverError(f'CVODE: {done.message}')
         time = float(done.t[-1])
-        # at the end of the interval it tells of events that are none
+        # at the end of the interval it reports events that are none
         fallen = int(np.argmax(done.i_events[-1] != 0)) if time < limit else -1
         return time, float(done.y[-1, 0]), float(done.y[-1, 1]), fallen
 
