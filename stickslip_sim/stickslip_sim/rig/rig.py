@@ -72,9 +72,8 @@ class Rig:
         self.counts.timed_out += 1
         self.is_silent = True
         reaction = self._settings.on_timeout
-        self._rig_events.append(RigEvent(RigEventKind.COMMAND_TIMEOUT, 'velocity', _TIMEOUT.format(silence,
-                                                                                                   _REACTIONS[reaction]),
-                                     silence))
+        self._rig_events.append(RigEvent(RigEventKind.COMMAND_TIMEOUT, 'velocity',
+                                         _TIMEOUT.format(silence, _REACTIONS[reaction]), silence))
         self.has_failed = reaction == 'fault'
         if reaction != 'hold':
             self._plant.follow(0.0, self._settings.timeout_deceleration)

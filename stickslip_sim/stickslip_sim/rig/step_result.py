@@ -43,7 +43,7 @@ class StepResult(NamedTuple):
     step: int
     velocity: float | None       # m/s: the command taken at its start, None without a new one
     force: float | None          # N
-    rig_events: list[RigEvent]       # at its start
+    rig_events: list[RigEvent]   # at its start
     events: list[Event]
     sample: Sample               # at its end
     measured: Measured | None    # at its end; None without encoders, or when the measurement was lost
