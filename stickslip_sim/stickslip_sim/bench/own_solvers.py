@@ -15,6 +15,7 @@ from ..core.hot_path import UNIT
 from ..core.types import Sample
 from ..core.version import __version__
 from ..solvers import DONE, Solver, adaptive, exact, fixed_step
+from ..solvers.walk import walk_of
 from .peers.peer import EXACT, Peer, Setting, time_steps, tolerances
 from .problem import Numbers, Outcome, Problem
 
@@ -64,13 +65,21 @@ def _prepare(problem: Problem, solver: Solver) -> Callable[[], Outcome]:
     p, s = of.Parameters(problem.parameters.tolist()), state_for(problem, of)
     sinusoids = of.Sinusoids(problem.sinusoids.tolist())
     events, sample = of.Events(len(problem.event_rows())), of.SampleRow()
-    run = UNIT.walk if UNIT is not None and solver is exact.SOLVER else partial(_walk, solver)
+    walk = walk_of(solver)
+    drive, force = walk.pieces_of(problem.drive), walk.pieces_of(problem.force)
+    until = min(problem.drive.piece_at(0.0).end, problem.force.piece_at(0.0).end)
+    before = math.nextafter(problem.duration, 0.0)   # a piece that begins at the end is none of the problem
+    second = float(math.floor(problem.duration))
+    fraction = problem.duration - second
 
     def simulate() -> Outcome:
         rows = solver.start(p, s, position, velocity, rest, v, v_rate, f, f_rate, sinusoids, events, 0)
-        rows, end = run(p, s, problem.pieces, sinusoids, problem.duration, events, rows, sample)
+        _, rows, end = walk.run(p, s, drive, force, until, before, sinusoids, events, rows)
+        if end == DONE:
+            rows, end = solver.advance(p, s, second, fraction, events, rows)
         if end != DONE:
             raise SolverError(f'{solver.name} gave up after {rows} events')
+        solver.sample(p, s, second, fraction, sample)
         return Outcome([events.row(i) for i in range(rows)], float(sample.tolist()[_POSITION]), _event_columns)
 
     return simulate
@@ -78,22 +87,3 @@ def _prepare(problem: Problem, solver: Solver) -> Callable[[], Outcome]:
 
 def _event_columns(rows: Any) -> Numbers:
     return np.array([(e[0] + e[1], e[2], e[4], e[5], e[6]) for e in rows]).reshape(-1, 5)
-
-
-def _walk(solver: Solver, p: Any, s: Any, pieces: Any, sinusoids: Any, duration: float, events: Any, rows: int,
-          sample: Any) -> tuple[int, int]:
-    """Bring a state through the pieces of its inputs, as `walk` of the compiled unit does."""
-    end = DONE
-    for k in range(len(pieces)):
-        begin, v, v_rate, f, f_rate = pieces[k]
-        if k > 0:
-            whole = math.floor(begin)
-            rows = solver.set_inputs(p, s, float(whole), begin - whole, v, v_rate, f, f_rate, sinusoids, events, rows)
-        until = pieces[k + 1][0] if k + 1 < len(pieces) else duration
-        whole = math.floor(until)
-        rows, end = solver.advance(p, s, float(whole), until - whole, events, rows)
-        if end != DONE:
-            return rows, end
-    whole = math.floor(duration)
-    solver.sample(p, s, float(whole), duration - whole, sample)
-    return rows, end

@@ -3,10 +3,11 @@
 """The inputs of an axis, drive velocity and external force: what is in force, and which pieces of it."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import Any
 
 from ..core.errors import InputError
-from ..core.input_profile import Input, InputProfile, Piece, Sinusoid
+from ..core.input_profile import Input, InputProfile, Piece, Sinusoid, constant
 
 
 class Inputs:
@@ -20,6 +21,7 @@ class Inputs:
         drive.check('drive')
         force.check('force')
         self._first = drive, force
+        self._drive_pieces, self._force_pieces = _KeptPieces(), _KeptPieces()
         self.most_sinusoids = len(drive.sinusoids) + len(force.sinusoids)    # that the inputs can have
         self.reset()
 
@@ -54,6 +56,10 @@ class Inputs:
         self.go_on(v_end if v_end <= f_end else f_end)
         return v, v_rate, f, f_rate
 
+    def pieces(self, make: Callable[[InputProfile], Any]) -> tuple[Any, Any]:
+        """Return what `make` makes of both inputs in force, as profiles."""
+        return self._drive_pieces.of(self.drive, make), self._force_pieces.of(self.force, make)
+
     def go_on(self, until: float) -> None:
         """Let pieces that were entered before be in force until a time, s."""
         self.are_commanded = False
@@ -65,6 +71,20 @@ class Inputs:
         both += [(one.frequency, one.phase, 0.0, one.amplitude) for one in _sinusoids(self.force)]
         return [number for frequency, phase, v, f in both
                 if v != 0.0 or f != 0.0 for number in (frequency, math.fmod(0.5 * phase / math.pi, 1.0), v, f)]
+
+
+class _KeptPieces:
+    """The pieces of an input as a solver walks through them; made anew for another input only."""
+
+    def __init__(self) -> None:
+        self._given: Input | None = None
+        self._pieces: Any = None
+
+    def of(self, given: Input, make: Callable[[InputProfile], Any]) -> Any:
+        if given is not self._given:
+            profile = given if isinstance(given, InputProfile) else constant(given + 0.0)    # no -0.0, as in a course
+            self._given, self._pieces = given, make(profile)
+        return self._pieces
 
 
 def _pieces_at(given: Input, time: float) -> tuple[float, float, float]:

@@ -12,6 +12,7 @@ from ..core.errors import InputError, SolverError, UnsoundError
 from ..core.input_profile import Input, InputProfile
 from ..core.types import Event, EventKind, Instant, Mode, Sample, tuple_of
 from ..solvers import DONE, FULL, OUT_OF_RANGE, UNSOUND, Solver, exact
+from ..solvers.walk import walk_of
 from .checkpoint import check_state, event_of, numbers_of
 from .inputs import Inputs
 
@@ -119,9 +120,8 @@ class Simulator:
         if self._inputs.are_commanded:
             self._obey()
         events, self._waiting = self._waiting, []
-        while (until := self._inputs.until) <= second + fraction:
-            self._advance(Instant(math.floor(until), until - math.floor(until)), events)
-            self._enter_pieces(events)
+        if self._inputs.until <= second + fraction:
+            self._enter_more(second + fraction, events)
         self._advance(to, events)
         for event in events:
             self._counts[event.kind] += 1
@@ -196,6 +196,7 @@ class Simulator:
 
     def _take_axis(self, axis: Axis) -> None:
         self._axis, self._solver = axis, self._solver_of(axis)
+        self._walk = walk_of(self._solver)
         self._parameters = self._solver.records.Parameters(pack(axis))
 
     def _obey(self) -> None:
@@ -215,15 +216,32 @@ class Simulator:
             if end == DONE:
                 self._time = to
                 return
-            self._time = max(self._time, Instant(float(self._state.second), float(self._state.fraction)))
-            if end == OUT_OF_RANGE:
-                raise SolverError(f'the state leaves the range of numbers after t = {self._time.seconds!r} s; '
-                                  f'{self._solver.advice}')
-            if end == UNSOUND:
-                raise self._unsound()
-            if end != FULL or taken > MAX_EVENTS_PER_ADVANCE:
-                raise SolverError(f'{taken} events up to t = {self._time.seconds!r} s and time hardly goes on; '
-                                  'friction or inputs are too extreme for this axis: check the scene')
+            self._check_end(end, taken)
+
+    def _enter_more(self, time: float, events: list[Event]) -> None:
+        """Go on through the pieces of the inputs that begin up to a time, s."""
+        inputs, taken = self._inputs, 0
+        drive, force = inputs.pieces(self._walk.pieces_of)
+        while inputs.until <= time:
+            until, rows, end = self._walk.run(self._parameters, self._state, drive, force, inputs.until, time,
+                                              self._sinusoids, self._table, 0)
+            events.extend(self._rows(rows))
+            taken = rows if until > inputs.until else taken + rows
+            inputs.go_on(until)
+            if end != DONE:
+                self._check_end(end, taken)
+
+    def _check_end(self, end: int, taken: int) -> None:
+        """Let a solver go on whose table of events was full; raise SolverError where it gave up."""
+        self._time = max(self._time, Instant(float(self._state.second), float(self._state.fraction)))
+        if end == OUT_OF_RANGE:
+            raise SolverError(f'the state leaves the range of numbers after t = {self._time.seconds!r} s; '
+                              f'{self._solver.advice}')
+        if end == UNSOUND:
+            raise self._unsound()
+        if end != FULL or taken > MAX_EVENTS_PER_ADVANCE:
+            raise SolverError(f'{taken} events up to t = {self._time.seconds!r} s and time hardly goes on; '
+                              'friction or inputs are too extreme for this axis: check the scene')
 
     def _enter_pieces(self, events: list[Event]) -> None:
         second, fraction = self._time

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple, Protocol, runtime_checkable
 
 from ..axis import layout
 from ..axis.layout import EnergyRow, Events, Parameters, SampleRow, Sinusoids, State
+from ..core.input_profile import InputProfile
 
 # how `advance` ended: at its time, with a full event table, stuck, before a state beyond the range of numbers, or at an
 # event that contradicts the motion or its energy
@@ -76,6 +77,17 @@ class Solver(Protocol):
     def is_sound(self) -> Callable[[Parameters, State, float, float], bool] | None:
         """What says whether the state at a time obeys its mode and the balance of energy; None without an account."""
 
+    @property
+    def walk(self) -> 'PieceWalk | None':
+        """What enters many pieces of the inputs in one call; None: `walk.walk` does, by `advance` and `set_inputs`."""
+
+
+class PieceWalk(NamedTuple):
+    """What `walk.walk` does, in another way: `run` takes the inputs as what `pieces_of` made of their profiles."""
+
+    pieces_of: Callable[[InputProfile], Any]
+    run: Callable[..., tuple[float, int, int]]
+
 
 class SolverOfFunctions(NamedTuple):
     """A solver whose methods are functions, compiled or not."""
@@ -90,6 +102,7 @@ class SolverOfFunctions(NamedTuple):
     is_sound: Callable[[Parameters, State, float, float], bool] | None = None
     records: Any = layout
     advice: str = 'a parameter or an input is too extreme for this axis: check the scene'
+    walk: PieceWalk | None = None
 
 
 def with_advance(solver: Solver, advance: Callable[..., tuple[int, int]]) -> Solver:

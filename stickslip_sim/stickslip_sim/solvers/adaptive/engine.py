@@ -63,6 +63,7 @@ class Engine:
     advice: ClassVar[str] = 'try another solver.method or other tolerances, or check the scene'
     energy: ClassVar[None] = None
     is_sound: ClassVar[None] = None
+    walk: ClassVar[None] = None
 
     @_QUIET
     def start(self, p: Parameters, s: State, position: float, velocity: float, rest: float, v: float, v_rate: float,

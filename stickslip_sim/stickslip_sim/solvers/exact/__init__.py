@@ -3,15 +3,17 @@
 """The exact solver: from event to event in closed form."""
 
 from ...axis.records import RECORDS
-from ...core.hot_path import entry
-from .. import SolverOfFunctions
+from ...core.hot_path import UNIT, entry
+from .. import PieceWalk, SolverOfFunctions
 from . import engine, judge, many_axes
 
 start, advance = entry(engine.start), entry(engine.advance)
 set_inputs, set_parameters = entry(engine.set_inputs), entry(engine.set_parameters)
 sample, energy, is_sound = entry(engine.sample), entry(engine.energy), entry(judge.is_sound)
+walk = None if UNIT is None else PieceWalk(UNIT.Pieces, UNIT.walk)
 run_axes = getattr(RECORDS, 'run_axes', many_axes.run_axes)
 
-SOLVER = SolverOfFunctions('exact', start, advance, set_inputs, set_parameters, sample, energy, is_sound, RECORDS)
+SOLVER = SolverOfFunctions('exact', start, advance, set_inputs, set_parameters, sample, energy, is_sound, RECORDS,
+                          walk=walk)
 
 __all__ = ['SOLVER', 'advance', 'energy', 'is_sound', 'sample', 'set_inputs', 'set_parameters', 'start']

@@ -1,0 +1,146 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Long input profiles: the same bits whatever walks through their pieces, and however time is split."""
+
+import math
+import random
+from collections.abc import Sequence
+
+import pytest
+
+from stickslip_sim.axis import InitialState, pack
+from stickslip_sim.core import hot_path
+from stickslip_sim.core.input_profile import InputProfile, steps, table
+from stickslip_sim.core.types import Event
+from stickslip_sim.simulation.simulator import Simulator
+from stickslip_sim.solvers import DONE, FULL, Solver, exact, fixed_step, with_advance
+from stickslip_sim.solvers.walk import walk_of
+from tests.conftest import Program
+from tests.support.axes import COMPLIANT, instant, paper_axis
+from tests.support.forced_courses import with_waves
+
+DURATION = 3.0
+PIECES = 3000
+ONE_BY_ONE = with_advance(exact.SOLVER, exact.advance)   # without a walk of its own
+AXIS = paper_axis(COMPLIANT)
+START = 0.0, 0.0, math.inf   # position, velocity, rest time: those of InitialState()
+Bits = list[tuple[float, ...]]
+
+
+def profiles(kind: str) -> tuple[InputProfile, InputProfile]:
+    """Return a drive and a force of thousands of pieces; some begin at the same time."""
+    rng = random.Random(kind)
+    times = [k * DURATION / PIECES for k in range(PIECES)]
+    velocities = [0.01 + 0.02 * math.sin(40.0 * t) + rng.uniform(-2e-3, 2e-3) for t in times]
+    if kind == 'held':
+        velocities[200:900] = [0.01] * 700
+    drive = table('drive', times, velocities)
+    if kind == 'periods':
+        drive = table('drive', times[:900], velocities[:900], DURATION / 3.1)
+    forces = [rng.uniform(-1.0, 1.0) * 0.05 * AXIS.normal_force for _ in range(400)]
+    begins = [0.0, *sorted(rng.sample(times[1:1000], 199)), *sorted(rng.uniform(1.0, 2.5) for _ in range(200))]
+    force = steps('force', begins, forces, 2.6 if kind == 'periods' else math.inf)
+    if kind == 'waves':
+        return with_waves(drive, (5e-3, 31.0, 0.3)), with_waves(force, (0.03 * AXIS.normal_force, 7.0, 1.0))
+    return drive, force
+
+
+def make(kind: str, solver: Solver = exact.SOLVER) -> Simulator:
+    drive, force = profiles(kind)
+    return Simulator(AXIS, InitialState(), drive, force, solver, accounting=True)
+
+
+def bits(events: Sequence[Event]) -> Bits:
+    return [tuple(map(float, event)) for event in events]
+
+
+def advance(simulator: Simulator, calls: int, begin: float = 0.0) -> Bits:
+    return [row for k in range(1, calls + 1)
+            for row in bits(simulator.advance(instant(begin + (DURATION - begin) * k / calls)))]
+
+
+def told(kind: str, calls: int) -> list[str]:
+    """Return all that a run gives, in hexadecimal."""
+    simulator = make(kind)
+    events = advance(simulator, calls)
+    rows = [*events, simulator.sample(), simulator.energy or ()]
+    return [' '.join(float(number).hex() for number in row) for row in rows]
+
+
+KINDS = ['plain', 'held', 'periods', 'waves']
+
+
+@pytest.mark.parametrize('kind', KINDS)
+@pytest.mark.parametrize('calls', [1, 7, 3000, 4001])
+def test_a_walk_gives_the_bits_of_one_piece_after_the_other(kind: str, calls: int) -> None:
+    one, other = make(kind), make(kind, ONE_BY_ONE)
+    events = advance(one, calls)
+    assert len(events) > 100
+    assert events == advance(other, calls)
+    assert one.checkpoint() == other.checkpoint()
+    assert (one.sample(), one.energy, one.event_counts) == (other.sample(), other.energy, other.event_counts)
+    assert one.root_iterations == other.root_iterations
+
+
+@pytest.mark.parametrize('kind', KINDS)
+def test_the_split_of_time_changes_no_bit(kind: str) -> None:
+    whole = told(kind, 1)
+    assert all(told(kind, calls) == whole for calls in (2, 333, 4001))
+
+
+@pytest.mark.skipif(hot_path.UNIT is None, reason='no compiled code in this source tree')
+@pytest.mark.parametrize('kind', KINDS)
+def test_plain_python_gives_the_same_bits(kind: str, in_a_process: Program) -> None:
+    program = f'from tests.simulation.test_long_profiles import told\nprint(*told({kind!r}, 3), sep="\\n")'
+    assert in_a_process(program, compiled=False).split('\n')[:-1] == told(kind, 3)
+
+
+@pytest.mark.parametrize('solver', [exact.SOLVER, ONE_BY_ONE], ids=['walk', 'one by one'])
+@pytest.mark.parametrize('room', [1, 2, 3, 64])
+def test_a_table_that_fills_in_mid_walk_loses_no_event(solver: Solver, room: int) -> None:
+    simulator = make('plain')
+    of, walk = solver.records, walk_of(solver)
+    p, s, sinusoids, events = of.Parameters(pack(AXIS)), of.State(0), of.Sinusoids([]), of.Events(room)
+    s.accounting = 1.0
+    drive, force = profiles('plain')
+    v, f = drive.piece_at(0.0), force.piece_at(0.0)
+    rows = solver.start(p, s, *START, v.value, v.rate, f.value, f.rate, sinusoids, events, 0)
+    until, found, filled = min(v.end, f.end), [events.row(i) for i in range(rows)], 0
+    pieces = walk.pieces_of(drive), walk.pieces_of(force)
+    end = FULL
+    while end == FULL:
+        until, rows, end = walk.run(p, s, *pieces, until, 2.0, sinusoids, events, 0)
+        found += [events.row(i) for i in range(rows)]
+        filled += end == FULL
+    assert end == DONE
+    assert until > 2.0
+    assert filled == len(found) // room > 0
+    assert [tuple(map(float, row)) for row in found] == bits(simulator.advance(instant(2.0)))
+
+
+def test_commands_in_between_and_a_checkpoint_go_on_with_the_pieces() -> None:
+    ends = []
+    for solver in (exact.SOLVER, ONE_BY_ONE):
+        simulator, (drive, force) = make('plain', solver), profiles('plain')
+        events = bits(simulator.advance(instant(0.7003)))
+        simulator.command_drive(0.02)
+        events += bits(simulator.advance(instant(1.1)))
+        simulator.command_drive(drive)
+        simulator.command_force(-0.0)
+        events += bits(simulator.advance(instant(1.9)))
+        other = make('plain', solver)
+        other.restore(simulator.checkpoint(), AXIS, drive, -0.0)
+        simulator.command_force(force)
+        other.command_force(force)
+        rest = advance(simulator, 3, 1.9)
+        assert rest == advance(other, 5, 1.9)
+        ends.append((events + rest, simulator.checkpoint()))
+    assert ends[0] == ends[1]
+
+
+def test_a_solver_without_a_walk_of_its_own_takes_every_piece() -> None:
+    solver = fixed_step.solver('euler', 1e-3)
+    assert solver.walk is None
+    once, often = make('plain', solver), make('plain', solver)
+    assert advance(once, 1) == advance(often, 4001)
+    assert once.sample() == often.sample()
