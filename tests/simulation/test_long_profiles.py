@@ -17,7 +17,7 @@ from stickslip_sim.solvers import DONE, FULL, Solver, exact, fixed_step, with_ad
 from stickslip_sim.solvers.walk import walk_of
 from tests.conftest import Program
 from tests.support.axes import COMPLIANT, instant, paper_axis
-from tests.support.forced_courses import with_waves
+from tests.support.forced_profiles import with_waves
 
 DURATION = 3.0
 PIECES = 3000
