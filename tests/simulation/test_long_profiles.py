@@ -17,7 +17,7 @@ from stickslip_sim.solvers import DONE, FULL, Solver, exact, fixed_step, with_ad
 from stickslip_sim.solvers.walk import walk_of
 from tests.conftest import Program
 from tests.support.axes import COMPLIANT, instant, paper_axis
-from tests.support.forced_profiles import with_waves
+from tests.support.forced_profiles import with_sinusoids
 
 DURATION = 3.0
 PIECES = 3000
@@ -41,7 +41,7 @@ def profiles(kind: str) -> tuple[InputProfile, InputProfile]:
     begins = [0.0, *sorted(rng.sample(times[1:1000], 199)), *sorted(rng.uniform(1.0, 2.5) for _ in range(200))]
     force = steps('force', begins, forces, 2.6 if kind == 'periods' else math.inf)
     if kind == 'waves':
-        return with_waves(drive, (5e-3, 31.0, 0.3)), with_waves(force, (0.03 * AXIS.normal_force, 7.0, 1.0))
+        return with_sinusoids(drive, (5e-3, 31.0, 0.3)), with_sinusoids(force, (0.03 * AXIS.normal_force, 7.0, 1.0))
     return drive, force
 
 
