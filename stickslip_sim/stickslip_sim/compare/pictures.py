@@ -47,20 +47,20 @@ def draw(runs: Mapping[str, Run], folder: Path) -> list[Picture]:
     if rows:
         motions = {name: motion_of(run) for name, run in rows.items()}
         pictures.append(_drawn(Picture('side_by_side', '', caption), folder,
-                               lambda path: plot_side_by_side(motions, path)))
+                               lambda *paths: plot_side_by_side(motions, *paths)))
     return pictures
 
 
 def _motion(name: str, run: Run, folder: Path) -> Picture:
     motion = motion_of(run)
     picture = Picture(f'{name}_motion', name, f'{_likeness(run)}: {_OF_MOTION}')
-    return _drawn(picture, folder, lambda path: plot_motion(motion, path))
+    return _drawn(picture, folder, lambda *paths: plot_motion(motion, *paths))
 
 
 def _friction(name: str, run: Run, folder: Path) -> Picture:
     friction = characteristics_of(run)
     picture = Picture(f'{name}_friction', name, _OF_FRICTION)
-    return _drawn(picture, folder, lambda path: plot_characteristics(friction, path))
+    return _drawn(picture, folder, lambda *paths: plot_characteristics(friction, *paths))
 
 
 def _beside(run: Run) -> Mapping[str, Run]:
@@ -71,9 +71,8 @@ def _beside(run: Run) -> Mapping[str, Run]:
     return {name: simulate_densely(other, run.duration) for name, other in characteristics_beside(scene).items()}
 
 
-def _drawn(picture: Picture, folder: Path, draw_to: Callable[[Path], None]) -> Picture:
-    for kind in KINDS:
-        draw_to(folder / f'{picture.name}.{kind}')
+def _drawn(picture: Picture, folder: Path, draw_to: Callable[..., None]) -> Picture:
+    draw_to(*(folder / f'{picture.name}.{kind}' for kind in KINDS))
     return picture
 
 

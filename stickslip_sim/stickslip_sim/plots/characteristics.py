@@ -34,7 +34,7 @@ class Characteristics(NamedTuple):
     has_prolonged_rest: bool            # whether one followed an infinite rest
 
 
-def plot_characteristics(friction: Characteristics, path: Path | str) -> None:
+def plot_characteristics(friction: Characteristics, *paths: Path | str) -> None:
     """Draw both characteristics side by side."""
     with rc_context(JOURNAL):
         figure = Figure(figsize=(DOUBLE_COLUMN, 2.7), layout=ConstrainedLayoutEngine(w_pad=0.06, h_pad=0.06))
@@ -45,7 +45,7 @@ def plot_characteristics(friction: Characteristics, path: Path | str) -> None:
             panel.set_ylim(bottom=0.0)
             panel.legend()
             letter(panel, name)
-        save(figure, path)
+        save(figure, *paths)
 
 
 def _kinetic(panel: Axes, friction: Characteristics) -> None:

@@ -52,7 +52,7 @@ class DrawnMotion(NamedTuple):
     cycle: Stretch | None      # that they stress
 
 
-def plot_motion(motion: DrawnMotion, path: Path | str) -> None:
+def plot_motion(motion: DrawnMotion, *paths: Path | str) -> None:
     """Draw forces, speed and acceleration over time, and magnified; the friction loop; the phase plane."""
     with rc_context(JOURNAL):
         figure = Figure(figsize=(DOUBLE_COLUMN, 7.8), layout=ConstrainedLayoutEngine(w_pad=0.06, h_pad=0.06))
@@ -71,7 +71,7 @@ def plot_motion(motion: DrawnMotion, path: Path | str) -> None:
         for panel, name in zip(panels, 'abcdef'):
             letter(panel, name)
         legend_below(figure, panels[4])
-        save(figure, path)
+        save(figure, *paths)
 
 
 def legend_below(figure: Figure, *panels: Axes) -> None:

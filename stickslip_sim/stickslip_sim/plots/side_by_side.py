@@ -19,7 +19,7 @@ _ROW, _LEGEND = 1.9, 0.6   # in
 _ALIKE = 5.0               # so many times as large an extent, and rows do not share an axis
 
 
-def plot_side_by_side(motions: Mapping[str, DrawnMotion], path: Path | str) -> None:
+def plot_side_by_side(motions: Mapping[str, DrawnMotion], *paths: Path | str) -> None:
     """Draw a row for each run, by its name; runs that are alike have the same axes."""
     with rc_context(JOURNAL):
         figure = Figure(figsize=(DOUBLE_COLUMN, _ROW * len(motions) + _LEGEND),
@@ -36,7 +36,7 @@ def plot_side_by_side(motions: Mapping[str, DrawnMotion], path: Path | str) -> N
         for panel, name in zip(grid.flat, ascii_lowercase):
             letter(panel, name)
         legend_below(figure, grid[0, 0], *grid[:, 2])
-        save(figure, path)
+        save(figure, *paths)
 
 
 def _lengths(motions: Sequence[DrawnMotion]) -> list[float]:

@@ -34,12 +34,13 @@ JOURNAL: dict[str, Any] = {   # for pictures that are printed at the width of on
 SINGLE_COLUMN, DOUBLE_COLUMN = 3.5, 7.1   # in
 
 
-def save(figure: Figure, path: Path | str) -> None:
-    """Write a picture; the ending of `path` (.png, .svg) says how."""
-    path = Path(path)
-    kind = path.suffix[1:].lower()
-    with rc_context({'svg.hashsalt': 'stickslip'}):   # the same picture is the same file
-        figure.savefig(path, format=kind, metadata={'Date': None} if kind == 'svg' else None)
+def save(figure: Figure, *paths: Path | str) -> None:
+    """Write a picture; the ending of each path (.png, .svg) says how.  All have the layout of the first."""
+    for path in map(Path, paths):
+        kind = path.suffix[1:].lower()
+        with rc_context({'svg.hashsalt': 'stickslip'}):   # the same picture is the same file
+            figure.savefig(path, format=kind, metadata={'Date': None} if kind == 'svg' else None)
+        figure.set_layout_engine('none')
 
 
 def thinned(time: Numbers, values: Numbers) -> tuple[Numbers, Numbers]:
