@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from stickslip_sim.cli.compare import _named_apart
+from stickslip_sim.cli.compare import named_apart
 from stickslip_sim.cli.main import run
 from stickslip_sim.compare.characteristics import characteristics_of
 from stickslip_sim.compare.conventional import characteristics_beside
@@ -230,7 +230,7 @@ def test_any_motion_can_be_drawn(changes: dict[str, object], tmp_path: Path) -> 
 
 def test_runs_of_one_name_get_files_of_their_own(bag: Path) -> None:
     recorded, fresh = read_run(bag), simulate_densely(load_scene('paper_fig7', {'scene': '../a b'}), 1.0)
-    assert list(_named_apart([recorded, recorded, fresh])) == ['eight', 'eight_2', '.._a_b']
+    assert list(named_apart([recorded, recorded, fresh])) == ['eight', 'eight_2', '.._a_b']
 
 
 def test_exit_code_when_a_statement_does_not_hold(tmp_path: Path, capsys: Capture) -> None:

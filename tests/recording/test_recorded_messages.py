@@ -23,6 +23,7 @@ from stickslip_sim.recording import (
     topics,
 )
 from stickslip_sim.recording.messages import Packer, header
+from stickslip_sim.recording.schemas import store_of
 from tests.support.recorded_runs import friction_force, mode_event, slider_state
 from tests.support.repository import ROOT
 from tests.support.waiting import wait_for
@@ -170,8 +171,8 @@ def values_of(message: Any, like: Any = None) -> Values:
 
 def padding_of(codec: MessageCodec, type_name: str, values: Values) -> list[bool]:
     """Tell which bytes are padding: those that encoding leaves alone (rclpy leaves in them what was there before)."""
-    message = codec._message(type_name, values)
-    store = codec._store
+    message = codec.decode(type_name, codec.encode(type_name, values))
+    store = store_of({type_name: schema(type_name).text})
     definition = store.get_msgdef(type_name)
     size = definition.getsize_cdr(0, message, store)
     buffers = [bytearray([fill]) * size for fill in (0, 255)]

@@ -41,7 +41,7 @@ def compare(runs: tuple[str, ...], out: str, duration: float | None, changes: tu
             if progress:
                 progress((k + 1) / (2 * len(runs)))
         with new_folder('--out', out) as folder:
-            judged = write_report(_named_apart(sources), folder)
+            judged = write_report(named_apart(sources), folder)
     for each in judged:
         _print_judged(each)
     print(f'written: {Path(out) / "report.html"}')
@@ -76,7 +76,7 @@ def _run(source: str, duration: float | None, changes: tuple[str, ...]) -> 'Run'
     return simulate_densely(scene, default_duration(scene) if duration is None else duration)
 
 
-def _named_apart(runs: list['Run']) -> dict[str, 'Run']:
+def named_apart(runs: list['Run']) -> dict[str, 'Run']:
     """Give each run a name of its own that is good for a file, too."""
     from ..scene.text import file_name
 

@@ -27,7 +27,7 @@ setattr(getattr(import_module('stickslip_sim.' + module), owner), method, broken
 sys.exit(import_module('stickslip_sim.ros.' + program).main(sys.argv[5:]))
 """
 IN_THE_STEP_LOOP = ('rig.rig', 'Rig', 'make_step', 'sim_node')
-IN_THE_PLAYER = ('ros.replay.player', 'Player', '_play', 'replay_node')
+IN_THE_PLAYER = ('ros.replay.states', 'States', 'acts', 'replay_node')
 IN_THE_EXECUTOR = ('ros.diagnostics.periodic_report', 'PeriodicReport', 'report', 'sim_node')
 PLACES = {'step loop': IN_THE_STEP_LOOP, 'player': IN_THE_PLAYER, 'executor': IN_THE_EXECUTOR}
 
