@@ -18,6 +18,12 @@ from tests.support.rewritten_bags import rewritten
 from tests.support.tool import Capture
 
 
+@pytest.fixture(autouse=True)
+def one_format(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Draw what the page shows alone: no test here looks at another picture."""
+    monkeypatch.setattr('stickslip_sim.compare.pictures.KINDS', ('svg',))
+
+
 def refused(capsys: Capture, tmp_path: Path, *arguments: str | Path) -> str:
     """Compare; return the one line that is said on standard error.  Nothing is left behind."""
     err = tool.refused(capsys, 'compare', *arguments, '--out', tmp_path / 'out')
