@@ -3,13 +3,14 @@
 """What nodes say of a defect of their own, in whatever thread: one line, or with STICKSLIP_DEBUG=1 where it is."""
 
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-from stickslip_sim.recording import write_bag
+from stickslip_sim.recording import open_bag, write_bag
 from tests.support.recorded_runs import FACTS, samples
 
 pytest.importorskip('rclpy')
@@ -44,6 +45,39 @@ def test_a_defect_is_told_and_shown_where(tmp_path: Path, place: str) -> None:
     assert 'Traceback (most recent call last):' in shown
     assert any(text.endswith('in broken') for text in shown)
     assert shown[-2:] == ['ZeroDivisionError: first', 'second']
+
+
+CORRUPTED = """
+import sys
+from stickslip_sim.rig import Rig
+from stickslip_sim.ros import sim_node
+
+make_step = Rig.make_step
+
+def corrupted(rig, *commands):
+    if rig.step == 5:
+        rig.simulator._state.stored_at_start += 1e3      # J that the run never had
+    return make_step(rig, *commands)
+
+Rig.make_step = corrupted
+sys.exit(sim_node.main(sys.argv[1:]))
+"""
+
+
+def test_a_run_that_contradicts_itself_stands_still(tmp_path: Path) -> None:
+    """The judge of runs finds it at the next event; the node says so and waits, and its bag is whole."""
+    record = ['-p', 'record.enabled:=true', '-p', f'record.folder:={tmp_path}/run']
+    with subprocess.Popen([sys.executable, '-c', CORRUPTED, '--ros-args', *record], stderr=subprocess.PIPE,
+                          text=True) as node:
+        assert node.stderr is not None
+        line = next(line for line in node.stderr if 'stands still' in line)
+        node.send_signal(signal.SIGINT)
+        node.stderr.read()
+        assert node.wait(60) == 0
+    assert 'the run contradicts its own motion or balance of energy at t = ' in line
+    bag = open_bag(tmp_path / 'run')
+    assert bag.is_complete
+    assert len(list(bag.messages(['/slider_state']))) > 5
 
 
 def errors_of(command: list[str], debug: str) -> list[str]:
