@@ -16,6 +16,7 @@ MONO = "Menlo, Consolas, 'DejaVu Sans Mono', monospace"
 _WIDTH = {SANS: 0.56, MONO: 0.61}   # of a letter, in ems, at most on average
 _HEAD = 11.0                        # length of an arrow's head
 _SUBSCRIPT = re.compile(r'_(?:\{([^}]*)\}|(\w))')
+_LETTERS = re.compile('((?:[^\\W\\d]\u0307?)+)|([\\W\\d]+)')   # a letter and the dot over it stay together
 
 Point = tuple[float, float]
 
@@ -76,7 +77,7 @@ class Sheet:
         if style.weight != 'normal':
             attributes += f' font-weight="{style.weight}"'
         parts = [_formula(part, style.size) if i % 2 else escape(part) for i, part in enumerate(words.split('$'))]
-        self._add(f'<text x="{at[0]:g}" y="{at[1]:g}" {attributes}>{"".join(parts)}</text>')
+        self._add(f'<text x="{at[0]:g}" y="{at[1]:g}" {attributes} xml:space="preserve">{"".join(parts)}</text>')
 
     def paragraph(self, at: Point, words: str, width: float, style: Style = Style()) -> float:  # noqa: B008 - a tuple
         """Write lines that fit into a width, from the base line of the first on; return that of the next."""
@@ -123,7 +124,7 @@ def _formula(words: str, size: float) -> str:
         is_low = i % 3 > 0
         shift = f' dy="{size * 0.28 * (is_low - low):g}"' if is_low != low else ''
         small = f' font-size="{size * 0.72:g}"' if is_low else ''
-        for letters, others in re.findall(r'([^\W\d]+)|([\W\d]+)', part):
+        for letters, others in _LETTERS.findall(part):
             slant = ' font-style="italic"' if letters and not is_low else ''
             spans += f'<tspan{shift}{small}{slant}>{escape(letters or others)}</tspan>'
             shift = ''

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """From a run to linear motions: one segment between two neighbouring events, borders of the inputs, or ends.
 
-z = (f, u, y, v, 1, sin and cosine of each wave): f is the force that accelerates the slider, or F_d + F_e where
+z = (f, u, y, v, 1, sin and cosine of each sinusoid): f is the force that accelerates the slider, or F_d + F_e where
 nothing moves it (a rigid stick, coasting); u its velocity, y its travel, v the drive's velocity without sinusoids.
 """
 
