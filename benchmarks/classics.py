@@ -20,13 +20,13 @@ from stickslip_sim.extremes.shared_axes import instant, make, of_kind, run_event
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind, kinetic_table
 from stickslip_sim.friction.smooth import hyperbolic
 from stickslip_sim.simulation.cycles import cycle_figures
-from stickslip_sim.study.theory import Oscillator, critical_feed
+from stickslip_sim.study.theory import SliderOnDrive, critical_feed
 
 from .closed_forms import coulomb_cycle, den_hartog, healing_stick_time, slip_speed, swing_ratio
 
-PAPER = Oscillator(350.0, 6e5, 4000.0)
+PAPER = SliderOnDrive(350.0, 6e5, 4000.0)
 UNDAMPED = PAPER._replace(damping=0.0)
-UNIT = Oscillator(1.0, 1.0)
+UNIT = SliderOnDrive(1.0, 1.0)
 STATIC, KINETIC = 824.0, 412.0   # N
 DROP = STATIC - KINETIC
 FEED = 0.005                     # m/s
@@ -52,15 +52,15 @@ class Result(NamedTuple):
     tolerance: float = EXACT
 
 
-def axis_of(oscillator: Oscillator, friction: Friction, normal_force: float = 1.0) -> Axis:
+def axis_of(slider: SliderOnDrive, friction: Friction, normal_force: float = 1.0) -> Axis:
     """Return an axis with a rigid contact and the conventional characteristics."""
-    return Axis(*oscillator, normal_force, RigidContact(), friction)
+    return Axis(*slider, normal_force, RigidContact(), friction)
 
 
-def coulomb_axis(oscillator: Oscillator, static: float, kinetic: float) -> Axis:
+def coulomb_axis(slider: SliderOnDrive, static: float, kinetic: float) -> Axis:
     """Return an axis with constant static and kinetic friction in N."""
     law = StaticLaw(StaticLawKind.CONSTANT, static, static)
-    return axis_of(oscillator, Friction(law, KineticTable((0.0,), (kinetic,)), None))
+    return axis_of(slider, Friction(law, KineticTable((0.0,), (kinetic,)), None))
 
 
 def healing_axis(law: StaticLaw) -> Axis:
@@ -98,8 +98,8 @@ def critical_feeds() -> list[Result]:
                    feed_where_sticking_ends(zeta)) for zeta in DAMPING_RATIOS]
 
 
-def damped(zeta: float) -> Oscillator:
-    """Return the paper's oscillator with another damping ratio."""
+def damped(zeta: float) -> SliderOnDrive:
+    """Return the paper's slider with another damping ratio."""
     return UNDAMPED._replace(damping=2.0 * zeta * UNDAMPED.impedance)
 
 
@@ -153,7 +153,7 @@ def _swing_ratio(normal_force: float) -> float:
 
 
 def forced_oscillations() -> list[Result]:
-    """Den Hartog's oscillator, from rest: half the distance of the turning points once it is steady."""
+    """Den Hartog's slider, from rest: half the distance of the turning points once it is steady."""
     results = []
     for ratio, friction in ((0.8, 0.5), (1.5, 0.3), (2.0, 0.2)):
         turns = turning_points(forced_axis(friction), shaken(ratio, 0.0), 400.0 * math.pi / ratio)

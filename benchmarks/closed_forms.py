@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from scipy.optimize import brentq
 
-from stickslip_sim.study.theory import Oscillator
+from stickslip_sim.study.theory import SliderOnDrive
 
 
 class CoulombCycle(NamedTuple):
@@ -25,26 +25,26 @@ class CoulombCycle(NamedTuple):
     jump: float
 
 
-def coulomb_cycle(oscillator: Oscillator, drop: float, feed: float) -> CoulombCycle:
+def coulomb_cycle(slider: SliderOnDrive, drop: float, feed: float) -> CoulombCycle:
     """Return the cycle for a drop of friction ΔF (N) and a feed v (m/s), h = 0."""
-    a = drop / (feed * oscillator.impedance)
-    slip = 2.0 / oscillator.frequency * (math.pi - math.atan(a))
-    stick = 2.0 * drop / (oscillator.stiffness * feed)
+    a = drop / (feed * slider.impedance)
+    slip = 2.0 / slider.frequency * (math.pi - math.atan(a))
+    stick = 2.0 * drop / (slider.stiffness * feed)
     return CoulombCycle(slip, stick, slip + stick, feed * (1.0 + math.hypot(1.0, a)), feed * (slip + stick))
 
 
-def slip_speed(oscillator: Oscillator, drop: float, feed: float, time: float) -> float:
+def slip_speed(slider: SliderOnDrive, drop: float, feed: float, time: float) -> float:
     """Return ẋ (m/s) at a time (s) after the break-away, under constant kinetic friction and 0 <= ζ < 1."""
-    zeta = oscillator.damping_ratio
-    s, a = math.sqrt(1.0 - zeta * zeta), drop / (feed * oscillator.impedance)
-    phase = s * oscillator.frequency * time
+    zeta = slider.damping_ratio
+    s, a = math.sqrt(1.0 - zeta * zeta), drop / (feed * slider.impedance)
+    phase = s * slider.frequency * time
     sinusoid = math.cos(phase) - (a - zeta) / s * math.sin(phase)
-    return feed * (1.0 - math.exp(-zeta * oscillator.frequency * time) * sinusoid)
+    return feed * (1.0 - math.exp(-zeta * slider.frequency * time) * sinusoid)
 
 
-def light_damping_feed(oscillator: Oscillator, drop: float) -> float:
+def light_damping_feed(slider: SliderOnDrive, drop: float) -> float:
     """Return the usual estimate of v_c (m/s), the limit of small ζ: ΔF/√(4π ζ c m)."""
-    return drop / (math.sqrt(4.0 * math.pi * oscillator.damping_ratio) * oscillator.impedance)
+    return drop / (math.sqrt(4.0 * math.pi * slider.damping_ratio) * slider.impedance)
 
 
 def healing_stick_time(grown: Callable[[float], float], stiffness: float, feed: float) -> float:
@@ -53,13 +53,13 @@ def healing_stick_time(grown: Callable[[float], float], stiffness: float, feed: 
     return float(brentq(lambda t: 2.0 * grown(t) - stiffness * feed * t, 1e-9 * end, end, xtol=1e-300, rtol=1e-15))
 
 
-def swing_ratio(oscillator: Oscillator, slope: float) -> float:
+def swing_ratio(slider: SliderOnDrive, slope: float) -> float:
     """Return what half a swing about steady sliding leaves of the last one, friction falling by `slope` σ N s/m.
 
     exp(−π γ/√(ω² − γ²)) with γ = (h − σ)/(2 m): it grows where σ > h.
     """
-    gamma = 0.5 * (oscillator.damping - slope) / oscillator.mass
-    return math.exp(-math.pi * gamma / math.sqrt(oscillator.frequency ** 2 - gamma * gamma))
+    gamma = 0.5 * (slider.damping - slope) / slider.mass
+    return math.exp(-math.pi * gamma / math.sqrt(slider.frequency ** 2 - gamma * gamma))
 
 
 class Swing(NamedTuple):

@@ -20,9 +20,9 @@ from stickslip_sim.compare.conventional import characteristics_beside
 from stickslip_sim.compare.drawn import drawn_columns, steady_inputs
 from stickslip_sim.compare.fresh import simulate_densely
 from stickslip_sim.compare.ring_down import closed_form, identified
-from stickslip_sim.compare.statement import Outcome
+from stickslip_sim.compare.statement import StatementOutcome
 from stickslip_sim.compare.statements import judged
-from stickslip_sim.compare.windows import motion_of
+from stickslip_sim.compare.windows import drawn_motion
 from stickslip_sim.core.types import EventKind
 from stickslip_sim.plots.characteristics import plot_characteristics
 from stickslip_sim.plots.paper_panels import plot_motion
@@ -177,8 +177,8 @@ def test_a_recording_that_began_later(bag: Path, tmp_path: Path) -> None:
     assert 0 < len(late.cycles()) < len(whole.cycles())
     assert 0.6 < late.summary.stick_share < 0.9
     verdicts = {statement.name: finding for statement, finding in judged(late)}
-    assert verdicts['long rest'].outcome == Outcome.NOT_APPLICABLE
-    assert verdicts['continuous friction force'].outcome == Outcome.HOLDS
+    assert verdicts['long rest'].outcome == StatementOutcome.NOT_APPLICABLE
+    assert verdicts['continuous friction force'].outcome == StatementOutcome.HOLDS
 
 
 def test_corners_are_where_they_are() -> None:
@@ -224,7 +224,7 @@ def test_a_scene_has_only_the_characteristics_it_can_have() -> None:
 def test_any_motion_can_be_drawn(changes: dict[str, object], tmp_path: Path) -> None:
     """Nothing moves, or backwards, without friction, smoothly, or to and fro; a warning would be an error here."""
     moving = simulate_densely(load_scene('paper_fig7', changes), 1.0)
-    plot_motion(motion_of(moving), tmp_path / 'motion.svg')
+    plot_motion(drawn_motion(moving), tmp_path / 'motion.svg')
     plot_characteristics(characteristics_of(moving), tmp_path / 'friction.svg')
 
 

@@ -10,14 +10,14 @@ import pytest
 
 from stickslip_sim.cli.main import run
 from stickslip_sim.compare.fresh import simulate_densely
-from stickslip_sim.compare.statement import Finding, Outcome
+from stickslip_sim.compare.statement import Finding, StatementOutcome
 from stickslip_sim.compare.statements import STATEMENTS, judged
 from stickslip_sim.core.types import EventKind
 from stickslip_sim.recording import read_run
 from stickslip_sim.runs import Run, SimulatedRun
 from stickslip_sim.scene import load_scene
 
-HOLDS, FAILS, NOT_APPLICABLE = Outcome
+HOLDS, FAILS, NOT_APPLICABLE = StatementOutcome
 CONTINUITY, TWO_VALUES, OSCILLATION, LIMIT_CYCLE, CONTACT, LONG_REST = (statement.name for statement in STATEMENTS)
 NORMAL = 3432.3275   # N
 KINETIC = 0.12 * NORMAL   # N, at rest
@@ -33,7 +33,7 @@ def findings(run: Run) -> dict[str, Finding]:
     return {statement.name: finding for statement, finding in judged(run)}
 
 
-def outcomes(run: Run) -> list[Outcome]:
+def outcomes(run: Run) -> list[StatementOutcome]:
     return [finding.outcome for _, finding in judged(run)]
 
 
@@ -43,7 +43,7 @@ def outcomes(run: Run) -> list[Outcome]:
     ('paper_fig7', [NOT_APPLICABLE, HOLDS, HOLDS, HOLDS, HOLDS, HOLDS]),
     ('paper_fig8', [HOLDS] * 6),
     ('stribeck', [HOLDS] * 6)])
-def test_what_the_paper_says_holds_on_its_scenes(scene: str, expected: list[Outcome]) -> None:
+def test_what_the_paper_says_holds_on_its_scenes(scene: str, expected: list[StatementOutcome]) -> None:
     assert outcomes(densely(scene)) == expected
 
 

@@ -34,18 +34,7 @@ SAME_NAMES = {
     'Problem': 'the task of the contestants of a race; that of the judge',
 }
 TO_RENAME = {   # two meanings, and no reason for it
-    'Oscillator': 'the constants of a linear mode; those of the theory of critical feeds',
-    'numbers_of': 'the numbers of a checkpoint; the fields of a message that are numbers',
-    'Inputs': 'the inputs of a simulator; of a stage of the adaptive solver; those of a run that do not change',
-    'Measured': 'the measurement of an encoder; that of a check',
-    'Motion': 'the ending of a point of a study; the motion of a stage of the adaptive solver; the one that is checked',
-    'Outcome': 'of a contestant; of a limit that is checked; of a statement of the paper',
-    'Step': 'a step of the judge on its way to a root; a step of a run that is simulated again',
-    'Verdict': 'whether a run kept its times; whether two runs agree',
     'inputs_at': 'the inputs at a time, with sinusoids and without',
-    'judge': 'a check of limits; of the statements of the paper',
-    'motion_of': 'the motion of a rival between two events; the drawn motion of a run',
-    'sticks': 'the sticks of a run, from its states and from its events',
 }
 SAME_FILES = {
     'critical.py': VERB, 'sweep.py': VERB, 'uncertainty.py': f'{VERB}; {PICTURE}',

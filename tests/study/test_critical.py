@@ -267,7 +267,7 @@ def test_inputs_that_change_with_time_are_refused() -> None:
 
 
 def test_the_closed_form_of_the_feed_is_the_one_of_the_drop() -> None:
-    from stickslip_sim.study.theory import Oscillator
+    from stickslip_sim.study.theory import SliderOnDrive
 
     axis = load_scene('paper_fig4_constant', CONSTANT).axis
-    assert feed_of_theory(axis) == critical_feed(Oscillator(350.0, 6e5, 4000.0), 0.12 * 3432.3275)
+    assert feed_of_theory(axis) == critical_feed(SliderOnDrive(350.0, 6e5, 4000.0), 0.12 * 3432.3275)

@@ -250,6 +250,6 @@ def test_where_the_slider_only_just_comes_to_rest_the_events_are_those_of_the_re
 
 
 def test_critical_feed_of_light_damping_is_infinite_in_the_limit_only() -> None:
-    from stickslip_sim.study.theory import Oscillator
+    from stickslip_sim.study.theory import SliderOnDrive
 
-    assert critical_feed(Oscillator(350.0, 6e5, 1e-3), 412.0) > 1.0
+    assert critical_feed(SliderOnDrive(350.0, 6e5, 1e-3), 412.0) > 1.0

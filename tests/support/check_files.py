@@ -6,7 +6,7 @@ import math
 import shutil
 from pathlib import Path
 
-from stickslip_sim.check.judgement import Outcome, judge
+from stickslip_sim.check.judgement import LimitOutcome, outcomes_of
 from stickslip_sim.check.limits import limits_of
 from stickslip_sim.config.ros_yaml import read_yaml
 from stickslip_sim.recording import RunFacts, write_bag
@@ -33,9 +33,9 @@ def simulated(scene: Scene | str, duration: float) -> SimulatedRun:
     return simulate(load_scene(scene) if isinstance(scene, str) else scene, duration)
 
 
-def judged(text: str, found: SimulatedRun) -> dict[str, Outcome]:
+def judged(text: str, found: SimulatedRun) -> dict[str, LimitOutcome]:
     """Return the outcomes of limits given as YAML, by name."""
-    return {outcome.name: outcome for outcome in judge(limits_of(read_yaml(text)), found)}
+    return {outcome.name: outcome for outcome in outcomes_of(limits_of(read_yaml(text)), found)}
 
 
 def measured(text: str, found: SimulatedRun) -> float:

@@ -7,12 +7,12 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ..runs import Run
-from .judgement import Outcome
+from .judgement import LimitOutcome
 from .kinds import TIMING
 from .observed_run import gaps_in, observed_motion
 
 
-def verdict_line(outcomes: Sequence[Outcome]) -> str:
+def verdict_line(outcomes: Sequence[LimitOutcome]) -> str:
     """Return passed or failed, of how many, and which failed."""
     failed = failures(outcomes)
     if failed:
@@ -20,12 +20,12 @@ def verdict_line(outcomes: Sequence[Outcome]) -> str:
     return f'PASSED: {len(outcomes)} of {len(outcomes)}'
 
 
-def failures(outcomes: Sequence[Outcome]) -> list[str]:
+def failures(outcomes: Sequence[LimitOutcome]) -> list[str]:
     """Return the names of the limits that were not kept."""
     return [outcome.name for outcome in outcomes if not outcome.passed]
 
 
-def line_of(outcome: Outcome) -> str:
+def line_of(outcome: LimitOutcome) -> str:
     """Return what was measured, and the limit, in a sentence."""
     if outcome.limit is None or outcome.value is None:
         return outcome.remark
@@ -34,7 +34,7 @@ def line_of(outcome: Outcome) -> str:
     return f'{text} ({outcome.remark})' if outcome.remark else text
 
 
-def as_json(run: Run, outcomes: Sequence[Outcome]) -> dict[str, Any]:
+def as_json(run: Run, outcomes: Sequence[LimitOutcome]) -> dict[str, Any]:
     """Return everything that was found; an infinite figure is the text 'inf'."""
     motion = observed_motion(run)
     return {
@@ -45,7 +45,7 @@ def as_json(run: Run, outcomes: Sequence[Outcome]) -> dict[str, Any]:
     }
 
 
-def _entry(outcome: Outcome) -> Mapping[str, Any]:
+def _entry(outcome: LimitOutcome) -> Mapping[str, Any]:
     limit = outcome.limit
     found = {'name': outcome.name, 'passed': outcome.passed, 'remark': outcome.remark}
     if limit is None:

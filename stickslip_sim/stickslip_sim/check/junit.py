@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from xml.etree import ElementTree
 
 from .check_report import line_of
-from .judgement import Outcome
+from .judgement import LimitOutcome
 
 
-def junit_text(name: str, outcomes: Sequence[Outcome]) -> str:
+def junit_text(name: str, outcomes: Sequence[LimitOutcome]) -> str:
     """Return the file, valid against the schema of Jenkins; the suite has the name of what was checked."""
     failed = sum(not outcome.passed for outcome in outcomes)
     suite = ElementTree.Element('testsuite', name=name, tests=str(len(outcomes)), failures=str(failed), errors='0')

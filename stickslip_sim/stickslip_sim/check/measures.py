@@ -15,28 +15,28 @@ from scipy.interpolate import CubicHermiteSpline
 from ..core.errors import InputError
 from ..core.types import EventKind, Mode
 from ..simulation.cycles import cycle_figures, mode_spans
-from .observed_motion import Motion, Points
+from .observed_motion import ObservedMotion, Points
 
 
-class Measured(NamedTuple):
+class MeasuredFigure(NamedTuple):
     """A figure, inf when its event never came; `remark` says what it was taken from."""
 
     value: float
     remark: str = ''
 
 
-def following_error(motion: Motion) -> Measured:
+def following_error(motion: ObservedMotion) -> MeasuredFigure:
     """Return the largest |commanded − actual position|, m."""
     errors = np.abs(motion.following_error)
-    return Measured(float(errors.max()), f'at t = {motion.time[errors.argmax()]:.6g} s')
+    return MeasuredFigure(float(errors.max()), f'at t = {motion.time[errors.argmax()]:.6g} s')
 
 
-def end_position_error(motion: Motion, target: float) -> Measured:
+def end_position_error(motion: ObservedMotion, target: float) -> MeasuredFigure:
     """Return |actual position − target| at the end, m: the positional deviation of ISO 230-2."""
-    return Measured(abs(float(motion.points.position[-1]) - target))
+    return MeasuredFigure(abs(float(motion.points.position[-1]) - target))
 
 
-def overshoot(motion: Motion, target: float) -> Measured:
+def overshoot(motion: ObservedMotion, target: float) -> MeasuredFigure:
     """Return how far the slider goes beyond the target in the sense of its motion, m; 0 when it does not.
 
     Raises InputError when it begins on the target: there is no sense then.
@@ -46,51 +46,51 @@ def overshoot(motion: Motion, target: float) -> Measured:
         raise InputError('target', target, f'another place than that of the slider at t = {motion.begin:g} s',
                          'let the window begin before the move')
     beyond = math.copysign(1.0, way) * (motion.points.position - target)
-    return Measured(max(0.0, float(beyond.max())), f'at t = {motion.points.time[beyond.argmax()]:.6g} s'
-                    if beyond.max() > 0.0 else 'the target is not passed')
+    return MeasuredFigure(max(0.0, float(beyond.max())), f'at t = {motion.points.time[beyond.argmax()]:.6g} s'
+                          if beyond.max() > 0.0 else 'the target is not passed')
 
 
-def settling_time(motion: Motion, target: float, band: float) -> Measured:
+def settling_time(motion: ObservedMotion, target: float, band: float) -> MeasuredFigure:
     """Return how long after the start the slider comes within ± `band` of the target to stay, s; inf if it does not."""
     points = motion.points
     outside = np.flatnonzero(np.abs(points.position - target) > band)
     if not outside.size:
-        return Measured(0.0, 'never outside the band')
+        return MeasuredFigure(0.0, 'never outside the band')
     last = int(outside[-1])
     if last + 1 == len(points.time):
-        return Measured(math.inf, 'outside the band at the end')
+        return MeasuredFigure(math.inf, 'outside the band at the end')
     edge = target + math.copysign(band, points.position[last] - target)
-    return Measured(_crossing(points, last, edge) - motion.begin)
+    return MeasuredFigure(_crossing(points, last, edge) - motion.begin)
 
 
-def sticks(motion: Motion) -> Measured:
+def sticks(motion: ObservedMotion) -> MeasuredFigure:
     """Return how often the slider came to stick."""
-    return Measured(sum(event.kind == EventKind.STICK for event in motion.events))
+    return MeasuredFigure(sum(event.kind == EventKind.STICK for event in motion.events))
 
 
-def longest_stick(motion: Motion) -> Measured:
+def longest_stick(motion: ObservedMotion) -> MeasuredFigure:
     """Return the longest time without slip, s; only what lies within the window counts."""
     spans = [span for span in mode_spans(motion.events, motion.begin, motion.end, motion.mode)
              if span.mode == Mode.STICK]
     if not spans:
-        return Measured(0.0, 'no stick')
+        return MeasuredFigure(0.0, 'no stick')
     longest = max(spans, key=lambda span: span.end - span.begin)
-    return Measured(longest.end - longest.begin, f'from t = {longest.begin:.6g} s')
+    return MeasuredFigure(longest.end - longest.begin, f'from t = {longest.begin:.6g} s')
 
 
-def limit_cycle_amplitude(motion: Motion, cycles: int) -> Measured:
+def limit_cycle_amplitude(motion: ObservedMotion, cycles: int) -> MeasuredFigure:
     """Return the peak-to-peak following error over the last cycles (break-away to break-away), m; 0 without a cycle."""
     last = cycle_figures(motion.events)[-cycles:]
     if not last:
-        return Measured(0.0, 'no complete cycle')
+        return MeasuredFigure(0.0, 'no complete cycle')
     part = motion.cut(last[0].begin, last[-1].begin + last[-1].period)
-    return Measured(float(np.ptp(part.following_error)), f'over {len(last)} cycle{"s" if len(last) > 1 else ""}')
+    return MeasuredFigure(float(np.ptp(part.following_error)), f'over {len(last)} cycle{"s" if len(last) > 1 else ""}')
 
 
-def peak_speed(motion: Motion) -> Measured:
+def peak_speed(motion: ObservedMotion) -> MeasuredFigure:
     """Return the largest |velocity| of the slider, m/s."""
     speeds = np.abs(motion.points.velocity)
-    return Measured(float(speeds.max()), f'at t = {motion.points.time[speeds.argmax()]:.6g} s')
+    return MeasuredFigure(float(speeds.max()), f'at t = {motion.points.time[speeds.argmax()]:.6g} s')
 
 
 def _crossing(points: Points, k: int, level: float) -> float:

@@ -36,7 +36,7 @@ class Points(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Motion:
+class ObservedMotion:
     """The axis from `begin` to `end` (s); `mode` holds from `begin` until the first event."""
 
     begin: float
@@ -62,16 +62,16 @@ class Motion:
         time, chosen = np.unique(time, return_index=True)
         return Points(time, position[chosen], velocity[chosen])
 
-    def following(self, reference: Reference) -> 'Motion':
+    def following(self, reference: Reference) -> 'ObservedMotion':
         """Return the same motion as an answer to a reference instead of the drive."""
         return replace(self, commanded=reference.at(self.time))
 
-    def cut(self, begin: float, end: float) -> 'Motion':
+    def cut(self, begin: float, end: float) -> 'ObservedMotion':
         """Return the part from `begin` to `end` (s), both included; raises InputError when no sample falls in it."""
         kept = slice(np.searchsorted(self.time, begin, 'left'), np.searchsorted(self.time, end, 'right'))
         if not self.time[kept].size:
             raise InputError('window', [begin, end], 'long enough for one sample', 'make it longer')
         before = [event for event in self.events if event.time < begin]
-        return Motion(begin, end, before[-1].mode if before else self.mode, self.time[kept], self.position[kept],
-                      self.velocity[kept], self.commanded[kept],
-                      [event for event in self.events if begin <= event.time <= end])
+        return ObservedMotion(begin, end, before[-1].mode if before else self.mode, self.time[kept],
+                              self.position[kept], self.velocity[kept], self.commanded[kept],
+                              [event for event in self.events if begin <= event.time <= end])

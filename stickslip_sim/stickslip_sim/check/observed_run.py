@@ -12,7 +12,7 @@ from ..core.types import EventKind, Mode
 from ..recording import RecordedRun
 from ..runs import Run
 from ..runs.kept import kept
-from .observed_motion import Motion
+from .observed_motion import ObservedMotion
 
 _STATE_FIELDS = ('time', 'position', 'velocity', 'drive_position', 'mode')
 
@@ -26,15 +26,15 @@ class Timing:
 
 
 @kept
-def observed_motion(run: Run) -> Motion:
+def observed_motion(run: Run) -> ObservedMotion:
     """Return the motion of a run with samples, of a recorded one as far as its states go; raises RecordingError."""
     if isinstance(run, RecordedRun):
         _check_states(run)
     states = run.states
     time = states['time']
     begin, end = (float(time[0]), float(time[-1])) if run.is_recorded else (run.begin, run.end)
-    return Motion(begin, end, Mode(int(states['mode'][0])), time, states['position'], states['velocity'],
-                  states['drive_position'], [event for event in run.events if event.kind != EventKind.KNOT])
+    return ObservedMotion(begin, end, Mode(int(states['mode'][0])), time, states['position'], states['velocity'],
+                          states['drive_position'], [event for event in run.events if event.kind != EventKind.KNOT])
 
 
 def timing_of(run: Run) -> Timing | None:

@@ -27,7 +27,7 @@ def check(source: str, limits_file: str, duration: float | None, changes: tuple[
     """Check RUN_OR_SCENE - a run folder, or a scene to simulate - against limits; exit with 3 when one is not kept."""
     _check_outputs(junit, json_file)
     from ..check.check_report import as_json, failures, verdict_line
-    from ..check.judgement import judge
+    from ..check.judgement import outcomes_of
     from ..check.junit import junit_text
     from ..check.limits import load_limits
     from ..core.errors import VerdictError
@@ -35,7 +35,7 @@ def check(source: str, limits_file: str, duration: float | None, changes: tuple[
 
     limits = load_limits(limits_file)
     run = _run(source, limits, duration, changes)
-    outcomes = judge(limits, run)
+    outcomes = outcomes_of(limits, run)
     if STDOUT not in (junit, json_file):
         print('\n'.join([*table_lines(run, outcomes), verdict_line(outcomes)]), flush=True)
     if json_file is not None:

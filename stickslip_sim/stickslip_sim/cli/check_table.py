@@ -4,7 +4,7 @@
 
 from collections.abc import Iterator, Sequence
 
-from ..check.judgement import Outcome
+from ..check.judgement import LimitOutcome
 from ..check.observed_run import gaps_in, observed_motion
 from ..runs import Run
 from ..runs.wording import quantity
@@ -13,7 +13,7 @@ _HEADS = ('limit', 'measured', 'at most', 'margin', '', '')
 _NUMBERS = (1, 2, 3)   # columns to the right
 
 
-def table_lines(run: Run, outcomes: Sequence[Outcome]) -> Iterator[str]:
+def table_lines(run: Run, outcomes: Sequence[LimitOutcome]) -> Iterator[str]:
     """Yield the checked run, its missing parts, and a line for each limit."""
     motion = observed_motion(run)
     yield (f'{run.name}: {motion.begin:g} to {motion.end:g} s, {len(motion.time)} states, '
@@ -26,7 +26,7 @@ def table_lines(run: Run, outcomes: Sequence[Outcome]) -> Iterator[str]:
                         for i, (cell, width) in enumerate(zip(row, widths))).rstrip()
 
 
-def _cells(outcome: Outcome) -> tuple[str, ...]:
+def _cells(outcome: LimitOutcome) -> tuple[str, ...]:
     verdict = 'PASS' if outcome.passed else 'FAIL'
     if outcome.limit is None or outcome.value is None or outcome.margin is None:
         return outcome.name, '–', '–', '–', verdict, outcome.remark

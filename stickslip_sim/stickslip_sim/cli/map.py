@@ -80,7 +80,7 @@ def _check_complete(sweep: 'Folder') -> None:
 def _pick(study: 'Study', columns: 'Columns', text: str) -> 'Pick':
     """Return a point of the map with its motion."""
     from ..compare.fresh import densely_sampled, simulate_densely
-    from ..compare.windows import motion_of
+    from ..compare.windows import drawn_motion
     from ..plots.stability_map import Pick
     from ..study.picks import ending_at, place_in_map, point_of
     from ..study.point_figures import Motion
@@ -89,7 +89,7 @@ def _pick(study: 'Study', columns: 'Columns', text: str) -> 'Pick':
     ending = ending_at(study, columns, point)
     shown = _time_shown(ending)
     is_known = shown == ending.run.duration
-    motion = motion_of(densely_sampled(ending.run) if is_known else simulate_densely(ending.run.scene, shown))
+    motion = drawn_motion(densely_sampled(ending.run) if is_known else simulate_densely(ending.run.scene, shown))
     sticks = ending.motion == Motion.STICK_SLIP
     return Pick(*place_in_map(study, point), motion if sticks else motion._replace(cycle=None))
 

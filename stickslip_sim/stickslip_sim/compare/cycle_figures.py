@@ -11,7 +11,7 @@ import numpy as np
 from ..runs import Run
 from ..runs.receipt import plain
 from ..simulation.cycles import Cycle
-from .drawn import slips, within
+from .drawn import complete_slips, within
 from .long_runs import difference
 from .ring_down import closed_form, identified
 from .statement import Finding, Statement
@@ -21,7 +21,7 @@ _ROUNDING = 1e-10   # relative: a smaller difference of two cycles says nothing 
 
 def peak_accelerations(run: Run) -> list[float]:
     """Return the largest |ẍ| in the slip of each cycle, m/s²."""
-    ends = {begin.time: end.time for begin, end in slips(run)}
+    ends = {begin.time: end.time for begin, end in complete_slips(run)}
     parts = (within(run, cycle.begin, ends[cycle.begin]) for cycle in run.cycles())
     return [float(np.abs(part['acceleration']).max()) for part in parts]
 

@@ -18,7 +18,7 @@ _STEADY = 1e-9   # relative: inputs that vary less are constant
 _DRAWN = ('time', 'position', 'velocity', 'acceleration', 'drive_position', 'drive_force', 'friction_force', 'mode')
 
 
-class Inputs(NamedTuple):
+class SteadyInputs(NamedTuple):
     """Inputs that do not change."""
 
     velocity: float   # m/s, of the drive
@@ -48,7 +48,7 @@ def within(run: Run, begin: float, end: float) -> Columns:
     return {name: column[inside] for name, column in columns.items()}
 
 
-def steady_inputs(run: Run, begin: float = -math.inf, end: float = math.inf) -> Inputs | None:
+def steady_inputs(run: Run, begin: float = -math.inf, end: float = math.inf) -> SteadyInputs | None:
     """Return the drive velocity and the external force between two times (s); None when they are not constant."""
     samples = run.samples
     inside = rows(samples['time'], begin, end)
@@ -58,7 +58,7 @@ def steady_inputs(run: Run, begin: float = -math.inf, end: float = math.inf) -> 
     scale = max(np.abs(samples[name][inside]).max() for name in ('friction_force', 'drive_force'))
     if np.ptp(velocity) > _STEADY * np.abs(velocity).max() or np.ptp(force) > _STEADY * scale:
         return None
-    return Inputs(float(velocity[0]), float(np.median(force)) if np.abs(force).max() > _STEADY * scale else 0.0)
+    return SteadyInputs(float(velocity[0]), float(np.median(force)) if np.abs(force).max() > _STEADY * scale else 0.0)
 
 
 def rows(time: Numbers, begin: float, end: float) -> slice:
@@ -66,7 +66,7 @@ def rows(time: Numbers, begin: float, end: float) -> slice:
     return slice(int(np.searchsorted(time, begin)), int(np.searchsorted(time, end, side='right')))
 
 
-def slips(run: Run) -> list[tuple[Event, Event]]:
+def complete_slips(run: Run) -> list[tuple[Event, Event]]:
     """Return where each slip begins and ends that is complete: break-away (or reversal) and standstill."""
     found: list[tuple[Event, Event]] = []
     begin: Event | None = None
@@ -79,7 +79,7 @@ def slips(run: Run) -> list[tuple[Event, Event]]:
     return found
 
 
-def sticks(run: Run) -> list[tuple[Event, Event]]:
+def complete_sticks(run: Run) -> list[tuple[Event, Event]]:
     """Return where each stick begins and ends that is complete: standstill and the break-away from there."""
     found: list[tuple[Event, Event]] = []
     begin: Event | None = None

@@ -9,7 +9,7 @@ from ..core.input_profile import constant
 from ..core.types import Instant
 from ..simulation.cycles import Cycle, cycle_figures
 from ..simulation.simulator import Simulator
-from .drawn import Inputs
+from .drawn import SteadyInputs
 
 CYCLES = 100                                                          # that a run has to find its limit cycle
 _IN_TURN = 8                                                          # slips that one limit cycle may consist of
@@ -17,7 +17,7 @@ _PATIENCE = 3.0                                                       # periods 
 COMPARED = ('period', 'jump', 'peak_speed', 'break_away_force')       # of a cycle
 
 
-def last_cycles(axis: Axis, initial: InitialState, inputs: Inputs, period: float) -> list[Cycle]:
+def last_cycles(axis: Axis, initial: InitialState, inputs: SteadyInputs, period: float) -> list[Cycle]:
     """Return the last few of about CYCLES cycles of `period` s; none when stick-slip does not last."""
     simulator = Simulator(axis, initial, constant(inputs.velocity), constant(inputs.force), accounting=True)
     end = Instant(float(int(CYCLES * period) + 1), 0.0)

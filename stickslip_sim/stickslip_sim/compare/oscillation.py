@@ -9,7 +9,7 @@ import numpy as np
 from ..axis import CompliantContact
 from ..core.types import Event, EventKind
 from ..runs import Run
-from .drawn import Numbers, slips, steady_inputs, sticks
+from .drawn import Numbers, complete_slips, complete_sticks, steady_inputs
 from .ring_down import RingDown, closed_form
 from .statement import Finding, Statement, found, not_applicable
 
@@ -36,8 +36,8 @@ def judge(run: Run) -> Finding:
         return _without_contact(run)
     if ring.damped_frequency == 0.0:
         return not_applicable(f'the contact is overdamped: damping ratio {ring.damping_ratio:.4g}')
-    begins = {stop: begin for begin, stop in slips(run)}
-    rings = [_ringing(run, begins[stop], stop, end) for stop, end in sticks(run)
+    begins = {stop: begin for begin, stop in complete_slips(run)}
+    rings = [_ringing(run, begins[stop], stop, end) for stop, end in complete_sticks(run)
              if stop in begins and _is_fit(run, ring, begins[stop], stop, end)]
     if not rings:
         return not_applicable('no slip and stick with constant inputs, long enough for the oscillation to vanish and '
@@ -54,7 +54,7 @@ def _without_contact(run: Run) -> Finding:
     """Look for motion in the sticks of a rigid contact: there must be none."""
     if not any(event.kind == EventKind.STICK for event in run.events):
         return not_applicable('no slip ends in this run')
-    ends = sticks(run)
+    ends = complete_sticks(run)
     moving = max((float(np.abs(_part(run, begin, end, 'velocity')).max()) for begin, end in ends), default=0.0)
     return found(moving == 0.0, f'rigid contact: none; the largest speed in {len(ends)} sticks is {moving:g} m/s',
                  sticks=len(ends), largest_speed=moving)

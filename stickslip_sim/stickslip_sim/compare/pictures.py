@@ -14,7 +14,7 @@ from ..runs import Run
 from .characteristics import characteristics_of
 from .conventional import characteristics_beside, scene_as_run
 from .fresh import simulate_densely
-from .windows import motion_of
+from .windows import drawn_motion
 
 KINDS = ('png', 'svg')
 _OF_MOTION = ('(a) drive and friction force, (b) velocity and acceleration as the motion begins; (c), (d) the same '
@@ -45,14 +45,14 @@ def draw(runs: Mapping[str, Run], folder: Path) -> list[Picture]:
         rows = _beside(alone)
         caption = f'The same axis with the conventional characteristics and with acceleration dependence: {_OF_ROWS}'
     if rows:
-        motions = {name: motion_of(run) for name, run in rows.items()}
+        motions = {name: drawn_motion(run) for name, run in rows.items()}
         pictures.append(_drawn(Picture('side_by_side', '', caption), folder,
                                lambda *paths: plot_side_by_side(motions, *paths)))
     return pictures
 
 
 def _motion(name: str, run: Run, folder: Path) -> Picture:
-    motion = motion_of(run)
+    motion = drawn_motion(run)
     picture = Picture(f'{name}_motion', name, f'{_likeness(run)}: {_OF_MOTION}')
     return _drawn(picture, folder, lambda *paths: plot_motion(motion, *paths))
 

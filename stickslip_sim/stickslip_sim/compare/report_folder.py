@@ -12,7 +12,7 @@ from ..runs.receipt import versions
 from .cycle_figures import figures_of
 from .page import page
 from .pictures import draw
-from .statement import Finding, Outcome, Statement
+from .statement import Finding, Statement, StatementOutcome
 from .statements import judged
 
 
@@ -26,7 +26,7 @@ class Judged(NamedTuple):
     @property
     def failed(self) -> list[str]:
         """The names of the statements that apply and do not hold."""
-        return [statement.name for statement, finding in self.findings if finding.outcome == Outcome.FAILS]
+        return [statement.name for statement, finding in self.findings if finding.outcome == StatementOutcome.FAILS]
 
 
 def write_report(runs: Mapping[str, Run], folder: Path) -> list[Judged]:

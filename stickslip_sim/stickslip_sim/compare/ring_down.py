@@ -16,7 +16,7 @@ import numpy as np
 
 from ..axis import Axis, CompliantContact
 from ..runs import Run
-from .drawn import steady_inputs, sticks
+from .drawn import complete_sticks, steady_inputs
 
 _LEAST_SAMPLES = 8
 _PERIODS = 4.0      # of the ring-down: what comes later is too small to add anything
@@ -44,7 +44,7 @@ def identified(run: Run) -> RingDown | None:
     form = closed_form(run.scene.axis)
     if form is None:
         return None
-    for begin, end in reversed(sticks(run)):
+    for begin, end in reversed(complete_sticks(run)):
         until = min(end.time, begin.time + _PERIODS / form.frequency)
         if steady_inputs(run, begin.time, until):
             return _fitted(run, begin.time, until)

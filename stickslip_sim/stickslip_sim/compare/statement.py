@@ -9,7 +9,7 @@ from typing import NamedTuple
 from ..runs import Run
 
 
-class Outcome(Enum):
+class StatementOutcome(Enum):
     """What comes of a statement."""
 
     HOLDS = 'holds'
@@ -20,7 +20,7 @@ class Outcome(Enum):
 class Finding(NamedTuple):
     """What was found: the outcome, why in one line, and the numbers (SI)."""
 
-    outcome: Outcome
+    outcome: StatementOutcome
     text: str
     figures: dict[str, float]
 
@@ -35,9 +35,9 @@ class Statement(NamedTuple):
 
 def found(holds: bool, text: str, **figures: float) -> Finding:
     """Return the finding on a statement that applies."""
-    return Finding(Outcome.HOLDS if holds else Outcome.FAILS, text, figures)
+    return Finding(StatementOutcome.HOLDS if holds else StatementOutcome.FAILS, text, figures)
 
 
 def not_applicable(reason: str, **figures: float) -> Finding:
     """Return the finding on a statement that this run has nothing to say about."""
-    return Finding(Outcome.NOT_APPLICABLE, reason, figures)
+    return Finding(StatementOutcome.NOT_APPLICABLE, reason, figures)

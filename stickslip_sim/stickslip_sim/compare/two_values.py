@@ -8,7 +8,7 @@ import numpy as np
 
 from ..core.types import Event, EventKind, Mode
 from ..runs import Run
-from .drawn import Numbers, slips, within
+from .drawn import Numbers, complete_slips, within
 from .statement import Finding, Statement, found, not_applicable
 
 _GAP = 0.01   # of the lower value: less is one value
@@ -26,7 +26,7 @@ def judge(run: Run) -> Finding:
     """Compare both branches of each slip half-way between the speeds of its break-away and its peak."""
     if run.scene.axis.friction.excess is None:
         return not_applicable('without acceleration dependence friction has one value at each velocity')
-    gaps = [gap for slip in slips(run) if _is_raised(run, *slip) and (gap := _gap(run, *slip))]
+    gaps = [gap for slip in complete_slips(run) if _is_raised(run, *slip) and (gap := _gap(run, *slip))]
     if not gaps:
         return not_applicable('no complete slip with a break-away above kinetic friction')
     least = min(gap.upper / gap.lower - 1.0 if gap.lower > 0.0 else np.inf for gap in gaps)

@@ -7,7 +7,7 @@ import math
 from ..core.types import EventKind
 from ..plots.paper_panels import DrawnMotion, Stretch
 from ..runs import Run
-from .drawn import drawn_columns, slips
+from .drawn import complete_slips, drawn_columns
 
 _CYCLES = 5                    # that show how the motion begins
 _IN_ORBIT = 30                 # that show where it goes
@@ -15,7 +15,7 @@ _BEFORE, _AFTER = 0.25, 0.75   # of a slip's duration: what is shown of the stic
 _BEGINNING = 0.1               # of a slip without an end: what is shown
 
 
-def motion_of(run: Run) -> DrawnMotion:
+def drawn_motion(run: Run) -> DrawnMotion:
     """Return what is drawn of a run: its first cycles, its last complete slip, its last complete cycle."""
     slip, break_away = _slip(run)
     return DrawnMotion(drawn_columns(run), _opening(run), slip, break_away, _orbit(run), _cycle(run))
@@ -32,7 +32,7 @@ def _opening(run: Run) -> Stretch:
 def _slip(run: Run) -> tuple[Stretch, float | None]:
     """Return the last slip with a stick after it and its break-away, or how the first slip begins."""
     last = run.cycles()[-1].begin if run.cycles() else math.inf
-    complete = [slip for slip in slips(run) if slip[0].time <= last]
+    complete = [slip for slip in complete_slips(run) if slip[0].time <= last]
     if complete:
         begin, end = complete[-1][0].time, complete[-1][1].time
         length = end - begin

@@ -10,23 +10,23 @@ from .step_loop import StepLoop
 from .timing_statistics import TimingStatistics
 
 
-class Verdict(NamedTuple):
+class TimingVerdict(NamedTuple):
     """`valid` is None when there was no real-time clock to keep."""
 
     valid: bool | None
     text: str
 
 
-def verdict(scene: Scene, loop: StepLoop) -> Verdict:
+def verdict(scene: Scene, loop: StepLoop) -> TimingVerdict:
     """Return the verdict on the run so far, against the limits in the section `timing` of the scene."""
     commands = _commands(loop)
     if scene.time.mode != 'realtime':
-        return Verdict(None, f'not in real time (time.mode {scene.time.mode}); {commands}')
+        return TimingVerdict(None, f'not in real time (time.mode {scene.time.mode}); {commands}')
     reasons = _reasons(scene.timing, loop.timing_statistics, loop.account)
     lateness = loop.timing_statistics.worst('lateness')
     worst = f'worst {lateness.value * 1e3:.2f} ms at t = {lateness.time:.4g} s'
     why = f' ({"; ".join(reasons)})' if reasons else ''
-    return Verdict(not reasons, f'real-time valid: {"no" if reasons else "yes"}, {worst}{why}; {commands}')
+    return TimingVerdict(not reasons, f'real-time valid: {"no" if reasons else "yes"}, {worst}{why}; {commands}')
 
 
 def _reasons(limits: TimingSettings, timing_statistics: TimingStatistics, account: Account) -> list[str]:

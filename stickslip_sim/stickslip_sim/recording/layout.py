@@ -66,17 +66,17 @@ def layout_of(store: Typestore, type_name: str) -> Layout | None:
     fields = store.fielddefs[type_name][1]
     if len(fields) < 2 or fields[0][1] != (Nodetype.NAME, _HEADER):
         return None
-    numbers = numbers_of(store, type_name)
+    numbers = number_fields(store, type_name)
     return Layout(numbers) if len(numbers) == len(fields) - 1 else None
 
 
-def texts_of(store: Typestore, type_name: str) -> list[str]:
+def text_fields(store: Typestore, type_name: str) -> list[str]:
     """Return the fields of a type that are single texts."""
     return [name for name, (node, inner) in store.fielddefs[type_name][1]
             if node == Nodetype.BASE and inner[0] == 'string']
 
 
-def numbers_of(store: Typestore, type_name: str) -> dict[str, str]:
+def number_fields(store: Typestore, type_name: str) -> dict[str, str]:
     """Return the fields of a type that are single numbers, with their types."""
     return {
         name: str(inner[0]) for name, (node, inner) in store.fielddefs[type_name][1]

@@ -19,7 +19,7 @@ from rosbags.typesys.store import Typestore
 from ..core.errors import InputError, RecordingError
 from ..core.types import Event, EventKind, Mode
 from ..scene import Scene, parse_scene
-from .layout import Layout, layout_of, numbers_of, texts_of
+from .layout import Layout, layout_of, number_fields, text_fields
 from .records import records
 from .run import RECEIPT_FILE, SCENE_FILE
 from .schemas import store_of, understood
@@ -186,7 +186,7 @@ class Bag:
             rows = layout.unpack([message.data for message in messages])
             return {name: rows[name].copy() for name in rows.dtype.names or ()}
         decoded = [self.decode(message) for message in messages]
-        kinds = {**numbers_of(store, type_name), **dict.fromkeys(texts_of(store, type_name), 'object')}
+        kinds = {**number_fields(store, type_name), **dict.fromkeys(text_fields(store, type_name), 'object')}
         return {name: np.array([getattr(message, name) for message in decoded], dtype=kind)
                 for name, kind in kinds.items()}
 

@@ -18,7 +18,7 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from rosbags.typesys.store import Typestore
 
 from ..core.errors import RecordingError
-from .layout import Layout, numbers_of
+from .layout import Layout, number_fields
 
 LONGEST = 128 * 1024    # letters of a definition: a second or two of reading
 MOST_ELEMENTS = 1000    # of arrays of fixed length in a type, of texts and messages
@@ -73,7 +73,7 @@ def understood(what: str) -> Iterator[None]:
 @cache
 def flat_layout(type_name: str) -> Layout:
     """Return the layout of an installed type that is a header without a frame and numbers."""
-    return Layout(numbers_of(store_of({type_name: schema(type_name).text}), type_name))
+    return Layout(number_fields(store_of({type_name: schema(type_name).text}), type_name))
 
 
 class MessageCodec:

@@ -17,7 +17,7 @@ from ..friction import KineticTable, StaticLaw, StaticLawKind
 _NO_REST = 0.9999   # damping ratio from which on no slip of a double comes to rest: A_c beyond 1e190
 
 
-class Oscillator(NamedTuple):
+class SliderOnDrive(NamedTuple):
     """The slider on its drive: mass m kg, stiffness c N/m, damping h N s/m."""
 
     mass: float
@@ -55,9 +55,9 @@ def critical_drop(damping_ratio: float) -> float:
     return float(brentq(beyond, zeta, 2.0 * zeta + math.exp(2.0 * math.pi * zeta / s), xtol=1e-16, rtol=1e-15))
 
 
-def critical_feed(oscillator: Oscillator, drop: float) -> float:
+def critical_feed(slider: SliderOnDrive, drop: float) -> float:
     """Return the feed v_c (m/s) from which on constant friction slides: ΔF/(A_c √(cm))."""
-    return drop / (critical_drop(oscillator.damping_ratio) * oscillator.impedance)
+    return drop / (critical_drop(slider.damping_ratio) * slider.impedance)
 
 
 def healing_critical_feed(stiffness: float, growth: float) -> float:
@@ -78,7 +78,7 @@ def feed_of_theory(axis: Axis) -> float | None:
     friction, kinetic = axis.friction, axis.friction.kinetic
     if not isinstance(axis.contact, RigidContact) or friction.excess or len(kinetic.velocities) > 1 or kinetic.law:
         return None
-    damped = Oscillator(axis.mass, axis.drive_stiffness, axis.drive_damping + axis.normal_force * kinetic.end_slope)
+    damped = SliderOnDrive(axis.mass, axis.drive_stiffness, axis.drive_damping + axis.normal_force * kinetic.end_slope)
     if damped.stiffness == 0.0:
         return None
     if friction.static.kind == StaticLawKind.CONSTANT:
@@ -86,17 +86,17 @@ def feed_of_theory(axis: Axis) -> float | None:
     return _feed_of_growth(damped, friction.static, kinetic, axis.normal_force)
 
 
-def _feed_of_a_drop(oscillator: Oscillator, drop: float) -> float:
-    if drop == 0.0 or oscillator.damping_ratio >= _NO_REST:
+def _feed_of_a_drop(slider: SliderOnDrive, drop: float) -> float:
+    if drop == 0.0 or slider.damping_ratio >= _NO_REST:
         return 0.0
-    return critical_feed(oscillator, drop) if oscillator.damping_ratio > 0.0 else math.inf
+    return critical_feed(slider, drop) if slider.damping_ratio > 0.0 else math.inf
 
 
-def _feed_of_growth(oscillator: Oscillator, static: StaticLaw, kinetic: KineticTable, normal: float) -> float | None:
+def _feed_of_growth(slider: SliderOnDrive, static: StaticLaw, kinetic: KineticTable, normal: float) -> float | None:
     convex = static.kind == StaticLawKind.KATO and static.exponent > 1.0
-    if oscillator.damping > 0.0 or kinetic.coefficients[0] != static.initial or convex:
+    if slider.damping > 0.0 or kinetic.coefficients[0] != static.initial or convex:
         return None
     if static.kind == StaticLawKind.KATO and static.exponent < 1.0:
         return math.inf
-    return healing_critical_feed(oscillator.stiffness,
+    return healing_critical_feed(slider.stiffness,
                                  normal * (static.limit - static.initial) / static.time_constant)

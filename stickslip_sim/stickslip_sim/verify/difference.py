@@ -11,7 +11,7 @@ from ..recording import Bag, RecordedMessage
 from ..recording.messages import Packer
 from ..recording.topics import FRICTION_FORCE, MODE_EVENT, SLIDER_STATE, Topic
 from .remake import Made
-from .steps import Step
+from .steps import RecordedStep
 
 
 class Difference(NamedTuple):
@@ -40,7 +40,7 @@ class Comparison:
         self._events = _Topic(bag, MODE_EVENT)
         self._states = [_Topic(bag, SLIDER_STATE), _Topic(bag, FRICTION_FORCE)]
 
-    def first_difference(self, step: Step, made: Made) -> Difference | None:
+    def first_difference(self, step: RecordedStep, made: Made) -> Difference | None:
         """Return the first difference in a step, in the order of its messages; None when there is none.
 
         Raises RecordingError on messages that this version does not know.
@@ -49,7 +49,7 @@ class Comparison:
             topic.difference(message, made.number, made.sample)
             for topic in self._states for message in step.words[topic.topic])), None)
 
-    def _in_events(self, step: Step, made: Made) -> Difference | None:
+    def _in_events(self, step: RecordedStep, made: Made) -> Difference | None:
         recorded, topic = step.words[MODE_EVENT], self._events
         for message, event in zip(recorded, made.events):
             if found := topic.difference(message, max(made.number, 1), event):   # step 0 has no length

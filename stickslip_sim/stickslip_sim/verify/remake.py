@@ -16,7 +16,7 @@ from ..runs import simulate
 from ..scene import Scene
 from .orders import Orders
 from .origin import Offline, checkpoint_of, offline_of
-from .steps import Step
+from .steps import RecordedStep
 
 Progress = Callable[[float], None] | None
 
@@ -34,7 +34,7 @@ class Maker(Protocol):
 
     start: int
 
-    def make(self, step: Step) -> Iterator[Made]:
+    def make(self, step: RecordedStep) -> Iterator[Made]:
         """Yield all steps up to a recorded one, which begins with what was ordered before it; raises SolverError."""
 
 
@@ -55,7 +55,7 @@ class _NodeMaker:
         self._orders = Orders(run.bag, scene, self._rig, fixed)
         self.start = self._rig.step
 
-    def make(self, step: Step) -> Iterator[Made]:
+    def make(self, step: RecordedStep) -> Iterator[Made]:
         while self._rig.step + 1 < step.number:
             yield self._made()
         events = [order for order in step.orders if order.type == RIG_EVENT.type][:self._known]
@@ -97,7 +97,7 @@ class _OfflineMaker:
         self._samples = enumerate(again.sample_rows())
         self._events = deque(_without_knots(again.events))
 
-    def make(self, step: Step) -> Iterator[Made]:
+    def make(self, step: RecordedStep) -> Iterator[Made]:
         for number, sample in self._samples:
             events = []
             while self._events and self._events[0].instant <= sample.instant:

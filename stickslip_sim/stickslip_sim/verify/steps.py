@@ -27,7 +27,7 @@ MOST_MISSING = 1_000_000           # steps that are made again without being com
 _HALF, _WHOLE = 1 << 31, 1 << 32   # the file has 32 bits for the number of a step
 
 
-class Step(NamedTuple):
+class RecordedStep(NamedTuple):
     """What was recorded of a step: what was ordered before it, and what came of it, by type of topic."""
 
     number: int
@@ -40,7 +40,7 @@ class Step(NamedTuple):
         return bool(self.words[SLIDER_STATE] and self.words[FRICTION_FORCE])
 
 
-def steps_of(run: RecordedRun, start: int) -> Iterator[Step]:
+def steps_of(run: RecordedRun, start: int) -> Iterator[RecordedStep]:
     """Yield the recorded steps after `start` (−1: all); raises RecordingError when they do not follow each other.
 
     An offline run has no orders: its commands only repeat what its input profiles did.
@@ -73,9 +73,9 @@ def _numbered(messages: Iterable[RecordedMessage], kinds: dict[str, Topic], star
         yield 0 if is_at_start and kinds[message.topic] == MODE_EVENT else message.sequence, message
 
 
-def _step(number: int, messages: list[RecordedMessage], kinds: dict[str, Topic]) -> Step:
+def _step(number: int, messages: list[RecordedMessage], kinds: dict[str, Topic]) -> RecordedStep:
     words: dict[Topic, list[RecordedMessage]] = {topic: [] for topic in WORDS}
     orders: list[RecordedMessage] = []
     for message in messages:
         words.get(kinds[message.topic], orders).append(message)
-    return Step(number, orders, words)
+    return RecordedStep(number, orders, words)

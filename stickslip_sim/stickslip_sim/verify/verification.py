@@ -11,7 +11,7 @@ from ..recording.topics import MODE_EVENT, SLIDER_STATE
 from .difference import Comparison, Difference
 from .origin import offline_of
 from .remake import Maker, Progress, maker_of
-from .steps import Step, steps_of
+from .steps import RecordedStep, steps_of
 
 _REPORTED_EVERY = 1000   # steps
 
@@ -54,7 +54,7 @@ class _Look:
         self._comparison = Comparison(bag)
         self._total = sum(bag.counts[topic] for topic, kind in bag.topics.items() if kind == SLIDER_STATE.type)
 
-    def at(self, step: Step) -> None:
+    def at(self, step: RecordedStep) -> None:
         made = deque(self._maker.make(step), 1).pop()    # those before it were not recorded
         self.difference = self._comparison.first_difference(step, made)
         if self.difference:

@@ -13,7 +13,7 @@ from stickslip_msgs.msg import StepTiming
 from ...realtime.refusals import Refusal, Refusals
 from ...realtime.step_loop import StepLoop
 from ...realtime.timing_statistics import TimingWindow
-from ...realtime.verdict import Verdict
+from ...realtime.verdict import TimingVerdict
 from ...rig import FAILED, SILENT_BRIDGE
 from ..node.conversion import set_stamp
 from ..node.recordings import Recordings
@@ -91,7 +91,7 @@ def diagnostics(stamp_ns: int, hardware_id: str, statuses: Sequence[DiagnosticSt
     return message
 
 
-def loop_status(loop: StepLoop, second: Second, verdict: Verdict) -> DiagnosticStatus:
+def loop_status(loop: StepLoop, second: Second, verdict: TimingVerdict) -> DiagnosticStatus:
     """Report whether the steps keep their time."""
     level, text = _pace(loop, second)
     account, window = loop.account, second.window

@@ -33,7 +33,7 @@ from .. import DONE, FULL, NO_PROGRESS, OUT_OF_RANGE
 from ..inputs import hold_inputs, refresh_inputs, same_inputs
 from ..sampling import write_sample
 from ..state import begin_state, change_contact
-from .mode_problem import Motion, SmoothLaw
+from .mode_problem import ModeMotion, SmoothLaw
 
 _SAME_INSTANT = 64   # events without progress in time; a sound model needs three
 
@@ -88,7 +88,7 @@ class Engine:
                 return row, DONE
             if row >= events.count:
                 return row, FULL
-            motion = Motion(p, s, self.law)
+            motion = ModeMotion(p, s, self.law)
             reached = self._integrate(motion, t, s.velocity)
             if reached is None:
                 return row, OUT_OF_RANGE
@@ -119,20 +119,20 @@ class Engine:
     def set_parameters(self, p: Parameters, new: Parameters, s: State, second: float, fraction: float, events: Events,
                        row: int) -> int:
         """Let the axis have other parameters from a time on, to which the state was advanced with the old ones."""
-        change_contact(new, s, Motion(p, s, self.law).friction(0.0, (0.0, s.velocity)))
+        change_contact(new, s, ModeMotion(p, s, self.law).friction(0.0, (0.0, s.velocity)))
         return self._apply(new, s, events, row)
 
     @_QUIET
     def sample(self, p: Parameters, s: State, second: float, fraction: float, out: SampleRow) -> None:
         """Fill a row with the state; the time is the one that it was advanced to."""
-        motion = Motion(p, s, self.law)
+        motion = ModeMotion(p, s, self.law)
         now = (0.0, s.velocity)
         v, f = motion.inputs.at(0.0)
         write_sample(p, s, second, fraction, 0.0, 0.0, now[1], motion.rates(0.0, now)[1], 0.0, v,
                      drive_force(p, s.spring, v, now[1]), f,
                      motion.friction(0.0, now), out)
 
-    def _integrate(self, motion: Motion, t: float, u: float) -> _Reached | None:
+    def _integrate(self, motion: ModeMotion, t: float, u: float) -> _Reached | None:
         """Return the next event up to t, or t; None where the integration fails."""
         from scipy.integrate import solve_ivp  # a second that a user of the other solvers need not wait
 
@@ -222,10 +222,10 @@ class Engine:
 
 def _set_acceleration(p: Parameters, s: State, law: SmoothLaw | None) -> None:
     """Set the acceleration that a break-away from a compliant contact begins with."""
-    s.acceleration = Motion(p, s, law).rates(0.0, (0.0, s.velocity))[1]
+    s.acceleration = ModeMotion(p, s, law).rates(0.0, (0.0, s.velocity))[1]
 
 
-def _move(s: State, motion: Motion, second: float, fraction: float, t: float, state: tuple[float, float]) -> None:
+def _move(s: State, motion: ModeMotion, second: float, fraction: float, t: float, state: tuple[float, float]) -> None:
     """Bring the state to a time, t later, where travel and velocity are `state`."""
     y, u = state
     drive = motion.inputs.travel(t)

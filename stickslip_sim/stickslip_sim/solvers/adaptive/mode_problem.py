@@ -35,7 +35,7 @@ class SmoothLaw(Protocol):
         """Return mu_k at a speed in m/s."""
 
 
-class Inputs:
+class ModeInputs:
     """v(t), F_e(t) and the drive's travel from the time of a state on."""
 
     def __init__(self, s: State) -> None:
@@ -72,12 +72,12 @@ class Inputs:
         return travel
 
 
-class Motion:
+class ModeMotion:
     """One mode from a state on; `law` is a smooth mu_k, or None for the segment of the table that the state is on."""
 
     def __init__(self, p: Parameters, s: State, law: SmoothLaw | None) -> None:
         self._p, self._law = p, law
-        self.inputs = Inputs(s)
+        self.inputs = ModeInputs(s)
         self._mass, self._normal = p.mass, p.normal_force
         self._stiffness, self._damping = p.stiffness, p.damping
         self._contact = (p.contact_stiffness, p.contact_damping)
