@@ -153,7 +153,7 @@ def _swing_ratio(normal_force: float) -> float:
 
 
 def forced_oscillations() -> list[Result]:
-    """Den Hartog's slider, from rest: half the distance of the turning points once it is steady."""
+    """Den Hartog's oscillator, from rest: half the distance of the turning points once it is steady."""
     results = []
     for ratio, friction in ((0.8, 0.5), (1.5, 0.3), (2.0, 0.2)):
         turns = turning_points(forced_axis(friction), shaken(ratio, 0.0), 400.0 * math.pi / ratio)

@@ -26,7 +26,7 @@ def links(text: str) -> list[str]:
     return _LINK.findall(_CODE.sub('', text))
 
 
-def anchors(page: Path) -> set[str]:
+def headings(page: Path) -> set[str]:
     """Return the headings of a page as GitHub and MkDocs name them."""
     text = _FENCE.sub('', page.read_text(encoding='utf-8'))
     return {re.sub(r'[^\w\- ]', '', heading.lower()).strip().replace(' ', '-') for heading in _HEADING.findall(text)}
@@ -38,9 +38,9 @@ def broken(page: Path, text: str) -> list[str]:
     for link in links(text):
         if re.match(r'[a-z]+:', link):    # elsewhere
             continue
-        place, _, anchor = link.partition('#')
+        place, _, heading = link.partition('#')
         target = page.parent / place if place else page
-        if not target.exists() or (anchor and anchor not in anchors(target)):
+        if not target.exists() or (heading and heading not in headings(target)):
             found.append(link)
     return found
 

@@ -114,7 +114,7 @@ def main() -> None:
         recorder.close()
     lateness = node.timing_statistics.take().lateness
     print(json.dumps({'lateness_p50': lateness.p50, 'lateness_p99': lateness.p99, 'lateness_max': lateness.max,
-                      'overruns': node.pacer.account.overruns / node.pacer.account.steps}))
+                      'overruns': node.pacer.counters.overruns / node.pacer.counters.steps}))
     rclpy.try_shutdown()
 
 

@@ -182,7 +182,7 @@ def test_a_recording_that_began_later(bag: Path, tmp_path: Path) -> None:
 
 
 def test_corners_are_where_they_are() -> None:
-    """At each event there is a sample just before and one just after it, whatever the sample rate."""
+    """At each event there is a sample just before and one just after it, at any sample rate."""
     moving = simulate_densely(load_scene('paper_fig7'), 2.0)
     columns = drawn_columns(moving)
     for event in moving.events:

@@ -82,7 +82,7 @@ def test_knots_grow_with_the_root_of_the_tolerance_and_off_the_curve_they_are_fe
     assert 8.0 < fine / coarse < 10.5
 
 
-def test_the_error_has_hardly_a_mean() -> None:
+def test_the_error_has_almost_no_mean() -> None:
     """Over the falling part; with knots on the curve it would be two thirds of the tolerance, of changing sign."""
     for tolerance in (1e-4, 1e-5, 1e-6):
         table = kinetic_table(LAW, tolerance)
@@ -132,7 +132,7 @@ def test_laws_without_a_meaning_are_refused(make: Callable[..., object], argumen
     assert caught.value.name == f'friction.{name}'
 
 
-def test_the_branches_meet_where_one_percent_is_left_whatever_the_tolerance() -> None:
+def test_the_branches_meet_where_one_percent_is_left_at_any_tolerance() -> None:
     for law in KINETIC:
         meets = {default_excess(kinetic_table(law, tolerance)).velocities[-1] for tolerance in (1e-2, 1e-3, 1e-4)}
         assert meets == {law.limit_velocity}

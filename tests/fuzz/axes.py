@@ -105,8 +105,8 @@ def _profiles(draw: DrawFn, size: float, omega: float, duration: float) -> Input
     profile = draw(st.sampled_from((
         constant(0.0), constant(size), ramp(0.0, size / duration, math.inf),
         ramp(size, -2.0 * size / duration, times[2]),
-        steps('course', times, values), table('course', times, values), table('course', times, values, duration),
-        steps('course', [t / 4.0 for t in times], values, 0.3 * duration))))
+        steps('profile', times, values), table('profile', times, values), table('profile', times, values, duration),
+        steps('profile', [t / 4.0 for t in times], values, 0.3 * duration))))
     return replace(profile, sinusoids=draw(_sinusoids(size, omega, 0)))
 
 

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""What holds for every run of the engine, whatever the axis and its input profiles are."""
+"""What holds for every run of the engine, with any axis and any input profiles."""
 
 import math
 from collections.abc import Sequence

@@ -112,7 +112,7 @@ def run(parts: Parts) -> Run:
 
 
 def _cut(parts: Parts) -> Parts:
-    """Return the parts with a duration in which hardly more than MOST_EVENTS fall."""
+    """Return the parts with a duration in which MOST_EVENTS fall, or few more."""
     sim, count = simulator(parts), 0
     if len(ends := borders(parts)) > MOST_EVENTS:
         parts = parts._replace(duration=ends[MOST_EVENTS])

@@ -108,7 +108,7 @@ def test_a_step_is_the_same_at_any_scale() -> None:
 
 
 def test_a_root_is_accepted_where_the_value_is_rounding() -> None:
-    """(c) At every root that is told the value is within rounding of the terms, whatever the guess."""
+    """(c) At every root that is reported the value is within rounding of the terms, with any guess."""
     rng = random.Random(3)
     for _ in range(2000):
         omega = 10.0 ** rng.uniform(-2.0, 4.0)

@@ -69,7 +69,7 @@ class TestPacer:
         pacer, begin = make(clock), clock.time
         assert run(pacer, range(5000)) == [0] * 5000
         assert clock.time - begin == 4999 * MS
-        assert (pacer.account.overruns, pacer.account.caught_up) == (0, 1)    # step 0 is due at once
+        assert (pacer.counters.overruns, pacer.counters.caught_up) == (0, 1)    # step 0 is due at once
 
     def test_factor(self, clock: FakeClock) -> None:
         pacer, begin = make(clock, factor=4.0), clock.time
@@ -82,23 +82,23 @@ class TestPacer:
         clock.time += 20 * MS
         late = run(pacer, range(10, 40))
         assert late == [19 * MS - k * MS for k in range(20)] + [0] * 10
-        assert pacer.account.caught_up == 1 + 20
-        assert pacer.account.overruns == 18
-        assert pacer.account.skips == 0
+        assert pacer.counters.caught_up == 1 + 20
+        assert pacer.counters.overruns == 18
+        assert pacer.counters.skips == 0
 
     def test_a_long_stall_is_given_up(self, clock: FakeClock) -> None:
         pacer = make(clock)
         run(pacer, range(10))
         clock.time += 3_001 * MS
         assert run(pacer, range(10, 13)) == [3_000 * MS, 0, 0]
-        assert (pacer.account.skips, pacer.account.skipped) == (1, 3_000 * MS)
+        assert (pacer.counters.skips, pacer.counters.skipped) == (1, 3_000 * MS)
 
     def test_a_slow_axis_may_be_two_periods_late(self, clock: FakeClock) -> None:
         pacer = make(clock, rate=1.0)
         run(pacer, range(2))
         clock.time += 2_500 * MS
         run(pacer, range(2, 4))
-        assert pacer.account.skips == 0
+        assert pacer.counters.skips == 0
 
     def test_waiting_is_short_enough_to_be_stopped(self, clock: FakeClock) -> None:
         pacer, begin = make(clock, rate=1.0), clock.time

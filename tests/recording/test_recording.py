@@ -59,7 +59,7 @@ def commands(field: str, values: dict[int, float]) -> list[Values]:
 
 
 def fields(message: Any, like: Values) -> Values:
-    """Return the named fields of a decoded message, whatever the reader made of it."""
+    """Return the named fields of a decoded message of any class."""
     return {
         name: fields(getattr(message, name), value) if isinstance(value, dict) else getattr(message, name)
         for name, value in like.items()

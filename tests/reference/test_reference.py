@@ -181,7 +181,7 @@ def test_steady_sliding_stays() -> None:
 
 @pytest.mark.parametrize('exponent', [0.4, 1.0, 2.5])
 def test_kato_with_unit_exponent_is_exponential(exponent: float) -> None:
-    """The limit is reached where |F| = N mu_s, whatever the exponent; with 1 both laws agree."""
+    """The limit is reached where |F| = N mu_s, with any exponent; with 1 both laws agree."""
     parameters = paper()
     parameters['friction']['static'] |= {'law': 'kato', 'exponent': exponent}
     run = simulate(parameters, 1.5)

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""A rig goes on from a checkpoint as if nothing had been: to the last bit, whatever is ordered afterwards."""
+"""A rig goes on from a checkpoint as if nothing had been: to the last bit, with any orders afterwards."""
 
 import json
 from random import Random

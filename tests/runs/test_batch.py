@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Many axes at once: the same bits as one by one, whatever the threads; and what is refused."""
+"""Many axes at once: the same bits as one by one, on any number of threads; and what is refused."""
 
 import math
 import random

@@ -51,7 +51,7 @@ def test_dampers_of_nothing_are_none(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize('law', ['exponential', 'kato', 'hyperbolic', 'logarithmic'])
 @pytest.mark.parametrize('name', ['paper_fig7', 'paper_fig8', 'paper_fig4_falling'])
-def test_growth_to_where_it_begins_is_the_constant_law_whatever_its_time(name: str, law: str) -> None:
+def test_growth_to_where_it_begins_is_the_constant_law_for_any_time(name: str, law: str) -> None:
     constant = with_values(name, {**CONSTANT, 'initial.rest_time': 1.0})
     for time_constant in (1e-3, 50.0):
         growing = {'friction.static.law': law, 'friction.static.initial': 0.2, 'friction.static.limit': 0.2,

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Long input profiles: the same bits whatever walks through their pieces, and however time is split."""
+"""Long input profiles: the same bits compiled or not, piece by piece, and however time is split."""
 
 import math
 import random

@@ -43,7 +43,7 @@ class TestIdentical:
         ('paper_fig7', 0.987654, ['solver.name=fixed_step', 'solver.step=0.0003', *FAULTS]),
         ('paper_fig8', 1.00005, ['solver.name=adaptive', 'time.rate=100.0']),
     ])
-    def test_whatever_moves_the_axis(self, scene: str, duration: float, changes: list[str], tmp_path: Path) -> None:
+    def test_all_that_moves_the_axis(self, scene: str, duration: float, changes: list[str], tmp_path: Path) -> None:
         recording = read_run(simulated(tmp_path / 'run', scene, duration, *changes))
         verdict = verify(recording)
         assert (verdict.difference, verdict.missing, doubts_about(recording)) == (None, 0, ())

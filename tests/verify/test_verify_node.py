@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Recordings of a real node, run again without ROS: whatever was ordered while it ran."""
+"""Recordings of a real node, run again without ROS: with all that was ordered while it ran."""
 
 import math
 import signal

@@ -143,19 +143,20 @@ def _refused_by_the_slot(bad: float) -> float:
     return 0.0
 
 
-def _simulator_on(make_course: Callable[[], InputProfile]) -> Simulator:
-    return Simulator(paper_axis(RIGID), InitialState(), make_course(), make_course())
+def _simulator_on(make_profile: Callable[[], InputProfile]) -> Simulator:
+    return Simulator(paper_axis(RIGID), InitialState(), make_profile(), make_profile())
 
 
 def _refused_profiles(bad: float) -> float:
     """See that an input profile or an axis made in Python is as strict as a scene."""
-    for make_course in (lambda: steps('drive', [0.0, bad], [0.0, 0.0]), lambda: table('drive', [0.0, bad], [0.0, 0.0])):
-        _check_refused(make_course, 'drive')
+    for make_profile in (lambda: steps('drive', [0.0, bad], [0.0, 0.0]),
+                         lambda: table('drive', [0.0, bad], [0.0, 0.0])):
+        _check_refused(make_profile, 'drive')
     friction = paper_axis(RIGID).friction
     _check_refused(lambda: Axis(bad, 1.0, 1.0, 1.0, RIGID, friction), 'mass')
     _check_refused(lambda: InitialState(position=bad), 'position')
     _check_refused(lambda: KineticTable((0.0,), (bad,)), 'coefficients')
     _check_refused(lambda: StaticLaw(StaticLawKind.CONSTANT, bad, 1.0), 'initial')
-    for make_course in (lambda: ramp(0.0, bad, 1.0), lambda: steps('drive', [0.0], [bad])):
-        _check_refused(partial(_simulator_on, make_course), 'drive')
+    for make_profile in (lambda: ramp(0.0, bad, 1.0), lambda: steps('drive', [0.0], [bad])):
+        _check_refused(partial(_simulator_on, make_profile), 'drive')
     return 0.0

@@ -39,7 +39,7 @@ def _held_by_force(solver: Solver, contact: Contact, share: float, drift: list[f
     axis = paper_axis(contact)
     load = share * 0.24 * axis.normal_force
     side = 1.0 if share > 0.0 else -1.0
-    reach = 100.0   # s, so slowly that the contact hardly rings
+    reach = 100.0   # s, so slowly that the contact rings little
     force = InputProfile((0.0, reach, YEAR), (0.0, load, load), (load / reach, 0.0, side * _RAMP))
     simulator = make(axis, 0.0, force, solver=solver)
     _hold(simulator, drift, reach)

@@ -153,4 +153,4 @@ def _commands_in_any_order(solver: Solver, axis: Axis, seed: int) -> float:
 
 
 def _switch(before: float, after: float, when: Instant) -> InputProfile:
-    return steps('course', [0.0, when.seconds], [before, after]) if when.seconds > 0.0 else constant(after)
+    return steps('profile', [0.0, when.seconds], [before, after]) if when.seconds > 0.0 else constant(after)

@@ -124,7 +124,7 @@ def _check_knots(name: str, velocities: Sequence[float], other: str, values: Seq
                          'give one value for every breakpoint')
     if len(velocities) > MAX_KNOTS:
         raise InputError(f'{name}.velocities', f'{len(velocities)} breakpoints', f'at most {MAX_KNOTS} breakpoints',
-                         'leave out those that hardly bend the table')
+                         'leave out those that are nearly on a line between others')
     if velocities[0] != 0.0:
         raise InputError(f'{name}.velocities', velocities[0], '0 m/s at the first breakpoint',
                          'the table starts at standstill')

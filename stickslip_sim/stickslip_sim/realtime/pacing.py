@@ -53,7 +53,7 @@ class StepClock(Protocol):
     """What releases the steps of the step loop; durations in ns."""
 
     period: int
-    account: 'Account'
+    counters: 'PacingCounters'
 
     def restart(self, step: int) -> None:
         """Let a step be due now, and those after it follow."""
@@ -62,7 +62,7 @@ class StepClock(Protocol):
         """Wait until a step is due, at most a while; return whether it is."""
 
     def begin(self, step: int) -> tuple[int, int]:
-        """Account for a step that begins; return the time now and how late it is."""
+        """Count a step that begins; return the time now and how late it is."""
 
     def now(self) -> int:
         """Return the time on the steady clock."""
@@ -72,7 +72,7 @@ class StepClock(Protocol):
 
 
 @dataclass(slots=True)
-class Account:
+class PacingCounters:
     """How the steps kept their time; durations in ns."""
 
     steps: int = 0
@@ -87,7 +87,7 @@ class Account:
 
 
 class Pacer:
-    """Says when each step is due on the steady clock, and accounts for lateness.
+    """Says when each step is due on the steady clock, and counts what is late.
 
     `factor` is simulation time per wall time.  Silence is measured on the steady clock, or in simulation time; on the
     steady clock only while steps keep their time: commands may wait to be heard while this loop itself is behind.
@@ -98,7 +98,7 @@ class Pacer:
         up, down = (decimal(grid.rate) * decimal(factor)).as_integer_ratio()
         self._numerator, self._denominator = NANOSECONDS * down, up
         self.period = self._numerator // self._denominator
-        self.account = Account()
+        self.counters = PacingCounters()
         self._watches_steady = watches_steady
         self._backlog = max(_MAX_BACKLOG, 2 * self.period)
         self._clock: Clock = clock or SteadyClock()
@@ -125,16 +125,16 @@ class Pacer:
         return self.due(step) <= self._clock.now()
 
     def begin(self, step: int) -> tuple[int, int]:
-        """Account for a step that begins; return the time now and how late it is, ns."""
+        """Count a step that begins; return the time now and how late it is, ns."""
         now = self._clock.now()
         lateness = now - self.due(step)
-        account = self.account
-        account.steps += 1
-        account.caught_up += not self._waited
-        account.overruns += lateness > self.period
+        counters = self.counters
+        counters.steps += 1
+        counters.caught_up += not self._waited
+        counters.overruns += lateness > self.period
         if lateness > self._backlog:
-            account.skips += 1
-            account.skipped += lateness
+            counters.skips += 1
+            counters.skipped += lateness
             self._origin += lateness
         self._waited = False
         self._watched += now - self._latest if lateness <= self.period else 0
@@ -158,7 +158,7 @@ class Unpaced:
 
     def __init__(self, grid: Grid) -> None:
         self.period = round(NANOSECONDS / grid.rate)
-        self.account = Account()
+        self.counters = PacingCounters()
         self.now = SteadyClock.now
 
     def restart(self, step: int) -> None:
@@ -169,8 +169,8 @@ class Unpaced:
         return True
 
     def begin(self, step: int) -> tuple[int, int]:
-        """Account for a step that begins, never late."""
-        self.account.steps += 1
+        """Count a step that begins, never late."""
+        self.counters.steps += 1
         return self.now(), 0
 
     def watch_time(self, time: int) -> int:

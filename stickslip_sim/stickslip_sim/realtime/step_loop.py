@@ -39,7 +39,7 @@ class StepLoop:
         self.by_request = by_request
         self.failure = ''                    # why the solver gave up; time stands still then
         self.crash: BaseException | None = None
-        self.timing_statistics, self.account = TimingStatistics(), clock.account
+        self.timing_statistics, self.pacing_counters = TimingStatistics(), clock.counters
         self._clock, self._sinks, self._watchdog = clock, sinks, watchdog
         self._inputs = CommandInputs(slots)
         self._requests: deque[Callable[[], None]] = deque()
@@ -110,7 +110,7 @@ class StepLoop:
         self.rig.reset()
         self._watchdog.forget()
         self.timing_statistics.forget()
-        self.account.clear()
+        self.pacing_counters.clear()
         self.failure = ''
         self._clock.restart(0)
 
@@ -124,7 +124,7 @@ class StepLoop:
         results: list[StepResult] = []
         try:
             while len(results) < count and not stop() and not self._is_over.is_set():
-                self._clock.account.steps += 1
+                self._clock.counters.steps += 1
                 results.append(self._make_step(self._clock.now(), 0))
         except SolverError as error:
             self.failure = str(error)

@@ -5,7 +5,7 @@
 from typing import NamedTuple
 
 from ..scene.model import Scene, TimingSettings
-from .pacing import Account
+from .pacing import PacingCounters
 from .step_loop import StepLoop
 from .timing_statistics import TimingStatistics
 
@@ -22,23 +22,23 @@ def verdict(scene: Scene, loop: StepLoop) -> TimingVerdict:
     commands = _commands(loop)
     if scene.time.mode != 'realtime':
         return TimingVerdict(None, f'not in real time (time.mode {scene.time.mode}); {commands}')
-    reasons = _reasons(scene.timing, loop.timing_statistics, loop.account)
+    reasons = _reasons(scene.timing, loop.timing_statistics, loop.pacing_counters)
     lateness = loop.timing_statistics.worst('lateness')
     worst = f'worst {lateness.value * 1e3:.2f} ms at t = {lateness.time:.4g} s'
     why = f' ({"; ".join(reasons)})' if reasons else ''
     return TimingVerdict(not reasons, f'real-time valid: {"no" if reasons else "yes"}, {worst}{why}; {commands}')
 
 
-def _reasons(limits: TimingSettings, timing_statistics: TimingStatistics, account: Account) -> list[str]:
+def _reasons(limits: TimingSettings, timing_statistics: TimingStatistics, counters: PacingCounters) -> list[str]:
     """Return what is beyond the limits."""
     reasons = []
-    if account.skipped:
-        reasons.append(f'{account.skipped * 1e-9:.3f} s of wall time given up')
+    if counters.skipped:
+        reasons.append(f'{counters.skipped * 1e-9:.3f} s of wall time given up')
     for name, limit in (('lateness', limits.max_lateness), ('latency', limits.max_latency)):
         worst = timing_statistics.worst(name)
         if worst.value > limit:
             reasons.append(f'{name} {worst.value * 1e3:.2f} ms at t = {worst.time:.4g} s is over {limit * 1e3:g} ms')
-    share = account.overruns / max(account.steps, 1)
+    share = counters.overruns / max(counters.steps, 1)
     if share > limits.max_overruns:
         reasons.append(f'{share:.2%} of the steps more than a period late, over {limits.max_overruns:.2%}')
     return reasons

@@ -5,7 +5,7 @@
     figures = run_batch(axis, 10.0, drive_velocity=np.geomspace(1e-4, 1e-2, 10_000))
     figures.period[figures.cycles > 1]
 
-Every axis runs by itself from event to event, the same to the last bit as in a `Simulator`, whatever the number of
+Every axis runs by itself from event to event, the same to the last bit as in a `Simulator`, with any number of
 threads.
 """
 

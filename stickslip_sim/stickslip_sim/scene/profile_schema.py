@@ -10,20 +10,20 @@ from ..core.input_profile import FREQUENCIES, MAX_SINUSOIDS
 from ..core.ranges import Range
 from .declare import choice, number, numbers
 
-_COURSES = ('constant', 'ramp', 'steps', 'sine', 'table')
+_SHAPES = ('constant', 'ramp', 'steps', 'sine', 'table')
 
 
 def profile(section: str, value: str, rate: str, values: str, unit: str, what: str, size: Range,
            change: Range) -> tuple[Parameter, ...]:
     """Return the parameters of an input profile of `what`, with values and rates in these ranges."""
     ramp = When(f'{section}.course', ('ramp',))
-    knots = When(f'{section}.course', ('steps', 'table'))
+    breakpoints = When(f'{section}.course', ('steps', 'table'))
     sine = When(f'{section}.course', ('sine',))
     return (
         choice(f'{section}.course', 'constant',
                f'input profile of the {what}, offline and in the node until a command arrives: constant; ramp (to a'
                ' constant); steps (jumps); sine; table (linear between breakpoints); sinusoids may come on top',
-               _COURSES),
+               _SHAPES),
         number(f'{section}.{value}', 0.0, unit, f'{what}; of a ramp its value at the start, of a sine its mean',
                within=size, when=When(f'{section}.course', ('constant', 'ramp', 'sine'))),
         number(f'{section}.{rate}', None, f'{unit}/s' if unit == 'N' else 'm/s²',
@@ -31,12 +31,12 @@ def profile(section: str, value: str, rate: str, values: str, unit: str, what: s
         number(f'{section}.duration', math.inf, 's', 'duration of a ramp; then its last value holds',
                within=ranges.TIME, above=True, infinite=True, when=ramp),
         numbers(f'{section}.times', None, 's', 'times at which the values of steps or a table begin: 0, then each'
-                ' later', within=ranges.TIME, when=knots),
+                ' later', within=ranges.TIME, when=breakpoints),
         numbers(f'{section}.{values}', None, unit, f'{what} at these times; the last one holds', within=size,
-                when=knots),
+                when=breakpoints),
         number(f'{section}.period', math.inf, 's', 'time after which steps or a table begin again (.inf: never); a'
                ' table is linear from its last breakpoint back to the first', within=Range(1e-6, ranges.TIME.high),
-               infinite=True, when=knots),
+               infinite=True, when=breakpoints),
         number(f'{section}.amplitude', None, unit, 'of a sine amplitude sin(2π frequency t + phase), t since the'
                ' start of the run', within=size, when=sine),
         number(f'{section}.frequency', None, 'Hz', 'frequency of a sine', within=Range(*FREQUENCIES), when=sine),

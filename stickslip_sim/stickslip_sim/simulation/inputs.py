@@ -82,7 +82,7 @@ class _KeptPieces:
 
     def of(self, given: Input, make: Callable[[InputProfile], Any]) -> Any:
         if given is not self._given:
-            profile = given if isinstance(given, InputProfile) else constant(given + 0.0)    # no -0.0, as in a course
+            profile = given if isinstance(given, InputProfile) else constant(given + 0.0)    # no -0.0, as in a profile
             self._given, self._pieces = given, make(profile)
         return self._pieces
 

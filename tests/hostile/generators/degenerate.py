@@ -85,7 +85,7 @@ def critical_contact(rng: random.Random) -> Case:
 
 
 def equal_eigenvalues(rng: random.Random) -> Case:
-    """Exactly critical damping, no spring, no damper, no friction: whatever a closed form may divide by."""
+    """Exactly critical damping, no spring, no damper, no friction: all that a closed form may divide by."""
     mass = rng.choice((0.5, 1.0, 4.0))
     omega = rng.choice((0.0, 1.0, 2.0, 8.0))
     stiffness = mass * omega * omega

@@ -12,7 +12,7 @@ _LAWS = 'exponential', 'kato', 'hyperbolic', 'logarithmic'
 
 
 def two_knots(rng: random.Random) -> Case:
-    """Friction that falls linearly to v_gr; whatever mass, stiffness and damping a machine has."""
+    """Friction that falls linearly to v_gr; any mass, stiffness and damping that a machine has."""
     mass = draw.powers(rng, 1.0, 1e5)
     stiffness = mass * (2.0 * math.pi * draw.powers(rng, 1.0, 200.0)) ** 2
     damping = rng.choice((0.0, rng.uniform(0.0, 0.2), rng.uniform(0.0, 2.0))) * 2.0 * math.sqrt(stiffness * mass)

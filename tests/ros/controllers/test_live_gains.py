@@ -53,7 +53,7 @@ class Measurements:
 
 
 @pytest.mark.parametrize('text', [None, 'no scene', STIFFER])
-def test_whatever_becomes_of_the_file_of_its_model(tmp_path: Path, text: str | None) -> None:
+def test_with_the_file_of_its_model_changed_or_gone(tmp_path: Path, text: str | None) -> None:
     file = tmp_path / 'model.yaml'
     file.write_text(MODEL)
     with running('-p', f'compensation.model:={file}', program=NAME) as controller, client() as asker:

@@ -30,7 +30,7 @@ def no_trouble(axis: Client) -> None:
     assert trouble(axis, 'nobody in the way').level == b'\0'
 
 
-class TestNeighbours:
+class TestGraphMonitor:
     def test_controllers_come_and_go(self) -> None:
         with running(*ON) as process, client() as axis:
             axis.connect()

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Commands are read from the bytes as they come, whatever their sender puts into the header."""
+"""Commands are read from the bytes as they come, with any header."""
 
 import math
 from collections.abc import Iterator

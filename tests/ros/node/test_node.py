@@ -175,7 +175,7 @@ class TestTopics:
 
 class TestMotion:
     def test_events_are_those_of_the_offline_simulation(self, axis: Client) -> None:
-        """Whatever the steps and the clock did, bit for bit."""
+        """With any steps and any clock, bit for bit."""
         axis.next('mode_event', lambda event: event.time > 2.0)
         start = nanoseconds(axis.latest('run_info').start_time)
         heard = [event for event in axis.heard['mode_event'] if nanoseconds(event.header.stamp) >= start]
@@ -259,7 +259,7 @@ class TestServices:
 
 @contextmanager
 def paused(axis: Client) -> Iterator[None]:
-    """Let time stand still; it goes on for the other tests whatever happens."""
+    """Let time stand still; it goes on for the other tests even after a failure."""
     assert axis.switch('set_paused', True).success
     try:
         yield

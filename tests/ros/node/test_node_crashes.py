@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""What nodes say of a defect of their own, in whatever thread: one line, or with STICKSLIP_DEBUG=1 where it is."""
+"""What nodes say of a defect of their own, in any thread: one line, or with STICKSLIP_DEBUG=1 where it is."""
 
 import os
 import signal

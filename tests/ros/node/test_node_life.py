@@ -100,7 +100,7 @@ class TestSignals:
         assert run.receipt['energy']['relative_residual'] <= 1e-13
         assert b'paper_fig8' in run.attachments['scene.yaml']
 
-    @pytest.mark.parametrize('delay', [0.0, 0.3, 0.6])    # s: amid its imports, and whatever comes then
+    @pytest.mark.parametrize('delay', [0.0, 0.3, 0.6])    # s: amid its imports, and after them
     @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
     def test_while_it_starts(self, number: int, delay: float) -> None:
         with running() as process:

@@ -102,7 +102,7 @@ def repeat_in_lockstep(axis: Client, recorded: Bag) -> None:
         steps(axis, end - begin, **commands.get(begin, {}))
 
 
-class TestTheSameCourse:
+class TestTheSameRun:
     def test_in_real_time_in_lockstep_and_offline(self, tmp_path: Path) -> None:
         scene = load_scene('paper_fig8', RICH)
         with node_of(scene, tmp_path, 'live', 'realtime') as (process, axis), stalls(process):

@@ -53,7 +53,7 @@ UNDAMPED_UNDER_A_RAMP = UNDAMPED_KATO | {
     'friction': UNDAMPED_KATO['friction'] | {'static': UNDAMPED_KATO['friction']['static'] | {'law': 'exponential'}},
     'drive': [[0.0, 0.002, -5e-4]]}
 NO_FRICTION = UNDAMPED_KATO | {'axis': UNDAMPED_KATO['axis'] | {'normal_force': 0.0}}
-HARDLY_PRESSED: dict[str, Any] = {
+LIGHTLY_PRESSED: dict[str, Any] = {
     'axis': {'mass': 31422.4, 'drive_stiffness': 1e8, 'drive_damping': 2.9e6, 'normal_force': 1e-9},
     'contact': {'model': 'compliant', 'stiffness': 1e9, 'damping': 2.3e6},
     'friction': {'static': {'law': 'kato', 'initial': 0.12, 'limit': 0.13, 'time_constant': 1.0, 'exponent': 2.0},
@@ -64,7 +64,7 @@ HARDLY_PRESSED: dict[str, Any] = {
 
 @pytest.mark.parametrize(('scene', 'duration'), [
     (OVERDAMPED_SLIP, 0.1), (KATO_IN_AN_OVERDAMPED_CONTACT, 0.05), (KATO_THAT_DOES_NOT_RISE, 0.3),
-    (HARDLY_PRESSED, 1e-8), (UNDAMPED_KATO, 1.4), (UNDAMPED_UNDER_A_RAMP, 1.6),
+    (LIGHTLY_PRESSED, 1e-8), (UNDAMPED_KATO, 1.4), (UNDAMPED_UNDER_A_RAMP, 1.6),
     (NO_FRICTION | {'drive': [[0.0, 0.0, 0.001]]}, 0.3),
     (NO_FRICTION | {'drive': [[0.0, 0.0, 0.0], [0.1, 0.002, 0.0]], 'force': [[0.0, 0.0, 50.0]]}, 0.3)])
 def test_events_equal_the_reference(scene: dict[str, Any], duration: float) -> None:

@@ -32,7 +32,7 @@ def _guard_within(q, w, t, h, x, u, fx, fu, share, which):
 
 @always_compiled
 def _fall(q, w, t, h, x, u, fx, fu, which, before, after, armed):
-    """Return where within the step (0 to 1) a guard falls through zero; at its begin if it is never positive."""
+    """Return where within the step (0 to 1) a guard falls through zero; at its start if it is never positive."""
     low = 0.0
     if not armed:
         for i in range(1, _SCAN):

@@ -58,7 +58,7 @@ class PeriodicReport:
             reports.command_status(self._loop, second),
             reports.solver_status(self._loop, self._node.scene.solver.name, self._publishers.events.latest_time),
             reports.recorder_status(self._record_service.recordings),
-            reports.neighbours_status(self._graph_monitor.look())]))
+            reports.graph_status(self._graph_monitor.look())]))
 
     def _log_troubles(self, second: reports.Second) -> None:
         log = self._node.get_logger()

@@ -53,11 +53,11 @@ class Reporter:
     def look(self, now: int) -> Second:
         """Return what happened since the look before; `now` is ns on the steady clock."""
         window = self._loop.timing_statistics.take()
-        time, account = self._loop.time_ns, self._loop.account
+        time, counters = self._loop.time_ns, self._loop.pacing_counters
         passed = now - self._wall
         factor = (time - self._time) / passed if passed > 0 and time >= self._time else math.nan
         self._wall, self._time = now, time
-        counts = (account.overruns, account.caught_up, account.skipped)
+        counts = (counters.overruns, counters.caught_up, counters.skipped)
         overruns, caught_up, skipped = (new - old for new, old in zip(counts, self._before))
         self._before = counts
         return Second(window, factor, overruns, caught_up, skipped * 1e-9, self._refusals.look())
@@ -65,14 +65,14 @@ class Reporter:
 
 def timing_message(second: Second, loop: StepLoop, period: float, valid: bool, stamp_ns: int) -> StepTiming:
     """Return the message of a window that ends with the latest step."""
-    account, totals, window = loop.account, loop.command_totals, second.window
+    counters, totals, window = loop.pacing_counters, loop.command_totals, second.window
     lateness, latency = loop.timing_statistics.worst('lateness'), loop.timing_statistics.worst('latency')
     message = StepTiming(
         step=max(loop.step, 0), period=period, real_time_factor=second.real_time_factor, steps=window.steps,
-        overruns=second.overruns, total_overruns=account.overruns, caught_up=second.caught_up,
-        total_caught_up=account.caught_up, total_received=totals.received, total_refused=totals.refused,
+        overruns=second.overruns, total_overruns=counters.overruns, caught_up=second.caught_up,
+        total_caught_up=counters.caught_up, total_received=totals.received, total_refused=totals.refused,
         total_lost=totals.lost, total_limited=totals.limited, total_timed_out=totals.timed_out,
-        total_skipped=account.skipped * 1e-9, worst_lateness=lateness.value, worst_lateness_time=lateness.time,
+        total_skipped=counters.skipped * 1e-9, worst_lateness=lateness.value, worst_lateness_time=lateness.time,
         worst_latency=latency.value, worst_latency_time=latency.time, valid=valid)
     set_stamp(message.header.stamp, stamp_ns)
     for name, quantiles in (('cost', window.cost), ('lateness', window.lateness), ('command_age', window.age),
@@ -94,7 +94,7 @@ def diagnostics(stamp_ns: int, hardware_id: str, statuses: Sequence[DiagnosticSt
 def loop_status(loop: StepLoop, second: Second, verdict: TimingVerdict) -> DiagnosticStatus:
     """Report whether the steps keep their time."""
     level, text = _pace(loop, second)
-    account, window = loop.account, second.window
+    counters, window = loop.pacing_counters, second.window
     worst = {f'worst {name} / s': f'{case.value:.9g} at t = {case.time:.9g} s'
              for name in ('cost', 'lateness',
                           'latency') if not math.isnan((case := loop.timing_statistics.worst(name)).value)}
@@ -103,8 +103,8 @@ def loop_status(loop: StepLoop, second: Second, verdict: TimingVerdict) -> Diagn
         'step': loop.step, 'simulation time / s': loop.time_ns * 1e-9, 'real-time factor': second.real_time_factor,
         'cost p50 / s': window.cost.p50, 'cost p99 / s': window.cost.p99,
         'lateness p50 / s': window.lateness.p50, 'lateness p99 / s': window.lateness.p99,
-        'lateness max / s': window.lateness.max, **worst, 'overruns': account.overruns, 'caught up': account.caught_up,
-        'times skipped': account.skips, 'skipped / s': account.skipped * 1e-9})
+        'lateness max / s': window.lateness.max, **worst, 'overruns': counters.overruns,
+        'caught up': counters.caught_up, 'times skipped': counters.skips, 'skipped / s': counters.skipped * 1e-9})
 
 
 def _pace(loop: StepLoop, second: Second) -> tuple[bytes, str]:
@@ -166,7 +166,7 @@ def recorder_status(recordings: Recordings) -> DiagnosticStatus:
         'waiting': recorder.waiting if recorder else 0, 'dropped': recordings.total_dropped})
 
 
-def neighbours_status(troubles: Sequence[str]) -> DiagnosticStatus:
+def graph_status(troubles: Sequence[str]) -> DiagnosticStatus:
     """Report who else publishes where one should, and who fell silent."""
     return _status('neighbours', WARN if troubles else OK, '; '.join(troubles) or 'nobody in the way', {})
 

@@ -29,9 +29,9 @@ def run_receipt(scene: Scene, loop: StepLoop, publishers: Publishers, dropped: i
 
 
 def _timing(scene: Scene, loop: StepLoop) -> dict[str, Any]:
-    judged = verdict(scene, loop)
+    judged, counters = verdict(scene, loop), loop.pacing_counters
     worst = {f'worst_{name}': _plain(loop.timing_statistics.worst(name)) for name in ('cost', 'lateness', 'latency')}
-    return {**asdict(loop.account), 'skipped': loop.account.skipped * 1e-9, **worst, 'valid': judged.valid,
+    return {**asdict(counters), 'skipped': counters.skipped * 1e-9, **worst, 'valid': judged.valid,
             'verdict': judged.text}
 
 

@@ -11,14 +11,14 @@ from ...realtime.pacing import NANOSECONDS, Clock, SteadyClock
 class Timeline:
     """Says what time it is in a recording, ns; safe between threads.
 
-    Every instant is reckoned from one anchor on the steady clock, so that no lateness adds up.
+    Every instant is reckoned from one time on the steady clock, so that no lateness adds up.
     """
 
     def __init__(self, rate: float, is_paused: bool = False, clock: Clock | None = None) -> None:
         self._clock: Clock = clock or SteadyClock()
         self._lock = Lock()
         self._rate, self._is_paused = rate, is_paused
-        self._time, self._anchor = 0, self._clock.now()
+        self._time, self._since = 0, self._clock.now()
 
     @property
     def is_paused(self) -> bool:
@@ -38,21 +38,21 @@ class Timeline:
     def move(self, time: int) -> None:
         """Let it be this time now."""
         with self._lock:
-            self._time, self._anchor = time, self._clock.now()
+            self._time, self._since = time, self._clock.now()
 
     def pause(self, paused: bool) -> None:
         """Let time stand still, or go on from where it stands."""
         with self._lock:
-            self._time, self._anchor = self._now(), self._clock.now()
+            self._time, self._since = self._now(), self._clock.now()
             self._is_paused = paused
 
     def change_rate(self, rate: float) -> None:
         """Let time go on at another rate: seconds of the recording per second."""
         with self._lock:
-            self._time, self._anchor = self._now(), self._clock.now()
+            self._time, self._since = self._now(), self._clock.now()
             self._rate = rate
 
     def _now(self) -> int:
         if self._is_paused:
             return self._time
-        return self._time + round((self._clock.now() - self._anchor) * self._rate)
+        return self._time + round((self._clock.now() - self._since) * self._rate)

@@ -7,14 +7,14 @@
 | euler  | semi-implicit Euler: the new velocity moves      | 1               | 1                  | 1           |
 | rk4    | classical Runge-Kutta                            | 4               | 1                  | 4           |
 
-Transitions are noted at the end of the step in which they are seen, hence order 1 across them whatever the method;
-what begins and ends within a step is missed.  Knots of the friction tables are not looked for.  A slip ends where the
-velocity has changed its sign, or, after Karnopp, where it falls within the band |ẋ| < ½ step N mu_s(0)/m and N mu_s(0)
-could hold the slider at rest.  The band is half of what friction takes from the velocity in a step; a slow feed may be
-stopped in it that would go on.
+Transitions are noted at the end of the step in which they are seen, so that the order is 1 across them with any method;
+what begins and ends within a step is missed.  Breakpoints of the friction tables are not looked for.  A slip ends where
+the velocity has changed its sign, or, after Karnopp, where it falls within the band |ẋ| < ½ step N mu_s(0)/m and
+N mu_s(0) could hold the slider at rest.  The band is half of what friction takes from the velocity in a step; a slow
+feed may be stopped in it that would go on.
 
-When to use it: to compare with other programs, or as a rough and quick loop.  The cost is that of its steps, whatever
-happens; the exact engine pays for events, and is cheaper nearly always.
+When to use it: to compare with other programs, or as a rough and quick loop.  The cost is that of its steps, not
+of what happens; the exact engine pays for events, and is cheaper nearly always.
 
 Sources: D. Karnopp, Computer simulation of stick-slip friction in mechanical dynamic systems, J. Dyn. Sys. Meas.
 Control 107 (1985), doi:10.1115/1.3140698; E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration, I.1.
