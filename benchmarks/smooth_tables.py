@@ -96,7 +96,7 @@ def without_brief_coasts(events: list[SmoothEvent]) -> list[SmoothEvent]:
         and event.time - events[i - 1].time < 1e-6)]
 
 
-def knots_on_the_curve(tolerance: float) -> KineticTable:
+def breakpoints_on_the_curve(tolerance: float) -> KineticTable:
     """Return the table with the longest chords of the law within a tolerance."""
     def fits(a: float, b: float) -> bool:
         ends = [(a, LAW.coefficient(a)), (b, LAW.coefficient(b))]
@@ -143,7 +143,7 @@ def _rows_on_the_curve() -> list[str]:
     for branches in (True, False):
         smooth = smooth_events(RigidContact(), branches)
         for tolerance in TOLERANCES:
-            table = knots_on_the_curve(tolerance)
+            table = breakpoints_on_the_curve(tolerance)
             result = compared(smooth, RigidContact(), branches, table)
             rows.append(f'| {_BRANCHES[branches]} | {tolerance:.0e} | {len(table.velocities)} | '
                         f'{_errors(result, tolerance)} |\n')

@@ -37,7 +37,7 @@ def scene(name: str = 'paper_fig7', **sections: dict[str, object]) -> Scene:
 
 @pytest.fixture(scope='module')
 def advised() -> Advice:
-    return work.advise(scene(sinusoids=TWO_WAVES, knots=KNOTTED), 1e-3, DURATION, rounds=1)
+    return work.advise(scene(sinusoids=TWO_WAVES, breakpoints=KNOTTED), 1e-3, DURATION, rounds=1)
 
 
 def test_parts_are_those_of_the_scene() -> None:

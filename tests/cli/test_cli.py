@@ -76,7 +76,7 @@ def test_events_to_standard_output_are_exact() -> None:
     assert rows[0]['rest_time'] == 'inf'
 
 
-def test_knots_are_listed_on_request(capsys: Capture) -> None:
+def test_crossings_of_breakpoints_are_listed_on_request(capsys: Capture) -> None:
     arguments = ['simulate', 'paper_fig4_falling', '--duration', '3', '--events', '-']
     assert run(arguments) == 0
     assert 'knot' not in capsys.readouterr().out

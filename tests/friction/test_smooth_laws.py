@@ -9,12 +9,12 @@ from itertools import pairwise
 import pytest
 
 from benchmarks.smooth_reference import SmoothEvent, SmoothRun
-from benchmarks.smooth_tables import CASES, FEED, LAW, axis_of, compared, knots_on_the_curve, smooth_events
+from benchmarks.smooth_tables import CASES, FEED, LAW, axis_of, breakpoints_on_the_curve, compared, smooth_events
 from stickslip_sim.axis import CompliantContact, RigidContact
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.types import EventKind
 from stickslip_sim.friction import KineticTable, SmoothExcess, SmoothKinetic, excess_table, kinetic_table
-from stickslip_sim.friction.kinetic import MAX_KNOTS, default_excess
+from stickslip_sim.friction.kinetic import MAX_BREAKPOINTS, default_excess
 from stickslip_sim.friction.smooth import cosine, exponential, hyperbolic, power, stribeck
 from stickslip_sim.scene import load_scene, scene_from_values
 from stickslip_sim.simulation.simulator import Simulator
@@ -33,7 +33,7 @@ C = 30.0   # s of the worst event per unit of tolerance, for tolerances from 1e-
 
 
 def _speeds(last: float) -> list[float]:
-    """Return speeds that no construction knows, up to and far beyond the last knot."""
+    """Return speeds that no construction knows, up to and far beyond the last breakpoint."""
     inside = [last * (k + 0.5 * math.sqrt(2.0)) / 4000 for k in range(4000)]
     return [0.0, *(last * 1e-9 ** (k / 1500) for k in range(1500)), *inside, *(last * 10.0 ** k for k in range(1, 12))]
 
@@ -77,18 +77,19 @@ def test_the_slope_of_a_law_is_its_derivative(law: SmoothKinetic | SmoothExcess)
 
 
 @pytest.mark.parametrize('law', [KINETIC[0], KINETIC[1], exponential(0.12, 0.05, 0.015)])
-def test_knots_grow_with_the_root_of_the_tolerance_and_off_the_curve_they_are_fewer(law: SmoothKinetic) -> None:
+def test_breakpoints_grow_with_the_root_of_the_tolerance_and_off_the_curve_they_are_fewer(law: SmoothKinetic) -> None:
     coarse, fine = (len(kinetic_table(law, tolerance).velocities) for tolerance in (1e-4, 1e-6))
     assert 8.0 < fine / coarse < 10.5
 
 
 def test_the_error_has_almost_no_mean() -> None:
-    """Over the falling part; with knots on the curve it would be two thirds of the tolerance, of changing sign."""
+    """Over the falling part; with those on the curve it would be two thirds of the tolerance, of changing sign."""
     for tolerance in (1e-4, 1e-5, 1e-6):
         table = kinetic_table(LAW, tolerance)
         assert table.error == pytest.approx(tolerance, rel=2e-3)
         assert abs(_mean(table, LAW.inflection * 1.2, 2.0 * LAW.stribeck_velocity)) < 0.08 * tolerance
-        assert _mean(knots_on_the_curve(tolerance), LAW.inflection * 1.2, 2.0 * LAW.stribeck_velocity) > 0.5 * tolerance
+        on_the_curve = breakpoints_on_the_curve(tolerance)
+        assert _mean(on_the_curve, LAW.inflection * 1.2, 2.0 * LAW.stribeck_velocity) > 0.5 * tolerance
 
 
 def _mean(table: KineticTable, low: float, high: float) -> float:
@@ -102,12 +103,12 @@ def test_a_law_without_a_falling_part_is_a_line() -> None:
 
 
 @pytest.mark.parametrize('tolerance', [1e-7, 1e-9, 1e-300])
-def test_a_tolerance_that_needs_too_many_knots_is_refused_with_one_that_fits(tolerance: float) -> None:
+def test_a_tolerance_that_needs_too_many_breakpoints_is_refused_with_one_that_fits(tolerance: float) -> None:
     law = stribeck(0.3, 0.1, 0.01, 0.0, 0.5)
     error = refusal(kinetic_table, law, tolerance)
     assert error.name == 'friction.kinetic.tolerance'
     fits = float(error.fix.removesuffix(' fits'))
-    assert 0.9 * MAX_KNOTS < len(kinetic_table(law, fits).velocities) <= MAX_KNOTS
+    assert 0.9 * MAX_BREAKPOINTS < len(kinetic_table(law, fits).velocities) <= MAX_BREAKPOINTS
 
 
 @pytest.mark.parametrize(('law', 'tolerance', 'name'), [
@@ -173,10 +174,10 @@ def test_the_error_of_the_motion_falls_with_the_tolerance(
     assert 0.9 < order < 1.8
 
 
-def test_knots_on_the_curve_are_more_and_worse(
+def test_breakpoints_on_the_curve_are_more_and_worse(
         case: tuple[RigidContact | CompliantContact, bool, list[SmoothEvent]]) -> None:
     contact, branches, smooth = case
-    ours, theirs = kinetic_table(LAW, 1e-6), knots_on_the_curve(1e-6)
+    ours, theirs = kinetic_table(LAW, 1e-6), breakpoints_on_the_curve(1e-6)
     assert len(ours.velocities) < 0.85 * len(theirs.velocities)
     assert compared(smooth, contact, branches, ours).time < 0.2 * compared(smooth, contact, branches, theirs).time
 

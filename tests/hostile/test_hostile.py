@@ -83,8 +83,8 @@ def test_the_same_seed_makes_the_same_scenes() -> None:
 
 def test_a_missed_event_is_seen(good: Run) -> None:
     events = good.stretches[0][0]
-    knot = next(k for k, e in enumerate(events) if e.kind == EventKind.KNOT)
-    assert any('knot' in text and 'passed' in text for text in guards.judge([without(good, knot)])[0])
+    crossing = next(k for k, e in enumerate(events) if e.kind == EventKind.KNOT)
+    assert any('breakpoint' in text and 'passed' in text for text in guards.judge([without(good, crossing)])[0])
     stick = next(k for k, e in enumerate(events) if e.kind == EventKind.STICK)
     assert any('standstill was passed' in text for text in guards.judge([without(good, stick)])[0])
     assert any('static limit was passed' in text for text in guards.judge([good._replace(stretches=[

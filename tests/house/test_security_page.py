@@ -7,7 +7,7 @@ import pytest
 
 from stickslip_sim.config import parameter, ros_yaml
 from stickslip_sim.core.input_profile import MAX_SINUSOIDS
-from stickslip_sim.friction.kinetic import MAX_KNOTS
+from stickslip_sim.friction.kinetic import MAX_BREAKPOINTS
 from stickslip_sim.recording import opening, reader, records, schemas
 from stickslip_sim.rig.faults import MAX_FAULTS
 from stickslip_sim.runs import simulated
@@ -21,7 +21,7 @@ ROWS = [line for line in (ROOT / 'docs/security.md').read_text().splitlines() if
 @pytest.mark.parametrize(('what', 'limits'), [
     ('a scene, limits or other', (ros_yaml.SIZE_LIMIT, ros_yaml.MOST_NODES, ros_yaml.MOST_LEVELS)),
     ('a text in a scene', (parameter.TEXT_LIMIT,)),
-    ('breakpoints of a friction table', (MAX_KNOTS, MAX_SINUSOIDS, MAX_FAULTS)),
+    ('breakpoints of a friction table', (MAX_BREAKPOINTS, MAX_SINUSOIDS, MAX_FAULTS)),
     ('a record of a bag', (records.SIZE_LIMIT >> 20,)),
     ('schemas, attachments', (opening.MOST_BESIDE >> 20,)),
     ('a definition', (schemas.LONGEST, schemas.MOST_ELEMENTS)),

@@ -116,12 +116,12 @@ def psi(friction: Mapping[str, Any], speed: mpf) -> mpf:
 
 
 def table(data: Mapping[str, Any], values: str, speed: mpf) -> mpf:
-    """Interpolate linearly; the given slope (or none) beyond the last knot."""
-    knots = [(mpf(v), mpf(y)) for v, y in zip(data['velocities'], data[values])]
-    for (v0, y0), (v1, y1) in itertools.pairwise(knots):
+    """Interpolate linearly; the given slope (or none) beyond the last breakpoint."""
+    breakpoints = [(mpf(v), mpf(y)) for v, y in zip(data['velocities'], data[values])]
+    for (v0, y0), (v1, y1) in itertools.pairwise(breakpoints):
         if speed <= v1:
             return y0 + (y1 - y0) * (speed - v0) / (v1 - v0)
-    return knots[-1][1] + mpf(data.get('end_slope', 0.0)) * (speed - knots[-1][0])
+    return breakpoints[-1][1] + mpf(data.get('end_slope', 0.0)) * (speed - breakpoints[-1][0])
 
 
 def static_coefficient(law: Mapping[str, Any], age: mpf) -> mpf:

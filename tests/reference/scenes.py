@@ -166,7 +166,7 @@ def _static(rng: random.Random, omega: float) -> dict[str, Any]:
 
 
 def _friction(rng: random.Random, static: dict[str, Any], slip_speed: float, dependence: bool) -> dict[str, Any]:
-    """A falling table of one to five knots (some with a rise behind the minimum), and perhaps an excess."""
+    """A falling table of one to five breakpoints (some with a rise behind the minimum), and perhaps an excess."""
     start = static['initial'] * rng.choice((1.0, 1.0, 0.95, 0.7))
     count = rng.choice((1, 2, 2, 3, 5)) if not dependence else rng.choice((2, 2, 3, 5))
     speeds, values = [0.0], [_r(start) if start != static['initial'] else start]

@@ -81,7 +81,7 @@ def test_exact_critical_speed() -> None:
 
 
 def leine_table(count: int, top: float) -> dict[str, list[float]]:
-    """1/(1 + 3u) as a table, knots equally spaced in ∫ sqrt(f''), i.e. in (1 + 3u)^(-1/2)."""
+    """1/(1 + 3u) as a table, breakpoints equally spaced in ∫ sqrt(f''), i.e. in (1 + 3u)^(-1/2)."""
     end = (1 + 3 * top) ** -0.5
     speeds = [((1 - k / count * (1 - end)) ** -2 - 1) / 3 for k in range(count + 1)]
     return {'velocities': [0.0, *speeds[1:]], 'coefficients': [1.0] + [1 / (1 + 3 * u) for u in speeds[1:]]}

@@ -68,7 +68,7 @@ def test_branches_that_begin_together_are_one_curve() -> None:
                 with_values('paper_fig7', {**equal, 'friction.acceleration_dependence': False}))
 
 
-def test_a_knot_on_the_line_between_its_neighbours_is_an_event_and_no_more() -> None:
+def test_a_breakpoint_on_the_line_between_its_neighbours_is_an_event_and_no_more() -> None:
     plain = with_values('paper_fig4_falling', {})
     knotted = with_values('paper_fig4_falling', {'friction.kinetic.velocities': [0.0, 0.0175, 0.035],
                                                  'friction.kinetic.coefficients': [0.12, 0.085, 0.05]})

@@ -15,13 +15,13 @@ masses = st.floats(1e-9, 1e12)
 positive = st.floats(1e-300, 1e15)
 signed = st.floats(-1e6, 1e6).filter(lambda x: x == 0.0 or abs(x) > 1e-300)
 words = st.text(st.characters(categories=['L', 'N', 'P', 'S', 'Zs']), max_size=40).filter(str.isprintable)
-knots = st.lists(st.floats(1e-9, 1e6), max_size=4, unique=True).map(lambda speeds: [0.0, *sorted(speeds)])
+breakpoints = st.lists(st.floats(1e-9, 1e6), max_size=4, unique=True).map(lambda speeds: [0.0, *sorted(speeds)])
 
 
 @st.composite
 def overrides(draw: st.DrawFn) -> dict[str, object]:
-    speeds = draw(knots)
-    times = draw(knots)
+    speeds = draw(breakpoints)
+    times = draw(breakpoints)
     profiles: list[dict[str, object]] = [
         {'drive.course': 'constant', 'drive.velocity': draw(signed)},
         {'drive.course': 'ramp', 'drive.acceleration': draw(st.floats(-1e9, 1e9).filter(lambda x: abs(x) > 1e-9))},

@@ -13,7 +13,7 @@ from tests.support.axes import instant
 
 
 def play(name: str, duration: float) -> tuple[list[Event], Sample]:
-    """Return all events but knots, and the state at the end."""
+    """Return all events but those of kind knot, and the state at the end."""
     scene = load_scene(name)
     simulator = Simulator(scene.axis, scene.initial, scene.drive, scene.force)
     events = simulator.advance(instant(duration))

@@ -18,7 +18,7 @@ _A_MOMENT = 1e-6   # s; a coast this short after a break-away is decided by roun
 def simulate(solver: Solver, axis: Axis, drive: float | InputProfile, duration: float,
              force: float | InputProfile = 0.0,
              initial: InitialState | None = None) -> tuple[list[Event], Sample]:
-    """Return the events but knots, and the state at the end."""
+    """Return the events but those of kind knot, and the state at the end."""
     simulator = make(solver, axis, drive, force, initial)
     events = simulator.advance(instant(duration))
     return [event for event in events if event.kind != EventKind.KNOT], simulator.sample()

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from ..core import ranges
 from ..core.errors import InputError
 from ..friction import ExcessTable, KineticTable, StaticLaw
-from ..friction.kinetic import merged_knots
+from ..friction.kinetic import merged_breakpoints
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,9 +95,9 @@ def pack(axis: Axis) -> Sequence[float]:
     """Return the parameters in the order of `layout`."""
     contact = axis.contact if isinstance(axis.contact, CompliantContact) else None
     static, kinetic, excess = axis.friction.static, axis.friction.kinetic, axis.friction.excess
-    knots = merged_knots(kinetic, excess)
+    breakpoints = merged_breakpoints(kinetic, excess)
     return [axis.mass, axis.drive_stiffness, axis.drive_damping, axis.normal_force,
             float(contact is not None), contact.stiffness if contact else 0.0, contact.damping if contact else 0.0,
             float(static.kind), static.initial, static.limit, static.time_constant, static.exponent,
-            float(excess is not None), kinetic.end_slope, float(len(knots)),
-            *(number for knot in knots for number in knot)]
+            float(excess is not None), kinetic.end_slope, float(len(breakpoints)),
+            *(number for breakpoint in breakpoints for number in breakpoint)]

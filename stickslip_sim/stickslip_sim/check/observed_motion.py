@@ -46,7 +46,7 @@ class ObservedMotion:
     position: Numbers        # m, slider
     velocity: Numbers        # m/s, slider
     commanded: Numbers       # m, the drive or a reference
-    events: Sequence[Event]  # without those of knots
+    events: Sequence[Event]  # without those of kind knot
 
     @property
     def following_error(self) -> Numbers:

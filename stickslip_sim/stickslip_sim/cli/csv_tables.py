@@ -15,7 +15,7 @@ _BLOCK = 10_000   # rows
 
 
 def event_lines(events: Iterable[Event], knots: bool = False) -> Iterator[str]:
-    """Yield the lines of an event table; `knots` lists the crossings of friction knots too."""
+    """Yield the lines of an event table; `knots` lists those of kind `knot` too."""
     yield ','.join(EVENT_COLUMNS) + '\n'
     for event in events:
         if knots or event.kind != EventKind.KNOT:

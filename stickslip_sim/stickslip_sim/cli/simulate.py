@@ -37,7 +37,7 @@ class _Wishes(NamedTuple):
 @click.option('--duration', type=float, required=True, metavar='S', help='Simulated time, s.')
 @click.option('--set', 'changes', multiple=True, metavar='A.B=VALUE', help='Change a parameter of the scene.')
 @click.option('--events', metavar='FILE.csv', help='Write the events ("-": to standard output).')
-@click.option('--knots', is_flag=True, help='List the crossings of friction knots among the events.')
+@click.option('--knots', is_flag=True, help='List the crossings of breakpoints of friction tables among the events.')
 @click.option('--samples', metavar='FILE.csv', help='Write the state over time ("-": to standard output).')
 @click.option('--sample-period', type=float, metavar='S', help="Time between samples [default: a step of the scene].")
 @click.option('--bag', metavar='FOLDER', help='Record the run as a ROS 2 bag, one state a step.')

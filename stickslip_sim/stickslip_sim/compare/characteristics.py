@@ -34,11 +34,11 @@ def characteristics_of(run: Run) -> Characteristics:
 
 
 def _speeds(run: Run) -> Numbers:
-    """Return speeds that show all of the tables, knots among them."""
+    """Return speeds that show all of the tables, breakpoints among them."""
     friction = run.scene.axis.friction
-    knots = {*friction.kinetic.velocities, *(friction.excess.velocities if friction.excess else ())}
+    breakpoints = {*friction.kinetic.velocities, *(friction.excess.velocities if friction.excess else ())}
     end = _BEYOND * (friction.kinetic.limit_velocity or float(np.abs(run.samples['velocity']).max()) or 1.0)
-    return np.array(sorted({*np.linspace(0.0, end, _POINTS).tolist(), *(knot for knot in knots if knot < end)}))
+    return np.array(sorted({*np.linspace(0.0, end, _POINTS).tolist(), *(w for w in breakpoints if w < end)}))
 
 
 def _accelerating(run: Run, speeds: Numbers, kinetic: Numbers, breaks: list[Event]) -> dict[str, Curve]:

@@ -18,7 +18,7 @@ class Mode(IntEnum):
 
 
 class EventKind(IntEnum):
-    """Why the mode changed (KNOT: the speed crossed a knot of a friction table)."""
+    """Why the mode changed (KNOT: the speed crossed a breakpoint of a friction table)."""
 
     BREAKAWAY = 0
     COAST = 1

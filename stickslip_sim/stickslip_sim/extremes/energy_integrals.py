@@ -113,8 +113,8 @@ def _rate(axis: Axis) -> float:
     damping, stiffness = axis.drive_damping, axis.drive_stiffness
     if isinstance(axis.contact, CompliantContact):
         damping, stiffness = damping + axis.contact.damping, stiffness + axis.contact.stiffness
-    knots = axis.friction.kinetic
+    table = axis.friction.kinetic
     slopes = [abs((b - a) / (w - v)) for (v, a), (w, b) in
-              pairwise(zip(knots.velocities, knots.coefficients, strict=True))]
+              pairwise(zip(table.velocities, table.coefficients, strict=True))]
     steepest = 3.0 * max(slopes, default=0.0)
     return (damping + axis.normal_force * steepest) / axis.mass + math.sqrt(stiffness / axis.mass)

@@ -97,8 +97,8 @@ def _run(scene: Scene) -> SimulatedRun | None:
 def _ratio(_: str, run: SimulatedRun, wanted: Sequence[Event], judged: list[_Judged]) -> float:
     """Return the largest error of an event over its estimate."""
     solver = run.scene.solver.name
-    knots = solver != 'fixed_step'   # which notes none
-    left = [event for event in wanted if knots or event.kind != EventKind.KNOT]
+    with_knots = solver != 'fixed_step'   # which finds no such events
+    left = [event for event in wanted if with_knots or event.kind != EventKind.KNOT]
     events, wanted = (run.events, left) if solver == 'exact' else (_lasting(run.events), _lasting(left))
     estimate = error_estimate(run)
     sure = [(a, b) for a, b in zip(events, wanted) if a.time < estimate.until_s or estimate.until_s == _DURATION]

@@ -16,7 +16,7 @@ from ..core import ranges
 from ..core.errors import InputError
 from .smooth import SmoothExcess, SmoothKinetic
 
-MAX_KNOTS = 1000   # a table is walked at every break-away, within a step
+MAX_BREAKPOINTS = 1000   # a table is walked at every break-away, within a step
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +35,7 @@ class KineticTable:
 
     def __post_init__(self) -> None:
         name = 'friction.kinetic'
-        _check_knots(name, self.velocities, 'coefficients', self.coefficients)
+        _check_breakpoints(name, self.velocities, 'coefficients', self.coefficients)
         for value in self.coefficients:
             ranges.COEFFICIENT.check_meaning(f'{name}.coefficients', value, '', 'friction opposes the motion')
         ranges.SLOPE.check_meaning(f'{name}.end_slope', self.end_slope, 's/m',
@@ -71,7 +71,7 @@ class ExcessTable:
 
     def __post_init__(self) -> None:
         name = 'friction.excess'
-        _check_knots(name, self.velocities, 'fractions', self.fractions)
+        _check_breakpoints(name, self.velocities, 'fractions', self.fractions)
         if self.fractions[0] != 1.0 or self.fractions[-1] != 0.0:
             raise InputError(f'{name}.fractions', self.fractions, '1 at the first and 0 at the last breakpoint',
                              'psi is relative to the excess at the break-away')
@@ -83,7 +83,7 @@ class ExcessTable:
         return _interpolate(self.velocities, self.fractions, speed, 0.0)
 
 
-def merged_knots(
+def merged_breakpoints(
     kinetic: KineticTable, excess: ExcessTable | None
 ) -> list[tuple[float, float, float, float, float]]:
     """Return (velocity, mu_k, psi) at every breakpoint of the two tables, and the slopes of mu_k and psi above, s/m.
@@ -118,12 +118,13 @@ def _slope_above(xs: Sequence[float], ys: Sequence[float], x: float, end_slope: 
     return end_slope if i + 1 == len(xs) else (ys[i + 1] - ys[i]) / (xs[i + 1] - xs[i])
 
 
-def _check_knots(name: str, velocities: Sequence[float], other: str, values: Sequence[float]) -> None:
+def _check_breakpoints(name: str, velocities: Sequence[float], other: str, values: Sequence[float]) -> None:
     if not velocities or len(velocities) != len(values):
         raise InputError(f'{name}.velocities', list(velocities), f'as many numbers as {name}.{other} ({len(values)})',
                          'give one value for every breakpoint')
-    if len(velocities) > MAX_KNOTS:
-        raise InputError(f'{name}.velocities', f'{len(velocities)} breakpoints', f'at most {MAX_KNOTS} breakpoints',
+    if len(velocities) > MAX_BREAKPOINTS:
+        raise InputError(f'{name}.velocities', f'{len(velocities)} breakpoints',
+                         f'at most {MAX_BREAKPOINTS} breakpoints',
                          'leave out those that are nearly on a line between others')
     if velocities[0] != 0.0:
         raise InputError(f'{name}.velocities', velocities[0], '0 m/s at the first breakpoint',

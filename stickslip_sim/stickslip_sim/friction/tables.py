@@ -7,7 +7,7 @@ from functools import lru_cache
 
 from ..core import ranges
 from ..core.errors import InputError
-from .kinetic import MAX_KNOTS, ExcessTable, KineticTable
+from .kinetic import MAX_BREAKPOINTS, ExcessTable, KineticTable
 from .refine import Breakpoint, shape_table, table_error
 from .shapes import Shape
 from .smooth import SmoothExcess, SmoothKinetic
@@ -17,7 +17,7 @@ def kinetic_table(law: SmoothKinetic, tolerance: float) -> KineticTable:
     """Return the table of a law with |table − law| <= `tolerance` at every speed; it carries law and error.
 
     The viscous part is linear, and so exact; at rest and at infinite speed the table is that of the law.  Raises
-    InputError when it takes more than MAX_KNOTS breakpoints.
+    InputError when it takes more than MAX_BREAKPOINTS breakpoints.
     """
     name = 'friction.kinetic'
     scale = law.initial - law.limit
@@ -46,7 +46,7 @@ def _breakpoints(name: str, shape: Shape, tolerance: float, scale: float) -> lis
     ranges.TOLERANCE.check_meaning(f'{name}.tolerance', tolerance, '', 'give the error that the table may have')
     breakpoints = _cached_shape_table(shape, tolerance / scale)
     if breakpoints is None:
-        raise InputError(f'{name}.tolerance', tolerance, f'large enough for at most {MAX_KNOTS} breakpoints',
+        raise InputError(f'{name}.tolerance', tolerance, f'large enough for at most {MAX_BREAKPOINTS} breakpoints',
                          f'{_fitting(shape, scale):.1e} fits')
     return breakpoints
 
@@ -54,14 +54,14 @@ def _breakpoints(name: str, shape: Shape, tolerance: float, scale: float) -> lis
 @lru_cache(maxsize=64)
 def _cached_shape_table(shape: Shape, tolerance: float) -> list[Breakpoint] | None:
     """Return `shape_table`; a change of the scale of the speed, as in a sweep, asks for the same one again."""
-    return shape_table(shape, tolerance, MAX_KNOTS)
+    return shape_table(shape, tolerance, MAX_BREAKPOINTS)
 
 
 def _fitting(shape: Shape, scale: float) -> float:
     """Return a tolerance of two digits that fits, near the smallest; breakpoints go with 1/√tolerance."""
     sample = 1e-3
     breakpoints = _cached_shape_table(shape, sample) or []
-    tolerance = sample * (len(breakpoints) / MAX_KNOTS) ** 2
+    tolerance = sample * (len(breakpoints) / MAX_BREAKPOINTS) ** 2
     while _cached_shape_table(shape, float(f'{tolerance * scale:.1e}') / scale) is None:
         tolerance *= 1.1
     return float(f'{tolerance * scale:.1e}')

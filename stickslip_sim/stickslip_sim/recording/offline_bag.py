@@ -60,7 +60,7 @@ class OfflineBag:
         self._write(topics.RUN_INFO, data, 0, 0)
 
     def event(self, step: int, event: Event) -> None:
-        """Add a transition that fell into a step (counted from 1); knots are left out, as the node does."""
+        """Add a transition that fell into a step (counted from 1); none of kind knot, as the node does."""
         if event.kind != EventKind.KNOT:
             at = event.instant.nanoseconds
             self._write(topics.MODE_EVENT, self._event.pack(at, step, event), at, step)

@@ -29,7 +29,7 @@ _SAFETY = 4.0   # of the largest shift among so few repeats
 _OF_SPEEDS = 2.0 ** -50   # what rounding leaves of a speed, as a part of the fastest of its slip
 _HALF_ULP = 2.0 ** -54   # of a number below 1: the most that storing it can lose
 _MOMENT = 1e-6   # s; a coast this short after a break-away hangs on the last remains of a contact's ring-down
-_KNOTS = 800   # of the table that stands for a smooth law; many, and below the most that there can be
+_BREAKPOINTS = 800   # of the table that stands for a smooth law; many, and below the most that there can be
 _COARSER = 10.0   # the error of another such table, which is compared with it
 _OF_A_CYCLE = (EventKind.BREAKAWAY, EventKind.STICK, EventKind.REVERSE)
 
@@ -99,7 +99,7 @@ def _perturbed_scenes(scene: Scene) -> list[Scene]:
     for repeat in range(REPEATS):
         try:
             scenes.append(perturbed(scene, f'{scene.seed}/{repeat}'))
-        except InputError:   # knots so close that they change places
+        except InputError:   # breakpoints so close that they change places
             continue
     return scenes
 
@@ -147,7 +147,7 @@ def _with_table(scene: Scene, coarser: float) -> Scene:
 def _table(table: KineticTable, coarser: float) -> KineticTable:
     if table.law is None or table.error == 0.0:
         return table
-    share = min((len(table.velocities) / _KNOTS) ** 2, 1.0)   # knots go with 1/sqrt(tolerance)
+    share = min((len(table.velocities) / _BREAKPOINTS) ** 2, 1.0)   # breakpoints go with 1/sqrt(tolerance)
     try:
         return kinetic_table(table.law, coarser * share * table.error)
     except InputError:   # rounding alone is more
@@ -155,11 +155,12 @@ def _table(table: KineticTable, coarser: float) -> KineticTable:
 
 
 def _shift(run: SimulatedRun, judge: SimulatedRun, until: float) -> _Shift:
-    """Return how far the events of two runs are apart before a time; knots count where both solvers note them."""
-    knots = run.scene.solver.name != 'fixed_step' and run.scene.axis.friction.kinetic.law is None
+    """Return how far the events of two runs are apart before a time; events of kind knot count where both have them."""
+    with_knots = run.scene.solver.name != 'fixed_step' and run.scene.axis.friction.kinetic.law is None
 
     def compared(events: Sequence[Event]) -> list[Event]:
-        return [event for event in _lasting(events) if event.time <= until and (knots or event.kind != EventKind.KNOT)]
+        return [event for event in _lasting(events)
+                if event.time <= until and (with_knots or event.kind != EventKind.KNOT)]
 
     return _compare(compared(run.events), compared(judge.events), until)
 

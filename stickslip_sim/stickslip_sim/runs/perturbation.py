@@ -21,7 +21,7 @@ ROUNDING_UNIT = 2.0 ** -52
 def perturbed(scene: Scene, seed: str) -> Scene:
     """Return the scene with every number of axis, start and input profiles times 1 ± 2⁻⁵², signs drawn from the seed.
 
-    Raises InputError in the rare case that knots of a table or a profile change places by that.
+    Raises InputError in the rare case that breakpoints of a table or a profile change places by that.
     """
     move = _Mover(seed)
     return dataclasses.replace(scene, axis=move.moved(scene.axis), initial=move.moved(scene.initial),

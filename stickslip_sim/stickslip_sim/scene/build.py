@@ -34,7 +34,7 @@ _KINETIC: dict[str, Callable[..., SmoothKinetic]] = {
     'stribeck': smooth.stribeck, 'exponential': smooth.exponential, 'hyperbolic': smooth.hyperbolic,
 }
 _EXCESS: dict[str, Callable[..., SmoothExcess]] = {'cosine': smooth.cosine, 'power': smooth.power}
-_KNOTS: dict[str, Callable[..., InputProfile]] = {'steps': steps, 'table': table}
+_BREAKPOINTS: dict[str, Callable[..., InputProfile]] = {'steps': steps, 'table': table}
 
 
 def build_scene(given: Mapping[str, object], summary: str = '') -> Scene:
@@ -115,13 +115,13 @@ def _excess(values: Mapping[str, Any], kinetic: KineticTable) -> ExcessTable | N
     return ExcessTable(**excess) if excess else default_excess(kinetic)
 
 
-def _profile(values: Mapping[str, Any], section: str, value: str, rate: str, knots: str) -> InputProfile:
+def _profile(values: Mapping[str, Any], section: str, value: str, rate: str, breakpoints: str) -> InputProfile:
     given = _section(values, section)
-    profile = _pieces(given, section, value, rate, knots)
+    profile = _pieces(given, section, value, rate, breakpoints)
     return replace(profile, sinusoids=_sinusoids(given, section))
 
 
-def _pieces(given: Mapping[str, Any], section: str, value: str, rate: str, knots: str) -> InputProfile:
+def _pieces(given: Mapping[str, Any], section: str, value: str, rate: str, breakpoints: str) -> InputProfile:
     form = given['course']
     if form in ('constant', 'sine'):
         return constant(given[value])
@@ -129,8 +129,8 @@ def _pieces(given: Mapping[str, Any], section: str, value: str, rate: str, knots
         profile = ramp(given[value], given[rate], given['duration'])
         name = f'{section}.{rate}'
     else:
-        profile = _KNOTS[form](section, given['times'], given[knots], given['period'])
-        name = f'{section}.{knots}'
+        profile = _BREAKPOINTS[form](section, given['times'], given[breakpoints], given['period'])
+        name = f'{section}.{breakpoints}'
     for number in (*profile.values, *profile.rates):
         if not math.isfinite(number):
             raise InputError(name, given[name.rpartition('.')[2]], 'an input profile of finite values and rates',

@@ -29,9 +29,9 @@ _COMPLIANT = When('contact.model', ('compliant',))
 _FIXED_STEP = When('solver.name', ('fixed_step',))
 _ADAPTIVE = When('solver.name', ('adaptive',))
 _BRANCHES = When('friction.acceleration_dependence', (True,))
-_KNOTS = When('friction.kinetic.law', ('table',))
+_BREAKPOINTS = When('friction.kinetic.law', ('table',))
 _SMOOTH = When('friction.kinetic.law', _KINETIC[1:])
-_EXCESS_KNOTS = When('friction.excess.law', ('table',))
+_EXCESS_BREAKPOINTS = When('friction.excess.law', ('table',))
 _EXCESS_SMOOTH = When('friction.excess.law', _EXCESS[1:])
 _OWN_CLOCK = When('time.mode', _MODES[1:])
 _STOPS = When('command.on_timeout', _REACTIONS[1:])
@@ -67,11 +67,11 @@ PARAMETERS: tuple[Parameter, ...] = (
            ' breakpoints; or mu_c + (mu_0 - mu_c) g(speed/v_s) + k_v speed with g(z) = exp(-z^exponent) (stribeck),'
            ' exp(-z) (exponential) or 1/(1 + z) (hyperbolic)', _KINETIC),
     numbers('friction.kinetic.velocities', (0.0,), 'm/s', 'breakpoints of the kinetic coefficient; the first is 0, each'
-            ' is higher, the last is v_gr', within=ranges.SPEED, live=True, when=_KNOTS),
+            ' is higher, the last is v_gr', within=ranges.SPEED, live=True, when=_BREAKPOINTS),
     numbers('friction.kinetic.coefficients', (0.0,), '', 'mu_k at these speeds',
-            within=ranges.COEFFICIENT, live=True, when=_KNOTS),
+            within=ranges.COEFFICIENT, live=True, when=_BREAKPOINTS),
     number('friction.kinetic.end_slope', 0.0, 's/m', 'slope of mu_k beyond the last breakpoint',
-           within=ranges.SLOPE, live=True, when=_KNOTS),
+           within=ranges.SLOPE, live=True, when=_BREAKPOINTS),
     number('friction.kinetic.initial', None, '', 'mu_0, mu_k at rest; not above friction.static.initial',
            within=ranges.COEFFICIENT, live=True, when=_SMOOTH),
     number('friction.kinetic.limit', None, '', 'mu_c, limit of the falling part at high speed',
@@ -91,9 +91,9 @@ PARAMETERS: tuple[Parameter, ...] = (
            ' 0 beyond', _EXCESS, _BRANCHES),
     numbers('friction.excess.velocities', None, 'm/s', 'breakpoints of psi; left out: linear to 0 at the last'
             ' breakpoint of mu_k (a smooth law: where its falling part has dropped to 1 %)', within=ranges.SPEED,
-            live=True, when=_EXCESS_KNOTS, required=False),
+            live=True, when=_EXCESS_BREAKPOINTS, required=False),
     numbers('friction.excess.fractions', None, '', 'psi at these speeds: 1 at the first, 0 at the last',
-            within=ranges.SHARE, live=True, when=_EXCESS_KNOTS, required=False),
+            within=ranges.SHARE, live=True, when=_EXCESS_BREAKPOINTS, required=False),
     Parameter('friction.excess.limit_velocity', 'double', None, 'm/s', 'speed at which psi ends; left out: as for a'
               ' table', *ranges.LAW_SPEED, live=True, when=_EXCESS_SMOOTH),
     number('friction.excess.exponent', None, '', 'n of the law power', within=Range(1.0, MAX_EXPONENT), above=True,

@@ -22,7 +22,7 @@ Progress = Callable[[float], None] | None
 
 
 class Made(NamedTuple):
-    """A step made again: its events without those of knots, and the state at its end."""
+    """A step made again: its events without those of kind knot, and the state at its end."""
 
     number: int
     events: list[Event]

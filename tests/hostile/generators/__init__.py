@@ -11,10 +11,10 @@ from . import degenerate, inputs, machines, ranges, smooth
 Generator = Callable[[random.Random], Case]
 
 GENERATORS: Mapping[str, Generator] = {generator.__name__: generator for generator in (
-    machines.two_knots, machines.fig4_sweep, machines.any_machine,
+    machines.two_breakpoints, machines.fig4_sweep, machines.any_machine,
     degenerate.slopes, degenerate.critical_slip, degenerate.paper_critical, degenerate.critical_contact,
     degenerate.equal_eigenvalues, degenerate.limit_velocities, degenerate.contacts, degenerate.touching,
-    degenerate.ties, inputs.grazing_sine, inputs.grazing_ramp, inputs.peak_at_knot, inputs.steady_at_knot,
+    degenerate.ties, inputs.grazing_sine, inputs.grazing_ramp, inputs.peak_at_breakpoint, inputs.steady_at_breakpoint,
     inputs.step_at_event, inputs.resonance, inputs.sines, smooth.smooth,
     ranges.static_laws, ranges.late, ranges.whole_range, ranges.excesses, ranges.odd_sines, ranges.periodic)}
-PLAUSIBLE = frozenset({'two_knots', 'fig4_sweep', 'any_machine', 'smooth', 'sines'})
+PLAUSIBLE = frozenset({'two_breakpoints', 'fig4_sweep', 'any_machine', 'smooth', 'sines'})

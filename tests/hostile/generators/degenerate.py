@@ -15,13 +15,13 @@ def slopes(rng: random.Random) -> Case:
     normal, at_rest = mass * 9.80665, rng.uniform(0.1, 1.0)
     stiffness = mass * omega * omega
     speed = normal * at_rest / (mass * omega)
-    knots, falls = [0.0], [at_rest]
+    breakpoints, falls = [0.0], [at_rest]
     for _ in range(rng.randint(1, 5)):
-        knots.append(knots[-1] + speed * draw.powers(rng, 1e-9, 1.0))
+        breakpoints.append(breakpoints[-1] + speed * draw.powers(rng, 1e-9, 1.0))
         change = at_rest * rng.choice((0.0, 1.0, 1.0)) * draw.powers(rng, 1e-9, 0.9)
         falls.append(min(max(falls[-1] + rng.choice((-1.0, -1.0, 1.0)) * change, 0.0), 1.5 * at_rest))
     values = draw.axis(mass, stiffness, rng.choice((0.0, 0.1, 1.0)) * mass * omega, normal)
-    values |= _either(rng, stiffness, mass) | draw.kinetic(knots, falls, 0.0, rng.random() < 0.3)
+    values |= _either(rng, stiffness, mass) | draw.kinetic(breakpoints, falls, 0.0, rng.random() < 0.3)
     values |= _static(rng, at_rest)
     feed = speed * draw.powers(rng, 1e-3, 1.0)
     return Case(values | draw.constant(feed) | draw.starts(rng, feed),
@@ -37,30 +37,30 @@ def critical_slip(rng: random.Random) -> Case:
     speed = normal * at_rest / (mass * omega)
     critical = 2.0 * math.sqrt(stiffness * mass)
     n = rng.randint(2, 5)
-    knots = [0.0, *sorted(speed * draw.powers(rng, 1e-3, 1.0) for _ in range(n - 1))]
+    breakpoints = [0.0, *sorted(speed * draw.powers(rng, 1e-3, 1.0) for _ in range(n - 1))]
     falls = [at_rest, *sorted((at_rest * rng.uniform(0.1, 1.0) for _ in range(n - 1)), reverse=True)]
     if rng.random() < 0.3:
         falls[1] = falls[0]
     k = rng.randrange(n)
-    slope = (falls[k + 1] - falls[k]) / (knots[k + 1] - knots[k]) if k + 1 < n else 0.0
+    slope = (falls[k + 1] - falls[k]) / (breakpoints[k + 1] - breakpoints[k]) if k + 1 < n else 0.0
     target = draw.near(rng, critical)
     damping = target - normal * slope
     end_slope = 0.0
     if rng.random() < 0.2 and k + 1 < n:
         # a falling piece that grows at the critical rate
         damping = 0.0
-        falls[k + 1] = max(falls[k] - draw.near(rng, critical) * (knots[k + 1] - knots[k]) / normal, 0.0)
+        falls[k + 1] = max(falls[k] - draw.near(rng, critical) * (breakpoints[k + 1] - breakpoints[k]) / normal, 0.0)
     elif rng.random() < 0.2:
         damping, end_slope = 0.5 * critical, draw.near(rng, 0.5 * critical) / normal
     values = draw.axis(mass, stiffness, damping, normal) | _either(rng, stiffness, mass)
-    values |= draw.kinetic(knots, falls, end_slope, rng.random() < 0.2) | _static(rng, at_rest)
+    values |= draw.kinetic(breakpoints, falls, end_slope, rng.random() < 0.2) | _static(rng, at_rest)
     feed = speed * draw.powers(rng, 1e-2, 1.0)
     values |= draw.constant(feed, rng.choice((0.0, rng.uniform(-0.8, 0.8))) * normal * at_rest)
     return Case(values | draw.starts(rng, feed), 40.0 / omega + 2.0 * at_rest * normal / stiffness / feed)
 
 
 def paper_critical(rng: random.Random) -> Case:
-    """The paper's axis with a drive damped nearly critically, five knots, any feed and force."""
+    """The paper's axis with a drive damped nearly critically, five breakpoints, any feed and force."""
     damping = draw.near(rng, 2.0 * math.sqrt(6e5 * 350.0), 1e-10, 1e-4)
     flat = rng.choice((0.12, 0.08))
     values = draw.paper(**{'axis.drive_damping': damping}) | draw.kinetic(
@@ -137,8 +137,8 @@ def ties(rng: random.Random) -> Case:
     values = draw.axis(rng.choice((1.0, 2.0, 4.0)), rng.choice((1.0, 4.0, 16.0)), rng.choice((0.0, 0.0, 1.0, 4.0)), 8.0)
     values |= rng.choice((draw.contact(), draw.contact(), draw.contact(16.0, rng.choice((0.0, 1.0)))))
     at_rest = rng.choice((0.125, 0.25, 0.5))
-    knots = [0.0, rng.choice((0.125, 0.25, 0.5, 1.0))]
-    values |= draw.kinetic(knots, [at_rest, rng.choice((0.5, 0.0, 1.0)) * at_rest], 0.0, rng.random() < 0.5)
+    breakpoints = [0.0, rng.choice((0.125, 0.25, 0.5, 1.0))]
+    values |= draw.kinetic(breakpoints, [at_rest, rng.choice((0.5, 0.0, 1.0)) * at_rest], 0.0, rng.random() < 0.5)
     values |= draw.static(at_rest * rng.choice((1.0, 1.0, 2.0)), rng.choice((None, 2.0 * at_rest)),
                           rng.choice((0.25, 1.0)))
     size = rng.choice((at_rest * 8.0, 1.0, 2.0))

@@ -42,42 +42,42 @@ def grazing_ramp(rng: random.Random) -> Case:
     return Case(values, 2.0 * at)
 
 
-def peak_at_knot(rng: random.Random) -> Case:
-    """A knot of the table within rounding of the greatest speed of a slip, which meets it without acceleration."""
-    case = machines.two_knots(rng)
+def peak_at_breakpoint(rng: random.Random) -> Case:
+    """A breakpoint within rounding of the greatest speed of a slip, which meets it without acceleration."""
+    case = machines.two_breakpoints(rng)
     peaks = [abs(e.velocity) for e in _events(case) if e.kind in (EventKind.COAST, EventKind.DECELERATE,
                                                                  EventKind.ACCELERATE) and e.velocity]
     if not peaks:
         return case
     speed = rng.choice(peaks[:4]) * (1.0 + rng.choice((0.0, 1e-15, -1e-15, 1e-12, -1e-12, 1e-8, -1e-8, 1e-4, -1e-4)))
-    knots, falls = case.values['friction.kinetic.velocities'], case.values['friction.kinetic.coefficients']
-    table = dict(zip(knots, falls))
+    breakpoints, falls = case.values['friction.kinetic.velocities'], case.values['friction.kinetic.coefficients']
+    table = dict(zip(breakpoints, falls))
     # on the line as it is, so that the motion up to there stays; what follows may bend
-    table[speed] = falls[-1] if speed >= knots[1] else falls[0] + (falls[1] - falls[0]) * speed / knots[1]
+    table[speed] = falls[-1] if speed >= breakpoints[1] else falls[0] + (falls[1] - falls[0]) * speed / breakpoints[1]
     speeds = sorted(table)
     values = case.values | {'friction.kinetic.velocities': speeds,
                             'friction.kinetic.coefficients': [table[v] for v in speeds]}
-    if rng.random() < 0.3 and speed > knots[1]:
+    if rng.random() < 0.3 and speed > breakpoints[1]:
         values['friction.kinetic.end_slope'] = rng.choice((1.0, 1e-6)) * falls[0] / speed
     return Case(values, case.duration)
 
 
-def steady_at_knot(rng: random.Random) -> Case:
-    """A drive that moves with the speed of a knot, within rounding, and a slider that does so, too."""
-    knot = rng.choice((0.035, 0.01, 0.5))
+def steady_at_breakpoint(rng: random.Random) -> Case:
+    """A drive that moves with the speed of a breakpoint, within rounding, and a slider that does so, too."""
+    breakpoint = rng.choice((0.035, 0.01, 0.5))
     table = rng.choice(([0.12, 0.05, 0.05], [0.12, 0.05, 0.1], [0.12, 0.12, 0.05], [0.12, 0.08, 0.0]))
-    values = draw.paper() | draw.kinetic([0.0, knot, 2.0 * knot], table, 0.0, rng.random() < 0.4)
+    values = draw.paper() | draw.kinetic([0.0, breakpoint, 2.0 * breakpoint], table, 0.0, rng.random() < 0.4)
     values |= rng.choice((draw.contact(), draw.contact(5e6, 15000.0)))
     if rng.random() < 0.3:
         values['axis.drive_damping'] = rng.choice((0.0, 2.0 * math.sqrt(6e5 * 350.0)))
-    feed = draw.beside(rng, rng.choice((1.0, 2.0)) * knot)
+    feed = draw.beside(rng, rng.choice((1.0, 2.0)) * breakpoint)
     return Case(values | draw.constant(feed, rng.choice((0.0, 0.05 * 3432.3275, -100.0))) | {
-        'initial.velocity': draw.beside(rng, rng.choice((1.0, 2.0)) * knot), 'initial.rest_time': 0.0}, 2.0)
+        'initial.velocity': draw.beside(rng, rng.choice((1.0, 2.0)) * breakpoint), 'initial.rest_time': 0.0}, 2.0)
 
 
 def step_at_event(rng: random.Random) -> Case:
     """Inputs that jump at the time of an event, or an ulp beside it."""
-    case = rng.choice((machines.two_knots, degenerate.ties, machines.fig4_sweep))(rng)
+    case = rng.choice((machines.two_breakpoints, degenerate.ties, machines.fig4_sweep))(rng)
     events = [e.time for e in _events(case) if 0.0 < e.time < case.duration]
     if not events or 'drive.velocity' not in case.values:
         return case

@@ -11,7 +11,7 @@ from . import draw
 _LAWS = 'exponential', 'kato', 'hyperbolic', 'logarithmic'
 
 
-def two_knots(rng: random.Random) -> Case:
+def two_breakpoints(rng: random.Random) -> Case:
     """Friction that falls linearly to v_gr; any mass, stiffness and damping that a machine has."""
     mass = draw.powers(rng, 1.0, 1e5)
     stiffness = mass * (2.0 * math.pi * draw.powers(rng, 1.0, 200.0)) ** 2
@@ -36,7 +36,7 @@ def fig4_sweep(rng: random.Random) -> Case:
 
 
 def any_machine(rng: random.Random) -> Case:
-    """Any law, one to five knots, either contact, inputs with jumps and ramps."""
+    """Any law, one to five breakpoints, either contact, inputs with jumps and ramps."""
     mass = draw.powers(rng, 0.1, 1e5)
     omega = draw.powers(rng, 3.0, 1e3)
     stiffness = mass * omega * omega
@@ -44,10 +44,10 @@ def any_machine(rng: random.Random) -> Case:
     normal = mass * draw.powers(rng, 1.0, 30.0)
     at_rest = rng.uniform(0.01, 1.0)
     speed = normal * at_rest / (mass * omega)
-    knots = sorted({0.0, *(speed * draw.powers(rng, 1e-3, 3.0) for _ in range(rng.randint(1, 4)))})
-    falls = [at_rest, *(at_rest * rng.uniform(0.02, 1.0) for _ in knots[1:])]
+    breakpoints = sorted({0.0, *(speed * draw.powers(rng, 1e-3, 3.0) for _ in range(rng.randint(1, 4)))})
+    falls = [at_rest, *(at_rest * rng.uniform(0.02, 1.0) for _ in breakpoints[1:])]
     values = draw.axis(mass, stiffness, damping, normal) | _contact(rng, mass, stiffness)
-    values |= draw.kinetic(knots, falls, rng.choice((0.0, 0.0, 0.1 * at_rest / speed)), rng.random() < 0.4)
+    values |= draw.kinetic(breakpoints, falls, rng.choice((0.0, 0.0, 0.1 * at_rest / speed)), rng.random() < 0.4)
     values |= _static(rng, at_rest)
     feed = speed * draw.powers(rng, 1e-3, 1.0)
     duration = rng.uniform(5.0, 60.0) / omega + min(3.0 * at_rest * normal / stiffness / feed, 100.0 / omega)

@@ -57,9 +57,9 @@ def whole_range(rng: random.Random) -> Case:
     at_rest = draw.powers(rng, 1e-6, 1e3)
     values |= draw.static(at_rest, rng.choice((None, min(at_rest * draw.powers(rng, 1.0, 1e3), 1e3))),
                           draw.powers(rng, 1e-12, 1e15))
-    knots = sorted({0.0, *(draw.powers(rng, 1e-12, 1e6) for _ in range(rng.randint(0, 3)))})
-    values |= draw.kinetic(knots, [at_rest, *(at_rest * rng.random() for _ in knots[1:])],
-                           rng.choice((0.0, draw.powers(rng, 1e-9, 1e9))), len(knots) > 1 and rng.random() < 0.3)
+    breakpoints = sorted({0.0, *(draw.powers(rng, 1e-12, 1e6) for _ in range(rng.randint(0, 3)))})
+    values |= draw.kinetic(breakpoints, [at_rest, *(at_rest * rng.random() for _ in breakpoints[1:])],
+                           rng.choice((0.0, draw.powers(rng, 1e-9, 1e9))), len(breakpoints) > 1 and rng.random() < 0.3)
     values |= draw.constant(rng.choice((-1.0, 1.0)) * draw.powers(rng, 1e-12, 1e6),
                             rng.choice((0.0, draw.powers(rng, 1e-9, 1e15))))
     rates = [r for r in (math.sqrt(stiffness / mass), damping / mass) if r > 0.0] or [1.0]
@@ -71,10 +71,10 @@ def excesses(rng: random.Random) -> Case:
     """Excess tables of their own, and break-aways of a compliant contact where psi has all but ended."""
     case = machines.any_machine(rng)
     values: Values = case.values
-    knots = values['friction.kinetic.velocities']
+    breakpoints = values['friction.kinetic.velocities']
     values['friction.acceleration_dependence'] = True
     if rng.random() < 0.5:
-        inner = sorted({knots[-1] * draw.powers(rng, 1e-3, 3.0) for _ in range(rng.randint(1, 3))})
+        inner = sorted({breakpoints[-1] * draw.powers(rng, 1e-3, 3.0) for _ in range(rng.randint(1, 3))})
         fractions = sorted((rng.choice((rng.random(), draw.powers(rng, 1e-12, 1.0))) for _ in inner[:-1]), reverse=True)
         values |= {'friction.excess.velocities': [0.0, *inner], 'friction.excess.fractions': [1.0, *fractions, 0.0]}
         return Case(values, case.duration)

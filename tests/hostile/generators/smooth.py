@@ -9,7 +9,7 @@ from . import draw, machines
 
 
 def smooth(rng: random.Random) -> Case:
-    """A Stribeck, exponential or hyperbolic law, as a table of many knots; two branches or one."""
+    """A Stribeck, exponential or hyperbolic law, as a table of many breakpoints; two branches or one."""
     case = machines.any_machine(rng)
     values = {name: value for name, value in case.values.items() if not name.startswith('friction.kinetic.')}
     at_rest = case.values['friction.kinetic.coefficients'][0]

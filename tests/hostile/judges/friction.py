@@ -27,27 +27,27 @@ class Line(NamedTuple):
 
 
 class Table:
-    """Knots of mu_k and psi together, in extended precision."""
+    """Breakpoints of mu_k and psi together, in extended precision."""
 
     def __init__(self, axis: Axis) -> None:
         kinetic, excess = axis.friction.kinetic, axis.friction.excess
         self.has_branches = excess is not None
-        self.knots = sorted({*kinetic.velocities, *(excess.velocities if excess else ())})
+        self.breakpoints = sorted({*kinetic.velocities, *(excess.velocities if excess else ())})
         self._kinetic = kinetic.velocities, kinetic.coefficients, kinetic.end_slope
         self._excess = (excess.velocities, excess.fractions, 0.0) if excess else ((0.0,), (0.0,), 0.0)
 
     def piece(self, speed: float, rising: bool) -> int:
-        """Return the piece at a speed: at a knot the one above it, or below it where the speed falls."""
-        index = bisect_right(self.knots, speed) - 1
-        return index - 1 if not rising and index > 0 and self.knots[index] == speed else index
+        """Return the piece at a speed: at a breakpoint the one above it, or below it where the speed falls."""
+        index = bisect_right(self.breakpoints, speed) - 1
+        return index - 1 if not rising and index > 0 and self.breakpoints[index] == speed else index
 
     def kinetic(self, piece: int) -> Line:
         """Return mu_k on a piece."""
-        return _line(*self._kinetic, self.knots[piece])
+        return _line(*self._kinetic, self.breakpoints[piece])
 
     def psi(self, piece: int) -> Line:
         """Return psi on a piece."""
-        return _line(*self._excess, self.knots[piece])
+        return _line(*self._excess, self.breakpoints[piece])
 
 
 def _line(speeds: Any, values: Any, end_slope: float, speed: float) -> Line:

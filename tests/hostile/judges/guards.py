@@ -213,7 +213,7 @@ def _name(segment: Segment, row: int) -> str:
         return ('the static limit', 'the static limit backwards')[row]
     if segment.begin.mode == Mode.COASTING:
         return ('the lower branch', 'the upper branch')[row]
-    return ('the zero of the acceleration', 'the next knot or standstill')[row]
+    return ('the zero of the acceleration', 'the next breakpoint or standstill')[row]
 
 
 def _text(segment: Segment, row: int, time: Any, value: Any, bound: Any) -> str:

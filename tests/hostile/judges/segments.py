@@ -163,9 +163,9 @@ def _segment(parts: Parts, table: Table, begin: Node, end: Node, length: Any, ca
         lower[F] = way
         upper[U] = -way
         if rising:
-            upper[ONE] = table.knots[piece + 1] if piece + 1 < len(table.knots) else Long('inf')
+            upper[ONE] = table.breakpoints[piece + 1] if piece + 1 < len(table.breakpoints) else Long('inf')
         else:
-            upper[ONE] = -Long(table.knots[piece])
+            upper[ONE] = -Long(table.breakpoints[piece])
     elif mode == Mode.COASTING:
         piece = table.piece(speed, True)
         friction = table.kinetic(piece).of(Long(speed))

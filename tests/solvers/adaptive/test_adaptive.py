@@ -108,7 +108,7 @@ def test_splits_agree_within_the_tolerance() -> None:
 
 @dataclass(frozen=True)
 class Falling:
-    """The paper's falling branch as a law: the same as its table, but for the knots."""
+    """The paper's falling branch as a law: the same as its table, but for the events of kind knot."""
 
     def coefficient(self, speed: float) -> float:
         return max(0.05, 0.12 - 2.0 * speed)

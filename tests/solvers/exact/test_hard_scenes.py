@@ -85,8 +85,8 @@ def test_a_ring_that_never_dies_is_leapt_over(scene: dict[str, Any]) -> None:
     assert simulator.root_iterations <= 100 * len(events)
 
 
-def test_knots_that_are_close_together_lose_no_digits() -> None:
-    # psi falls by 9e-5 between the first two knots, which belong to mu_k: the difference of two rounded fractions there
+def test_breakpoints_that_are_close_together_lose_no_digits() -> None:
+    # psi falls by 9e-5 between the first two breakpoints, those of mu_k: the difference of two rounded fractions there
     table = {'velocities': [0.0, 1e-06, 0.01], 'coefficients': [0.09, 0.09, 0.14]}
     scene: dict[str, Any] = {
         'axis': {'mass': 102.3, 'drive_stiffness': 7.2e6, 'drive_damping': 21712.0, 'normal_force': 1682.0},

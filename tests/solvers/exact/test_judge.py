@@ -156,8 +156,8 @@ def test_a_contact_that_gives_way_against_its_motion_obeys_newton() -> None:
 
 
 
-def test_a_speed_that_peaks_on_a_knot_turns_there() -> None:
-    """The acceleration at the knot is 0 within rounding, or less: the slider must not be taken to go on upwards."""
+def test_a_speed_that_peaks_on_a_breakpoint_turns_there() -> None:
+    """The acceleration there is 0 within rounding, or less: the slider must not be taken to go on upwards."""
     scene = load_scene('paper_fig8', {
         'axis.mass': 87696.35152955492, 'axis.drive_stiffness': 12406160936.812164,
         'axis.drive_damping': 98442867.19902536, 'axis.normal_force': 968220.714862454,

@@ -26,7 +26,7 @@ SLIDING = InitialState(velocity=0.05)
 
 
 def smooth_axis(contact: object = RIGID, damping: float = 4000.0) -> Axis:
-    """Return an axis whose slip has no knot: mu_k rises with one slope."""
+    """Return an axis whose slip has no breakpoint: mu_k rises with one slope."""
     axis = paper_axis(COMPLIANT if contact is COMPLIANT else RIGID, branches=False)
     return replace(axis, drive_damping=damping,
                    friction=Friction(StaticLaw(StaticLawKind.CONSTANT, 0.12, 0.12), KineticTable((0.0,), (0.1,), 0.3),

@@ -31,7 +31,7 @@ GUARDS = 3                                    # of a mode, at most
 # q: the numbers of one mode
 Q_MODE, Q_DIRECTION, Q_MASS, Q_STIFFNESS, Q_DAMPING = range(5)
 Q_LOWER, Q_LOWER_SLOPE, Q_BAND, Q_BAND_SLOPE = range(5, 9)         # N mu_k and N e over the speed: N, N s/m
-Q_KNOT_BELOW, Q_KNOT_ABOVE = range(9, 11)                          # m/s
+Q_BREAKPOINT_BELOW, Q_BREAKPOINT_ABOVE = range(9, 11)                          # m/s
 Q_CONTACT_STIFFNESS, Q_CONTACT_DAMPING, Q_UNDEFLECTED = range(11, 14)   # both 0 in a rigid contact; x at δ = 0
 Q_NORMAL, Q_LAW, Q_INITIAL, Q_LIMIT, Q_TAU, Q_EXPONENT, Q_REST = range(14, 21)
 Q_TIME, Q_S, Q_V, Q_V_RATE, Q_F, Q_F_RATE = range(21, 27)
@@ -62,7 +62,7 @@ def static_coefficient(law, low, limit, tau, exponent, rest):
 
 
 @always_compiled
-def knot_at(p, piece):
+def breakpoint_at(p, piece):
     """Return the speed at which a piece of the friction table begins."""
     return p[TABLE + SEGMENT_SIZE * int(piece)]
 
@@ -72,8 +72,8 @@ def piece_of(p, speed, rises):
     """Return the piece of the table that goes on from a speed, upwards or downwards."""
     piece = 0
     for i in range(1, int(p[SEGMENT_COUNT])):
-        knot = p[TABLE + SEGMENT_SIZE * i]
-        if knot < speed or (rises and knot == speed):
+        breakpoint = p[TABLE + SEGMENT_SIZE * i]
+        if breakpoint < speed or (rises and breakpoint == speed):
             piece = i
     return float(piece)
 
@@ -95,8 +95,8 @@ def motion_of(p, m):
     """Return the tuple q of the present mode."""
     normal, excess, piece = p[NORMAL], m[EXCESS], m[PIECE]
     mu, mu_slope, psi, psi_slope = friction_lines(p, piece)
-    above = knot_at(p, piece + 1.0) if piece + 1.0 < p[SEGMENT_COUNT] else math.inf
-    below = knot_at(p, piece) if piece > 0.0 else -math.inf
+    above = breakpoint_at(p, piece + 1.0) if piece + 1.0 < p[SEGMENT_COUNT] else math.inf
+    below = breakpoint_at(p, piece) if piece > 0.0 else -math.inf
     return (m[MODE], m[DIRECTION], p[MASS], p[STIFFNESS], p[DAMPING],
             normal * mu, normal * mu_slope, normal * excess * psi, normal * excess * psi_slope, below, above,
             p[CONTACT_STIFFNESS], p[CONTACT_DAMPING], m[X] - m[DEFLECTION],
@@ -185,10 +185,10 @@ def guards(q, w, t, x, u):
     lower = q[Q_DIRECTION] * applied(q, w, t, x, u) - (q[Q_LOWER] + q[Q_LOWER_SLOPE] * speed)
     band = q[Q_BAND] + q[Q_BAND_SLOPE] * speed
     if mode == ACCELERATING:
-        return lower - band, q[Q_KNOT_ABOVE] - speed, _NEVER
+        return lower - band, q[Q_BREAKPOINT_ABOVE] - speed, _NEVER
     if mode == COASTING:
         return lower, band - lower, _NEVER
-    return -lower, speed - q[Q_KNOT_BELOW], speed
+    return -lower, speed - q[Q_BREAKPOINT_BELOW], speed
 
 
 @always_compiled

@@ -9,8 +9,8 @@ import math
 
 from .always_compiled import always_compiled
 from .automaton import (
-    ACCELERATING, COASTING, DIRECTION, F, F_RATE, Q_BAND, Q_BAND_SLOPE, Q_DIRECTION, Q_INITIAL, Q_KNOT_ABOVE,
-    Q_KNOT_BELOW, Q_LOWER, Q_LOWER_SLOPE, Q_MODE, Q_NORMAL, SPEED_SCALE, STICK, TIME, U, V, V_RATE, applied,
+    ACCELERATING, COASTING, DIRECTION, F, F_RATE, Q_BAND, Q_BAND_SLOPE, Q_BREAKPOINT_ABOVE, Q_BREAKPOINT_BELOW,
+    Q_DIRECTION, Q_INITIAL, Q_LOWER, Q_LOWER_SLOPE, Q_MODE, Q_NORMAL, SPEED_SCALE, STICK, TIME, U, V, V_RATE, applied,
     contact, force_scale, is_compliant, static_margin,
 )
 from .resets import KNOT, classify, move, note, reset, start
@@ -38,11 +38,11 @@ def look(q, w, per_mass, t, x, u):
     lower = direction * force - (q[Q_LOWER] + q[Q_LOWER_SLOPE] * speed)
     band = q[Q_BAND] + q[Q_BAND_SLOPE] * speed
     if mode == ACCELERATING:
-        return direction * (lower - band) * per_mass, _first(lower - band, q[Q_KNOT_ABOVE] - speed, q)
+        return direction * (lower - band) * per_mass, _first(lower - band, q[Q_BREAKPOINT_ABOVE] - speed, q)
     if mode == COASTING:
         return 0.0, 1 if band - lower < -force_scale(q) else 0 if lower < -force_scale(q) else -1
     stopped = speed < -SPEED_SCALE
-    return direction * lower * per_mass, 2 if stopped else _first(-lower, speed - q[Q_KNOT_BELOW], q)
+    return direction * lower * per_mass, 2 if stopped else _first(-lower, speed - q[Q_BREAKPOINT_BELOW], q)
 
 
 @always_compiled

@@ -12,8 +12,8 @@ from .always_compiled import always_compiled
 from ...core.types import EventKind
 from .automaton import (
     ACCELERATING, COASTING, DECELERATING, DEFLECTION, DIRECTION, EXCESS, F, F_RATE, MODE, PIECE, REST, ROUNDING, S,
-    STICK, TIME, TURN, U, V, V_RATE, X, applied, contact, friction_lines, inputs, is_compliant, knot_at, motion_of,
-    piece_of, static_coefficient, static_margin,
+    STICK, TIME, TURN, U, V, V_RATE, X, applied, breakpoint_at, contact, friction_lines, inputs, is_compliant,
+    motion_of, piece_of, static_coefficient, static_margin,
 )
 
 BREAKAWAY, COAST, ACCELERATE = float(EventKind.BREAKAWAY), float(EventKind.COAST), float(EventKind.ACCELERATE)
@@ -131,7 +131,7 @@ def reset(p, m, w, guard):
         m[PIECE] = piece_of(p, abs(m[U]), guard == 1)
         return DECELERATE if guard == 0 else ACCELERATE, direction
     if guard == 1:
-        _cross_knot(p, m)
+        _cross_breakpoint(p, m)
         return KNOT, direction
     if guard == 2:
         return _arrest(p, m, w)
@@ -150,9 +150,9 @@ def _release(p, m, w):
 
 
 @always_compiled
-def _cross_knot(p, m):
+def _cross_breakpoint(p, m):
     step = 1.0 if m[MODE] == ACCELERATING else -1.0
-    m[U] = m[DIRECTION] * knot_at(p, m[PIECE] + (1.0 if step > 0.0 else 0.0))
+    m[U] = m[DIRECTION] * breakpoint_at(p, m[PIECE] + (1.0 if step > 0.0 else 0.0))
     m[PIECE] += step
 
 

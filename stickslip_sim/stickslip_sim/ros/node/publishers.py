@@ -64,7 +64,7 @@ class Publishers:
             recorder.wait_for_room()
 
     def event(self, step: int, event: Event) -> None:
-        """Publish an event that fell into a step; knots of the friction table are nobody's business."""
+        """Publish an event that fell into a step; events of kind knot are not published."""
         self.events.add(event)
         if event.kind == EventKind.KNOT:
             return

@@ -32,8 +32,8 @@ def check_step(axis: Axis, method: str, step: float) -> None:
 def _modes(axis: Axis) -> Iterator[tuple[str, float, float]]:
     """Yield name, γ and ω² of the modes that move; of slip with the steepest rise of friction in its table."""
     kinetic = axis.friction.kinetic
-    knots = list(zip(kinetic.velocities, kinetic.coefficients, strict=True))
-    slopes = [(mu1 - mu0) / (v1 - v0) for (v0, mu0), (v1, mu1) in pairwise(knots)]
+    breakpoints = list(zip(kinetic.velocities, kinetic.coefficients, strict=True))
+    slopes = [(mu1 - mu0) / (v1 - v0) for (v0, mu0), (v1, mu1) in pairwise(breakpoints)]
     rise = max(0.0, kinetic.end_slope, *slopes)
     yield 'slip', 0.5 * (axis.drive_damping + axis.normal_force * rise) / axis.mass, axis.drive_stiffness / axis.mass
     if isinstance(axis.contact, CompliantContact):
