@@ -41,6 +41,13 @@ KNOWN = {
         | draw.kinetic([0.0, 1e-6], [0.1, 0.001], 1e9) | draw.constant(0.0)
         | {'initial.velocity': 1000.0, 'initial.rest_time': 0.0}, 1.0),
     'a contact that swings without loss touches its limit': (TOUCHING.values, TOUCHING.duration),
+    'inputs jump just before a standstill': (
+        draw.axis(1645.171484711213, 1366171.24229858, 0.0, 16133.620940543216)
+        | draw.contact(2991554.454609089) | draw.static(0.9747166831802524, 1.2293964031446205, 0.0024)
+        | draw.kinetic([0.0, 0.00014838233998598884], [0.8898629567849358, 0.5017861868224635])
+        | draw.steps('drive', 'velocities', [0.0, 4.985474025992694e-06], [-2.3909339958413123e-05, 0.0])
+        | draw.steps('force', 'forces', [0.0, 4.985474025992694e-06], [5951.615297993354, -25499.80368371414])
+        | {'initial.velocity': 2.3909339958413123e-05, 'initial.rest_time': 0.0}, 1.0),
 }
 
 

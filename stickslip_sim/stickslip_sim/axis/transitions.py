@@ -292,6 +292,8 @@ def apply_inputs(p: Parameters, s: State, events: Events, row: int) -> bool:
     if mode == STICK:
         return _press_stick(p, s, events, row)
     direction = s.direction
+    if direction * s.velocity < 0.0:   # standstill is due, and passed by rounding alone
+        s.velocity = 0.0
     speed = abs(s.velocity)
     coefficient, _, psi, _ = friction_line(p, segment_above(p, speed), speed)
     upper = coefficient + s.excess * psi
