@@ -48,6 +48,9 @@ KNOWN = {
         | draw.steps('drive', 'velocities', [0.0, 4.985474025992694e-06], [-2.3909339958413123e-05, 0.0])
         | draw.steps('force', 'forces', [0.0, 4.985474025992694e-06], [5951.615297993354, -25499.80368371414])
         | {'initial.velocity': 2.3909339958413123e-05, 'initial.rest_time': 0.0}, 1.0),
+    'a contact damper leaves no digits of a free motion': (
+        draw.axis(4.64e-5, 111.0, 0.0, 0.0024) | draw.contact(1.22e11, 4e13) | draw.static(2.46e-6, 3.16e-4, 0.0024)
+        | draw.kinetic([0.0], [2.46e-6], 6.7e-9) | draw.constant(-3e5, 1.85e-8), 1e-3),
 }
 
 

@@ -11,13 +11,15 @@ from ...linear.oscillator import Oscillator, amplitude, impulse
 
 
 class ContactMotion(NamedTuple):
-    """A travel y₀ + y₁ t + y₂ t²/2 and a free motion that starts at −y₀ with `free_u`.
+    """A travel y₀ + y₁ t + y₂ t²/2 and a free motion that starts at −y₀ with `free_u` and `free_a`.
 
     P is steady + rate t + second t²/2.
     """
 
     y0: float       # m
     free_u: float   # m/s
+    free_a: float   # m/s²
+    free_push: float   # m/s³, of its jerk what its damping does not make
     steady: float   # N
     rate: float     # N/s
     second: float   # N/s²
@@ -45,21 +47,28 @@ def contact_motion(p: Parameters, s: State, osc: Oscillator) -> ContactMotion:
     force_rate = p.stiffness * s.v + p.damping * s.v_rate + s.f_rate
     y1 = force_rate / (p.stiffness + stiffness) - 2.0 * gamma * y2 / omega2
     y0 = (s.acceleration + 2.0 * gamma * (u - y1) - y2) / omega2
-    return ContactMotion(y0, u - y1, stiffness * (s.deflection + y0) + damping * y1, stiffness * y1 + damping * y2,
-                         stiffness * y2)
+    return ContactMotion(y0, u - y1, s.acceleration - y2, s.jerk - 2.0 * gamma * y2,
+                         stiffness * (s.deflection + y0) + damping * y1, stiffness * y1 + damping * y2, stiffness * y2)
 
 
 @compiled
 def contact_at(p: Parameters, osc: Oscillator, motion: ContactMotion, t: float) -> ContactForce:
-    """Return the contact force at t, in its two parts."""
+    """Return the contact force at t, in its two parts.
+
+    Far over-damped, 2γ v and ω² y leave nothing of their difference; there the acceleration moves freely by itself.
+    """
     stiffness, damping = p.contact_stiffness, p.contact_damping
     gamma, omega2 = osc.gamma, osc.omega2
-    y0, free_u, steady, rate, second = motion
+    y0, free_u, free_a, free_push, steady, rate, second = motion
     g, slope = impulse(osc, t)
     y = free_u * g - y0 * (slope + 2.0 * gamma * g)
     v = free_u * slope + omega2 * y0 * g
-    acc = -2.0 * gamma * v - omega2 * y
-    jerk = -2.0 * gamma * acc - omega2 * v
+    if osc.nu < 0.0:
+        acc = free_a * slope + free_push * g
+        jerk = (free_push - 2.0 * gamma * free_a) * slope - omega2 * free_a * g
+    else:
+        acc = -2.0 * gamma * v - omega2 * y
+        jerk = -2.0 * gamma * acc - omega2 * v
     return ContactForce(steady + (rate + 0.5 * second * t) * t, rate + second * t, stiffness * y + damping * v,
                         stiffness * v + damping * acc, stiffness * acc + damping * jerk,
                         stiffness * jerk - damping * (2.0 * gamma * jerk + omega2 * acc))
