@@ -51,6 +51,11 @@ KNOWN = {
     'a contact damper leaves no digits of a free motion': (
         draw.axis(4.64e-5, 111.0, 0.0, 0.0024) | draw.contact(1.22e11, 4e13) | draw.static(2.46e-6, 3.16e-4, 0.0024)
         | draw.kinetic([0.0], [2.46e-6], 6.7e-9) | draw.constant(-3e5, 1.85e-8), 1e-3),
+    'a contact has rung for 6e12 rad when it breaks away': (
+        draw.axis(0.00010022608670339883, 3032835609.206795, 2.072837170140976e-06, 380584646086039.75)
+        | draw.contact(2.195934537987053e+16) | draw.static(5.793267347457344)
+        | draw.kinetic([0.0, 11.84509070112242], [5.793267347457344, 2.7749957786770683])
+        | draw.constant(-1791.6329384264484), 830.0),
 }
 
 

@@ -185,7 +185,7 @@ class State:
     snap: float               # m/s⁴
     # the next event
     next: float               # s after the segment start
-    next_kind: float          # `types.EventKind`
+    next_kind: float          # `types.EventKind`, or the exact engine's `RENEWAL`
     searched: float           # s after the segment start, up to when it was searched
     iterations: float         # of all searches for events so far
     origin: float             # m, where the run began: position and drive count from there

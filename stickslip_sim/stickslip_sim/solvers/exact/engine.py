@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Advance a state to a time, event by event; read it in between; change its inputs.
 
-The segment start moves only at events and at jumps of an input.  Times between are read off the closed form, so that
-the motion does not depend on how often it is asked for.
+The segment start moves only at events, at jumps of an input, and just before the break-away of a contact that has rung
+for long (`search`).  Times between are read off the closed form, so that the motion does not depend on how often it is
+asked for.
 
 Arrays: `p` parameters of the axis, `s` state (both `axis.layout`), `events` a table of rows.  All functions change `s`
 in place and return the number of rows in use; `advance` also says how it ended.
@@ -47,7 +48,7 @@ from .. import DONE, FULL, NO_PROGRESS, UNSOUND
 from ..sampling import write_sample
 from .account import book_contact, book_parameters, book_works, read_account
 from .judge import event_is_sound
-from .search import find_event
+from .search import RENEWAL, find_event
 from .works import contact_energy, stored_energy
 
 _SAME_INSTANT = 64   # events without progress in time; a sound model needs three
@@ -99,6 +100,10 @@ def advance(p: Parameters, s: State, second: float, fraction: float, events: Eve
         whole = 0.0 if later < 1.0 else math.floor(later)
         if (s.second + whole - second) + ((later - whole) - fraction) > 0.0:
             return row, DONE   # its time, as it is written down, is still to come
+        if s.next_kind == RENEWAL:
+            _start_at(p, s, s.second + whole, later - whole)
+            _begin(p, s)
+            continue
         if row >= events.count:
             return row, FULL
         same_instant = same_instant + 1 if due == 0.0 else 0

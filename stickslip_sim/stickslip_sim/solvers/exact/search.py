@@ -8,7 +8,9 @@ floating point; `judge` holds each event of a run to it.
 * Slip: the acceleration of a linear mode vanishes at a closed-form time, and until then the speed is monotone; so the
   sign of (speed − knot) at that time decides whether the breakpoint, or standstill, is reached before.
 * Coasting: the residual force is a polynomial of the time.
-* Stick: `static_guards` for a rigid contact, `compliant_stick` for a compliant one.
+* Stick: `static_guards` for a rigid contact, `compliant_stick` for a compliant one.  The force of a contact that has rung
+  for long may change by more than rounding within the last bit of the time since the segment start.  Then the segment
+  is renewed a few such bits before the root, without an event, and what is left is searched from there.
 * Any mode under sines: `forced`.
 """
 
@@ -29,12 +31,17 @@ from ...axis.motion import (
 from ...axis.transitions import ACCELERATE, ARREST, BREAKAWAY, COAST, DECELERATE, KNOT, band_of, force_rate
 from ...core.hot_path import inlined
 from ...linear.polynomials import first_crossing
+from ...linear.root_steps import EPSILON
 from ...linear.roots import first_passage
 from ...linear.zeros import finite_horizon, half_period
 from .compliant_stick import compliant_stick
 from .forced import forced_event
 from .static_guards import rigid_stick
 
+RENEWAL = -1.0           # in place of an `types.EventKind`: a new segment start, and no event
+_LONG_RING = 1e10        # (ω t)² of a contact that has rung for long
+_DIED_OUT = 40.0         # γ t of one that rings no more
+_LEAD = 8.0 * EPSILON    # of the time of a root: more than it is off by
 _SURELY = 1e-9   # of the change over a tick: far more than it changes within a STAMP
 
 
@@ -53,7 +60,21 @@ def find_event(p: Parameters, s: State, due: float) -> None:
         _slipping(p, s, horizon)
     else:
         s.next_kind = BREAKAWAY
-        s.next = compliant_stick(p, s, horizon) if p.compliant != 0.0 else rigid_stick(p, s, horizon)
+        if p.compliant != 0.0:
+            _pressed(p, s, horizon)
+        else:
+            s.next = rigid_stick(p, s, horizon)
+
+
+@inlined
+def _pressed(p: Parameters, s: State, horizon: float) -> None:
+    """Search a compliant stick, also for roots whose renewal is within the horizon."""
+    t = compliant_stick(p, s, horizon * (1.0 + 2.0 * _LEAD))
+    s.next = t
+    if s.nu > 0.0 and t < math.inf and s.omega2 * t * t > _LONG_RING and s.gamma * t < _DIED_OUT:
+        s.next_kind = RENEWAL
+        s.next = t * (1.0 - _LEAD)
+        s.at.time = -1.0
 
 
 @inlined
