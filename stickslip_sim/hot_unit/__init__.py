@@ -10,7 +10,7 @@
 | `scope.py`       | what the names of a file mean in the unit                                |
 | `local_types.py` | the types of the locals of a function                                    |
 | `functions.py`   | a function as Cython takes it                                            |
-| `records.py`, `records.pyx.in` | the records of `axis/layout.py` in C |
+| `records.py`, `records.pyx.in` | the records in C                           |
 | `loops.pyx.in`   | what runs from axis to axis or piece to piece without Python, by hand    |
 | `unit.py`        | all of it as one text                                                    |
 | `build.py`       | the command of setuptools that compiles it                               |

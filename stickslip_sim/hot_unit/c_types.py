@@ -11,7 +11,7 @@ from .sources import Source, Sources
 
 DOUBLE, LONG, BINT, COMPLEX = 'double', 'long', 'bint', 'double complex'
 _PLAIN = {'float': DOUBLE, 'int': LONG, 'bool': BINT, 'complex': COMPLEX, 'None': 'void'}
-_ROWS = {'EventRow': 'EventRow*', 'Row': 'double*'}   # of a table: pointers
+_ROWS = {'EventRow': 'EventRow*', 'AxisFigures': 'AxisFigures*', 'KeptRounds': 'KeptRound*'}   # of a table: pointers
 _OBJECTS = frozenset({'Parameters', 'State', 'Events', 'Sinusoids', 'SampleRow', 'EnergyRow'})
 
 Kind = Union[str, 'TupleKind']   # a type in Cython, or the types of a tuple
@@ -105,4 +105,4 @@ def declared(annotation: ast.expr | None, what: str, node: ast.AST, source: Sour
         return kind_of(annotation, named)
     except UnknownTypeError as unknown:
         raise UnitError(source.path, annotation, f'{what} has the type {unknown}, which C does not have; take float, '
-                        'int, bool, complex, a tuple of them or a record of axis/layout.py') from None
+                        'int, bool, complex, a tuple of them or a record') from None

@@ -1,56 +1,77 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The records of `axis/layout.py` in C: structures with the same fields in the same order."""
+"""The records of the hot path in C: structures with the same fields in the same order."""
 
-import importlib.util
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterator
+from importlib import import_module
+from importlib.machinery import ModuleSpec
+from importlib.util import module_from_spec
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+# the files with records, and the one that tells their fields
+RECORD_FILES = ('axis/fields.py', 'axis/layout.py', 'axis/rows.py', 'solvers/exact/axis_figures.py')
+_APART = 'package_of_the_hot_unit'
 
-def record_words(layout: Path) -> dict[str, Any]:
+
+def record_words(package: Path) -> dict[str, Any]:
     """Return what stands in the template of the records: structures, fields, and how many numbers they hold."""
-    of = _run(layout)
-    nested = {field.record for field in of.STATE_FIELDS if field.record}
-    structures = {of.Segment, of.SinusoidRecord, of.GivenSinusoid, of.EventRow, *nested}
+    fields, layout, rows, axis_figures = (_module(package, name) for name in RECORD_FILES)
+    structures = _Structures(fields)
+    for record in (layout.Segment, layout.SinusoidRecord, rows.GivenSinusoid, rows.EventRow, axis_figures.AxisFigures,
+                   axis_figures.KeptRound):
+        structures.add(record)
+    state = [structures.declared(field, public='public ') for field in fields.record_fields(layout.State)]
     return {
-        'STRUCTURES': '\n\n'.join(_structure(record.__name__, of.names_of(record))
-                                  for record in sorted(structures, key=lambda record: record.__name__)),
-        'PARAMETER_FIELDS': ', '.join(of.PARAMETER_FIELDS),
-        'PARAMETER_SIZE': len(of.PARAMETER_FIELDS),
-        'SEGMENT_SIZE': len(of.SEGMENT_FIELDS),
-        'STATE_FIELDS': '\n    '.join(map(_state_field, of.STATE_FIELDS)),
-        'STATE_SIZE': sum(field.size for field in of.STATE_FIELDS),
-        'SINUSOID_SIZE': len(of.SINUSOID_FIELDS),
-        'GIVEN_SINUSOID_SIZE': len(of.GIVEN_SINUSOID_FIELDS),
-        'EVENT_VALUES': ', '.join(f'e.{name}' for name in of.EVENT_FIELDS),
-        'SAMPLE_FIELDS': ', '.join(of.SAMPLE_FIELDS),
-        'SAMPLE_VALUES': _of_self(of.SAMPLE_FIELDS),
-        'ENERGY_FIELDS': ', '.join(of.ENERGY_FIELDS),
-        'ENERGY_VALUES': _of_self(of.ENERGY_FIELDS),
+        'STRUCTURES': '\n\n'.join(structures.texts.values()),
+        'PARAMETER_FIELDS': ', '.join(layout.PARAMETER_FIELDS),
+        'PARAMETER_SIZE': len(layout.PARAMETER_FIELDS),
+        'SEGMENT_SIZE': len(layout.SEGMENT_FIELDS),
+        'STATE_FIELDS': '\n    '.join(f'cdef {field}' for field in state),
+        'STATE_SIZE': len(layout.STATE_PLACES),
+        'SINUSOID_SIZE': len(fields.names_of(layout.SinusoidRecord)),
+        'GIVEN_SINUSOID_SIZE': len(rows.GIVEN_SINUSOID_FIELDS),
+        'EVENT_VALUES': _of('e', fields.names_of(rows.EventRow)),
+        'SAMPLE_FIELDS': ', '.join(fields.names_of(rows.SampleRow)),
+        'SAMPLE_VALUES': _of('self', fields.names_of(rows.SampleRow)),
+        'ENERGY_FIELDS': ', '.join(fields.names_of(rows.EnergyRow)),
+        'ENERGY_VALUES': _of('self', fields.names_of(rows.EnergyRow)),
+        'FIGURES': len(axis_figures.FIGURE_NAMES),
+        'ROUND_SIZE': axis_figures.ROUND_SIZE,
     }
 
 
-def _run(layout: Path) -> ModuleType:
-    """Return the file as a module; it needs nothing but the standard library."""
-    spec = importlib.util.spec_from_file_location('layout_of_the_hot_unit', layout)
-    assert spec is not None
-    assert spec.loader is not None
-    module = sys.modules[spec.name] = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+class _Structures:
+    """The structures in C, each behind those that it holds."""
+
+    def __init__(self, fields: ModuleType) -> None:
+        self._fields, self.texts = fields, dict[str, str]()
+
+    def add(self, record: type[Any]) -> None:
+        """Write a record, once."""
+        if record.__name__ not in self.texts:
+            lines = [self.declared(field) for field in self._fields.record_fields(record)]
+            self.texts[record.__name__] = '\n    '.join([f'cdef struct {record.__name__}:', *lines]) + '\n'
+
+    def declared(self, field: Any, public: str = '') -> str:
+        """Return the declaration of a field; of plain numbers one that Python sees, where that is asked for."""
+        if field.record:
+            self.add(field.record)
+        kind = field.record.__name__ if field.record else f'{public}double'
+        return f'{kind} {field.name}' + (f'[{field.length}]' if field.length else '')
 
 
-def _structure(name: str, fields: Iterable[str]) -> str:
-    return f'cdef struct {name}:\n    double {", ".join(fields)}\n'
+def _module(package: Path, name: str) -> ModuleType:
+    """Import a file of the package, which needs nothing but its like and the standard library, without the package."""
+    path = [_APART, *name.removesuffix('.py').split('/')]
+    for depth in range(1, len(path)):
+        spec = ModuleSpec('.'.join(path[:depth]), None, is_package=True)
+        spec.submodule_search_locations = [str(package.joinpath(*path[1:depth]))]
+        sys.modules.setdefault(spec.name, module_from_spec(spec))
+    return import_module('.'.join(path))
 
 
-def _state_field(field: Any) -> str:
-    kind = field.record.__name__ if field.record else 'public double'
-    return f'cdef {kind} {field.name}' + (f'[{field.length}]' if field.length else '')
-
-
-def _of_self(fields: Iterable[str]) -> str:
-    return ', '.join(f'self.{name}' for name in fields)
+def _of(whole: str, names: Iterator[str]) -> str:
+    return ', '.join(f'{whole}.{name}' for name in names)

@@ -10,7 +10,6 @@ from pathlib import Path
 from .errors import UnitError
 
 ROOMS = ('friction', 'linear', 'axis', 'solvers')
-LAYOUT = 'axis/layout.py'
 MARKS = {'compiled': 'cdef', 'inlined': 'cdef inline'}
 
 

@@ -10,9 +10,9 @@ from typing import Any
 from .c_types import NamedKinds
 from .constants import Constants
 from .functions import written
-from .records import record_words
+from .records import RECORD_FILES, record_words
 from .scope import Scope, rows_of_numbers, unit_name
-from .sources import LAYOUT, Source, Sources, digest_of
+from .sources import Source, Sources, digest_of
 
 # the functions that Python calls, by file
 ENTRIES = {
@@ -20,7 +20,7 @@ ENTRIES = {
     'solvers/exact/judge.py': ('is_sound',),
     'solvers/fixed_step/loop.py': ('start', 'advance', 'set_inputs', 'set_parameters', 'sample'),
 }
-_FIGURES = 'solvers/exact/many_axes.py'
+_MANY_AXES = 'solvers/exact/many_axes.py'
 _HERE = Path(__file__).parent
 
 
@@ -29,8 +29,8 @@ def write_unit(package: Path) -> str:
     sources = Sources(package)
     constants, kinds = Constants(sources), NamedKinds(sources)
     hot = sources.hot()
-    names = [LAYOUT, *(source.name for source in hot)]
-    words = {**record_words(package / LAYOUT), **constants.of(_FIGURES), 'SOURCES': repr(tuple(names)),
+    names = sorted({*RECORD_FILES, *(source.name for source in hot)})
+    words = {**record_words(package), **constants.of(_MANY_AXES), 'SOURCES': repr(tuple(names)),
              'DIGEST': digest_of(package, names)}
     return '\n\n'.join([
         _filled('records.pyx.in', words),

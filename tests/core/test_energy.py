@@ -363,7 +363,7 @@ from tests.support.axes import COMPLIANT, RIGID, paper_axis
 def late(find):
     def find_late(p, s, due):
         find(p, s, due)
-        s.next *= 1.0 + 1e-6
+        s.next.time *= 1.0 + 1e-6
     return find_late
 def jumping(transition):
     def jump(p, s, events, row, before):

@@ -77,7 +77,7 @@ def swapped(osc: Oscillator, both: bool) -> tuple[float, int]:
     ('def f(t) -> float: return t', 'the argument t of f has no type; annotate it'),
     ('def f(t: float): return t', 'what f returns has no type; annotate it'),
     ('def f(t: dict[str, float]) -> float: return 0.0', 'the argument t of f has the type dict[str, float], which C '
-     'does not have; take float, int, bool, complex, a tuple of them or a record of axis/layout.py'),
+     'does not have; take float, int, bool, complex, a tuple of them or a record'),
     ('def f(t: float = 1.0) -> float: return t',
      'f has more than plain arguments; write each one out, without defaults'),
     ('def f(t: float) -> float: return math.gamma(t)', 'f uses math.gamma, which the unit does not take from C'),

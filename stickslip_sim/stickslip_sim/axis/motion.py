@@ -89,10 +89,10 @@ def kinetic_at_rest(p: Parameters) -> float:
 @inlined
 def begin_motion(p: Parameters, s: State) -> None:
     """Set the closed form of the motion from the segment start on."""
-    v = s.v
+    v = s.inputs.v
     if s.sinusoid_count != 0.0:
         begin_sinusoids(p, s)
-        v = s.base_v
+        v = s.inputs.base_v
     mode = s.mode
     damping, stiffness, contact = p.damping, p.stiffness, 0.0
     if mode == COASTING or is_rigid_stick(p, s):
@@ -106,22 +106,22 @@ def begin_motion(p: Parameters, s: State) -> None:
             slope += s.excess * psi_slope
         damping += p.normal_force * slope
     gamma, omega2 = 0.5 * damping / p.mass, (stiffness + contact) / p.mass
-    if gamma != s.gamma or omega2 != s.omega2:
+    if gamma != s.oscillator.gamma or omega2 != s.oscillator.omega2:
         k = int(mode)
-        if gamma != s.kept[k].gamma or omega2 != s.kept[k].omega2:
-            (s.kept[k].gamma, s.kept[k].omega2, s.kept[k].nu, s.kept[k].slow,
-             s.kept[k].fast) = oscillator(gamma, omega2)
-        s.gamma, s.omega2, s.nu, s.slow, s.fast = (
-            gamma, omega2, s.kept[k].nu, s.kept[k].slow, s.kept[k].fast)
-    force_rate = stiffness * (v - s.velocity) + p.damping * s.v_rate + s.f_rate
+        if gamma != s.cache.oscillators[k].gamma or omega2 != s.cache.oscillators[k].omega2:
+            (s.cache.oscillators[k].gamma, s.cache.oscillators[k].omega2, s.cache.oscillators[k].nu,
+             s.cache.oscillators[k].slow, s.cache.oscillators[k].fast) = oscillator(gamma, omega2)
+        s.oscillator.gamma, s.oscillator.omega2, s.oscillator.nu, s.oscillator.slow, s.oscillator.fast = (
+            gamma, omega2, s.cache.oscillators[k].nu, s.cache.oscillators[k].slow, s.cache.oscillators[k].fast)
+    force_rate = stiffness * (v - s.velocity) + p.damping * s.inputs.v_rate + s.inputs.f_rate
     s.jerk = (force_rate - contact * s.velocity) / p.mass
-    s.snap = stiffness * s.v_rate / p.mass
+    s.snap = stiffness * s.inputs.v_rate / p.mass
 
 
 @inlined
 def oscillator_of(s: State) -> Oscillator:
     """Return the oscillator of the mode."""
-    return Oscillator(s.gamma, s.omega2, s.nu, s.slow, s.fast)
+    return Oscillator(s.oscillator.gamma, s.oscillator.omega2, s.oscillator.nu, s.oscillator.slow, s.oscillator.fast)
 
 
 @inlined
@@ -132,19 +132,20 @@ def tick_integrals(s: State, t: float) -> ShortIntegrals:
     for it is kept; the distance from there is less than 1e-11 of t.  The result depends on t alone, not on what is
     kept.  What has rung for so long that this is part of a turn is evaluated at t.
     """
-    if s.omega2 * t * t > _LONG_RING:
+    if s.oscillator.omega2 * t * t > _LONG_RING:
         return short_integrals(oscillator_of(s), t)
     big = _SPLIT * t
     near = big - (big - t)
-    gamma, omega2 = s.gamma, s.omega2
-    if near != s.near.time or gamma != s.near.gamma or omega2 != s.near.omega2:
-        s.near.time, s.near.gamma, s.near.omega2 = near, gamma, omega2
-        s.near.g, s.near.rate, s.near.first, s.near.second = short_integrals(oscillator_of(s), near)
+    gamma, omega2 = s.oscillator.gamma, s.oscillator.omega2
+    if near != s.cache.near.time or gamma != s.cache.near.gamma or omega2 != s.cache.near.omega2:
+        s.cache.near.time, s.cache.near.gamma, s.cache.near.omega2 = near, gamma, omega2
+        s.cache.near.g, s.cache.near.rate, s.cache.near.first, s.cache.near.second = short_integrals(
+            oscillator_of(s), near)
     d = t - near
-    g, rate, first = s.near.g, s.near.rate, s.near.first
+    g, rate, first = s.cache.near.g, s.cache.near.rate, s.cache.near.first
     second_rate = -2.0 * gamma * rate - omega2 * g
     return ShortIntegrals(g + (rate + 0.5 * second_rate * d) * d, rate + second_rate * d,
-                          first + (g + 0.5 * rate * d) * d, s.near.second + (first + 0.5 * g * d) * d)
+                          first + (g + 0.5 * rate * d) * d, s.cache.near.second + (first + 0.5 * g * d) * d)
 
 
 @compiled
@@ -179,13 +180,13 @@ def _response(p: Parameters, s: State, t: float, g: float, rate: float, first: f
     """
     u, a, jerk = s.velocity, s.acceleration, s.jerk
     acceleration = a * rate + jerk * g
-    if not (s.omega2 * t * t >= 1.0 if s.nu > 0.0 else s.slow * t <= -1.0):
+    if not (s.oscillator.omega2 * t * t >= 1.0 if s.oscillator.nu > 0.0 else s.oscillator.slow * t <= -1.0):
         return u * t + a * first + jerk * second, u + a * g + jerk * first, acceleration
-    settled = s.base_v if s.sinusoid_count != 0.0 else s.v
-    if s.mode == STICK or s.f_rate != 0.0 or s.v_rate != 0.0:
+    settled = s.inputs.base_v if s.sinusoid_count != 0.0 else s.inputs.v
+    if s.mode == STICK or s.inputs.f_rate != 0.0 or s.inputs.v_rate != 0.0:
         contact = p.contact_stiffness if s.mode == STICK else 0.0
-        settled = (p.stiffness * settled + p.damping * s.v_rate + s.f_rate) / (p.stiffness + contact)
-    free, damping = u - settled, 2.0 * s.gamma
+        settled = (p.stiffness * settled + p.damping * s.inputs.v_rate + s.inputs.f_rate) / (p.stiffness + contact)
+    free, damping = u - settled, 2.0 * s.oscillator.gamma
     return (settled * t + (free * (g + damping * first) + a * first),
             settled + (free * (rate + damping * g) + a * g), acceleration)
 
@@ -193,18 +194,19 @@ def _response(p: Parameters, s: State, t: float, g: float, rate: float, first: f
 @inlined
 def travel_at(p: Parameters, s: State) -> tuple[float, float, float]:
     """Return `travel` for the time AT of the last evaluation."""
-    return _response(p, s, s.at.time, s.at.g, s.at.rate, s.at.first, s.at.second)
+    return _response(p, s, s.cache.at.time, s.cache.at.g, s.cache.at.rate, s.cache.at.first, s.cache.at.second)
 
 
 @inlined
 def travel_to_event(p: Parameters, s: State, t: float) -> tuple[float, float, float]:
     """Return `travel` for the time of the next event, or where its search ended: from the last evaluation there."""
     y, v, acceleration = travel_at(p, s)
-    d = t - s.at.time
+    d = t - s.cache.at.time
     if d == 0.0:
         return y, v, acceleration
-    second_rate = s.jerk * s.at.rate - s.acceleration * (2.0 * s.gamma * s.at.rate + s.omega2 * s.at.g)
-    snap = -2.0 * s.gamma * second_rate - s.omega2 * acceleration
+    gamma, omega2 = s.oscillator.gamma, s.oscillator.omega2
+    second_rate = s.jerk * s.cache.at.rate - s.acceleration * (2.0 * gamma * s.cache.at.rate + omega2 * s.cache.at.g)
+    snap = -2.0 * gamma * second_rate - omega2 * acceleration
     return (y + (v + (0.5 * acceleration + _SIXTH * second_rate * d) * d) * d,
             v + (acceleration + (0.5 * second_rate + _SIXTH * snap * d) * d) * d,
             acceleration + (second_rate + 0.5 * snap * d) * d)
@@ -214,8 +216,8 @@ def travel_to_event(p: Parameters, s: State, t: float) -> tuple[float, float, fl
 def drive_travel(s: State, t: float) -> float:
     """Return how far the drive moves within t after the segment start."""
     if s.sinusoid_count != 0.0:
-        return (s.base_v + 0.5 * s.v_rate * t) * t + sinusoid_drive_travel(s, t)
-    return (s.v + 0.5 * s.v_rate * t) * t
+        return (s.inputs.base_v + 0.5 * s.inputs.v_rate * t) * t + sinusoid_drive_travel(s, t)
+    return (s.inputs.v + 0.5 * s.inputs.v_rate * t) * t
 
 
 @inlined
@@ -228,10 +230,10 @@ def spring_after(p: Parameters, s: State, t: float, drive: float, y: float, u: f
     stretch = s.spring + (drive - y)
     if abs(drive) <= _LONG * abs(stretch) or s.mode == STICK or p.stiffness == 0.0 or s.sinusoid_count != 0.0:
         return stretch
-    v = s.v + s.v_rate * t
+    v = s.inputs.v + s.inputs.v_rate * t
     if s.mode == COASTING:
-        return s.spring + (0.5 * (s.v + v) - u) * t
-    force = friction_force(p, s, 0.0, u, 0.0) + p.mass * a - (s.f + s.f_rate * t)
+        return s.spring + (0.5 * (s.inputs.v + v) - u) * t
+    force = friction_force(p, s, 0.0, u, 0.0) + p.mass * a - (s.inputs.f + s.inputs.f_rate * t)
     return (force - p.damping * (v - u)) / p.stiffness
 
 
@@ -243,7 +245,7 @@ def move_start(p: Parameters, s: State, second: float, fraction: float, t: float
         y, u, a = s.velocity * t, s.velocity, 0.0
     elif is_rigid_stick(p, s):
         y, u, a = 0.0, 0.0, 0.0
-    elif s.at.time >= 0.0 and (t == s.next or t == s.at.time):
+    elif s.cache.at.time >= 0.0 and (t == s.next.time or t == s.cache.at.time):
         y, u, a = travel_to_event(p, s, t)
     else:
         y, u, a = travel(p, s, t)
@@ -255,8 +257,8 @@ def move_start(p: Parameters, s: State, second: float, fraction: float, t: float
     s.drive += drive
     s.velocity = u
     s.acceleration = a
-    s.v += s.v_rate * t
-    s.f += s.f_rate * t
+    s.inputs.v += s.inputs.v_rate * t
+    s.inputs.f += s.inputs.f_rate * t
     s.second = second
     s.fraction = fraction
     if s.sinusoid_count != 0.0:

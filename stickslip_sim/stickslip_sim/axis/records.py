@@ -2,10 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """The records that the solvers work on: those of the compiled unit, or those of plain Python."""
 
+from types import SimpleNamespace
 from typing import Any
 
 from ..core.hot_path import UNIT
-from . import layout
+from .layout import Parameters, State
+from .rows import EnergyRow, Events, SampleRow, Sinusoids
 
-# the unit has its own Parameters, State, Events, Sinusoids, SampleRow and EnergyRow, with the same fields
-RECORDS: Any = layout if UNIT is None else UNIT
+PLAIN: Any = SimpleNamespace(Parameters=Parameters, State=State, Events=Events, Sinusoids=Sinusoids,
+                             SampleRow=SampleRow, EnergyRow=EnergyRow)
+# the unit has its own, with the same fields
+RECORDS: Any = PLAIN if UNIT is None else UNIT

@@ -18,7 +18,8 @@ from typing import NamedTuple
 from ..core.hot_path import compiled
 from ..linear.oscillator import Oscillator
 from ..linear.waves import TURN, phase_at, turns, wave_response
-from .layout import Parameters, Sinusoids, State
+from .layout import Parameters, State
+from .rows import Sinusoids
 
 _ROUNDING = 8.0 * 2.220446049250313e-16
 
@@ -42,7 +43,7 @@ def load_sinusoids(s: State, given: Sinusoids) -> None:
     for k in range(given.count):
         s.sinusoids[k].frequency, s.sinusoids[k].phase = given.rows[k].frequency, given.rows[k].phase
         s.sinusoids[k].v, s.sinusoids[k].f = given.rows[k].v, given.rows[k].f
-    s.base_v, s.base_f = s.v, s.f
+    s.inputs.base_v, s.inputs.base_f = s.inputs.v, s.inputs.f
     if given.count > 0:
         _add_sinusoids(s)
 
@@ -50,7 +51,7 @@ def load_sinusoids(s: State, given: Sinusoids) -> None:
 @compiled
 def same_sinusoids(s: State, v: float, f: float, given: Sinusoids) -> bool:
     """Whether these are the sinusoids of the state, on top of v and f."""
-    if s.base_v != v or s.base_f != f or s.sinusoid_count != given.count:
+    if s.inputs.base_v != v or s.inputs.base_f != f or s.sinusoid_count != given.count:
         return False
     for k in range(given.count):
         if (s.sinusoids[k].frequency != given.rows[k].frequency or s.sinusoids[k].phase != given.rows[k].phase
@@ -62,27 +63,27 @@ def same_sinusoids(s: State, v: float, f: float, given: Sinusoids) -> bool:
 @compiled
 def move_sinusoids(s: State, t: float) -> None:
     """Bring the inputs to the new time of the segment start, t after the old one."""
-    s.base_v += s.v_rate * t
-    s.base_f += s.f_rate * t
+    s.inputs.base_v += s.inputs.v_rate * t
+    s.inputs.base_f += s.inputs.f_rate * t
     _add_sinusoids(s)
 
 
 @compiled
 def _add_sinusoids(s: State) -> None:
-    s.v, s.f = s.base_v, s.base_f
+    s.inputs.v, s.inputs.f = s.inputs.base_v, s.inputs.base_f
     for k in range(int(s.sinusoid_count)):
         phase = phase_at(s.sinusoids[k].frequency, s.sinusoids[k].phase, s.second, s.fraction)
         s.sinusoids[k].turns = phase
         s.sinusoids[k].sine = math.sin(TURN * phase)
         s.sinusoids[k].cosine = math.cos(TURN * phase)
-        s.v += s.sinusoids[k].v * s.sinusoids[k].sine
-        s.f += s.sinusoids[k].f * s.sinusoids[k].sine
+        s.inputs.v += s.sinusoids[k].v * s.sinusoids[k].sine
+        s.inputs.f += s.sinusoids[k].f * s.sinusoids[k].sine
 
 
 @compiled
 def inputs_at(s: State, second: float, fraction: float, t: float) -> tuple[float, float]:
     """Return v and F_e at the time second + fraction, t after the segment start."""
-    v, f = s.base_v + s.v_rate * t, s.base_f + s.f_rate * t
+    v, f = s.inputs.base_v + s.inputs.v_rate * t, s.inputs.base_f + s.inputs.f_rate * t
     for k in range(int(s.sinusoid_count)):
         sine = math.sin(TURN * phase_at(s.sinusoids[k].frequency, s.sinusoids[k].phase, second, fraction))
         v += s.sinusoids[k].v * sine
@@ -160,10 +161,11 @@ def forced_rate(p: Parameters, s: State) -> tuple[float, float]:
     Both count as 0 within rounding.  A transition asks before `begin_motion` has set the force rates of its instant.
     """
     begin_sinusoids(p, s)
-    base = p.stiffness * (s.base_v - s.velocity) + p.damping * s.v_rate + s.f_rate
-    size = p.stiffness * (abs(s.base_v) + abs(s.velocity)) + p.damping * abs(s.v_rate) + abs(s.f_rate)
+    base = p.stiffness * (s.inputs.base_v - s.velocity) + p.damping * s.inputs.v_rate + s.inputs.f_rate
+    size = (p.stiffness * (abs(s.inputs.base_v) + abs(s.velocity)) + p.damping * abs(s.inputs.v_rate)
+            + abs(s.inputs.f_rate))
     rate = _rate_of_order(s, 0, base, size)
-    ramp = p.stiffness * s.v_rate
+    ramp = p.stiffness * s.inputs.v_rate
     second_rate = _rate_of_order(s, 1, ramp, abs(ramp))
     order = 2
     while second_rate == 0.0 and order < 4:

@@ -8,7 +8,7 @@ rate, then of the rate's rate, decides.
 
 from ..core.hot_path import compiled, inlined
 from ..core.types import EventKind
-from .layout import Events, Parameters, State
+from .layout import Parameters, State
 from .motion import (
     ACCELERATING,
     COASTING,
@@ -26,6 +26,7 @@ from .motion import (
     segment_below,
     static_limit,
 )
+from .rows import Events
 from .sinusoids import forced_rate
 
 BREAKAWAY = float(EventKind.BREAKAWAY)
@@ -44,13 +45,13 @@ _TIE = 1e-15   # of the friction force: a closed-form acceleration smaller than 
 @inlined
 def applied_force(p: Parameters, s: State) -> float:
     """Return F_d + F_e at the segment start."""
-    return drive_force(p, s.spring, s.v, s.velocity) + s.f
+    return drive_force(p, s.spring, s.inputs.v, s.velocity) + s.inputs.f
 
 
 @inlined
 def force_rounding(p: Parameters, s: State, friction: float) -> float:
     """Return the size of rounding errors in a sum of the forces at the segment start."""
-    return _ROUNDING * (p.stiffness * abs(s.spring) + p.damping * (abs(s.v) + abs(s.velocity)) + abs(s.f)
+    return _ROUNDING * (p.stiffness * abs(s.spring) + p.damping * (abs(s.inputs.v) + abs(s.velocity)) + abs(s.inputs.f)
                         + p.normal_force * friction)
 
 
@@ -65,7 +66,7 @@ def write_event(p: Parameters, s: State, events: Events, row: int, kind: float, 
     events.rows[row].position = s.origin + s.position
     events.rows[row].velocity = s.velocity
     events.rows[row].drive = s.origin + s.drive
-    events.rows[row].drive_force = drive_force(p, s.spring, s.v, s.velocity)
+    events.rows[row].drive_force = drive_force(p, s.spring, s.inputs.v, s.velocity)
     events.rows[row].friction = friction
     events.rows[row].static = limit
     events.rows[row].rest = s.rest
@@ -76,11 +77,11 @@ def force_rate(p: Parameters, s: State) -> tuple[float, float]:
     """Return the rate of F_d + F_e at constant velocity, and the rate's rate; within rounding of 0 the first is 0."""
     if s.sinusoid_count != 0.0:
         return forced_rate(p, s)
-    pushed = p.damping * s.v_rate + s.f_rate
-    rate = p.stiffness * (s.v - s.velocity) + pushed
-    if abs(rate) <= _ROUNDING * (p.stiffness * (abs(s.v) + abs(s.velocity)) + abs(pushed)):
+    pushed = p.damping * s.inputs.v_rate + s.inputs.f_rate
+    rate = p.stiffness * (s.inputs.v - s.velocity) + pushed
+    if abs(rate) <= _ROUNDING * (p.stiffness * (abs(s.inputs.v) + abs(s.velocity)) + abs(pushed)):
         rate = 0.0
-    return rate, p.stiffness * s.v_rate
+    return rate, p.stiffness * s.inputs.v_rate
 
 
 @inlined
@@ -228,8 +229,8 @@ def turn(p: Parameters, s: State, events: Events, row: int) -> None:
     rate, second_rate = force_rate(p, s)
     slides_steadily = rate == 0.0 and second_rate == 0.0
     if band > 0.0 or slides_steadily:
-        if slides_steadily and s.f_rate == 0.0:
-            s.velocity = s.v
+        if slides_steadily and s.inputs.f_rate == 0.0:
+            s.velocity = s.inputs.v
         s.mode = COASTING
         s.residual = band if mode == ACCELERATING else 0.0
         kind = COAST
@@ -267,7 +268,7 @@ def cross_breakpoint(p: Parameters, s: State, events: Events, row: int, before: 
     So is the acceleration of the balance of forces there, but for their rounding; that of the closed form is off by the
     rounding of how it began, `before`, and of what the segment gave to it.  The one that is off less is taken.
     """
-    lost = p.mass * (abs(before) + 2.0 * abs(s.gamma * s.velocity))
+    lost = p.mass * (abs(before) + 2.0 * abs(s.oscillator.gamma * s.velocity))
     step = 1.0 if s.mode == ACCELERATING else -1.0
     upper = int(s.segment + (1.0 if step > 0.0 else 0.0))
     speed = breakpoint_speed(p, upper)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..axis.layout import GIVEN_SINUSOID_FIELDS
+from ..axis.rows import GIVEN_SINUSOID_FIELDS
 from ..core.errors import SolverError
 from ..core.hot_path import UNIT
 from ..core.types import Sample

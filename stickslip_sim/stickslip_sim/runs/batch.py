@@ -12,7 +12,7 @@ threads.
 import os
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -36,7 +36,8 @@ from ..axis.layout import (
 from ..core.errors import InputError
 from ..scene import PARAMETERS
 from ..solvers import exact
-from ..solvers.exact import many_axes
+from ..solvers.exact.axis_figures import FIGURE_NAMES, ROUND_SIZE, AxisFigures
+from ..solvers.exact.many_axes import SETTLED
 
 Numbers = NDArray[np.float64]
 
@@ -136,12 +137,11 @@ def run_rounds(axis: Axis, duration: float, window: int, *, drive_velocity: Arra
 
 
 def rounds_in(out: Numbers) -> Rounds:
-    """Return what rows of figures, filled by `solvers.exact.many_axes`, say of the rounds."""
-    columns: dict[str, Any] = {name: out[:, getattr(many_axes, name.upper())].copy() for name in Rounds.__slots__
-                               if name != 'window'}
+    """Return what rows of figures, filled by `solvers.exact.run_axes`, say of the rounds."""
+    columns: dict[str, Any] = {name: _figure(out, name) for name in Rounds.__slots__ if name != 'window'}
     columns['lasts'] = columns['lasts'] == 1.0
-    kept = (out.shape[1] - many_axes.ROW_SIZE) // many_axes.ROUND_SIZE
-    window = out[:, many_axes.ROW_SIZE:].reshape(len(out), kept, many_axes.ROUND_SIZE)
+    window = out[:, len(FIGURE_NAMES):].reshape(len(out), -1, ROUND_SIZE)
+    kept = window.shape[1]
     turns = (columns['round_count'][:, None].astype(int) + np.arange(kept)) % max(kept, 1)
     return Rounds(**columns, window=np.take_along_axis(window, turns[:, :, None], axis=1))
 
@@ -173,7 +173,7 @@ def _rows_of(axis: Axis, duration: float, window: int, drive_velocity: ArrayLike
 def _run(parameters: Numbers, inputs: Numbers, starts: Numbers, duration: float, window: int,
          threads: int) -> Numbers:
     count = len(parameters)
-    out = np.full((count, many_axes.ROW_SIZE + many_axes.ROUND_SIZE * window), np.nan)
+    out = new_rows(count, window)
 
     def work(first: int) -> None:
         of = exact.SOLVER.records
@@ -191,14 +191,22 @@ def _run(parameters: Numbers, inputs: Numbers, starts: Numbers, duration: float,
     return out
 
 
+def new_rows(count: int, window: int = 0) -> Numbers:
+    """Return rows for so many axes, with room for their latest `window` rounds, for `solvers.exact.run_axes`."""
+    return np.tile([*astuple(AxisFigures()), *[np.nan] * (ROUND_SIZE * window)], (count, 1))
+
+
 def figures_in(out: Numbers) -> BatchFigures:
-    """Return the figures in rows that were filled by `solvers.exact.many_axes`."""
-    columns: dict[str, Any] = {name: out[:, getattr(many_axes, name.upper())].copy() for name in BatchFigures.__slots__
-                               if name != 'settled'}
-    before = out[:, many_axes.PERIOD_BEFORE]
-    columns['settled'] = np.abs(columns['period'] - before) < many_axes.SETTLED * columns['period']
+    """Return the figures in rows that were filled by `solvers.exact.run_axes`."""
+    columns: dict[str, Any] = {name: _figure(out, name) for name in BatchFigures.__slots__ if name != 'settled'}
+    change = np.abs(columns['period'] - _figure(out, 'period_before'))
+    columns['settled'] = change < SETTLED * columns['period']
     columns['complete'] = columns['complete'] == 1.0
     return BatchFigures(**columns)
+
+
+def _figure(out: Numbers, name: str) -> Numbers:
+    return out[:, FIGURE_NAMES.index(name)].copy()
 
 
 def _in_range(parameter: str, name: str, values: ArrayLike) -> Numbers:

@@ -5,8 +5,9 @@
 from collections.abc import Callable
 from typing import Any, NamedTuple, Protocol, runtime_checkable
 
-from ..axis import layout
-from ..axis.layout import EnergyRow, Events, Parameters, SampleRow, Sinusoids, State
+from ..axis.layout import Parameters, State
+from ..axis.records import PLAIN
+from ..axis.rows import EnergyRow, Events, SampleRow, Sinusoids
 from ..core.input_profile import InputProfile
 
 # how `advance` ended: at its time, with a full event table, stuck, before a state beyond the range of numbers, or at an
@@ -15,7 +16,7 @@ DONE, FULL, NO_PROGRESS, OUT_OF_RANGE, UNSOUND = 0, 1, 2, 3, 4
 
 
 class Records(Protocol):
-    """Where the classes of records are that a solver works on: those of `axis.layout`, or of the compiled unit."""
+    """Where the classes of records are that a solver works on: of plain Python, or of the compiled unit."""
 
     Parameters: type[Parameters]
     State: type[State]
@@ -100,7 +101,7 @@ class SolverOfFunctions(NamedTuple):
     sample: Callable[..., None]
     energy: Callable[[Parameters, State, float, float, EnergyRow], None] | None = None
     is_sound: Callable[[Parameters, State, float, float], bool] | None = None
-    records: Any = layout
+    records: Any = PLAIN
     advice: str = 'a parameter or an input is too extreme for this axis: check the scene'
     walk: PieceWalk | None = None
 

@@ -4,7 +4,8 @@
 
 import math
 
-from ..axis.layout import Sinusoids, State
+from ..axis.layout import State
+from ..axis.rows import Sinusoids
 from ..core.hot_path import compiled
 from ..linear.waves import TURN, phase_at
 
@@ -56,10 +57,10 @@ def inputs_at(s: State, second: float, fraction: float) -> tuple[float, float]:
 @compiled
 def refresh_inputs(s: State) -> None:
     """Set V, F and their rates to those at the time of the state."""
-    s.v, s.f = inputs_at(s, s.second, s.fraction)
-    s.v_rate, s.f_rate = s.given.v_rate, s.given.f_rate
+    s.inputs.v, s.inputs.f = inputs_at(s, s.second, s.fraction)
+    s.inputs.v_rate, s.inputs.f_rate = s.given.v_rate, s.given.f_rate
     for k in range(int(s.given_sinusoids)):
         frequency = s.sinusoids[k].frequency
         slope = TURN * frequency * math.cos(TURN * phase_at(frequency, s.sinusoids[k].phase, s.second, s.fraction))
-        s.v_rate += s.sinusoids[k].v * slope
-        s.f_rate += s.sinusoids[k].f * slope
+        s.inputs.v_rate += s.sinusoids[k].v * slope
+        s.inputs.f_rate += s.sinusoids[k].f * slope

@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The row of a sample, for every solver."""
 
-from ..axis.layout import Parameters, SampleRow, State
+from ..axis.layout import Parameters, State
 from ..axis.motion import STICK
+from ..axis.rows import SampleRow
 from ..core.hot_path import inlined
 
 

@@ -5,7 +5,8 @@
 import math
 from functools import partial
 
-from ..axis.layout import Events, Parameters, Sinusoids, State
+from ..axis.layout import Parameters, State
+from ..axis.rows import Events, Sinusoids
 from ..core.input_profile import InputProfile
 from . import DONE, FULL, PieceWalk, Solver
 

@@ -4,12 +4,12 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import astuple, replace
 from typing import Any
 
 import numpy as np
 
-from ..axis.layout import EventRow
+from ..axis.rows import EventRow
 from ..core.errors import InputError, SolverError
 from ..friction import StaticLawKind
 from ..runs import SimulatedRun, simulate_events
@@ -17,6 +17,7 @@ from ..runs.batch import figures_in, rounds_in
 from ..scene import Scene, scene_from_values
 from ..scene.values import overridden
 from ..solvers.exact import many_axes
+from ..solvers.exact.axis_figures import AxisFigures
 from .point_figures import Numbers, Runs, no_runs
 from .settling import DOUBLINGS, PATIENCE, run_settled, runs_of
 from .variation import changes_at
@@ -74,12 +75,11 @@ def runs_alone(values: Values, names: Sequence[str], points: Numbers, duration: 
 
 def runs_of_run(run: SimulatedRun) -> Runs:
     """Return a complete run as one entry of `Runs`."""
-    out = np.empty((1, many_axes.ROW_SIZE))
-    many_axes.clear(out[0])
-    out[0][many_axes.FINAL_MODE] = run.scene.make_rig().simulator.sample().mode
+    figures = AxisFigures(final_mode=float(run.scene.make_rig().simulator.sample().mode))
     for event in run.events:
-        many_axes.book(out[0], EventRow(*map(float, event)), 0.5 * run.duration, many_axes.ROW_SIZE)
-    out[0][many_axes.COMPLETE] = 1.0
+        many_axes.book(figures, [], 0, EventRow(*map(float, event)), 0.5 * run.duration)
+    figures.complete = 1.0
+    out = np.array([astuple(figures)])
     found = runs_of(figures_in(out), rounds_in(out), run.duration)
     found.stick_share[0] = run.summary.stick_share
     found.lasts[0] &= works_in_batches(run.scene)   # with other inputs and solvers a slip may still end

@@ -28,7 +28,7 @@ import numpy as np
 from ..axis import Axis, InitialState
 from ..core.types import Mode
 from ..runs.batch import BatchFigures, Rounds, run_rounds
-from ..solvers.exact.many_axes import ROUND_SIZE
+from ..solvers.exact.axis_figures import ROUND_SIZE
 from .point_figures import RUN_FIELDS, Flags, Numbers, Runs, no_runs
 from .repetition import drifts, ends_alike, group_size
 from .steady import sliding_slope

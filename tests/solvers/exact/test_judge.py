@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A run that went wrong says so: a doctored event, state or account ends it, at the event or at the end."""
 
-import itertools
 import math
 from collections.abc import Callable
 from dataclasses import replace
@@ -12,16 +11,17 @@ import numpy as np
 import pytest
 
 from stickslip_sim.axis import Axis, InitialState, pack
-from stickslip_sim.axis.layout import NORMAL, STATE_FIELDS
+from stickslip_sim.axis.layout import NORMAL
 from stickslip_sim.cli.main import run as tool
 from stickslip_sim.core.errors import UnsoundError
 from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant
 from stickslip_sim.core.types import EventKind, Mode
 from stickslip_sim.extremes.shared_axes import COMPLIANT, RIGID, Contact, instant, paper_axis
+from stickslip_sim.runs.batch import figures_in, new_rows
 from stickslip_sim.scene import load_scene
 from stickslip_sim.simulation.simulator import Simulator
 from stickslip_sim.solvers import Solver, exact
-from stickslip_sim.solvers.exact import many_axes
+from tests.support.states import scale_number, set_number
 
 Doctor = Callable[[Any], None]
 
@@ -50,20 +50,19 @@ def run_in_steps(axis: Axis, solver: Solver, end: float = 3.0) -> None:
 
 def event_too_early(s: Any) -> None:
     """Let the next event come after nine tenths of its time."""
-    s.next *= 0.9
-    s.searched = math.inf
+    scale_number(s, 'next.time', 0.9)
+    set_number(s, 'next.searched', math.inf)
 
 
 def no_event(s: Any) -> None:
     """Let no event come any more."""
-    s.next = s.searched = math.inf
+    set_number(s, 'next.time', math.inf)
+    set_number(s, 'next.searched', math.inf)
 
 
 def lost_energy(s: Any) -> None:
     """Let a hundredth of the drive's work be lost."""
-    numbers = s.numbers()
-    numbers[sum(field.size for field in itertools.takewhile(lambda field: field.name != 'sums', STATE_FIELDS))] *= 0.99
-    s.take(numbers)
+    scale_number(s, 'sums.drive', 0.99)
 
 
 def other_place(s: Any) -> None:
@@ -120,11 +119,11 @@ def test_an_axis_of_a_batch_beyond_the_range_of_numbers_is_not_complete() -> Non
     of = exact.SOLVER.records
     state = of.State()
     state.accounting = 1.0
-    out = np.zeros((2, many_axes.ROW_SIZE))
+    out = new_rows(2)
     with np.errstate(all='ignore'):   # what numpy says when this runs as plain Python
         exact.run_axes(parameters, np.array([[0.002, 0.0], [1e200, 0.0]]), np.array([[0.0, 0.0, math.inf]] * 2), 3.0,
                        0, 2, of.Parameters(parameters[0].tolist()), state, of.Events(64), of.Sinusoids([]), out)
-    assert out[:, many_axes.COMPLETE].tolist() == [1.0, 0.0]
+    assert figures_in(out).complete.tolist() == [True, False]
 
 
 @pytest.mark.parametrize('contact', [RIGID, COMPLIANT])

@@ -8,9 +8,10 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from ...axis import layout
-from ...axis.layout import EventRow, Events, Parameters, SampleRow, Sinusoids, State
+from ...axis.layout import Parameters, State
 from ...axis.motion import ACCELERATING, COASTING, STICK, drive_force, friction_line, segment_above
+from ...axis.records import PLAIN
+from ...axis.rows import EventRow, Events, SampleRow, Sinusoids
 from ...axis.transitions import (
     ACCELERATE,
     ARREST,
@@ -59,7 +60,7 @@ class Engine:
     law: SmoothLaw | None
 
     name: ClassVar[str] = 'adaptive'
-    records: ClassVar[Any] = layout
+    records: ClassVar[Any] = PLAIN
     advice: ClassVar[str] = 'try another solver.method or other tolerances, or check the scene'
     energy: ClassVar[None] = None
     is_sound: ClassVar[None] = None

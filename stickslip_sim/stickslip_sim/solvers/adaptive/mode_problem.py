@@ -40,7 +40,7 @@ class ModeInputs:
 
     def __init__(self, s: State) -> None:
         self._sinusoids = []
-        v, f = s.v, s.f
+        v, f = s.inputs.v, s.inputs.f
         for given in s.sinusoids[:int(s.given_sinusoids)]:
             phase = TURN * phase_at(given.frequency, given.phase, s.second, s.fraction)
             self._sinusoids.append((TURN * given.frequency, phase, given.v, given.f))

@@ -30,7 +30,7 @@ def direct_root(p: Parameters, s: State, osc: Oscillator, motion: ContactMotion,
     if not room > 0.0 or rate == 0.0:
         return 0.0
     frequency = math.sqrt(osc.omega2) + 1.0 / p.static_tau
-    t = s.last[0]
+    t = s.cache.last[0]
     if t <= begin:
         t = begin + room / abs(rate)
     for _ in range(_DIRECT_STEPS):
@@ -62,8 +62,8 @@ def direct_root(p: Parameters, s: State, osc: Oscillator, motion: ContactMotion,
 def _guard_at(p: Parameters, s: State, osc: Oscillator, t: float, side: float) -> tuple[float, float, float]:
     """Return N mu_s − side F_c at t, its rate and its second_rate (with the bound of a law that is not concave)."""
     if s.snap == 0.0:
-        s.at.time = t
-        s.at.g, s.at.rate, s.at.first, s.at.second = short_integrals(osc, t)
+        s.cache.at.time = t
+        s.cache.at.g, s.cache.at.rate, s.cache.at.first, s.cache.at.second = short_integrals(osc, t)
         y, u, a = travel_at(p, s)
     else:
         y, u, a = travel(p, s, t)

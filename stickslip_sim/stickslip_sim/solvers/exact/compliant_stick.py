@@ -49,7 +49,7 @@ def compliant_stick(p: Parameters, s: State, horizon: float) -> float:
     motion = contact_motion(p, s, osc)
     rounding = 0.5 * force_rounding(p, s, static_limit(p, s.rest))
     if motion.rate == 0.0 and motion.second == 0.0 and rings_within(p, s, osc, motion, rounding):
-        s.searched = math.inf
+        s.next.searched = math.inf
         return math.inf
     may_leap = leaps_far = motion.second == 0.0 and is_concave(p)
     pace = math.sqrt(osc.omega2)
@@ -61,7 +61,7 @@ def compliant_stick(p: Parameters, s: State, horizon: float) -> float:
             root = direct_root(p, s, osc, motion, contact, t)
             if root > 0.0:
                 return root if root <= horizon else math.inf
-            s.at.time = -1.0
+            s.cache.at.time = -1.0
         if may_leap and i > 0:
             leap = _leap(p, s, osc, contact, t, horizon - t)
             may_leap = leap == 0.0

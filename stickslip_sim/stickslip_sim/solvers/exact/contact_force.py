@@ -44,7 +44,7 @@ def contact_motion(p: Parameters, s: State, osc: Oscillator) -> ContactMotion:
     u = s.velocity
     y2 = s.snap / omega2
     # u + JERK/ω² without the difference: 0 to the last bit while the drive rests
-    force_rate = p.stiffness * s.v + p.damping * s.v_rate + s.f_rate
+    force_rate = p.stiffness * s.inputs.v + p.damping * s.inputs.v_rate + s.inputs.f_rate
     y1 = force_rate / (p.stiffness + stiffness) - 2.0 * gamma * y2 / omega2
     y0 = (s.acceleration + 2.0 * gamma * (u - y1) - y2) / omega2
     return ContactMotion(y0, u - y1, s.acceleration - y2, s.jerk - 2.0 * gamma * y2,

@@ -12,7 +12,7 @@ in place and return the number of rows in use; `advance` also says how it ended.
 
 import math
 
-from ...axis.layout import EnergyRow, Events, Parameters, SampleRow, Sinusoids, State, clear_state
+from ...axis.layout import Parameters, State, clear_state
 from ...axis.motion import (
     COASTING,
     STAMP,
@@ -27,6 +27,7 @@ from ...axis.motion import (
     spring_after,
     travel,
 )
+from ...axis.rows import EnergyRow, Events, SampleRow, Sinusoids
 from ...axis.sinusoids import inputs_at, load_sinusoids, same_sinusoids
 from ...axis.transitions import (
     ARREST,
@@ -61,11 +62,11 @@ def start(p: Parameters, s: State, position: float, velocity: float, rest: float
     accounting = s.accounting
     clear_state(s)
     s.accounting = accounting
-    s.near.time = -1.0
+    s.cache.near.time = -1.0
     s.origin = position
     s.velocity = velocity
     s.rest = rest
-    s.v, s.v_rate, s.f, s.f_rate = v, v_rate, f, f_rate
+    s.inputs.v, s.inputs.v_rate, s.inputs.f, s.inputs.f_rate = v, v_rate, f, f_rate
     load_sinusoids(s, sinusoids)
     s.mode = STICK
     s.stored_at_start = 0.5 * p.mass * velocity * velocity
@@ -89,9 +90,9 @@ def advance(p: Parameters, s: State, second: float, fraction: float, events: Eve
     while True:
         t = (second - s.second) + (fraction - s.fraction)
         reach = t + STAMP
-        if s.searched < reach:
+        if s.next.searched < reach:
             find_event(p, s, reach)
-        due = s.next
+        due = s.next.time
         if due > reach:
             return row, DONE
         if not due >= 0.0:   # given up, or no number
@@ -100,7 +101,7 @@ def advance(p: Parameters, s: State, second: float, fraction: float, events: Eve
         whole = 0.0 if later < 1.0 else math.floor(later)
         if (s.second + whole - second) + ((later - whole) - fraction) > 0.0:
             return row, DONE   # its time, as it is written down, is still to come
-        if s.next_kind == RENEWAL:
+        if s.next.kind == RENEWAL:
             _start_at(p, s, s.second + whole, later - whole)
             _begin(p, s)
             continue
@@ -125,7 +126,7 @@ def _pass_event(p: Parameters, s: State, due: float, second: float, fraction: fl
     move_start(p, s, second, fraction, due)
     if accounting and not event_is_sound(p, s, begin):
         return False
-    s.last[mode] = due if s.next_kind != COAST else 0.0
+    s.cache.last[mode] = due if s.next.kind != COAST else 0.0
     contact = contact_energy(p, s, 0.0) if accounting else 0.0
     _transition(p, s, events, row, acceleration)
     if accounting:
@@ -137,14 +138,14 @@ def _pass_event(p: Parameters, s: State, due: float, second: float, fraction: fl
 def set_inputs(p: Parameters, s: State, second: float, fraction: float, v: float, v_rate: float, f: float,
                f_rate: float, sinusoids: Sinusoids, events: Events, row: int) -> int:
     """Let the inputs be v + v_rate t, f + f_rate t and sinusoids from a time on, up to which the state was advanced."""
-    steady = s.v_rate == 0.0 and s.f_rate == 0.0 and v_rate == 0.0 and f_rate == 0.0
+    steady = s.inputs.v_rate == 0.0 and s.inputs.f_rate == 0.0 and v_rate == 0.0 and f_rate == 0.0
     if s.sinusoid_count == 0.0 and sinusoids.count == 0:
-        if steady and s.v == v and s.f == f:
+        if steady and s.inputs.v == v and s.inputs.f == f:
             return row
     elif steady and same_sinusoids(s, v, f, sinusoids):
         return row
     _start_at(p, s, second, fraction)
-    s.v, s.v_rate, s.f, s.f_rate = v, v_rate, f, f_rate
+    s.inputs.v, s.inputs.v_rate, s.inputs.f, s.inputs.f_rate = v, v_rate, f, f_rate
     load_sinusoids(s, sinusoids)
     row = _apply(p, s, events, row)
     _begin(p, s)
@@ -176,8 +177,8 @@ def sample(p: Parameters, s: State, second: float, fraction: float, out: SampleR
     t = (second - s.second) + (fraction - s.fraction)
     y, u, a = travel(p, s, t)
     drive = drive_travel(s, t)
-    v = s.v + s.v_rate * t
-    force = s.f + s.f_rate * t
+    v = s.inputs.v + s.inputs.v_rate * t
+    force = s.inputs.f + s.inputs.f_rate * t
     if s.sinusoid_count != 0.0:
         v, force = inputs_at(s, second, fraction, t)
     of_drive = drive_force(p, spring_after(p, s, t, drive, y, u, a), v, u)
@@ -195,10 +196,10 @@ def energy(p: Parameters, s: State, second: float, fraction: float, out: EnergyR
 @inlined
 def _begin(p: Parameters, s: State) -> None:
     begin_motion(p, s)
-    s.searched = -1.0
-    s.progress = 0.0
-    s.next = math.inf
-    s.at.time = -1.0
+    s.next.searched = -1.0
+    s.next.progress = 0.0
+    s.next.time = math.inf
+    s.cache.at.time = -1.0
 
 
 @inlined
@@ -221,7 +222,7 @@ def _start_at(p: Parameters, s: State, second: float, fraction: float) -> None:
 
 @inlined
 def _transition(p: Parameters, s: State, events: Events, row: int, before: float) -> None:
-    kind = s.next_kind
+    kind = s.next.kind
     if kind == BREAKAWAY:
         release(p, s, events, row)
     elif kind == ARREST:

@@ -76,11 +76,11 @@ def forced_event(p: Parameters, s: State, due: float) -> None:
     gap = _speed_gap(p, s) if slips else math.inf
     rounding = _rounding(p, s, slips)
     last = finite_horizon(osc, math.inf) if slips else math.inf
-    s.next = math.inf
+    s.next.time = math.inf
     if gap <= 0.0:
         _set_event(s, 0.0, _passed_kind(s))
         return
-    t = before = s.progress
+    t = before = s.next.progress
     value_before = 0.0
     for _ in range(_STEPS):
         s.iterations += 1.0
@@ -93,7 +93,7 @@ def forced_event(p: Parameters, s: State, due: float) -> None:
             _set_event(s, t, BREAKAWAY)
             return
         if not slips:
-            leap = _leap(p, s, signal, now, limits, t, max(now.noise, rounding), max(due, 2.0 * s.searched) - t)
+            leap = _leap(p, s, signal, now, limits, t, max(now.noise, rounding), max(due, 2.0 * s.next.searched) - t)
             if leap == math.inf or _lands_beyond(s, t, leap, due):
                 return
             if leap > 0.0:
@@ -112,7 +112,7 @@ def forced_event(p: Parameters, s: State, due: float) -> None:
             return
         before, value_before = t, guard.value
         t += max(guard.step, 4.0 * EPSILON * t)
-    s.next = GAVE_UP
+    s.next.time = GAVE_UP
 
 
 @inlined
@@ -125,17 +125,17 @@ def _holds_nothing(s: State, limits: GuardLimits) -> bool:
 def _lands_beyond(s: State, t: float, leap: float, due: float) -> bool:
     """Note a leap from t, if there is one; return whether it ends the search."""
     if leap > 0.0:
-        s.progress = s.searched = t + leap
+        s.next.progress = s.next.searched = t + leap
     return leap > 0.0 and t + leap >= due
 
 
 @inlined
 def _is_searched(s: State, t: float, searched: float, due: float, last: float) -> bool:
     """Note a step from t that reaches `searched`; return whether that is far enough."""
-    s.progress, s.searched = t, searched
+    s.next.progress, s.next.searched = t, searched
     if searched < due and t > last:
-        s.searched = math.inf
-    return s.searched >= due
+        s.next.searched = math.inf
+    return s.next.searched >= due
 
 
 @inlined
@@ -154,8 +154,8 @@ def _guard_at(p: Parameters, now: Reading, limits: GuardLimits, rounding: float,
 
 @compiled
 def _set_event(s: State, t: float, kind: float) -> None:
-    s.next = t
-    s.next_kind = kind
+    s.next.time = t
+    s.next.kind = kind
 
 
 @compiled
@@ -208,7 +208,7 @@ def _leap(p: Parameters, s: State, signal: GuardSignal, now: Reading, limits: Gu
     reach = swing + size
     room = min(top - mean, mean - floor) - reach
     if room > noise and rate == 0.0 and second_rate == 0.0:
-        s.searched = math.inf
+        s.next.searched = math.inf
         return math.inf
     if not room > _WORTH_A_LEAP * (top - floor) or horizon <= 0.0:
         return 0.0
@@ -216,7 +216,7 @@ def _leap(p: Parameters, s: State, signal: GuardSignal, now: Reading, limits: Gu
     leap = min(_envelope_root(p, s, t, top - mean - swing, mean + swing, rate, second_rate, size, decay, horizon),
                _envelope_root(p, s, t, mean - floor - swing, swing - mean, -rate, -second_rate, size, decay, horizon))
     if leap > horizon:
-        s.searched = t + horizon
+        s.next.searched = t + horizon
         return math.inf
     return leap
 

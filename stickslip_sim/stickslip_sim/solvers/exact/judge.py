@@ -39,13 +39,14 @@ _TIME = 8.0 * 2.220446049250313e-16        # of a time
 def event_is_sound(p: Parameters, s: State, begin: float) -> bool:
     """Whether the state at an event, in a mode that began at the velocity `begin`, is where that says, in balance."""
     if s.mode == STICK:
-        sound = _holds(p, s, s.next, s.spring, s.deflection, s.velocity, s.acceleration, s.v, s.f, s.rest, 1.0)
+        sound = _holds(p, s, s.next.time, s.spring, s.deflection, s.velocity, s.acceleration, s.inputs.v, s.inputs.f,
+                       s.rest, 1.0)
     elif s.mode == COASTING:
-        end = band_of(p, s) if s.next_kind == ACCELERATE else 0.0
-        sound = _coasts(p, s, 0.0, s.spring, s.v, s.f, end, end)
+        end = band_of(p, s) if s.next.kind == ACCELERATE else 0.0
+        sound = _coasts(p, s, 0.0, s.spring, s.inputs.v, s.inputs.f, end, end)
     else:
-        sound = _slips(p, s, s.velocity, begin, s.next_kind != COAST)
-    return sound and _balances(p, s, 0.0, s.spring, s.v, s.velocity, begin, s.f)
+        sound = _slips(p, s, s.velocity, begin, s.next.kind != COAST)
+    return sound and _balances(p, s, 0.0, s.spring, s.inputs.v, s.velocity, begin, s.inputs.f)
 
 
 @compiled
@@ -53,7 +54,7 @@ def is_sound(p: Parameters, s: State, second: float, fraction: float) -> bool:
     """Whether the state at a time between the segment start and the next event is within its mode, and in balance."""
     t = (second - s.second) + (fraction - s.fraction)
     y, u, a = travel(p, s, t)
-    v, force = s.v + s.v_rate * t, s.f + s.f_rate * t
+    v, force = s.inputs.v + s.inputs.v_rate * t, s.inputs.f + s.inputs.f_rate * t
     if s.sinusoid_count != 0.0:
         v, force = inputs_at(s, second, fraction, t)
     spring = spring_after(p, s, t, drive_travel(s, t), y, u, a)
@@ -97,7 +98,7 @@ def _coasts(p: Parameters, s: State, t: float, spring: float, v: float, force: f
 def _slips(p: Parameters, s: State, u: float, begin: float, at_an_end: bool) -> bool:
     """Whether the speed of a slip is on its segment of the table, or at the end of it to which it goes."""
     speed, segment = s.direction * u, int(s.segment)
-    slack = ALLOWED * (abs(u) + abs(begin) + abs(s.v))
+    slack = ALLOWED * (abs(u) + abs(begin) + abs(s.inputs.v))
     low = breakpoint_speed(p, segment)
     if at_an_end:
         end = breakpoint_speed(p, segment + 1) if s.mode == ACCELERATING else low
@@ -121,7 +122,7 @@ def _balances(p: Parameters, s: State, t: float, spring: float, v: float, u: flo
     fastest = max(abs(u), abs(begin))
     forces = _forces(p, spring, v, fastest, force, top)
     if s.mode != STICK and s.mode != COASTING:   # on a steep segment of the table
-        forces += 2.0 * p.mass * abs(s.gamma) * (abs(v) + fastest)
+        forces += 2.0 * p.mass * abs(s.oscillator.gamma) * (abs(v) + fastest)
     return left <= ALLOWED * scale + _ROUNDING * forces * _path(s, t, v, u) and scale < math.inf
 
 

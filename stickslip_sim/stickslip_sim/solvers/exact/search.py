@@ -8,9 +8,9 @@ floating point; `judge` holds each event of a run to it.
 * Slip: the acceleration of a linear mode vanishes at a closed-form time, and until then the speed is monotone; so the
   sign of (speed − knot) at that time decides whether the breakpoint, or standstill, is reached before.
 * Coasting: the residual force is a polynomial of the time.
-* Stick: `static_guards` for a rigid contact, `compliant_stick` for a compliant one.  The force of a contact that has rung
-  for long may change by more than rounding within the last bit of the time since the segment start.  Then the segment
-  is renewed a few such bits before the root, without an event, and what is left is searched from there.
+* Stick: `static_guards` for a rigid contact, `compliant_stick` for a compliant one.  The force of a contact that has
+  rung for long may change by more than rounding within the last bit of the time since the segment start.  Then the
+  segment is renewed a few such bits before the root, without an event, and what is left is searched from there.
 * Any mode under sines: `forced`.
 """
 
@@ -52,29 +52,30 @@ def find_event(p: Parameters, s: State, due: float) -> None:
         forced_event(p, s, due)
         return
     mode = s.mode
-    horizon = max(due, 2.0 * s.searched)
-    s.searched = horizon
+    horizon = max(due, 2.0 * s.next.searched)
+    s.next.searched = horizon
     if mode == COASTING:
         _coasting(p, s)
     elif mode != STICK:
         _slipping(p, s, horizon)
     else:
-        s.next_kind = BREAKAWAY
+        s.next.kind = BREAKAWAY
         if p.compliant != 0.0:
             _pressed(p, s, horizon)
         else:
-            s.next = rigid_stick(p, s, horizon)
+            s.next.time = rigid_stick(p, s, horizon)
 
 
 @inlined
 def _pressed(p: Parameters, s: State, horizon: float) -> None:
     """Search a compliant stick, also for roots whose renewal is within the horizon."""
     t = compliant_stick(p, s, horizon * (1.0 + 2.0 * _LEAD))
-    s.next = t
-    if s.nu > 0.0 and t < math.inf and s.omega2 * t * t > _LONG_RING and s.gamma * t < _DIED_OUT:
-        s.next_kind = RENEWAL
-        s.next = t * (1.0 - _LEAD)
-        s.at.time = -1.0
+    s.next.time = t
+    rings = s.oscillator.nu > 0.0 and s.oscillator.gamma * t < _DIED_OUT
+    if t < math.inf and rings and s.oscillator.omega2 * t * t > _LONG_RING:
+        s.next.kind = RENEWAL
+        s.next.time = t * (1.0 - _LEAD)
+        s.cache.at.time = -1.0
 
 
 @inlined
@@ -85,9 +86,9 @@ def _coasting(p: Parameters, s: State) -> None:
     second_rate *= direction
     rise = first_crossing(max(band_of(p, s) - s.residual, 0.0), -rate, -second_rate)
     fall = first_crossing(s.residual, rate, second_rate)
-    s.next = min(rise, fall)
-    s.next_kind = ACCELERATE if rise <= fall else DECELERATE
-    s.searched = math.inf
+    s.next.time = min(rise, fall)
+    s.next.kind = ACCELERATE if rise <= fall else DECELERATE
+    s.next.searched = math.inf
 
 
 @inlined
@@ -102,18 +103,18 @@ def _slipping(p: Parameters, s: State, horizon: float) -> None:
         gap = speed - breakpoint_speed(p, segment)
         sign = -s.direction
     if horizon < TICK and _keeps_on(p, s, sign, gap, horizon - STAMP):
-        s.next = math.inf
+        s.next.time = math.inf
         return
-    t, passed, s.at.time, s.at.g, s.at.rate, s.at.first, s.at.second = first_passage(
+    t, passed, s.cache.at.time, s.cache.at.g, s.cache.at.rate, s.cache.at.first, s.cache.at.second = first_passage(
         oscillator_of(s), sign * s.acceleration + 0.0, sign * s.jerk, sign * s.snap, gap, horizon,
-        s.last[int(s.mode)])
-    s.next = t
+        s.cache.last[int(s.mode)])
+    s.next.time = t
     if t == math.inf:
-        s.at.time = -1.0   # where a search ends depends on the ticks; a command there must not
+        s.cache.at.time = -1.0   # where a search ends depends on the ticks; a command there must not
     if not passed:
-        s.next_kind = COAST
+        s.next.kind = COAST
     else:
-        s.next_kind = KNOT if accelerating or segment > 0 else ARREST
+        s.next.kind = KNOT if accelerating or segment > 0 else ARREST
 
 
 @inlined
@@ -125,11 +126,11 @@ def _keeps_on(p: Parameters, s: State, sign: float, gap: float, t: float) -> boo
     osc = oscillator_of(s)
     if s.snap != 0.0 or gap <= 0.0 or not t < finite_horizon(osc, half_period(osc)):
         return False
-    s.at.g, s.at.rate, s.at.first, s.at.second = tick_integrals(s, t)
-    s.at.time = t
+    s.cache.at.g, s.cache.at.rate, s.cache.at.first, s.cache.at.second = tick_integrals(s, t)
+    s.cache.at.time = t
     _, u, a = travel_at(p, s)
     still = _SURELY * (abs(s.acceleration) + abs(s.jerk) * t)
     if sign * a > still and sign * (u - s.velocity) < gap - still * t:
         return True
-    s.at.time = -1.0
+    s.cache.at.time = -1.0
     return False

@@ -80,8 +80,8 @@ def _force_signal(p: Parameters, s: State) -> GuardSignal:
         swing += size / w
         curvature += size * w
         fastest = max(fastest, w)
-    rate = sense * (p.stiffness * (s.base_v - s.velocity) + p.damping * s.v_rate + s.f_rate)
-    second = sense * p.stiffness * s.v_rate
+    rate = sense * (p.stiffness * (s.inputs.base_v - s.velocity) + p.damping * s.inputs.v_rate + s.inputs.f_rate)
+    second = sense * p.stiffness * s.inputs.v_rate
     return GuardSignal(sense=sense, start=start, rate=rate, second=second, y0=0.0, free_u=0.0,
                        mean=start + sense * mean, amplitude=swing, free=0.0, free_rate=0.0, z=0.0, z_rate=0.0,
                        curvature=abs(second) + curvature, resonant=0.0, fastest=fastest)

@@ -94,11 +94,11 @@ class Products(NamedTuple):
 def still_works(p: Parameters, s: State, t: float) -> Works:
     """Return `works.works` of a slider that stands still or coasts."""
     u = s.velocity if s.mode == COASTING else 0.0
-    rate, ahead = s.v_rate, s.base_v - u
+    rate, ahead = s.inputs.v_rate, s.inputs.base_v - u
     lead = (ahead + 0.5 * rate * t) * t                      # ∫(v − ẋ)
     stretch = (s.spring + (0.5 * ahead + rate * t / 6.0) * t) * t
     square = (ahead * ahead + (ahead + rate * t / 3.0) * rate * t) * t
-    push = (s.base_f + 0.5 * s.f_rate * t) * t
+    push = (s.inputs.base_f + 0.5 * s.inputs.f_rate * t) * t
     for k in range(int(s.sinusoid_count)):
         frequency, phase, v, f = _given(s, k)
         cycle = cycle_within(frequency, t)
@@ -183,13 +183,13 @@ def _closed(p: Parameters, s: State, osc: Oscillator, t: float, shift: float) ->
 def _rest_of(p: Parameters, s: State, osc: Oscillator, t: float, shift: float, slope: float) -> Rest:
     """Return the motion without the steady answers to the sinusoids."""
     stuck = s.mode == STICK
-    v0, v1, f1 = s.base_v, s.v_rate, s.f_rate
+    v0, v1, f1 = s.inputs.base_v, s.inputs.v_rate, s.inputs.f_rate
     if stuck:
         k0, k1 = (p.stiffness * v0 + p.damping * v1 + f1) / p.mass, p.stiffness * v1 / p.mass
         x, rate = s.velocity, s.acceleration
     else:
         k0, k1 = (p.normal_force * slope * v1 - f1) / p.mass, 0.0
-        x, rate = s.v - s.velocity, v1 - s.acceleration
+        x, rate = s.inputs.v - s.velocity, v1 - s.acceleration
     for k in range(int(s.sinusoid_count)):
         one = _answer(p, s, osc, k, t, shift, slope)
         at_rate = one.at_x if stuck else one.at_x - one.v
@@ -202,7 +202,7 @@ def _rest_of(p: Parameters, s: State, osc: Oscillator, t: float, shift: float, s
 @compiled
 def _of_the_inputs(s: State, rest: Rest, t: float) -> Products:
     """Return the products of the rest of the motion, and of the inputs without sinusoids."""
-    v0, v1, f0, f1, spring = s.base_v, s.v_rate, s.base_f, s.f_rate, s.spring
+    v0, v1, f0, f1, spring = s.inputs.base_v, s.inputs.v_rate, s.inputs.base_f, s.inputs.f_rate, s.spring
     once, twice = rest.once, rest.twice
     once1, twice1 = t * once - twice, t * twice - rest.thrice     # ∫ t x and ∫ t ∫x
     v_x, f_x = v0 * once + v1 * once1, f0 * once + f1 * once1
@@ -220,7 +220,7 @@ def _of_the_inputs(s: State, rest: Rest, t: float) -> Products:
 def _with_a_sinusoid(s: State, osc: Oscillator, rest: Rest, one: SinusoidAnswer, wave: complex, zero: complex,
                      before: Products, t: float) -> Products:
     """Add the products of a sinusoid with the rest and the inputs; `wave` is e^(iwt) and `zero` its integral."""
-    v0, v1, f0, f1 = s.base_v, s.v_rate, s.base_f, s.f_rate
+    v0, v1, f0, f1 = s.inputs.base_v, s.inputs.v_rate, s.inputs.base_f, s.inputs.f_rate
     v, f, at_x, phase, w = one.v, one.f, one.at_x, one.phase, TURN * one.frequency
     moment = wave_moment(w, wave, zero, t)
     lag = complex(2.0 * osc.gamma, -w)

@@ -73,7 +73,7 @@ def _exponential_root(p: Parameters, s: State, force: float, rate: float, horizo
     b = rate * tau
     if gap == 0.0 and d < b:
         return 0.0
-    z = s.last[0] / tau
+    z = s.cache.last[0] / tau
     if z <= 0.0:
         q = 2.0 * (b - d) - gap
         root = math.sqrt(q * q + 8.0 * b * gap)

@@ -48,7 +48,7 @@ def works(p: Parameters, s: State, t: float) -> Works:
 
 @inlined
 def _rigid_hold(p: Parameters, s: State, t: float) -> Works:
-    v, rate = s.v, s.v_rate
+    v, rate = s.inputs.v, s.inputs.v_rate
     path = (v + 0.5 * rate * t) * t
     damper = p.damping * _square(v, rate, t)
     return Works(p.stiffness * (s.spring + 0.5 * path) * path + damper, 0.0, 0.0, damper, 0.0)
@@ -56,7 +56,7 @@ def _rigid_hold(p: Parameters, s: State, t: float) -> Works:
 
 @inlined
 def _coasting(p: Parameters, s: State, t: float) -> Works:
-    u, v, rate = s.velocity, s.v, s.v_rate
+    u, v, rate = s.velocity, s.inputs.v, s.inputs.v_rate
     ahead = v - u
     lead = (ahead + 0.5 * rate * t) * t
     stretch = s.spring * t + (0.5 * ahead + rate * t / 6.0) * t * t
@@ -64,14 +64,14 @@ def _coasting(p: Parameters, s: State, t: float) -> Works:
     lead1 = (0.5 * ahead + rate * t / 3.0) * t * t
     damper = p.damping * _square(ahead, rate, t)
     drive = (p.stiffness * (v * stretch + rate * stretch1) + p.damping * (v * lead + rate * lead1))
-    external = u * (s.f + 0.5 * s.f_rate * t) * t
+    external = u * (s.inputs.f + 0.5 * s.inputs.f_rate * t) * t
     return Works(drive, external, u * (p.stiffness * stretch + p.damping * lead) + external, damper, 0.0)
 
 
 @inlined
 def _moving(p: Parameters, s: State, t: float) -> Works:
     """Return the works in slip, or in a compliant contact."""
-    v, rate = s.v, s.v_rate
+    v, rate = s.inputs.v, s.inputs.v_rate
     slips = s.mode != STICK
     steady, slope = slip_friction(p, s) if slips else (0.0, 0.0)
     contact, damping = (0.0, p.normal_force * slope) if slips else (p.contact_stiffness, p.contact_damping)
@@ -85,7 +85,8 @@ def _moving(p: Parameters, s: State, t: float) -> Works:
         if abs(path - of.travel) < _FEW * abs(path):
             of = _from_lead(p, s, t, contact, damping)
     drive = p.stiffness * (v * of.stretch + rate * of.stretch1) + p.damping * of.v_lead
-    external, damper, lost = s.f * of.travel + s.f_rate * of.moment, p.damping * of.lead_square, damping * of.square
+    external = s.inputs.f * of.travel + s.inputs.f_rate * of.moment
+    damper, lost = p.damping * of.lead_square, damping * of.square
     if slips:
         return Works(drive, external, p.normal_force * s.direction * steady * of.travel + lost, damper, 0.0)
     return Works(drive, external, 0.0, damper, lost)
@@ -94,8 +95,8 @@ def _moving(p: Parameters, s: State, t: float) -> Works:
 @compiled
 def _from_slider(p: Parameters, s: State, t: float) -> MotionIntegrals:
     """Return the integrals from the moments of ẋ."""
-    v, rate = s.v, s.v_rate
-    push = (p.stiffness * v + p.damping * rate + s.f_rate) / p.mass
+    v, rate = s.inputs.v, s.inputs.v_rate
+    push = (p.stiffness * v + p.damping * rate + s.inputs.f_rate) / p.mass
     _, _, y, once, twice, square = moments(oscillator_of(s), s.velocity, s.acceleration, push,
                                            p.stiffness * rate / p.mass, t)
     u1 = t * y - once
@@ -111,8 +112,8 @@ def _from_lead(p: Parameters, s: State, t: float, contact: float, damping: float
 
     What resists the motion is `contact` times the path, `damping` times the speed, and what does not change.
     """
-    v, rate = s.v, s.v_rate
-    push = (contact * v + damping * rate - s.f_rate) / p.mass
+    v, rate = s.inputs.v, s.inputs.v_rate
+    push = (contact * v + damping * rate - s.inputs.f_rate) / p.mass
     _, _, lead, once, twice, square = moments(oscillator_of(s), v - s.velocity, rate - s.acceleration, push,
                                               contact * rate / p.mass, t)
     lead1 = t * lead - once

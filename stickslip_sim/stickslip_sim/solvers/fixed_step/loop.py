@@ -8,7 +8,7 @@ between two points is a step of its own from the last one, which changes nothing
 often it is asked for.
 """
 
-from ...axis.layout import Events, Parameters, SampleRow, Sinusoids, State
+from ...axis.layout import Parameters, State
 from ...axis.motion import (
     ACCELERATING,
     COASTING,
@@ -20,6 +20,7 @@ from ...axis.motion import (
     is_rigid_stick,
     static_limit,
 )
+from ...axis.rows import Events, SampleRow, Sinusoids
 from ...axis.transitions import (
     ACCELERATE,
     COAST,
@@ -193,7 +194,7 @@ def _has_stopped(p: Parameters, s: State, residual: float) -> bool:
         return True
     holds = p.normal_force * static_limit(p, 0.0)
     band = _BAND * s.grid.step_ticks / s.grid.second_ticks * holds / p.mass
-    at_rest = drive_force(p, s.spring, s.v, 0.0) + s.f
+    at_rest = drive_force(p, s.spring, s.inputs.v, 0.0) + s.inputs.f
     return residual < 0.0 and speed < band and abs(at_rest) <= holds
 
 

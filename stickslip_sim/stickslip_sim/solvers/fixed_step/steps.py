@@ -54,10 +54,10 @@ def step(p: Parameters, s: State, h: float) -> tuple[float, float, float]:
 @compiled
 def _euler(p: Parameters, s: State, h: float) -> tuple[float, float, float]:
     """Semi-implicit Euler: the new velocity moves the slider."""
-    drive = h * s.v
+    drive = h * s.inputs.v
     if is_rigid_stick(p, s):
         return 0.0, 0.0, drive
-    u = s.velocity + h * acceleration_at(p, s, s.spring, s.velocity, s.deflection, s.v, s.f)
+    u = s.velocity + h * acceleration_at(p, s, s.spring, s.velocity, s.deflection, s.inputs.v, s.inputs.f)
     return h * u, u, drive
 
 
@@ -65,7 +65,7 @@ def _euler(p: Parameters, s: State, h: float) -> tuple[float, float, float]:
 def _rk4(p: Parameters, s: State, h: float) -> tuple[float, float, float]:
     """Classical Runge-Kutta; the drive's travel is then Simpson's rule."""
     half = 0.5 * h
-    v0, f0 = s.v, s.f
+    v0, f0 = s.inputs.v, s.inputs.f
     v1, f1 = inputs_at(s, s.second, s.fraction + half)
     v2, f2 = inputs_at(s, s.second, s.fraction + h)
     drive = h / 6.0 * (v0 + 4.0 * v1 + v2)
