@@ -135,6 +135,5 @@ def test_windows_and_targets_of_the_file_hold_for_limits_without_their_own() -> 
                       '  later: {check: end_position_error, max: 1.0, window: {end: 3.0}, target: 0.0}\n', found)
     assert outcomes['end_position_error'].value == judged(
         'limits: {x: {check: end_position_error, target: 0.01, max: 1.0, window: {end: 2.0}}}', found)['x'].value
-    assert outcomes['later'].limit is not None
-    assert outcomes['later'].limit.window == (1.0, 3.0)
+    assert outcomes['later'].span == (1.0, 3.0)
     assert outcomes['later'].value == measured('end_position_error: {target: 0.0, max: 1.0}', found)

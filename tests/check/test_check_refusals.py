@@ -17,7 +17,7 @@ from tests.support.tool import Capture
 class TestRefusals:
     @pytest.mark.parametrize(('text', 'words'), [
         ('', ['file', 'limits']),
-        ('[1]', ['file', 'window, target, reference, limits']),
+        ('[1]', ['file', 'window, target, reference, commands, limits']),
         ('limits:', ['line 1', 'missing']),
         ('limits: {}', ['limits', 'at least one limit']),
         ('limits: 3', ['limits = 3', 'at least one limit']),
@@ -51,6 +51,12 @@ class TestRefusals:
         ('window: {begin: 0.3, end: 0.3}\n' + LIMITS, ['window = [0.3, 0.3]', 'begin before end']),
         ('window: {begin: -1.0}\n' + LIMITS, ['window.begin = -1.0', '>= 0']),
         ('window: {end: 1.5}\n' + LIMITS, ['sticks.window.end = 1.5', '0 to 1.4 s']),
+        ('window: {begin: first_command}\n' + LIMITS, ['sticks.window.begin', 'no command is known']),
+        ('window: {end: first_command}\n' + LIMITS, ['window.end', 'a time in s', '{begin: first_command, end: 2.0}']),
+        ('window: {begin: first_comand}\n' + LIMITS, ['window.begin', 'or as the begin first_command']),
+        ('window: {end: 1.0}\nlimits: {sticks: {max: 1, window: {begin: first_command}}}',
+         ['sticks.window', 'an end of its own']),
+        ('commands: none\n' + LIMITS, ['commands', 'one of required, optional']),
         ('window: {begin: 0.0001, end: 0.0002}\n' + LIMITS, ['window = [0.0001, 0.0002]', 'one sample']),
         ('limits: {overshoot: {target: 0.0, max: 1.0}}', ['overshoot.target = 0.0', 'another place', 'begin before']),
         ('reference: 3\n' + LIMITS, ['reference = 3', 'times, positions']),

@@ -149,15 +149,16 @@ class TestRuns:
         found, out, _ = checked(capsys, folder, '--limits', limits, '--junit', tmp_path / 'c.xml')
         assert found == code
         assert re.search(rf'timing .* {"PASS" if valid else "FAIL"}  {re.escape(verdict)}', out)
-        (case,) = ElementTree.parse(tmp_path / 'c.xml').getroot()
+        properties, case = ElementTree.parse(tmp_path / 'c.xml').getroot()
         assert (case[0].tag, case[0].text) == ('system-out' if valid else 'failure', verdict)
+        assert properties[0].attrib == {'name': 'real time', 'value': verdict}
 
     def test_names_that_xml_cannot_hold(self, tmp_path: Path, capsys: Capture) -> None:
         folder = node_bag(tmp_path / 'a\x01<&"', {'valid': False, 'verdict': 'no\x00 & <'})
         code, _, _ = checked(capsys, folder, '--limits', limits_file(tmp_path, 'limits: {timing: valid}'), '--junit',
                              tmp_path / 'c.xml')
         suite = ElementTree.parse(tmp_path / 'c.xml').getroot()
-        assert (code, suite.attrib['name'], suite[0][0].text) == (3, 'a?<&"', 'no? & <')
+        assert (code, suite.attrib['name'], suite[1][0].text) == (3, 'a?<&"', 'no? & <')
 
 
 @pytest.mark.ros
@@ -165,7 +166,7 @@ def test_a_run_of_the_node_has_the_figures_of_the_simulation(tmp_path: Path, cap
     from tests.support.ros_nodes import client, running
 
     folder = tmp_path / 'run'
-    text = 'window: {end: 1.0}\nlimits: {' + ''.join(
+    text = 'commands: optional\nwindow: {end: 1.0}\nlimits: {' + ''.join(
         f'{name}: {{max: 1}}, ' for name in ('following_error', 'sticks', 'longest_stick', 'peak_speed')) + '}'
     limits = limits_file(tmp_path, text)
     with running('-r', '__ns:=/cell', '-p', 'scene:=paper_fig7', '-p', 'record.enabled:=true', '-p',

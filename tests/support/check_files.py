@@ -4,12 +4,16 @@
 
 import math
 import shutil
+from collections.abc import Mapping
 from pathlib import Path
 
 from stickslip_sim.check.judgement import LimitOutcome, outcomes_of
 from stickslip_sim.check.limits import limits_of
 from stickslip_sim.config.ros_yaml import read_yaml
-from stickslip_sim.recording import RunFacts, write_bag
+from stickslip_sim.recording import RunFacts, flat_layout, write_bag
+from stickslip_sim.recording.messages import Packer
+from stickslip_sim.recording.run import open_run, receipt_file
+from stickslip_sim.recording.topics import DRIVE_VELOCITY, RECORDED, SLIDER_STATE
 from stickslip_sim.runs import SimulatedRun, simulate
 from stickslip_sim.scene import Scene, load_scene, scene_from_values
 from tests.support import tool
@@ -56,6 +60,23 @@ def node_bag(folder: Path, timing: object) -> Path:
     scene = load_scene('paper_fig7')
     done = simulate(scene, 0.2, scene.time.step)
     write_bag(folder, RunFacts.of(scene), done.sample_rows(), done.events, {'timing': timing})
+    return folder
+
+
+def commanded_bag(folder: Path, commands: Mapping[int, float], steps: int, timing: object = None) -> Path:
+    """Write the states of a node whose drive rests but for these commands (m/s), each taken up by a step."""
+    scene = load_scene('paper_fig8', {'drive.velocity': 0.0})
+    rig, pack = scene.make_rig(), Packer(SLIDER_STATE).pack
+    writer = open_run(folder, RunFacts.of(scene))
+    for step in range(steps + 1):
+        begin = rig.time_ns
+        sample = rig.make_step(commands.get(step)).sample
+        if step in commands:
+            data = flat_layout(DRIVE_VELOCITY.type).pack(begin, commands[step])
+            writer.write(RECORDED.index(DRIVE_VELOCITY), data, begin, begin, step)
+        end = rig.time_ns
+        writer.write(RECORDED.index(SLIDER_STATE), pack(end, step, sample), end, end, step)
+    writer.close(receipt_file({'timing': timing} if timing else {}))
     return folder
 
 

@@ -4,20 +4,51 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from typing import Any
 
 from ..runs import Run
 from .judgement import LimitOutcome
 from .kinds import TIMING
-from .observed_run import gaps_in, observed_motion
+from .observed_run import commands_of, gaps_in, observed_motion, timing_of
 
 
-def verdict_line(outcomes: Sequence[LimitOutcome]) -> str:
+def verdict_line(run: Run, outcomes: Sequence[LimitOutcome]) -> str:
     """Return passed or failed, of how many, and which failed."""
     failed = failures(outcomes)
     if failed:
         return f'FAILED: {len(failed)} of {len(outcomes)}: {", ".join(failed)}'
-    return f'PASSED: {len(outcomes)} of {len(outcomes)}'
+    timing = timing_of(run)
+    doubt = ', but the run is not valid in real time' if run.is_complete and timing and timing.valid is False else ''
+    return f'PASSED: {len(outcomes)} of {len(outcomes)}{doubt}'
+
+
+def checked_line(run: Run) -> str:
+    """Return what was checked: from when to when, how much is known of it, and when its first command came."""
+    motion, commands = observed_motion(run), commands_of(run)
+    text = (f'{run.name}: {motion.begin:g} to {motion.end:g} s, {len(motion.time)} states, '
+            f'{len(motion.events)} transitions')
+    if commands is None:
+        return text
+    return f'{text}, {"no command" if commands.first is None else f"first command at t = {commands.first:g} s"}'
+
+
+def real_time_verdict(run: Run) -> str:
+    """Return what the node said of its timing at the end of a run; empty without that."""
+    timing = timing_of(run) if run.is_complete else None
+    return timing.verdict if timing else ''
+
+
+def complaint(run: Run, limits_file: str, outcomes: Sequence[LimitOutcome]) -> str:
+    """Return in one line why a run did not pass, empty when it did."""
+    judged = [outcome.name for outcome in outcomes if not (outcome.passed or outcome.is_unjudged)]
+    unjudged = [outcome.name for outcome in outcomes if outcome.is_unjudged]
+    parts = [f'{run.name} does not keep {limits_file}: {", ".join(judged)}'] if judged else []
+    if unjudged:
+        parts.append(f'{run.name}: no drive velocity came within the window of {", ".join(unjudged)}, so that no '
+                     'controller was judged: let the window begin with first_command, or allow that with commands: '
+                     'optional')
+    return '; '.join(parts)
 
 
 def failures(outcomes: Sequence[LimitOutcome]) -> list[str]:
@@ -36,10 +67,12 @@ def line_of(outcome: LimitOutcome) -> str:
 
 def as_json(run: Run, outcomes: Sequence[LimitOutcome]) -> dict[str, Any]:
     """Return everything that was found; an infinite figure is the text 'inf'."""
-    motion = observed_motion(run)
+    motion, commands, timing = observed_motion(run), commands_of(run), timing_of(run)
     return {
         'run': {'name': run.name, 'begin': motion.begin, 'end': motion.end, 'states': len(motion.time),
-                'events': len(motion.events), 'is_complete': run.is_complete, 'notes': list(gaps_in(run))},
+                'events': len(motion.events), 'is_complete': run.is_complete, 'notes': list(gaps_in(run)),
+                'first_command': commands.first if commands else None,
+                'timing': asdict(timing) if timing else None},
         'passed': not failures(outcomes),
         'limits': [_entry(outcome) for outcome in outcomes],
     }
@@ -51,7 +84,7 @@ def _entry(outcome: LimitOutcome) -> Mapping[str, Any]:
     if limit is None:
         return {**found, 'check': TIMING}
     return {**found, 'check': limit.kind.name, 'unit': limit.kind.unit, 'measured': _number(outcome.value),
-            'max': limit.maximum, 'margin': _number(outcome.margin), 'window': limit.window._asdict(),
+            'max': limit.maximum, 'margin': _number(outcome.margin), 'window': outcome.span._asdict(),
             **limit.settings}
 
 

@@ -8,9 +8,10 @@ from typing import NamedTuple
 from ..core.errors import InputError
 from ..runs import Run
 from .kinds import TIMING
+from .limit_window import JudgedSpan
 from .limits import Limit, Limits, check_fit
 from .observed_motion import ObservedMotion
-from .observed_run import observed_motion, timing_of
+from .observed_run import KnownCommands, commands_of, observed_motion, timing_of
 
 
 class LimitOutcome(NamedTuple):
@@ -21,6 +22,8 @@ class LimitOutcome(NamedTuple):
     passed: bool
     value: float | None
     remark: str
+    span: JudgedSpan = JudgedSpan()
+    is_unjudged: bool = False   # no command came in its window: no controller was judged
 
     @property
     def margin(self) -> float | None:
@@ -33,24 +36,37 @@ def outcomes_of(limits: Limits, run: Run) -> list[LimitOutcome]:
 
     A recording that was cut off is judged as far as it goes.
     """
-    motion, timing = observed_motion(run), timing_of(run)
-    if limits.reference:
-        motion = motion.following(limits.reference)
-    check_fit(limits, motion.begin, motion.end if run.is_complete else math.inf, timing is not None)
-    outcomes = [_outcome(limit, motion) for limit in limits.limits]
+    motion, timing, commands = observed_motion(run), timing_of(run), commands_of(run)
+    has_timing = timing is not None and timing.valid is not None
+    check_fit(limits, motion.begin, motion.end if run.is_complete else math.inf, has_timing, commands)
+    if reference := limits.reference_at(commands.first if commands else None):
+        motion = motion.following(reference)
+    outcomes = [_outcome(limit, motion, commands, limits.needs_commands) for limit in limits.limits]
     if limits.timing and timing:
-        outcomes.append(LimitOutcome(TIMING, None, timing.valid, None, timing.verdict))
+        outcomes.append(LimitOutcome(TIMING, None, bool(timing.valid), None, timing.verdict))
     return outcomes
 
 
-def _outcome(limit: Limit, motion: ObservedMotion) -> LimitOutcome:
-    begin, end = limit.window
-    begin = motion.begin if begin is None else begin
+def _outcome(limit: Limit, motion: ObservedMotion, commands: KnownCommands | None,
+             needs_commands: bool) -> LimitOutcome:
+    first = commands.first if commands else None
+    span = limit.window.at(first)
+    if span is None:
+        return _unjudged(limit, JudgedSpan(), motion.end)
+    begin = motion.begin if span.begin is None else span.begin
+    end = motion.end if span.end is None else min(span.end, motion.end)
     if begin >= motion.end:
-        return LimitOutcome(limit.name, limit, False, None, f'the run has nothing from t = {begin:g} s on')
-    part = motion.cut(begin, motion.end if end is None else min(end, motion.end))
+        return LimitOutcome(limit.name, limit, False, None, f'the run has nothing from t = {begin:g} s on', span)
+    if commands and needs_commands and (first is None or first > end):
+        return _unjudged(limit, span, end)
+    part = motion.cut(begin, end)
     try:
         value, remark = limit.kind.measure(part, **limit.settings)
     except InputError as error:
         raise InputError(f'{limit.name}.{error.name}', error.value, error.allowed, error.fix) from None
-    return LimitOutcome(limit.name, limit, value <= limit.maximum, value, remark)
+    return LimitOutcome(limit.name, limit, value <= limit.maximum, value, remark, span)
+
+
+def _unjudged(limit: Limit, span: JudgedSpan, end: float) -> LimitOutcome:
+    remark = f'no drive velocity came until t = {end:g} s: no controller was judged'
+    return LimitOutcome(limit.name, limit, False, None, remark, span, is_unjudged=True)

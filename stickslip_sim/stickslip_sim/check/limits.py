@@ -3,12 +3,11 @@
 """Limits in a file: read strictly, so that a misspelt limit is refused and never passes unseen."""
 
 import difflib
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from ..config.ros_yaml import read_yaml
 from ..config.strict import section
@@ -16,23 +15,17 @@ from ..core.errors import InputError
 from ..scene import Parameter
 from ..scene.load import named, read_text
 from .kinds import FARTHEST, KINDS, TARGET, TIMING, Kind
+from .limit_window import FIRST_COMMAND, LATEST, PAGE, WHOLE_RUN, Window, window_of
 from .observed_motion import Reference
+from .observed_run import KnownCommands
 
-_LATEST = 1e15   # s, as in a scene
-_PAGE = 'docs/check.md'
-_SECTIONS = ('window', 'target', 'reference', 'limits')
-_TIME = Parameter('time', 'double', None, 's', 'of the run', low=0.0, high=_LATEST)
-_TIMES = Parameter('times', 'double_array', None, 's', 'of the run', low=0.0, high=_LATEST)
+_SECTIONS = ('window', 'target', 'reference', 'commands', 'limits')
+_TIMES = Parameter('times', 'double_array', None, 's', 'of the run', low=0.0, high=LATEST)
 _POSITIONS = Parameter('positions', 'double_array', None, 'm', 'at these times', low=-FARTHEST, high=FARTHEST)
 _NAME = Parameter('name', 'string', None, '', 'of a limit')
+_COMMANDS = Parameter('commands', 'string', 'required', '', 'whether a run of the node needs some to be judged',
+                      choices=('required', 'optional'))
 _VALID = 'valid'
-
-
-class Window(NamedTuple):
-    """The part of a run that counts, s; None: from its begin, to its end."""
-
-    begin: float | None = None
-    end: float | None = None
 
 
 @dataclass(frozen=True)
@@ -48,11 +41,22 @@ class Limit:
 
 @dataclass(frozen=True)
 class Limits:
-    """All limits of a file; `timing`: the run must be valid in real time."""
+    """All limits of a file; `timing`: the run must be valid in real time.
+
+    `window` is that of the whole file; the times of the reference count as its times do.
+    """
 
     limits: tuple[Limit, ...]
     timing: bool = False
     reference: Reference | None = None
+    window: Window = WHOLE_RUN
+    needs_commands: bool = True
+
+    def reference_at(self, first_command: float | None) -> Reference | None:
+        """Return the reference in times of a run with this first command."""
+        if self.reference is None or first_command is None or not self.window.is_from_command:
+            return self.reference
+        return self.reference.later(first_command)
 
 
 def load_limits(path: str) -> Limits:
@@ -63,28 +67,31 @@ def load_limits(path: str) -> Limits:
 
 def limits_of(document: object) -> Limits:
     """Return the limits of a document as YAML gives it; raises InputError."""
-    given = section('file', document, _SECTIONS, _PAGE)
+    given = section('file', document, _SECTIONS, PAGE)
     entries = given.get('limits')
     if not isinstance(entries, Mapping) or not entries:
         raise InputError('limits', entries, 'a section with at least one limit', 'for example sticks: {max: 3}')
-    window = _window('window', given.get('window'), Window())
+    window = window_of('window', given.get('window'), WHOLE_RUN)
     defaults = {'target': _checked(TARGET, '', given['target'])} if 'target' in given else {}
     for name in entries:
         _NAME.checked(name)
     return Limits(tuple(_limit(name, entry, window, defaults) for name, entry in entries.items() if name != TIMING),
-                  _timing(entries), _reference(given.get('reference')))
+                  _timing(entries), _reference(given.get('reference')), window,
+                  _checked(_COMMANDS, '', given.get('commands', _COMMANDS.default)) == _COMMANDS.default)
 
 
-def check_fit(limits: Limits, begin: float, end: float, has_timing: bool) -> None:
+def check_fit(limits: Limits, begin: float, end: float, has_timing: bool, commands: KnownCommands | None) -> None:
     """Raise InputError when a limit is set for what a run from `begin` to `end` (s) does not have."""
     if limits.timing and not has_timing:
         raise InputError(TIMING, _VALID, 'left out here: only a run that the node recorded in real time has a verdict',
                          'drop this limit')
     for limit in limits.limits:
-        for edge, time in zip(Window._fields, limit.window):
-            if time is not None and not begin <= time <= end:
-                raise InputError(f'{limit.name}.window.{edge}', time, f'within the run, {begin:g} to {end:g} s',
-                                 'change the window, or check a longer run')
+        name = f'{limit.name}.window'
+        if commands is None and limit.window.is_from_command:
+            raise InputError(f'{name}.begin', FIRST_COMMAND, 'a time in s here: no command is known of this run',
+                             'check a run that the node recorded')
+        if not (commands and commands.first is None and limit.window.is_from_command):
+            limit.window.check_fit(name, begin, end, commands.first if commands else None)
 
 
 def _limit(name: str, entry: object, window: Window, defaults: Mapping[str, Any]) -> Limit:
@@ -92,9 +99,9 @@ def _limit(name: str, entry: object, window: Window, defaults: Mapping[str, Any]
         raise InputError(name, entry, 'a limit in braces', f'for example {name}: {{max: 1.0e-3}}')
     kind = _kind(name, entry)
     known = ('check', 'max', 'window', *(setting.name for setting in kind.settings))
-    given = section(name, entry, known, _PAGE)
+    given = section(name, entry, known, PAGE)
     settings = {setting.name: _setting(setting, name, given, defaults) for setting in kind.settings}
-    own_window = _window(f'{name}.window', given.get('window'), window)
+    own_window = window_of(f'{name}.window', given.get('window'), window)
     return Limit(name, kind, _setting(kind.maximum, name, given, {}), own_window, settings)
 
 
@@ -123,21 +130,10 @@ def _timing(entries: Mapping[str, object]) -> bool:
     return TIMING in entries
 
 
-def _window(name: str, given: object, default: Window) -> Window:
-    if given is None:
-        return default
-    times = section(name, given, Window._fields, _PAGE)
-    edges = {edge: _checked(_TIME, name, time, edge) for edge, time in times.items()}
-    window = default._replace(**edges)
-    if window.begin is not None and not window.begin < (math.inf if window.end is None else window.end):
-        raise InputError(name, [*window], 'begin before end', 'give both in seconds of the run')
-    return window
-
-
 def _reference(given: object) -> Reference | None:
     if given is None:
         return None
-    values = section('reference', given, Reference._fields, _PAGE)
+    values = section('reference', given, Reference._fields, PAGE)
     for name in Reference._fields:
         if name not in values:
             raise InputError(f'reference.{name}', None, 'given: times and positions make a profile', 'add it')

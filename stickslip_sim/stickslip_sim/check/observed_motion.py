@@ -26,6 +26,10 @@ class Reference(NamedTuple):
         """Return the commanded positions."""
         return np.interp(times, self.times, self.positions)
 
+    def later(self, delay: float) -> 'Reference':
+        """Return the same reference, `delay` (s) later."""
+        return Reference(tuple(time + delay for time in self.times), self.positions)
+
 
 class Points(NamedTuple):
     """The slider at the samples and at the transitions, in the order of time."""

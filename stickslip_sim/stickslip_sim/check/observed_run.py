@@ -1,28 +1,38 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a check takes from a run: its motion, the verdict on its timing, and what is missing of it."""
+"""What a check takes from a run: its motion, its first command, the verdict on its timing, what is missing of it."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from ..core.errors import RecordingError, one_line
 from ..core.types import EventKind, Mode
 from ..recording import RecordedRun
+from ..recording.bag import METADATA
+from ..recording.topics import DRIVE_VELOCITY
 from ..runs import Run
 from ..runs.kept import kept
 from .observed_motion import ObservedMotion
 
 _STATE_FIELDS = ('time', 'position', 'velocity', 'drive_position', 'mode')
+_NANOSECOND = 1e-9
 
 
 @dataclass(frozen=True)
 class Timing:
-    """What a node says of its own timing."""
+    """What a node says of its own timing; `valid` is None when there was no clock to be kept."""
 
-    valid: bool
+    valid: bool | None
     verdict: str
+
+
+class KnownCommands(NamedTuple):
+    """What is known of the drive velocities that came: from when on the first one holds, s; None: none came."""
+
+    first: float | None
 
 
 @kept
@@ -38,16 +48,31 @@ def observed_motion(run: Run) -> ObservedMotion:
 
 
 def timing_of(run: Run) -> Timing | None:
-    """Return the verdict of the node on its timing; None without one, for no clock was to be kept."""
+    """Return the verdict of the node on its timing; None without one."""
     if not run.is_complete:
         return Timing(False, 'the run has no end, no verdict')
     try:
         timing = run.receipt.get('timing')
     except RecordingError:   # an attachment of somebody else
         return None
-    if not isinstance(timing, dict) or timing.get('valid') is None:   # None: not in real time
+    if not isinstance(timing, dict):
         return None
-    return Timing(timing['valid'] is True, one_line(str(timing.get('verdict', ''))))
+    valid = None if timing.get('valid') is None else timing['valid'] is True
+    return Timing(valid, one_line(str(timing.get('verdict', ''))))
+
+
+@kept
+def commands_of(run: Run) -> KnownCommands | None:
+    """Return what is known of the commands of a run that a node recorded; None of any other run."""
+    if not isinstance(run, RecordedRun) or run.bag.metadata.get(METADATA, {}).get('origin') != 'node':
+        return None
+    topic = run.bag.name_of(DRIVE_VELOCITY)
+    first = next(run.bag.messages([topic]), None) if run.bag.counts[topic] else None
+    time = run.states['time']
+    if first is None or not len(time):
+        return KnownCommands(None)
+    at = np.searchsorted(time, first.log_time * _NANOSECOND - _NANOSECOND)   # the state that it found
+    return KnownCommands(float(time[at]) if at < len(time) else None)
 
 
 def gaps_in(run: Run) -> Iterator[str]:

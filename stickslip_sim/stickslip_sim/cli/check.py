@@ -26,7 +26,7 @@ def check(source: str, limits_file: str, duration: float | None, changes: tuple[
           json_file: str | None) -> None:
     """Check RUN_OR_SCENE - a run folder, or a scene to simulate - against limits; exit with 3 when one is not kept."""
     _check_outputs(junit, json_file)
-    from ..check.check_report import as_json, failures, verdict_line
+    from ..check.check_report import as_json, complaint, real_time_verdict, verdict_line
     from ..check.judgement import outcomes_of
     from ..check.junit import junit_text
     from ..check.limits import load_limits
@@ -37,13 +37,13 @@ def check(source: str, limits_file: str, duration: float | None, changes: tuple[
     run = _run(source, limits, duration, changes)
     outcomes = outcomes_of(limits, run)
     if STDOUT not in (junit, json_file):
-        print('\n'.join([*table_lines(run, outcomes), verdict_line(outcomes)]), flush=True)
+        print('\n'.join([*table_lines(run, outcomes), verdict_line(run, outcomes)]), flush=True)
     if json_file is not None:
         write_text(json_file, [json.dumps(as_json(run, outcomes), indent=2, allow_nan=False) + '\n'])
     if junit is not None:
-        write_text(junit, [junit_text(run.name, outcomes)])
-    if failed := failures(outcomes):
-        raise VerdictError(f'{run.name} does not keep {limits_file}: {", ".join(failed)}')
+        write_text(junit, [junit_text(run.name, outcomes, real_time_verdict(run))])
+    if failed := complaint(run, limits_file, outcomes):
+        raise VerdictError(failed)
 
 
 def _check_outputs(junit: str | None, json_file: str | None) -> None:
@@ -74,7 +74,7 @@ def _simulated(source: str, limits: 'Limits', duration: float, changes: tuple[st
     from .progress import progress_bar
 
     check_times(duration, None)
-    check_fit(limits, 0.0, duration, has_timing=False)
+    check_fit(limits, 0.0, duration, has_timing=False, commands=None)
     scene = load_scene(source, dict(parse_override(change) for change in changes))
     with progress_bar('simulating') as progress:
         return simulate(scene, duration, progress=progress)

@@ -4,8 +4,9 @@
 
 from collections.abc import Iterator, Sequence
 
+from ..check.check_report import checked_line, real_time_verdict
 from ..check.judgement import LimitOutcome
-from ..check.observed_run import gaps_in, observed_motion
+from ..check.observed_run import gaps_in
 from ..runs import Run
 from ..runs.wording import quantity
 
@@ -14,10 +15,9 @@ _NUMBERS = (1, 2, 3)   # columns to the right
 
 
 def table_lines(run: Run, outcomes: Sequence[LimitOutcome]) -> Iterator[str]:
-    """Yield the checked run, its missing parts, and a line for each limit."""
-    motion = observed_motion(run)
-    yield (f'{run.name}: {motion.begin:g} to {motion.end:g} s, {len(motion.time)} states, '
-           f'{len(motion.events)} transitions')
+    """Yield the checked run, whether it kept real time, its missing parts, and a line for each limit."""
+    yield checked_line(run)
+    yield from filter(None, [real_time_verdict(run)])
     yield from (f'note: {note}' for note in gaps_in(run))
     rows = [_HEADS, *map(_cells, outcomes)]
     widths = [max(map(len, column)) for column in zip(*rows)]
