@@ -65,6 +65,11 @@ class Rig:
         """The faults that are planned or in force."""
         return self._faults.ids
 
+    @property
+    def has_orders(self) -> bool:
+        """Whether faults were injected or cleared since the last step."""
+        return bool(self._rig_events)
+
     # Orders, between two steps
 
     def time_out(self, silence: float) -> None:

@@ -23,16 +23,25 @@ pytestmark = pytest.mark.ros
 
 
 class TestRecording:
+    def test_a_node_that_cannot_record_from_the_start_does_not_start(self, tmp_path: Path) -> None:
+        (tmp_path / 'mine').write_text('precious')
+        with running(*recording_into(tmp_path)) as process:
+            code, errors = process.wait()
+        assert code == 2
+        refusal = errors.splitlines()[-1]
+        assert refusal.startswith(f"sim_node: record.folder = '{tmp_path}': {tmp_path} exists and is never overwritten")
+        assert [line for line in errors.splitlines() if '[ERROR]' in line] == []
+        assert [file.name for file in tmp_path.iterdir()] == ['mine']
+
     def test_an_existing_folder_stays_and_the_axis_goes_on(self, tmp_path: Path) -> None:
         (tmp_path / 'mine').write_text('precious')
-        with running(*recording_into(tmp_path)) as process, client() as axis:
+        with running('-p', f'record.folder:={tmp_path}') as process, client() as axis:
             axis.connect()
-            status, _ = axis.status('recorder')
-            assert status.level == b'\2'
-            assert f'{tmp_path} exists and is never overwritten' in status.message
             answer = axis.switch('record', True)
-            assert (answer.success, answer.message) == (False, status.message)
-            axis.next('slider_state', lambda state: state.step > 500)
+            assert not answer.success
+            assert f'{tmp_path} exists and is never overwritten' in answer.message
+            status, _ = axis.status('recorder')
+            assert (status.level, status.message) == (b'\2', answer.message)
             assert_clean(*process.end())
         assert [file.name for file in tmp_path.iterdir()] == ['mine']
 

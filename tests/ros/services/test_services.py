@@ -106,12 +106,17 @@ class Storm:
 
     def reset(self) -> None:
         answer = self.axis.trigger('reset')
-        if self.is_recording:
+        if self.is_recording and self.has_begun:
             self.expect(answer, False, 'refused while recording', '~/record')
             return
         self.expect(answer, True)
         self.rig.reset()
         self.rig.make_step()
+
+    @property
+    def has_begun(self) -> bool:
+        """Whether a reset would undo anything."""
+        return not self.is_stepped or self.rig.step > 0 or self.rig.has_orders
 
     def pause(self) -> None:
         wanted = self.stream.random() < 0.5
@@ -184,6 +189,24 @@ class TestStorm:
         assert recorded.counts['/rig_event'] > 10
         assert recorded.counts['/slider_state'] > 300
         assert_same_states(recorded, made_again(recorded, load_scene('paper_fig8')))
+
+
+def test_a_recorded_run_that_has_not_begun_can_be_reset(tmp_path: Path) -> None:
+    """As often as a client asks that is not sure of its answer; what was ordered before is not forgotten unseen."""
+    folder = tmp_path / 'run'
+    with node_and_client(tmp_path, 'lockstep', *recording_into(folder)) as (_, axis):
+        for _ in range(2):
+            answer = axis.trigger('reset')
+            assert answer.success
+            assert answer.message == 'simulation time and steps are at 0; the recording goes on'
+        assert axis.call(InjectFault, 'inject_fault', kind='drive_freeze', duration=1.0).success
+        assert not axis.trigger('reset').success
+        assert axis.call(Step, 'step', steps=10, velocity=0.01, force=math.nan).success
+        assert 'refused while recording' in axis.trigger('reset').message
+        assert axis.switch('record', False).success
+        assert axis.trigger('reset').message == 'simulation time and steps begin anew at 0'
+    steps = open_bag(folder).columns('/slider_state')['step']
+    assert steps.tolist() == list(range(11))
 
 
 def test_what_was_cleared_is_told(tmp_path: Path) -> None:

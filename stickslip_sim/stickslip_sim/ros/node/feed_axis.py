@@ -63,13 +63,13 @@ class FeedAxis(SceneNode):
         self._open_endpoints(is_stopping)
 
     def begin(self) -> None:
-        """Start recording if the scene wants it, and the steps."""
+        """Start recording if the scene wants it, and the steps; raises RecordingError when it cannot be recorded."""
         self._record_service.recordings.prepare()
         gc.collect()
         gc.freeze()      # a full collection would take tens of ms out of the loop
         self._begin_run()
         if self.scene.record.enabled:
-            self._record_service.begin(lambda attach: attach())
+            self._record_service.begin_at_start()
         else:
             self._publish_run_info()
         self._cost.begin()

@@ -33,18 +33,24 @@ class RecordService:
         """Whether a bag is open."""
         return self.recordings.recorder is not None
 
-    def begin(self, at_boundary: Callable[[Callable[[], None]], object]) -> str:
-        """Begin a recording; return why it failed, or an empty text."""
+    def begin_at_start(self) -> None:
+        """Begin a recording before the first step; raises RecordingError."""
+        self.recordings.begin(self._node.scene)
+        self._attach()
+        self._log_begin()
+
+    def begin(self) -> str:
+        """Begin a recording between two steps; return why it failed, or an empty text."""
         try:
             self.recordings.begin(self._node.scene)
         except RecordingError as error:
             self._node.get_logger().error(f'no recording: {error}')
             self._publish()
             return str(error)
-        if at_boundary(self._attach) is False:
+        if not self._loop.at_boundary(self._attach):
             self.recordings.end({})
             return BUSY
-        self._node.get_logger().info(f'recording into {self.recordings.folder}')
+        self._log_begin()
         return ''
 
     def end(self) -> str:
@@ -81,6 +87,9 @@ class RecordService:
             self._node.get_logger().error(f'recording failed, the axis goes on: {failure}')
             self._publish()
 
+    def _log_begin(self) -> None:
+        self._node.get_logger().info(f'recording into {self.recordings.folder}')
+
     def _attach(self) -> None:
         if self._loop.step >= 0:
             self.recordings.continue_from(self._loop.rig.checkpoint())
@@ -97,5 +106,5 @@ class RecordService:
             return answer(response, not failure, failure or (f'recorded into {folder}' if folder else 'not recording'))
         if folder:
             return answer(response, True, f'already recording into {folder}')
-        failure = self.begin(self._loop.at_boundary)
+        failure = self.begin()
         return answer(response, not failure, failure or f'recording into {self.recordings.folder}')

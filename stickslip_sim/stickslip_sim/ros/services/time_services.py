@@ -31,8 +31,13 @@ class TimeServices:
         node.create_service(Step, '~/step', self.step)
 
     def reset(self, _: Any, response: Any) -> Any:
-        """Begin anew at simulation time 0; a bag would then hold two runs, so not while recording."""
+        """Begin anew at simulation time 0; a bag would then hold two runs, so not while recording.
+
+        A recorded run that has not begun is what it would be after a reset.
+        """
         if self._is_recording():
+            if self._is_before_start:
+                return answer(response, True, 'simulation time and steps are at 0; the recording goes on')
             return answer(response, False, 'refused while recording: a bag holds one run; stop it with ~/record first')
         done = self._restart()
         return answer(response, done, 'simulation time and steps begin anew at 0' if done else BUSY)
@@ -66,6 +71,13 @@ class TimeServices:
             response.events = [message for result in results for event in result.events
                                if (message := self._publishers.event_message(result.step, event))]
         return answer(response, done and len(results) == request.steps, self._report(done, request.steps, len(results)))
+
+    @property
+    def _is_before_start(self) -> bool:
+        """Whether time stands still at 0, and nothing was ordered that a reset would forget."""
+        loop = self._loop
+        return ((loop.by_request or loop.paused) and loop.step <= 0 and not loop.failure and not loop.rig.has_orders
+                and all(slot.latest is None for slot in loop.slots))
 
     def _refusal(self, request: Any) -> str:
         """Return why steps are not made, or an empty text."""
