@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What README and docs/hil.md have a newcomer do first: `make run`, and the examples beside an axis."""
 
-import signal
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -13,14 +12,12 @@ import pytest
 from stickslip_sim.recording import open_bag
 from tests.support.repository import ROOT
 from tests.support.ros_nodes import Client, client, running
-from tests.support.tool import restore_interrupt
 from tests.support.waiting import wait_for
 
 pytestmark = pytest.mark.ros
 
 DRIVE = ROOT / 'examples' / 'drive.py'
 CONTROLLER = ROOT / 'examples' / 'controller.py'
-LOCKSTEP = ROOT / 'examples' / 'lockstep.py'
 
 
 def python(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
@@ -66,27 +63,3 @@ def test_the_controller_is_the_one_of_the_page() -> None:
     shown = [line.strip() for line in (ROOT / 'docs/hil.md').read_text(encoding='utf-8').splitlines()]
     assert code
     assert [line.strip() for line in code.splitlines() if line.strip() and line.strip() not in shown] == []
-
-
-def test_the_controller_drives_the_axis_and_ends_quietly(axis: Client) -> None:
-    assert axis.trigger('reset').success    # to 0 mm
-    controller = subprocess.Popen([sys.executable, CONTROLLER], stderr=subprocess.PIPE, text=True,
-                                  preexec_fn=restore_interrupt)
-    try:
-        wait_for(lambda: axis.latest('slider_state').drive_velocity == 0.010, 'the command of the controller')
-        controller.send_signal(signal.SIGINT)
-        _, errors = controller.communicate(timeout=20)
-    finally:
-        controller.kill()
-    assert (controller.returncode, errors) == (0, '')
-
-
-def test_lock_step_gives_the_same_run_each_time(tmp_path: Path) -> None:
-    ends = []
-    for _ in range(2):
-        with running('-p', 'scene:=positioning', '-p', 'time.mode:=lockstep', '-r', '__ns:=/stepped', folder=tmp_path):
-            done = python(LOCKSTEP, '--duration', '0.3', '--ros-args', '-r', '__ns:=/stepped')
-            assert done.returncode == 0, done.stderr
-            ends.append(done.stderr.rpartition(']: ')[2])
-    assert ends[0] == ends[1]
-    assert ends[0].startswith('0.3 s: ')

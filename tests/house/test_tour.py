@@ -1,0 +1,121 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The first minutes of docs/hil.md as a reader goes through them: its commands, with the delays of a human."""
+
+import re
+import shlex
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from stickslip_sim.recording import open_bag
+from tests.support.repository import ROOT
+from tests.support.ros_nodes import client, executable
+from tests.support.tool import restore_interrupt
+from tests.support.waiting import DEADLINE
+
+pytestmark = pytest.mark.ros
+
+PAGE = ROOT / 'docs' / 'hil.md'
+HUMAN = 3.0      # s from the start of the axis to that of the controller: beyond the window of any limits from 0 on
+JUDGED = 2.0     # s, in examples/controller_limits.yaml
+
+
+def commands() -> list[list[str]]:
+    """Return the commands of the five minutes, without those that set the shell up."""
+    text = PAGE.read_text(encoding='utf-8').partition('## Wired in five minutes')[2].partition('\n## ')[0]
+    lines = [line for block in re.findall(r'```sh\n(.*?)```', text, re.DOTALL) for line in block.splitlines()]
+    return [shlex.split(line) for line in lines if not line.startswith('source ')]
+
+
+AXIS, CONTROLLER, CHECK, STEPPED_AXIS, STEPPER = commands()
+
+
+def as_here(command: list[str], folder: Path) -> list[str]:
+    """Return a command of the page for this machine: with programs and examples where they are, and no globs."""
+    program, *words = command
+    if program.endswith('sim_node'):
+        programs = [executable('sim_node')]
+    else:
+        programs = {'python3': [sys.executable], 'stickslip': [sys.executable, '-m', 'stickslip_sim']}[program]
+    for word in words:
+        if '*' in word:
+            programs += map(str, folder.glob(word))
+        else:
+            programs.append(str(ROOT / word) if word.startswith('examples/') else word)
+    return programs
+
+
+@contextmanager
+def started(command: list[str], folder: Path) -> Iterator['subprocess.Popen[str]']:
+    process = subprocess.Popen(as_here(command, folder), cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                               text=True, preexec_fn=restore_interrupt)
+    try:
+        yield process
+    finally:
+        process.kill()
+        process.communicate()
+
+
+def interrupt(process: 'subprocess.Popen[str]') -> str:
+    """End a program as Ctrl-C does; return what it said."""
+    process.send_signal(signal.SIGINT)
+    _, errors = process.communicate(timeout=DEADLINE)
+    assert process.returncode == 0, errors
+    return errors
+
+
+def done(command: list[str], folder: Path) -> 'subprocess.CompletedProcess[str]':
+    return subprocess.run(as_here(command, folder), cwd=folder, capture_output=True, text=True, timeout=DEADLINE,
+                          check=False)
+
+
+def test_a_controller_that_is_started_by_hand_is_judged(tmp_path: Path) -> None:
+    with started(AXIS, tmp_path) as axis, client() as listener:
+        listener.next('slider_state', lambda state: state.time > HUMAN)
+        assert listener.latest('slider_state').drive_velocity == 0.0    # it rests until the first command
+        with started(CONTROLLER, tmp_path) as controller:
+            first = listener.next('slider_state', lambda state: state.drive_velocity != 0.0).time
+            listener.next('slider_state', lambda state: state.time > first + JUDGED + 0.1)
+            assert interrupt(controller) == ''
+        said = interrupt(axis)
+    checked = done(CHECK, tmp_path)
+    assert checked.returncode == 3, checked.stderr
+    head, verdict, *_, last = checked.stdout.splitlines()
+    assert float(head.rpartition('first command at t = ')[2].removesuffix(' s')) > HUMAN
+    assert verdict.startswith('real-time valid: ')
+    assert verdict in said
+    assert re.match(r'FAILED: \d of 5: .*overshoot.*sticks', last)
+    assert 'no controller was judged' not in checked.stdout
+    from_start = done([*CHECK[:-1], 'examples/limits.yaml'], tmp_path)    # whose window ends before it comes
+    assert (from_start.returncode, 'no controller was judged' in from_start.stderr) == (3, True)
+
+
+def stepped(folder: Path, *arguments: str) -> Path:
+    """Return the run that the example makes in lock-step, recorded."""
+    folder.mkdir()
+    with started(STEPPED_AXIS, folder) as axis:
+        made = done([*STEPPER, *arguments], folder)
+        assert made.returncode == 0, made.stderr
+        interrupt(axis)
+    (run,) = (folder / 'runs').iterdir()
+    return run
+
+
+def test_lock_step_gives_the_same_recorded_run_each_time(tmp_path: Path) -> None:
+    run = stepped(tmp_path / 'one')
+    checked = done(CHECK, tmp_path / 'one')
+    assert checked.returncode == 3, checked.stderr
+    head, verdict, *_ = checked.stdout.splitlines()
+    assert '0 to 2 s, 2001 states' in head
+    assert head.endswith('first command at t = 0 s')
+    assert verdict.startswith('not in real time (time.mode lockstep)')
+    assert done(['stickslip', 'verify', 'runs/*'], tmp_path / 'one').returncode == 0
+    whole, part = (open_bag(each).columns('/slider_state')['position']
+                   for each in (run, stepped(tmp_path / 'other', '--duration', '0.2')))
+    assert part.tolist() == whole[:201].tolist()
