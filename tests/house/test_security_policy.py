@@ -17,7 +17,8 @@ from tests.support.waiting import wait_for
 
 pytestmark = pytest.mark.ros
 
-POLICY = ET.parse(ROOT / 'stickslip_sim/security/stickslip.policy.xml').getroot()
+FILE = ROOT / 'stickslip_sim/security/stickslip.policy.xml'
+POLICY = ET.parse(FILE).getroot()
 # What `ros2 security` takes of a policy: by element the attributes that must be there, that may be, and the children.
 STRUCTURE = {
     'policy': ({'version'}, set(), {'enclaves'}),
@@ -102,10 +103,20 @@ def test_structure() -> None:
             check(child)
 
     check(POLICY)
+    assert [child.tag for child in POLICY] == ['enclaves']
+    assert all([child.tag for child in enclave] == ['profiles'] for enclave in POLICY.iter('enclave'))
     assert POLICY.attrib['version'] == '0.2.0'
     groups = [*POLICY.iter('topics'), *POLICY.iter('services')]
     assert groups
     assert all(list(group.attrib.values()) == ['ALLOW'] for group in groups)
+
+
+def test_ros2_security_takes_each_child_for_an_enclave() -> None:
+    """It asks each one for its path; a comment has none, and nothing is generated."""
+    with_comments = ET.XMLParser(target=ET.TreeBuilder(insert_comments=True))
+    (enclaves,) = ET.parse(FILE, with_comments).getroot().iterfind('enclaves')
+    assert all(enclave.get('path') for enclave in enclaves)
+    assert any(callable(child.tag) for enclave in enclaves for child in enclave), 'no comment was read'
 
 
 @pytest.fixture(scope='module')

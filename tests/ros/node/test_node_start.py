@@ -67,6 +67,21 @@ class TestRefusedStart:
         assert value in errors
         assert told in errors
 
+    @pytest.mark.parametrize(('settings', 'told'), [
+        ({'ENABLE': 'True'}, "ENABLE = 'True' is refused: must be true or false"),
+        ({'ENABLE': 'true', 'STRATEGY': 'enforce'}, "STRATEGY = 'enforce' is refused: must be Enforce or Permissive"),
+        ({'ENABLE': 'true', 'STRATEGY': 'Enforce'}, "KEYSTORE = '' is refused: must be the folder of the keys"),
+        ({'ENABLE': 'true', 'STRATEGY': 'Enforce', 'KEYSTORE': '.'}, "ENABLE = 'true' is refused"),
+    ])
+    def test_security_names_its_variables(self, monkeypatch: pytest.MonkeyPatch, tmp_path: Path,
+                                          settings: dict[str, str], told: str) -> None:
+        monkeypatch.chdir(tmp_path)
+        for name, value in settings.items():
+            monkeypatch.setenv(f'ROS_SECURITY_{name}', value)
+        code, errors = start('--enclave', '/stickslip/feed_axis')
+        assert (code, len(errors.splitlines())) == (2, 1), errors
+        assert errors.startswith(f'sim_node: ROS_SECURITY_{told}'), errors
+
     @pytest.mark.parametrize(('arguments', 'told'), [
         (['-p', 'axis.mas:=1.0'], ['axis.mas = 1.0', 'did you mean axis.mass?']),
         (['-p', 'scene:=paper_fig9'], ['paper_fig9', 'paper_fig8']),

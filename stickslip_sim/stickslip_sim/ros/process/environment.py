@@ -13,6 +13,8 @@ from ...core.errors import InputError
 _MAX_DOMAIN = 232    # beyond, DDS has no UDP ports
 _VARIABLES = ('ROS_DOMAIN_ID', 'ROS_STATIC_PEERS', 'ROS_AUTOMATIC_DISCOVERY_RANGE', 'ROS_DISCOVERY_SERVER',
               'RMW_IMPLEMENTATION', 'FASTRTPS_DEFAULT_PROFILES_FILE', 'FASTDDS_DEFAULT_PROFILES_FILE', 'CYCLONEDDS_URI')
+_SECURITY = 'ROS_SECURITY_'
+_ENABLE, _STRATEGY, _KEYSTORE = (_SECURITY + word for word in ('ENABLE', 'STRATEGY', 'KEYSTORE'))
 
 
 def check_environment() -> None:
@@ -25,6 +27,26 @@ def check_environment() -> None:
     if middleware and there and middleware not in there:
         raise InputError('RMW_IMPLEMENTATION', middleware, f'installed: {", ".join(there)}',
                          'install it, set another, or unset it')
+    _check_security()
+
+
+def _check_security() -> None:
+    """Raise InputError where ROS would run without the security that was meant: any other word is none for it."""
+    enable, strategy = os.environ.get(_ENABLE, ''), os.environ.get(_STRATEGY, '')
+    if enable not in ('', 'true', 'false'):
+        raise InputError(_ENABLE, enable, 'true or false', 'ROS runs without security with any other word')
+    if not _is_secure():
+        return
+    if strategy not in ('', 'Enforce', 'Permissive'):
+        raise InputError(_STRATEGY, strategy, 'Enforce or Permissive', 'ROS is permissive with any other word')
+    keystore = os.environ.get(_KEYSTORE, '')
+    if strategy == 'Enforce' and not os.path.isdir(keystore):
+        raise InputError(_KEYSTORE, keystore, 'the folder of the keys',
+                         'make it with ros2 security create_keystore (docs/security.md)')
+
+
+def _is_secure() -> bool:
+    return os.environ.get(_ENABLE) == 'true'
 
 
 @contextmanager
@@ -37,12 +59,16 @@ def refusing(name: str, value: object, *others: type[Exception]) -> Iterator[Non
             yield
     except refused as error:
         reason = re.sub(r',? at /\S+', '', str(error))
+        if _is_secure() and 'security' in reason.lower():
+            raise InputError(_ENABLE, 'true', 'possible with the middleware, the keystore and the enclave',
+                             f'{reason}; set: {variables(_SECURITY)}') from None
         raise InputError(name, value, 'accepted by ROS', reason) from None
 
 
-def variables() -> str:
-    """Return the variables that ROS looks at."""
-    return ' '.join(f'{name}={value}' for name, value in sorted(os.environ.items()) if name in _VARIABLES)
+def variables(*beginnings: str) -> str:
+    """Return the variables that ROS looks at, or those with such a beginning."""
+    return ' '.join(f'{name}={value}' for name, value in sorted(os.environ.items())
+                    if name.startswith(beginnings or (*_VARIABLES, _SECURITY)))
 
 
 def _middlewares() -> list[str]:
