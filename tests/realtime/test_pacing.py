@@ -10,21 +10,9 @@ from hypothesis import strategies as st
 
 from stickslip_sim.core.time_grid import Grid
 from stickslip_sim.realtime.pacing import Pacer
+from tests.support.fake_clock import FakeClock
 
 MS = 1_000_000
-
-
-class FakeClock:
-    """Time that passes only when somebody sleeps or says so."""
-
-    def __init__(self) -> None:
-        self.time = 5_000_000_000
-
-    def now(self) -> int:
-        return self.time
-
-    def sleep(self, seconds: float) -> None:
-        self.time += round(seconds * 1e9)
 
 
 @pytest.fixture

@@ -19,6 +19,7 @@ from stickslip_sim.rig import Rig, StepResult
 from stickslip_sim.rig.settings import RigSettings
 from stickslip_sim.solvers import Solver, exact
 from tests.support.axes import COMPLIANT, make, paper_axis
+from tests.support.fake_clock import FakeClock
 from tests.support.rigs import make as make_rig
 from tests.support.rigs import tired_after
 from tests.support.waiting import wait_for
@@ -33,12 +34,14 @@ def slots() -> tuple[CommandSlot, CommandSlot]:
 class Bench:
     """A loop that runs 20 times faster than time, and keeps what it hands out."""
 
-    def __init__(self, solver: Solver = exact.SOLVER, by_request: bool = False) -> None:
+    def __init__(self, solver: Solver = exact.SOLVER, by_request: bool = False,
+                 pacer: Pacer | None = None) -> None:
         self.slots = slots()
         self.results: list[StepResult] = []
         grid = Grid(RATE)
         rig = Rig(paper_axis(COMPLIANT), InitialState(), constant(0.002), constant(0.0), solver, grid, RigSettings())
-        self.loop = StepLoop(rig, Pacer(grid, 20.0), self.slots, [self.results.append], Watchdog(0.0), by_request)
+        self.loop = StepLoop(rig, pacer or Pacer(grid, 20.0), self.slots, [self.results.append], Watchdog(0.0),
+                             by_request)
 
     def reach(self, step: int) -> None:
         wait_for(lambda: self.loop.step >= step, f'step {step}')
@@ -62,6 +65,17 @@ def test_steps_and_events_are_those_of_the_simulator(bench: Bench) -> None:
     assert [event for result in bench.results for event in result.events][:len(events)] == events
     assert all(result.step == math.ceil(event.time * RATE) for result in bench.results for event in result.events)
     assert bench.results[2000].sample == other.sample()
+
+
+def test_what_prepares_the_start_delays_no_step() -> None:
+    clock = FakeClock()
+    pacer, begin = Pacer(Grid(RATE), 1.0, clock), clock.now()
+    bench = Bench(pacer=pacer)
+    bench.loop.start(20_000_000, lambda: clock.sleep(0.015))
+    bench.reach(3)
+    bench.loop.stop()
+    assert pacer.due(0) == begin + 20_000_000
+    assert (pacer.account.overruns, pacer.account.caught_up) == (0, 0)
 
 
 def test_a_command_holds_over_the_step_that_is_made_next(bench: Bench) -> None:

@@ -15,7 +15,7 @@ from stickslip_sim.realtime.step_loop import StepLoop
 from stickslip_sim.realtime.watchdog import Watchdog
 from stickslip_sim.rig import RigEventKind, StepResult
 from stickslip_sim.scene import load_scene
-from tests.realtime.test_pacing import FakeClock
+from tests.support.fake_clock import FakeClock
 from tests.support.rigs import make, rig_events_of
 from tests.support.waiting import wait_for
 

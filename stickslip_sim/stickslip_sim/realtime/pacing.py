@@ -55,8 +55,8 @@ class StepClock(Protocol):
     period: int
     counters: 'PacingCounters'
 
-    def restart(self, step: int) -> None:
-        """Let a step be due now, and those after it follow."""
+    def restart(self, step: int, lead: int = 0) -> None:
+        """Let a step be due in `lead` ns, and those after it follow."""
 
     def wait(self, step: int) -> bool:
         """Wait until a step is due, at most a while; return whether it is."""
@@ -106,9 +106,9 @@ class Pacer:
         self._waited = False
         self.restart(0)
 
-    def restart(self, step: int) -> None:
-        """Let a step be due now, and those after it follow."""
-        self._latest = self._clock.now()
+    def restart(self, step: int, lead: int = 0) -> None:
+        """Let a step be due in `lead` ns, and those after it follow."""
+        self._latest = self._clock.now() + lead
         self._origin = self._latest - self._offset(step)
 
     def due(self, step: int) -> int:
@@ -161,7 +161,7 @@ class Unpaced:
         self.counters = PacingCounters()
         self.now = SteadyClock.now
 
-    def restart(self, step: int) -> None:
+    def restart(self, step: int, lead: int = 0) -> None:
         """Do nothing: no step waits for another."""
 
     def wait(self, step: int) -> bool:

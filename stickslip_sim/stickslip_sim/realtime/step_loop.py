@@ -71,8 +71,10 @@ class StepLoop:
         """What befell the commands so far."""
         return self._inputs.totals(self.rig.counts)
 
-    def start(self) -> None:
-        """Begin with step 0, now."""
+    def start(self, lead: int = 0, prepare: Callable[[], object] = lambda: None) -> None:
+        """Begin with step 0, due `lead` ns from now; until then `prepare` is done."""
+        self._clock.restart(0, lead)
+        prepare()
         self._thread.start()
 
     def stop(self) -> None:
@@ -132,7 +134,6 @@ class StepLoop:
 
     def _run(self) -> None:
         wake_precisely()
-        self._clock.restart(0)
         try:
             while not self._is_over.is_set():
                 self._turn()

@@ -3,6 +3,8 @@
 """Recordings of the node: where they may go, what they hold, and what a full disk does."""
 
 import resource
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +15,7 @@ from stickslip_sim.recording import Bag, open_bag
 from stickslip_sim.scene import load_scene
 from tests.support.ros_nodes import assert_clean, client, recording_into, running
 from tests.support.tool import restore_interrupt
-from tests.support.waiting import wait_for
+from tests.support.waiting import DEADLINE, wait_for
 
 from stickslip_sim.ros.node.recordings import (  # isort: skip  # after tests.support.ros_nodes, which skips without ROS
     Recordings,
@@ -59,6 +61,12 @@ class TestRecording:
         with pytest.warns(RecordingWarning, match='no end'):
             run = open_bag(folder)
         assert len(run.columns('/slider_state')['step']) > 100
+
+    def test_stamps_keep_to_the_clock_when_it_records_from_the_start(self, tmp_path: Path) -> None:
+        """However long the bag takes to open."""
+        done = subprocess.run([sys.executable, '-m', 'tests.support.slow_bag', *recording_into(tmp_path / 'run')],
+                              capture_output=True, text=True, timeout=DEADLINE, check=True)
+        assert abs(float(done.stdout)) < 0.25, done.stderr
 
     def test_the_receipt_tells_the_solver_and_its_settings(self, tmp_path: Path) -> None:
         folder = tmp_path / 'run'

@@ -36,6 +36,8 @@ from .publishers import Publishers
 from .subscribers import Subscribers
 from .topics import publisher
 
+_LEAD = 20_000_000   # ns from the instant that stamps count from to step 0, which finds all prepared then
+
 
 class FeedAxis(SceneNode):
     """Publishes the motion of one axis; callbacks run in an executor, the steps in the loop's thread.
@@ -67,14 +69,12 @@ class FeedAxis(SceneNode):
         self._record_service.recordings.prepare()
         gc.collect()
         gc.freeze()      # a full collection would take tens of ms out of the loop
-        self._begin_run()
-        if self.scene.record.enabled:
-            self._record_service.begin_at_start()
-        else:
-            self._publish_run_info()
         self._cost.begin()
         self._report.begin()
-        self.loop.start()
+        if self.scene.record.enabled:
+            self._record_service.begin_at_start(self._start)
+        else:
+            self._start(self._publish_run_info)
         self.get_logger().info(f'{self.scene.name}: {self.scene.time.rate:g} steps a second, {self.scene.time.mode}')
 
     def end(self) -> None:
@@ -133,9 +133,17 @@ class FeedAxis(SceneNode):
         self._publish_run_info()
         return done
 
-    def _begin_run(self) -> None:
-        """Let the publishers begin where the rig is before its first step."""
-        self._outputs.begin_run(self._start_ns(), self.loop.rig.simulator.sample().mode)
+    def _start(self, announce: Callable[[], object]) -> None:
+        """Start the steps: their clock and their stamps at the same instant, after all that takes its time."""
+        def prepare() -> None:
+            self._begin_run(_LEAD)
+            announce()
+
+        self.loop.start(_LEAD, prepare)
+
+    def _begin_run(self, lead: int = 0) -> None:
+        """Let the publishers begin where the rig is before its first step, due `lead` ns from now."""
+        self._outputs.begin_run(self._start_ns(lead), self.loop.rig.simulator.sample().mode)
 
     def _receipt(self) -> dict[str, Any]:
         try:
@@ -150,9 +158,9 @@ class FeedAxis(SceneNode):
         self._run_info_out.publish(message)
         self._outputs.record_message(names.RUN_INFO, message, self.loop.time_ns, max(self.loop.step, 0))
 
-    def _start_ns(self) -> int:
-        """Return the stamp of simulation time 0: 0 where simulation time is the time of the graph."""
-        return 0 if self.scene.time.makes_clock else self._now_ns()
+    def _start_ns(self, lead: int) -> int:
+        """Return the stamp of simulation time 0, `lead` ns from now: 0 where it is the time of the graph."""
+        return 0 if self.scene.time.makes_clock else self._now_ns() + lead
 
     def _stamp_ns(self) -> int:
         """Return the time of the graph."""

@@ -33,10 +33,10 @@ class RecordService:
         """Whether a bag is open."""
         return self.recordings.recorder is not None
 
-    def begin_at_start(self) -> None:
-        """Begin a recording before the first step; raises RecordingError."""
+    def begin_at_start(self, start: Callable[[Callable[[], None]], None]) -> None:
+        """Begin a recording and start the steps, which attach it; raises RecordingError, and starts nothing then."""
         self.recordings.begin(self._node.scene)
-        self._attach()
+        start(self._attach)
         self._log_begin()
 
     def begin(self) -> str:

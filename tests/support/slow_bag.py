@@ -1,0 +1,36 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""A program: sim_node with a disk that takes half a second to open a bag; prints by how much its stamps lag, s."""
+
+import sys
+import time
+from typing import Any
+
+from stickslip_sim.core.types import Sample
+from stickslip_sim.recording import open_run
+from stickslip_sim.ros.node import recordings
+from stickslip_sim.ros.node.axis_program import PROGRAM
+from stickslip_sim.ros.node.publishers import Publishers
+from stickslip_sim.ros.process.program import live
+from stickslip_sim.ros.process.stop_signals import Signals
+
+SIGNALS = Signals()
+LAGS: list[int] = []
+
+
+def slow_open_run(*args: Any) -> Any:
+    time.sleep(0.5)
+    return open_run(*args)
+
+
+def sample(publishers: Publishers, _: int, state: Sample) -> None:
+    LAGS.append(time.time_ns() - publishers.start_ns - state.instant.nanoseconds)
+    SIGNALS.stop = len(LAGS) > 300
+
+
+if __name__ == '__main__':
+    recordings.open_run = slow_open_run    # type: ignore[assignment, attr-defined]
+    Publishers.sample = sample             # type: ignore[assignment, method-assign]
+    code = live(['--ros-args', *sys.argv[1:]], SIGNALS, PROGRAM)
+    print(min(LAGS) * 1e-9)
+    sys.exit(code)
