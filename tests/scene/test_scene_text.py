@@ -3,12 +3,17 @@
 """The canonical text of a scene."""
 
 import math
+from dataclasses import replace
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from stickslip_sim.config.ros_yaml import read_yaml
-from stickslip_sim.scene import load_scene, scene_from_values
+from stickslip_sim.core.errors import InputError
+from stickslip_sim.scene import load_scene, scene_from_values, scene_names
+from stickslip_sim.scene.load import parse_scene, scene_of_parameters
+from stickslip_sim.scene.schema import PARAMETERS
 from stickslip_sim.scene.sections import parameters_of
 
 masses = st.floats(1e-9, 1e12)
@@ -46,6 +51,23 @@ def test_the_text_of_a_scene_loads_as_the_same_scene(changes: dict[str, object],
     again = scene_from_values(parameters_of(read_yaml(scene.text)))
     assert again == scene
     assert again.text == scene.text
+
+
+@pytest.mark.parametrize('name', scene_names())
+def test_what_param_dump_writes_is_the_same_scene(name: str) -> None:
+    """`null` for each parameter without a value."""
+    scene = load_scene(name)
+    values = {entry.name: scene.values.get(entry.name, 'null') for entry in PARAMETERS}
+    assert 'null' in values.values()
+    again = scene_of_parameters(values, {})
+    assert again == replace(scene, summary=again.summary)
+
+
+def test_null_is_as_if_left_out() -> None:
+    text = '/**:\n  ros__parameters: {scene: paper_fig8, contact: {model: null}, axis: {mas%s: null}}\n'
+    assert parse_scene(text % 's').values == load_scene('paper_fig8').values
+    with pytest.raises(InputError, match=r"axis\.mas = 'null' is refused"):
+        parse_scene(text % '')
 
 
 def test_doubles_in_the_text_have_a_dot_for_every_yaml_reader() -> None:

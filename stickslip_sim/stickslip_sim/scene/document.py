@@ -33,6 +33,8 @@ contradict a choice, with one line.  The shipped files in `stickslip_sim/sticksl
   `set_parameters` change one after the other, each checked with those in force, as ROS defines it.  Parameters that
   must change together, as both lists of a friction table to another length, go by the service
   `set_parameters_atomically` (in newer ROS `ros2 param load --atomic`): all or none, between the same two steps.
+* **`null`** is as if left out.  `ros2 param dump /feed_axis` writes it for what has no value: its file is a scene, for
+  the node and the tool.
 * **`--set a.b=value`** of the tool changes one value of the file.  If it changes a choice, the values that the file
   gives for the old choice are dropped: `--set contact.model=rigid` needs no more.
 * **Input profiles.**  `drive.course` and `force.course` choose the input profile: velocity or force over time.

@@ -13,7 +13,7 @@ from ..core.errors import InputError
 from .build import build_scene
 from .model import Scene
 from .sections import describes_an_axis, parameters_of, without_those_of_ros
-from .values import overridden
+from .values import overridden, stated
 
 _SHIPPED = pathlib.Path(__file__).parent.parent / 'scenes'
 _ENDINGS = ('.yaml', '.yml')
@@ -51,7 +51,7 @@ def scene_of_parameters(values: Mapping[str, object], overrides: Mapping[str, ob
     A file that says nothing of an axis but bears the name of a shipped scene means that one, with what it says: so a
     launch file names one.  Any other name is for people, and what is left out is not modelled.
     """
-    values = without_those_of_ros(values)
+    values, overrides = stated(without_those_of_ros(values)), stated(overrides)
     if not values:
         raise InputError('parameters', None, 'of a scene', 'see the shipped scenes')
     name = values.get('scene')

@@ -9,6 +9,8 @@ from ..config.parameter import Parameter, When, yaml_word
 from ..core.errors import InputError
 from .schema import BY_NAME, PARAMETERS
 
+NULL = 'null'
+
 
 def effective_values(given: Mapping[str, object]) -> dict[str, object]:
     """Return the value of every parameter that has a meaning, in the order of the schema; None counts as not given.
@@ -27,6 +29,14 @@ def effective_values(given: Mapping[str, object]) -> dict[str, object]:
         elif entry.when is None or entry.when.holds(values):
             _leave_out(entry, values)
     return values
+
+
+def stated(values: Mapping[str, object]) -> dict[str, object]:
+    """Return values by dotted name without those that are left out in a file as `null`, which ROS reads as a text.
+
+    `ros2 param dump` writes it for every parameter that has no value.  Unknown names stay, to be refused.
+    """
+    return {name: value for name, value in values.items() if value != NULL or name not in BY_NAME}
 
 
 def overridden(base: Mapping[str, object], changes: Mapping[str, object]) -> dict[str, object]:

@@ -179,6 +179,9 @@ def test_parameters_and_restart_while_it_runs() -> None:
         assert axis.set_parameters(name, integral_time=math.inf).successful
         assert 'compensation.share = 1.5' in axis.set_parameters(name, compensation__share=1.5).reason
         assert 'cannot change while the node runs' in axis.set_parameters(name, moves__feed=0.01).reason
+        unknown = axis.set_parameters(name, moves__fee=0.01).reason
+        assert 'moves.fee = 0.01 is refused: must be one of' in unknown
+        assert 'did you mean moves.feed?' in unknown
         assert axis.call(Trigger, 'restart', name).success
         code, errors = controller.end()
     assert code == 0, errors

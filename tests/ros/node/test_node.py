@@ -19,6 +19,7 @@ from tests.support.ros_nodes import Client, NodeProcess, client, nanoseconds, ru
 from tests.support.waiting import wait_for
 
 pytestmark = pytest.mark.ros
+READ_ONLY = 'it cannot change while the node runs: start the node with another'
 
 ParameterType = {'bool': 1, 'integer': 2, 'double': 3, 'string': 4, 'double_array': 8, 'string_array': 9}
 
@@ -82,7 +83,10 @@ class TestParameters:
         ({'friction__kinetic__velocities': [0.02, 0.01]}, ['friction.kinetic.velocities']),
         ({'friction__kinetic__coefficients': [0.5, 0.05]}, ['friction.kinetic.coefficients[0] = 0.5', '0.12']),
         ({'axis__mass': 300.0, 'friction__static__limit': 0.01}, ['friction.static.limit']),
-        ({'time__rate': 500.0}, ['time.rate = 500.0', 'start it with another parameter file']),
+        ({'time__rate': 500.0}, ['time.rate = 500.0 is refused: must be 1000.0, as at the start', READ_ONLY]),
+        ({'drive__times': [0.0]}, ['drive.times', 'must be left out, as at the start', READ_ONLY]),
+        ({'record__enabled': True}, ['record.enabled = True is refused: must be false, as at the start', READ_ONLY]),
+        ({'start_type_description_service': False}, ['must be true, as at the start', READ_ONLY]),
         ({'axis__weight': 1.0}, ['axis.weight']),
     ])
     def test_refused(self, connected: Client, values: dict[str, object], told: list[str]) -> None:
@@ -91,6 +95,15 @@ class TestParameters:
         assert '\n' not in answer.reason
         assert all(words in answer.reason for words in told), answer.reason
         assert connected.values('axis.mass')[0].double_value == 350.0
+
+    def test_what_param_load_sends_of_a_dump_changes_nothing(self, connected: Client) -> None:
+        """It sends 'None' for what has no value, and 'inf' for .inf."""
+        same = {'time__rate': 1000.0, 'time__mode': 'realtime', 'drive__times': 'None', 'initial__rest_time': 'inf',
+                'friction__excess__exponent': 'None', 'command__velocity_limit': 'inf', 'axis__mass': 350.0,
+                'start_type_description_service': True}
+        for name, value in same.items():
+            answer = connected.set_parameters(**{name: value})
+            assert answer.successful, answer.reason
 
     def test_a_change_acts_while_the_axis_moves(self, axis: Client) -> None:
         axis.next('friction_force', lambda message: message.force > 100.0)

@@ -95,16 +95,21 @@ class TestRecording:
         with running('-p', f'record.folder:={tmp_path}/runs/first', folder=tmp_path) as process, client() as axis:
             axis.connect()
             for place in ('elsewhere', f'{tmp_path}/runs/../up', f'{tmp_path}/runs/away/x', '/dev/shm/x', '~/x'):
-                assert axis.set_parameters(record__folder=place).successful
-                answer = axis.switch('record', True)
-                assert (answer.success, 'must lie below' in answer.message) == (False, True), answer.message
+                answer = axis.set_parameters(record__folder=place)
+                assert not answer.successful
+                assert f"record.folder = '{place}' is refused: must be below {tmp_path}/runs" in answer.reason
+            assert axis.values('record.folder')[0].string_value == f'{tmp_path}/runs/first'
+            assert axis.set_parameters(record__folder=f'{tmp_path}/runs/later/x').successful
+            (tmp_path / 'runs' / 'later').symlink_to('/dev/shm', target_is_directory=True)
+            answer = axis.switch('record', True)
+            assert (answer.success, 'must be below' in answer.message) == (False, True), answer.message
             for place in (f'{tmp_path}/runs/second', ''):
                 assert axis.set_parameters(record__folder=place).successful
                 assert axis.switch('record', True).success
                 assert axis.switch('record', False).success
             process.end()
         assert {path.name for path in tmp_path.iterdir()} == {'runs'}
-        assert len(list((tmp_path / 'runs').iterdir())) == 3
+        assert len(list((tmp_path / 'runs').iterdir())) == 4
 
     @pytest.mark.parametrize('ending', ['/', '//', '/.'])
     def test_a_folder_as_a_shell_completes_it(self, tmp_path: Path, ending: str) -> None:

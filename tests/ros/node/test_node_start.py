@@ -109,7 +109,8 @@ class TestFiles:
         (['scene: mine'], [], 'mine', 350.0),
         (['scene: paper_fig7'], ['-p', 'axis.mass:=300.0'], 'paper_fig7', 300.0),
         (['record: {enabled: false}'], ['-p', 'scene:=positioning'], 'positioning', 350.0),
-        (['{scene: mine, axis: {mass: 200.0}}', 'seed: 5'], ['-p', 'scene:=yours'], 'yours', 200.0),
+        (['{scene: mine, axis: {mass: 200.0}, contact: {stiffness: null}}', 'seed: 5'],
+         ['-p', 'scene:=yours'], 'yours', 200.0),
         (['use_sim_time: false'], [], 'paper_fig8', 350.0),
     ])
     def test_are_a_scene_by_the_rules_of_the_tool(self, tmp_path: Path, texts: list[str], arguments: list[str],

@@ -86,6 +86,10 @@ class FeedAxis(SceneNode):
             self.get_logger().info(verdict(self.scene, self.loop).text)
         self._record_service.close()
 
+    def check_change(self, scene: Scene) -> None:
+        """Raise InputError on a folder of bags that lies elsewhere."""
+        self._record_service.recordings.allowed(scene.record.folder)
+
     def scene_changed(self, scene: Scene, changed: Sequence[Parameter]) -> None:
         """Let changed parameters take effect together at the next boundary between two steps."""
         self._slots[0].limit, self._slots[1].limit = scene.command.max_velocity, scene.command.max_force

@@ -12,9 +12,11 @@ from rclpy.parameter import Parameter
 from ...config.parameter import Parameter as Entry
 from ...core.errors import InputError
 from ...scene.sections import without_those_of_ros
+from ...scene.values import NULL
 from ..process.environment import refusing, variables
 from .bounded_node import BoundedNode
-from .parameters import declare, promoted
+from .parameter_requests import changes_of
+from .parameters import declare
 
 
 class ListedNode(BoundedNode):
@@ -36,12 +38,15 @@ class ListedNode(BoundedNode):
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
         """Set all or none; refused with one line that says what, why and what to do."""
-        wanted = [promoted(parameter, self._entries.get(parameter.name)) for parameter in parameter_list]
-        ours = {parameter.name: parameter.value for parameter in wanted if parameter.name in self._entries}
         try:
-            values = changed_values(self._entries, self.values, ours)
+            wanted = changes_of(self, parameter_list, self._entries, self.values)
+            ours = {parameter.name: parameter.value for parameter in wanted
+                    if parameter.name in self._entries or not self.has_parameter(parameter.name)}
+            values = self.values | checked_values(self._entries, ours)
         except InputError as error:
             return SetParametersResult(successful=False, reason=str(error))
+        if not wanted:
+            return SetParametersResult(successful=True)
         result = super().set_parameters_atomically(wanted)
         if result.successful and ours:
             self.values = values
@@ -51,20 +56,16 @@ class ListedNode(BoundedNode):
 
 def values_at_start(entries: Mapping[str, Entry], given: Mapping[str, object]) -> dict[str, object]:
     """Return the value of every parameter, given or default; raises InputError."""
+    defaults = {name: entry.default for name, entry in entries.items()}
+    return defaults | checked_values(entries, {name: value for name, value in given.items()
+                                               if value != NULL or name not in entries})
+
+
+def checked_values(entries: Mapping[str, Entry], given: Mapping[str, object]) -> dict[str, object]:
+    """Return the values that are given as the types of their parameters; raises InputError."""
     for name, value in given.items():
         if name not in entries:
             close = difflib.get_close_matches(name, entries, 1, cutoff=0.5)
             raise InputError(name, value, 'one of ' + ', '.join(entries),
                              f'did you mean {close[0]}?' if close else 'drop it')
-    return {name: entry.checked(given[name]) if name in given else entry.default for name, entry in entries.items()}
-
-
-def changed_values(entries: Mapping[str, Entry], values: Mapping[str, object],
-                   changes: Mapping[str, object]) -> dict[str, object]:
-    """Return values with changes; raises InputError on those that are wrong, or may not change while it runs."""
-    checked = {name: entries[name].checked(value) for name, value in changes.items()}
-    for name, value in checked.items():
-        if not entries[name].live and value != values[name]:
-            raise InputError(name, value, f'{values[name]!r} as at the start',
-                             'it cannot change while the node runs: start it anew')
-    return {**values, **checked}
+    return {name: entries[name].checked(value) for name, value in given.items()}

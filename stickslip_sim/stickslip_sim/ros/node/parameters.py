@@ -5,7 +5,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor, SetParametersResult
 from rclpy.exceptions import ParameterException
@@ -18,9 +18,11 @@ from ...scene.load import load_scene, named, read_parameters, scene_from_values,
 from ...scene.model import Scene
 from ...scene.schema import BY_NAME, PARAMETERS
 from ...scene.sections import describes_an_axis, without_those_of_ros
+from ...scene.values import stated
 from ..process.environment import refusing, variables
 from .bounded_node import BoundedNode
 from .clock import check_sim_time
+from .parameter_requests import changes_of
 
 _SIM_TIME = 'use_sim_time'
 DEFAULT_SCENE = 'paper_fig8'
@@ -42,7 +44,7 @@ class FileParameters(NamedTuple):
         values: dict[str, object] = {}
         for path in paths:
             values |= without_those_of_ros(read_parameters(path))
-        return cls(' + '.join(paths), values)
+        return cls(' + '.join(paths), stated(values))
 
 
 class SceneNode(BoundedNode):
@@ -73,6 +75,9 @@ class SceneNode(BoundedNode):
                 raise InputError(name, value, f'in a section of {self.get_fully_qualified_name()}',
                                  'name the section /**, or as this node')
 
+    def check_change(self, scene: Scene) -> None:
+        """Raise InputError on a scene that this node cannot change to; for the heir."""
+
     def scene_changed(self, scene: Scene, changed: Sequence[Parameter]) -> None:
         """Let a change take effect; for the heir."""
 
@@ -85,15 +90,18 @@ class SceneNode(BoundedNode):
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
         """Set all or none; refused with one line that says what, why and what to do."""
-        wanted = [promoted(parameter, BY_NAME.get(parameter.name)) for parameter in parameter_list]
-        ours = {parameter.name: parameter.value for parameter in wanted
-                if parameter.name in BY_NAME or not self.has_parameter(parameter.name)}
         try:
-            scene = changed_scene(self.scene, ours)
+            wanted = changes_of(self, parameter_list, BY_NAME, self.scene.values)
+            ours = {parameter.name: parameter.value for parameter in wanted
+                    if parameter.name in BY_NAME or not self.has_parameter(parameter.name)}
+            scene = scene_from_values({**self.scene.values, **ours}) if ours else self.scene
+            self.check_change(scene)
             warnings = [check_sim_time(scene.time, parameter.value) for parameter in wanted
                         if parameter.name == _SIM_TIME]
         except InputError as error:
             return SetParametersResult(successful=False, reason=str(error))
+        if not wanted:
+            return SetParametersResult(successful=True)
         result = super().set_parameters_atomically(wanted)
         if result.successful:
             self._warn(*warnings)
@@ -120,15 +128,6 @@ def scene_at_start(given: Mapping[str, object], in_files: Mapping[str, object]) 
     return load_scene(str(given.get('scene', DEFAULT_SCENE)), rest)
 
 
-def changed_scene(scene: Scene, changes: Mapping[str, object]) -> Scene:
-    """Return the scene with other values; raises InputError on those that may not change while the axis runs."""
-    for name, value in changes.items():
-        if name in BY_NAME and not BY_NAME[name].live and value != scene.values.get(name):
-            raise InputError(name, value, f'{scene.values.get(name)!r} as at the start',
-                             'it cannot change while the node runs: start it with another parameter file')
-    return scene_from_values({**scene.values, **changes}) if changes else scene
-
-
 def declare(node: Node, entries: Sequence[Entry], values: Mapping[str, object]) -> None:
     """Declare the parameters of a list with their descriptions; one without a value has its type only."""
     for entry in entries:
@@ -150,16 +149,6 @@ def describe(entry: Entry) -> ParameterDescriptor:
         if entry.type == 'integer':
             descriptor.integer_range = [IntegerRange(from_value=int(entry.low), to_value=int(entry.high), step=1)]
     return descriptor
-
-
-def promoted(parameter: Parameter, entry: Entry | None) -> Parameter:
-    """Return whole numbers as the doubles that they stand for, as in a scene file."""
-    value: Any = parameter.value
-    if entry is not None and entry.type == 'double' and parameter.type_ == Parameter.Type.INTEGER:
-        return Parameter(parameter.name, Parameter.Type.DOUBLE, float(value))
-    if entry is not None and entry.type == 'double_array' and parameter.type_ == Parameter.Type.INTEGER_ARRAY:
-        return Parameter(parameter.name, Parameter.Type.DOUBLE_ARRAY, [float(number) for number in value])
-    return parameter
 
 
 def _plain(value: object) -> object:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from ...core.errors import RecordingError
+from ...core.errors import InputError, RecordingError
 from ...realtime.pacing import utc_stamp
 from ...recording import (
     RECORDED,
@@ -57,7 +57,10 @@ class Recordings:
         """Open a new run folder; raises RecordingError."""
         try:
             writer = open_run(self._folder_of(scene), RunFacts.of(scene), self._namespace)
-        except (RecordingError, OSError, RuntimeError, ValueError) as error:    # the last two: no such home, odd names
+        except InputError as error:
+            self.failure = str(error)
+            raise RecordingError(self.failure) from None
+        except (RecordingError, OSError, ValueError) as error:    # the last: odd names
             self.failure = f'record.folder = {scene.record.folder!r}: {error}'
             raise RecordingError(self.failure) from None
         self.recorder, self.folder, self.failure = RecorderThread(writer), str(writer.folder), ''
@@ -97,15 +100,23 @@ class Recordings:
     def _folder_of(self, scene: Scene) -> Path:
         """Return the folder of the scene, or a new one that is named after namespace, scene and time.
 
-        Raises RecordingError on one that lies elsewhere.
+        Raises InputError on one that lies elsewhere.
         """
         if not scene.record.folder:    # axes may start in the same second
             name = '_'.join([*filter(None, self._namespace.split('/')), file_name(scene.name), utc_stamp()])
             return first_free(lambda number: self._root / (f'{name}_{number}' if number > 1 else name))
-        folder = Path(scene.record.folder).expanduser()
-        if self._root not in Path(os.path.realpath(folder)).parents:
-            raise RecordingError(f'it must lie below {self._root}, as at the start of the node')
-        return folder
+        return self.allowed(scene.record.folder)
+
+    def allowed(self, folder: str) -> Path:
+        """Return the folder of a recording; raises InputError when it lies elsewhere."""
+        try:
+            path = Path(folder).expanduser()
+        except RuntimeError:
+            raise InputError('record.folder', folder, 'in a home that exists', 'check the name of the user') from None
+        if folder and self._root not in Path(os.path.realpath(path)).parents:
+            raise InputError('record.folder', folder, f'below {self._root}, as at the start of the node',
+                             'give one there, or leave it empty')
+        return path
 
 
 def first_free(name: Callable[[int], Path]) -> Path:
