@@ -75,7 +75,7 @@ def test_what_prepares_the_start_delays_no_step() -> None:
     bench.reach(3)
     bench.loop.stop()
     assert pacer.due(0) == begin + 20_000_000
-    assert (pacer.account.overruns, pacer.account.caught_up) == (0, 0)
+    assert (pacer.counters.overruns, pacer.counters.caught_up) == (0, 0)
 
 
 def test_a_command_holds_over_the_step_that_is_made_next(bench: Bench) -> None:

@@ -34,7 +34,7 @@ class RecordService:
         return self.recordings.recorder is not None
 
     def begin_at_start(self, start: Callable[[Callable[[], None]], None]) -> None:
-        """Begin a recording and start the steps, which attach it; raises RecordingError, and starts nothing then."""
+        """Begin a recording, and with it the steps: `start` attaches it before the first.  Raises RecordingError."""
         self.recordings.begin(self._node.scene)
         start(self._attach)
         self._log_begin()
