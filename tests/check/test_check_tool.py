@@ -104,6 +104,35 @@ class TestOutcome:
             assert f'| {kind.unit} |' in row
 
 
+class TestSeveral:
+    def test_each_is_judged_and_one_that_fails_fails_all(self, tmp_path: Path, bag: Path, capsys: Capture) -> None:
+        limits = limits_file(tmp_path, 'limits: {sticks: {max: 1}, peak_speed: {max: 0.014}}')
+        xml, found = tmp_path / 'c.xml', tmp_path / 'c.json'
+        code, out, err = checked(capsys, bag, 'fast_feed', '--duration', DURATION, '--set', 'drive.velocity=0.0',
+                                 '--limits', limits, '--junit', xml, '--json', found)
+        assert code == 3
+        assert [line for line in out.splitlines() if line.startswith(('PASSED', 'FAILED'))] == [
+            'FAILED: 1 of 2: peak_speed', 'PASSED: 2 of 2']
+        assert out.splitlines()[-1] == f'1 of 2 runs keep {limits}'
+        assert err == f'stickslip: {bag} does not keep {limits}: peak_speed\n'
+        root = ElementTree.parse(xml).getroot()
+        assert (root.tag, [(suite.tag, suite.attrib['name']) for suite in root]) == (
+            'testsuites', [('testsuite', str(bag)), ('testsuite', 'fast_feed')])
+        both = json.loads(found.read_text())
+        assert (both['passed'], [(one['run']['name'], one['passed']) for one in both['runs']]) == (
+            False, [(str(bag), False), ('fast_feed', True)])
+
+    def test_folders_of_one_name_are_told_apart(self, tmp_path: Path, bag: Path, capsys: Capture) -> None:
+        other = cut(bag, tmp_path / 'jump', 0.7)
+        limits = limits_file(tmp_path, 'limits: {sticks: {max: 1}}')
+        code, out, _ = checked(capsys, bag, other, '--limits', limits)
+        assert code == 0
+        assert [line.partition(': ')[0] for line in out.splitlines() if ' states, ' in line] == [str(bag), str(other)]
+
+    def test_a_run_given_twice_is_refused(self, tmp_path: Path, bag: Path, capsys: Capture) -> None:
+        assert 'give each once' in refused(capsys, bag, bag, '--limits', limits_file(tmp_path, LIMITS))
+
+
 class TestRuns:
     def test_a_recorded_run_has_the_figures_of_the_simulation(self, bag: Path, tmp_path: Path, capsys: Capture) -> None:
         target = 'target: 0.001\nwindow: {end: 1.4}\nlimits:\n' + ''.join(

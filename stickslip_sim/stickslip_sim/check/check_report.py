@@ -5,7 +5,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
-from typing import Any
+from typing import Any, NamedTuple
 
 from ..runs import Run
 from .judgement import LimitOutcome
@@ -13,8 +13,17 @@ from .kinds import TIMING
 from .observed_run import commands_of, gaps_in, observed_motion, timing_of
 
 
-def verdict_line(run: Run, outcomes: Sequence[LimitOutcome]) -> str:
+class Checked(NamedTuple):
+    """A run that was judged, under the name that it has in what is written about it."""
+
+    name: str
+    run: Run
+    outcomes: Sequence[LimitOutcome]
+
+
+def verdict_line(checked: Checked) -> str:
     """Return passed or failed, of how many, and which failed."""
+    _, run, outcomes = checked
     failed = failures(outcomes)
     if failed:
         return f'FAILED: {len(failed)} of {len(outcomes)}: {", ".join(failed)}'
@@ -23,10 +32,11 @@ def verdict_line(run: Run, outcomes: Sequence[LimitOutcome]) -> str:
     return f'PASSED: {len(outcomes)} of {len(outcomes)}{doubt}'
 
 
-def checked_line(run: Run) -> str:
+def checked_line(checked: Checked) -> str:
     """Return what was checked: from when to when, how much is known of it, and when its first command came."""
+    name, run, _ = checked
     motion, commands = observed_motion(run), commands_of(run)
-    text = (f'{run.name}: {motion.begin:g} to {motion.end:g} s, {len(motion.time)} states, '
+    text = (f'{name}: {motion.begin:g} to {motion.end:g} s, {len(motion.time)} states, '
             f'{len(motion.events)} transitions')
     if commands is None:
         return text
@@ -39,13 +49,14 @@ def real_time_verdict(run: Run) -> str:
     return timing.verdict if timing else ''
 
 
-def complaint(run: Run, limits_file: str, outcomes: Sequence[LimitOutcome]) -> str:
+def complaint(checked: Checked, limits_file: str) -> str:
     """Return in one line why a run did not pass, empty when it did."""
+    name, _, outcomes = checked
     judged = [outcome.name for outcome in outcomes if not (outcome.passed or outcome.is_unjudged)]
     unjudged = [outcome.name for outcome in outcomes if outcome.is_unjudged]
-    parts = [f'{run.name} does not keep {limits_file}: {", ".join(judged)}'] if judged else []
+    parts = [f'{name} does not keep {limits_file}: {", ".join(judged)}'] if judged else []
     if unjudged:
-        parts.append(f'{run.name}: no drive velocity came within the window of {", ".join(unjudged)}, so that no '
+        parts.append(f'{name}: no drive velocity came within the window of {", ".join(unjudged)}, so that no '
                      'controller was judged: let the window begin with first_command, or allow that with commands: '
                      'optional')
     return '; '.join(parts)
@@ -65,11 +76,17 @@ def line_of(outcome: LimitOutcome) -> str:
     return f'{text} ({outcome.remark})' if outcome.remark else text
 
 
-def as_json(run: Run, outcomes: Sequence[LimitOutcome]) -> dict[str, Any]:
-    """Return everything that was found; an infinite figure is the text 'inf'."""
+def as_json(runs: Sequence[Checked]) -> dict[str, Any]:
+    """Return everything that was found: of one run, or a list of several; an infinite figure is the text 'inf'."""
+    found = [_found(checked) for checked in runs]
+    return found[0] if len(found) == 1 else {'passed': all(one['passed'] for one in found), 'runs': found}
+
+
+def _found(checked: Checked) -> dict[str, Any]:
+    name, run, outcomes = checked
     motion, commands, timing = observed_motion(run), commands_of(run), timing_of(run)
     return {
-        'run': {'name': run.name, 'begin': motion.begin, 'end': motion.end, 'states': len(motion.time),
+        'run': {'name': name, 'begin': motion.begin, 'end': motion.end, 'states': len(motion.time),
                 'events': len(motion.events), 'is_complete': run.is_complete, 'notes': list(gaps_in(run)),
                 'first_command': commands.first if commands else None,
                 'timing': asdict(timing) if timing else None},

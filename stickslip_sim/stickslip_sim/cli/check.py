@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""`stickslip check`: a recorded run or a fresh simulation against the limits in a file."""
+"""`stickslip check`: recorded runs or fresh simulations against the limits in a file."""
 
 import json
 from typing import TYPE_CHECKING
@@ -15,18 +15,19 @@ if TYPE_CHECKING:
     from ..runs import Run
 
 
-@click.command(short_help='Check a run against limits: pass or fail.')
-@click.argument('source', metavar='RUN_OR_SCENE')
+@click.command(short_help='Check runs against limits: pass or fail.')
+@click.argument('sources', nargs=-1, required=True, metavar='RUN_OR_SCENE...')
 @click.option('--limits', 'limits_file', required=True, metavar='FILE.yaml', help='The limits (docs/check.md).')
 @click.option('--duration', type=float, metavar='S', help='Time to simulate a scene, s.')
 @click.option('--set', 'changes', multiple=True, metavar='A.B=VALUE', help='Change a parameter of a scene.')
 @click.option('--junit', metavar='FILE.xml', help='Write JUnit XML for a CI server ("-": to standard output).')
 @click.option('--json', 'json_file', metavar='FILE.json', help='Write everything measured ("-": to standard output).')
-def check(source: str, limits_file: str, duration: float | None, changes: tuple[str, ...], junit: str | None,
-          json_file: str | None) -> None:
-    """Check RUN_OR_SCENE - a run folder, or a scene to simulate - against limits; exit with 3 when one is not kept."""
+def check(sources: tuple[str, ...], limits_file: str, duration: float | None, changes: tuple[str, ...],
+          junit: str | None, json_file: str | None) -> None:
+    """Check each RUN_OR_SCENE - a run folder, or a scene to simulate - against limits; exit with 3 when one fails."""
     _check_outputs(junit, json_file)
-    from ..check.check_report import as_json, complaint, real_time_verdict, verdict_line
+    _check_sources(sources, duration, changes)
+    from ..check.check_report import Checked, as_json, complaint, verdict_line
     from ..check.judgement import outcomes_of
     from ..check.junit import junit_text
     from ..check.limits import load_limits
@@ -34,16 +35,23 @@ def check(source: str, limits_file: str, duration: float | None, changes: tuple[
     from .check_table import table_lines
 
     limits = load_limits(limits_file)
-    run = _run(source, limits, duration, changes)
-    outcomes = outcomes_of(limits, run)
-    if STDOUT not in (junit, json_file):
-        print('\n'.join([*table_lines(run, outcomes), verdict_line(run, outcomes)]), flush=True)
+    is_printed = STDOUT not in (junit, json_file)
+    found = []
+    for source in sources:
+        run = _run(source, limits, duration, changes)
+        name = run.name if len(sources) == 1 else source   # two folders may have one name
+        found.append(Checked(name, run, outcomes_of(limits, run)))
+        if is_printed:
+            print('\n'.join([*table_lines(found[-1]), verdict_line(found[-1])]), flush=True)
+    failed = list(filter(None, (complaint(checked, limits_file) for checked in found)))
+    if is_printed and len(sources) > 1:
+        print(f'{len(found) - len(failed)} of {len(found)} runs keep {limits_file}', flush=True)
     if json_file is not None:
-        write_text(json_file, [json.dumps(as_json(run, outcomes), indent=2, allow_nan=False) + '\n'])
+        write_text(json_file, [json.dumps(as_json(found), indent=2, allow_nan=False) + '\n'])
     if junit is not None:
-        write_text(junit, [junit_text(run.name, outcomes, real_time_verdict(run))])
-    if failed := complaint(run, limits_file, outcomes):
-        raise VerdictError(failed)
+        write_text(junit, [junit_text(found)])
+    if failed:
+        raise VerdictError('; '.join(failed))
 
 
 def _check_outputs(junit: str | None, json_file: str | None) -> None:
@@ -55,13 +63,20 @@ def _check_outputs(junit: str | None, json_file: str | None) -> None:
     check_distinct(targets)
 
 
-def _run(source: str, limits: 'Limits', duration: float | None, changes: tuple[str, ...]) -> 'Run':
-    if is_recorded(source):
-        if duration is not None or changes:
-            raise click.UsageError('--duration and --set are for a scene; a run stays as it was recorded.')
-        return recorded_run(source)
-    if duration is None:
+def _check_sources(sources: tuple[str, ...], duration: float | None, changes: tuple[str, ...]) -> None:
+    """Raise before the work begins when an option has no effect or one is missing, or a source comes twice."""
+    recorded = [is_recorded(source) for source in sources]
+    if all(recorded) and (duration is not None or changes):
+        raise click.UsageError('--duration and --set are for a scene; a run stays as it was recorded.')
+    if not all(recorded) and duration is None:
         raise click.UsageError('--duration S is needed to simulate a scene.')
+    if len(set(sources)) < len(sources):
+        raise click.UsageError('RUN_OR_SCENE: give each once.')
+
+
+def _run(source: str, limits: 'Limits', duration: float | None, changes: tuple[str, ...]) -> 'Run':
+    if is_recorded(source) or duration is None:   # a scene has one
+        return recorded_run(source)
     return _simulated(source, limits, duration, changes)
 
 

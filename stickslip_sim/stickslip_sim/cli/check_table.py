@@ -2,24 +2,23 @@
 # SPDX-License-Identifier: Apache-2.0
 """The outcome of a check as a table for people."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
-from ..check.check_report import checked_line, real_time_verdict
+from ..check.check_report import Checked, checked_line, real_time_verdict
 from ..check.judgement import LimitOutcome
 from ..check.observed_run import gaps_in
-from ..runs import Run
 from ..runs.wording import quantity
 
 _HEADS = ('limit', 'measured', 'at most', 'margin', '', '')
 _NUMBERS = (1, 2, 3)   # columns to the right
 
 
-def table_lines(run: Run, outcomes: Sequence[LimitOutcome]) -> Iterator[str]:
+def table_lines(checked: Checked) -> Iterator[str]:
     """Yield the checked run, whether it kept real time, its missing parts, and a line for each limit."""
-    yield checked_line(run)
-    yield from filter(None, [real_time_verdict(run)])
-    yield from (f'note: {note}' for note in gaps_in(run))
-    rows = [_HEADS, *map(_cells, outcomes)]
+    yield checked_line(checked)
+    yield from filter(None, [real_time_verdict(checked.run)])
+    yield from (f'note: {note}' for note in gaps_in(checked.run))
+    rows = [_HEADS, *map(_cells, checked.outcomes)]
     widths = [max(map(len, column)) for column in zip(*rows)]
     for row in rows:
         yield '  '.join(cell.rjust(width) if i in _NUMBERS else cell.ljust(width)
