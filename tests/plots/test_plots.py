@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pictures of runs: they can be drawn without a display, from any run."""
 
+import re
 import subprocess
 import sys
 from io import BytesIO
@@ -13,38 +14,53 @@ import pytest
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
+from stickslip_sim.core.types import Mode
 from stickslip_sim.plots import plot_run
+from stickslip_sim.plots.drawn_run import DrawnRun, TimeWindow, drawn_run, mode_shares
+from stickslip_sim.plots.run_panels import BINS, band
 from stickslip_sim.plots.style import Numbers, legend_outside, thinned
-from stickslip_sim.runs import Columns, simulate
+from stickslip_sim.rig.marks import Mark
+from stickslip_sim.runs import Run, simulate
 from stickslip_sim.scene import load_scene
 
 PNG = b'\x89PNG\r\n\x1a\n'
 
 
+def drawn(run: Run, title: str = 'paper_fig8', **samples: Numbers) -> DrawnRun:
+    return drawn_run(title, {**run.samples, **samples}, run.events, run.commands, run.marks)
+
+
+def whole(run: Run) -> list[TimeWindow]:
+    return [TimeWindow(run.begin, run.end)]
+
+
 @pytest.mark.parametrize('scene', ['paper_fig7', 'paper_fig8', 'positioning', 'fast_feed', 'cutting_force'])
 def test_png(scene: str, tmp_path: Path) -> None:
     run = simulate(load_scene(scene), 3.0, 0.01)
-    plot_run(run.samples, run.events, f'{scene}\nfigures', tmp_path / 'run.png')
+    plot_run(drawn(run, f'{scene}\nfigures'), whole(run), tmp_path / 'run.png')
     assert (tmp_path / 'run.png').read_bytes().startswith(PNG)
     assert (tmp_path / 'run.png').stat().st_size > 20_000
 
 
-def test_svg_names_what_it_shows_and_is_reproducible(tmp_path: Path) -> None:
+def test_svg_names_what_it_shows_and_pictures_are_reproducible(tmp_path: Path) -> None:
     run = simulate(load_scene('paper_fig8'), 3.0, 0.01)
-    for name in ('a.svg', 'b.svg'):
-        plot_run(run.samples, run.events, 'paper_fig8', tmp_path / name)
+    for name in ('a.svg', 'b.svg', 'a.pdf', 'b.pdf'):
+        plot_run(drawn(run), whole(run), tmp_path / name)
     ElementTree.parse(tmp_path / 'a.svg')
     text = (tmp_path / 'a.svg').read_text()
-    for words in ('paper_fig8', 'position / mm', 'velocity / (mm/s)', 'force / N', 'STICK', 'DECELERATING', 'drive'):
+    for words in ('paper_fig8', 'position / mm', 'setpoint', 'error / mm', 'velocity / (mm/s)', 'force / N', 'STICK',
+                  'DECELERATING', 'drive'):
         assert words in text
     assert text == (tmp_path / 'b.svg').read_text()
+    assert (tmp_path / 'a.pdf').read_bytes().startswith(b'%PDF')
+    assert (tmp_path / 'a.pdf').read_bytes() == (tmp_path / 'b.pdf').read_bytes()
 
 
 def test_external_force_is_shown_only_where_there_is_one(tmp_path: Path) -> None:
     run = simulate(load_scene('paper_fig8'), 1.0, 0.01)
-    plot_run(run.samples, run.events, 'none', tmp_path / 'none.svg')
-    pushed: Columns = {**run.samples, 'external_force': run.samples['external_force'] - 2e4}
-    plot_run(pushed, run.events, 'some', tmp_path / 'some.svg')
+    plot_run(drawn(run), whole(run), tmp_path / 'none.svg')
+    pushed = drawn(run, external_force=run.samples['external_force'] - 2e4)
+    plot_run(pushed, whole(run), tmp_path / 'some.svg')
     assert 'external' not in (tmp_path / 'none.svg').read_text()
     assert 'external' in (tmp_path / 'some.svg').read_text()
     assert 'force / kN' in (tmp_path / 'some.svg').read_text()
@@ -52,8 +68,44 @@ def test_external_force_is_shown_only_where_there_is_one(tmp_path: Path) -> None
 
 def test_one_sample_and_no_event_can_be_drawn(tmp_path: Path) -> None:
     run = simulate(load_scene('paper_fig7'), 0.1, 1.0)
-    plot_run(run.samples, run.events, 'one', tmp_path / 'one.png')
+    plot_run(drawn(run), whole(run), tmp_path / 'one.png')
     assert (tmp_path / 'one.png').read_bytes().startswith(PNG)
+
+
+def test_faults_and_refusals_have_a_lane_each_with_their_number(tmp_path: Path) -> None:
+    run = simulate(load_scene('paper_fig8'), 1.0, 0.01)
+    marks = [Mark(0.2, 0.4, 'friction_scale'), Mark(0.5, 0.5, 'refused', 7), Mark(0.6, 0.6, 'refused', 5)]
+    plot_run(drawn(run)._replace(marks=marks), whole(run), tmp_path / 'marks.svg')
+    text = (tmp_path / 'marks.svg').read_text()
+    assert 'friction scale' in text
+    assert 'refused (12)' in text
+
+
+def test_a_band_has_every_extreme(tmp_path: Path) -> None:
+    time = np.linspace(0.0, 10.0, 100_001, dtype=np.float64)
+    values: Numbers = np.sin(100.0 * time)
+    values[70_000] = 5.0
+    middles, low, high = band(time, values, TimeWindow(0.0, 10.0))
+    assert len(middles) == len(low) == len(high) == BINS
+    assert (high.max(), round(float(middles[high.argmax()]), 1)) == (5.0, 7.0)
+    assert low.min() == values.min()
+    middles, low, high = band(np.array([1.0, 9.0]), np.array([2.0, 3.0]), TimeWindow(0.0, 10.0))
+    assert (low.tolist(), high.tolist()) == ([2.0, 3.0], [2.0, 3.0])   # nothing between them
+
+
+def test_the_shares_of_the_modes_are_those_of_the_time() -> None:
+    modes = np.array([0.0, 1.0, 4.0]), np.array([Mode.STICK, Mode.ACCELERATING, Mode.STICK], dtype=np.float64)
+    shares = mode_shares(modes, np.array([0.0, 2.0, 4.0, 6.0]))
+    assert shares[Mode.STICK].tolist() == pytest.approx([0.5, 0.0, 1.0])
+    assert shares[Mode.ACCELERATING].tolist() == pytest.approx([0.5, 1.0, 0.0])
+    assert shares[Mode.COASTING].tolist() == [0.0, 0.0, 0.0]
+
+
+def test_what_hardly_changes_is_no_mountain(tmp_path: Path) -> None:
+    """Sliding that has settled is a line, not the rounding of its last digits."""
+    run = simulate(load_scene('fast_feed'), 10.0, 0.001)
+    plot_run(drawn(run), [TimeWindow(9.0, 10.0)], tmp_path / 'settled.svg')
+    assert not re.search(r'1e.?1\d', (tmp_path / 'settled.svg').read_text().partition('<defs>')[2].lower())
 
 
 def test_thinning_keeps_the_peaks() -> None:

@@ -13,8 +13,10 @@ from stickslip_sim.cli.main import run as tool
 from stickslip_sim.core.errors import InputError, RecordingWarning
 from stickslip_sim.core.types import EventKind
 from stickslip_sim.recording import read_run
+from stickslip_sim.rig.marks import Mark
 from stickslip_sim.runs import COLUMNS, Run, simulate, simulate_events
 from stickslip_sim.scene import load_scene
+from tests.fuzz.recordings import files
 
 
 def test_a_recorded_run_reads_like_the_simulation(fig8_bag: Path) -> None:
@@ -90,14 +92,35 @@ class TestViews:
             run.plot(tmp_path / name)
             assert (tmp_path / name).stat().st_size > 10_000
 
+    def test_a_run_without_samples_can_be_drawn(self, tmp_path: Path) -> None:
+        simulate_events(load_scene('paper_fig7'), 1.0).plot(tmp_path / 'run.pdf')
+        assert (tmp_path / 'run.pdf').read_bytes().startswith(b'%PDF')
+
     def test_refused_pictures(self, tmp_path: Path) -> None:
         run = simulate_events(load_scene('paper_fig7'), 0.1)
-        with pytest.raises(InputError, match=r'ending in \.png or \.svg'):
-            run.plot(tmp_path / 'run.pdf')
-        with pytest.raises(InputError, match='simulate with samples'):
-            run.plot(tmp_path / 'run.png')
+        with pytest.raises(InputError, match=r'ending in \.png, \.pdf or \.svg'):
+            run.plot(tmp_path / 'run.jpg')
+        with pytest.raises(InputError, match=r'0 <= A < B <= 0\.1 s'):
+            run.plot(tmp_path / 'run.png', window=(0.05, 0.2))
+        assert not list(tmp_path.iterdir())
 
     def test_what_is_found_is_kept(self, fig8_bag: Path) -> None:
         run = read_run(fig8_bag)
         assert run.cycles() is run.cycles()
         assert run.cycles() is not read_run(fig8_bag).cycles()
+
+
+def test_the_marks_and_commands_of_a_node_are_read_from_its_bag(tmp_path: Path) -> None:
+    """12 steps of 20 ms, then a command and a fault 40 ms later, for 100 ms."""
+    files(tmp_path)
+    run = read_run(tmp_path / 'node')
+    assert [(mark.label, mark.number) for mark in run.marks] == [('friction_scale', 1)]
+    assert (run.marks[0].begin, run.marks[0].end) == pytest.approx((0.26, 0.36))
+    assert (run.commands['time'].tolist(), run.commands['velocity'].tolist()) == ([pytest.approx(0.22)], [0.03])
+
+
+def test_the_marks_of_a_recorded_simulation_are_the_faults_of_its_scene(tmp_path: Path) -> None:
+    faults = {'ids': '[dry]', 'kinds': '[friction_scale]', 'starts': '[0.5]', 'durations': '[.inf]', 'values': '[2.0]'}
+    settings = [word for name, value in faults.items() for word in ('--set', f'faults.{name}={value}')]
+    assert tool(['simulate', 'paper_fig7', '--duration', '1', *settings, '--bag', str(tmp_path / 'run')]) == 0
+    assert read_run(tmp_path / 'run').marks == [Mark(0.5, 1.0, 'friction_scale')]

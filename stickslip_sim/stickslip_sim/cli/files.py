@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from ..core.errors import InputError
+from ..core.picture_formats import check_picture_name
 
 STDOUT = '-'
 
@@ -26,8 +27,7 @@ def check_file(option: str, path: str) -> None:
 
 def check_picture(option: str, path: str) -> None:
     """Raise InputError unless a picture can be written there."""
-    if Path(path).suffix.lower() not in ('.png', '.svg'):
-        raise InputError(option, path, 'a file ending in .png or .svg', 'name it so')
+    check_picture_name(option, path)
     check_file(option, path)
 
 

@@ -27,6 +27,7 @@ from .critical import critical
 from .export import export
 from .extremes import extremes
 from .map import map_
+from .plot import plot
 from .scenes import scenes
 from .simulate import simulate
 from .sweep import sweep
@@ -50,8 +51,8 @@ def stickslip(context: click.Context) -> None:
         context.exit(2)
 
 
-for verb in (advise, bench, check, compare, critical, export, extremes, map_, scenes, simulate, sweep, uncertainty,
-             verify):
+for verb in (advise, bench, check, compare, critical, export, extremes, map_, plot, scenes, simulate, sweep,
+             uncertainty, verify):
     stickslip.add_command(verb)
 
 

@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from ..runs import SimulatedRun
     from ..scene import Scene
 
-_PLOT_POINTS = 20_000
 
 
 class _Wishes(NamedTuple):
@@ -42,7 +41,7 @@ class _Wishes(NamedTuple):
 @click.option('--sample-period', type=float, metavar='S', help="Time between samples [default: a step of the scene].")
 @click.option('--bag', metavar='FOLDER', help='Record the run as a ROS 2 bag, one state a step.')
 @click.option('--receipt', metavar='FILE.json', help='Write versions, figures, energy, error and cost.')
-@click.option('--plot', metavar='FILE.png', help='Draw position, velocity, forces and mode (.png or .svg).')
+@click.option('--plot', metavar='FILE.png', help='Draw the run, as `stickslip plot` does (.png, .pdf or .svg).')
 def simulate(scene: str, changes: tuple[str, ...], **options: object) -> None:
     """Simulate SCENE, the name of a shipped scene or a file.
 
@@ -72,7 +71,7 @@ def _check(wishes: _Wishes) -> None:
     """Raise before the work begins when an output cannot be written or an option has no effect."""
     if wishes.knots and wishes.events is None:
         raise click.UsageError('--knots chooses what --events lists: give --events FILE.csv too.')
-    if wishes.sample_period is not None and wishes.samples is None and wishes.plot is None:
+    if wishes.sample_period is not None and wishes.samples is None:
         raise click.UsageError('--sample-period is of no use alone: give --samples FILE.csv too.')
     files = {'--events': wishes.events, '--samples': wishes.samples, '--receipt': wishes.receipt, '--plot': wishes.plot}
     targets = [(option, path) for option, path in files.items() if path is not None]
@@ -136,8 +135,6 @@ def _write_bag(folder: str, run: 'SimulatedRun') -> None:
 
 
 def _draw(path: str, run: 'SimulatedRun') -> None:
-    if len(run.samples['time']) < _PLOT_POINTS:
-        run = _sampled(run, Fraction(repr(run.duration)) / _PLOT_POINTS)
     with whole(path) as temporary:
         run.plot(temporary)
 

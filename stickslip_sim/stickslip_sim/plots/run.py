@@ -1,109 +1,68 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""A run over time: position, velocity, forces and mode."""
+"""A run over time: position, error, velocity, forces, modes, faults; the whole of it, and beside it a part."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
-from matplotlib.ticker import AutoMinorLocator
 
-from ..core.types import Event, EventKind, Mode
-from ..simulation.cycles import mode_spans
-from .style import BLACK, BLUE, GREEN, GREY, MILLI, MODE_COLOURS, RED, Numbers, save, thinned
+from .drawn_run import DrawnRun, TimeWindow
+from .run_panels import WindowPanels
+from .style import GREY, RED, save
+from .time_panels import dress, head
 
-_CROWD = 50          # break-aways that are marked smaller
-KILO_FROM = 1e4     # N: larger forces are shown in kN
+_WIDTH, _WIDTH_OF_TWO = 11.0, 15.0            # in
+_HEIGHTS = 1.9, 1.4, 1.9, 1.9, 1.1            # in, of the panels
+_LANE = 0.24                                  # in, of a lane of marks
+_GAP = 0.35                                   # in, between panels: a legend
+_LEFT, _RIGHT, _TOP, _BOTTOM = 1.15, 0.25, 1.0, 0.55   # in, around them: names of modes and faults, the title
+_LABEL = 0.7                                  # in, from a panel to what it shows
 
 
-def plot_run(samples: Mapping[str, Numbers], events: Sequence[Event], title: str, path: Path | str) -> None:
-    """Draw position, velocity, forces and mode over time into `path` (.png or .svg).
+def plot_run(run: DrawnRun, windows: Sequence[TimeWindow], *paths: Path | str) -> None:
+    """Draw a run in one window, or in two beside each other, the second a part of the first, into each path.
 
-    `samples` are columns named as in `types.Sample`, and `time`; the first line of `title` is the heading.
+    The ending of a path (.png, .pdf, .svg) says how.  The places of the panels are fixed: a layout that looks at what
+    is in them takes as long as all of the drawing.
     """
-    layout = ConstrainedLayoutEngine(w_pad=0.1, h_pad=0.08)
-    figure = Figure(figsize=(11.0, 8.5), dpi=150, layout=layout)
-    panels = figure.subplots(4, 1, sharex=True, height_ratios=(3, 3, 3, 1.5))
-    _position(panels[0], samples)
-    _velocity(panels[1], samples)
-    _forces(panels[2], samples, events)
-    _modes(panels[3], samples, events)
-    for panel in panels:
+    lanes = len({mark.label for mark in run.marks})
+    heights = [*_HEIGHTS, *([_LANE * lanes + 0.1] if lanes else [])]
+    rows, columns = len(heights), len(windows)
+    width = _WIDTH if columns == 1 else _WIDTH_OF_TWO
+    height = sum(heights) + _GAP * (rows - 1) + _TOP + _BOTTOM
+    panel = (width - columns * (_LEFT + _RIGHT)) / columns
+    figure = Figure(figsize=(width, height), dpi=120)
+    grid = figure.subplots(rows, columns, sharex='col', squeeze=False, height_ratios=heights, gridspec_kw={
+        'left': _LEFT / width, 'right': 1.0 - _RIGHT / width, 'top': 1.0 - _TOP / height, 'bottom': _BOTTOM / height,
+        'hspace': _GAP * rows / sum(heights), 'wspace': (_LEFT + _RIGHT) / panel})
+    for k, (column, window) in enumerate(zip(grid.T, windows)):
+        _draw_column(column, run, window, windows[k + 1:])
+        for one in column:
+            one.yaxis.set_label_coords(-_LABEL / panel, 0.5)
+    head(grid[0, 0], run.title)
+    for one, window in zip(grid[0, 1:], windows[1:]):
+        one.set_title(f'{window.begin:.6g} to {window.end:.6g} s', loc='left', fontsize=10, color=GREY)
+    save(figure, *paths)
+
+
+def _draw_column(panels: Sequence[Axes], run: DrawnRun, window: TimeWindow, parts: Sequence[TimeWindow]) -> None:
+    """Draw all panels in a window; `parts` of it are shown beside it."""
+    view = WindowPanels(run, window)
+    draw = view.position, view.error, view.velocity, view.forces, view.modes, view.marks
+    for panel, draw_panel in zip(panels, draw):
+        draw_panel(panel)
         dress(panel)
-    panels[-1].grid(visible=False, axis='y')
+        for part in parts:
+            panel.axvspan(*part, color=GREY, alpha=0.15, linewidth=1.0, zorder=0.5)
+    for panel in panels[:4]:
+        for mark in run.marks:
+            if mark.is_span:
+                panel.axvspan(mark.begin, mark.end, color=RED, alpha=0.08, linewidth=0.0, zorder=0.4)
+    for panel in panels[4:]:
+        panel.grid(visible=False, axis='y')
     panels[-1].set_xlabel('time / s')
-    if len(samples['time']) > 1:
-        panels[-1].set_xlim(samples['time'][0], samples['time'][-1])
-    figure.align_ylabels(panels[:3])
-    head(panels[0], title)
-    save(figure, path)
-
-
-def _position(panel: Axes, samples: Mapping[str, Numbers]) -> None:
-    line(panel, samples, 'drive_position', MILLI, 'drive', color=GREY, linewidth=1.0, linestyle=(0, (5, 2)))
-    line(panel, samples, 'position', MILLI, 'slider', color=BLUE, linewidth=1.6)
-    panel.set_ylabel('position / mm')
-
-
-def _velocity(panel: Axes, samples: Mapping[str, Numbers]) -> None:
-    line(panel, samples, 'velocity', MILLI, 'slider', color=BLUE, linewidth=1.4)
-    line(panel, samples, 'drive_velocity', MILLI, 'drive', color=GREY, linewidth=1.0, linestyle=(0, (5, 2)))
-    panel.set_ylabel('velocity / (mm/s)')
-
-
-def _forces(panel: Axes, samples: Mapping[str, Numbers], events: Sequence[Event]) -> None:
-    names = ['drive_force', 'friction_force', 'external_force']
-    largest = max(np.abs(samples[name]).max() for name in names)
-    scale, unit = (1e-3, 'kN') if largest >= KILO_FROM else (1.0, 'N')
-    if np.any(samples['external_force'] != 0.0):
-        line(panel, samples, 'external_force', scale, 'external', color=GREEN, linewidth=1.1)
-    line(panel, samples, 'friction_force', scale, 'friction', color=RED, linewidth=2.2)
-    line(panel, samples, 'drive_force', scale, 'drive', color=BLACK, linewidth=1.1)
-    marks = [event for event in events if event.kind == EventKind.BREAKAWAY]
-    if marks:
-        panel.plot([event.time for event in marks], [event.friction_force * scale for event in marks], 'o',
-                   markersize=4.5 if len(marks) < _CROWD else 2.5, markerfacecolor='white', markeredgecolor=RED,
-                   label='static limit at break-away')
-    panel.set_ylabel(f'force / {unit}')
-
-
-def _modes(panel: Axes, samples: Mapping[str, Numbers], events: Sequence[Event]) -> None:
-    """Draw one lane for each mode."""
-    begin, end = float(samples['time'][0]), float(samples['time'][-1])
-    spans = mode_spans(events, begin, end, Mode(int(samples['mode'][0])))
-    for lane, (mode, colour) in enumerate(MODE_COLOURS.items()):
-        bars = [(span.begin, span.end - span.begin) for span in spans if span.mode == mode]
-        panel.broken_barh(bars, (lane - 0.4, 0.8), facecolors=colour, edgecolors=colour, linewidth=0.3, snap=False)
-    panel.set_yticks(range(len(MODE_COLOURS)), [mode.name for mode in MODE_COLOURS], fontsize=8)
-    panel.set_ylim(len(MODE_COLOURS) - 0.4, -0.6)
-    panel.tick_params(axis='y', length=0)
-
-
-def line(panel: Axes, samples: Mapping[str, Numbers], name: str, scale: float, label: str, **look: Any) -> None:
-    """Draw a column over time."""
-    time, values = thinned(samples['time'], samples[name])
-    panel.plot(time, values * scale, label=label, **look)
-
-
-def dress(panel: Axes) -> None:
-    """Give a panel over time its grid, ticks and legend."""
-    panel.spines[['top', 'right']].set_visible(False)
-    panel.grid(axis='both', color='#dddddd', linewidth=0.6)
-    panel.set_axisbelow(True)
-    panel.xaxis.set_minor_locator(AutoMinorLocator())
-    panel.margins(x=0.0)
-    if panel.get_legend_handles_labels()[0]:
-        panel.legend(loc='lower right', bbox_to_anchor=(1.0, 0.98), ncols=4, frameon=False, fontsize=9,
-                     borderaxespad=0.0, handlelength=2.2)
-
-
-def head(first: Axes, title: str) -> None:
-    """Write a title above the first panel; its first line is the heading."""
-    heading, _, rest = title.partition('\n')
-    first.set_title(heading, loc='left', fontsize=14, fontweight='bold', pad=42 if rest else 22)
-    first.annotate(rest, (0.0, 1.0), xytext=(0.0, 25.0), xycoords='axes fraction', textcoords='offset points',
-                   fontsize=10, color=GREY, in_layout=False)
+    if window.end > window.begin:
+        panels[-1].set_xlim(*window)
+    panels[-1].ticklabel_format(axis='x', style='plain', useOffset=False)   # late times are read as they are

@@ -23,6 +23,7 @@ BLUE, RED, PURPLE = '#0072B2', '#D55E00', '#CC79A7'
 GREY = '#666666'
 MODE_COLOURS = {Mode.STICK: SKY, Mode.ACCELERATING: ORANGE, Mode.COASTING: GREEN, Mode.DECELERATING: PURPLE}
 MILLI = 1e3          # m to mm
+_UNDATED: dict[str, dict[str, Any]] = {'svg': {'Date': None}, 'pdf': {'CreationDate': None}}
 _POINTS_PER_INCH = 72.0
 _POINTS = 8000       # per line: more than a picture can show
 JOURNAL: dict[str, Any] = {   # for pictures that are printed at the width of one or two columns
@@ -35,11 +36,11 @@ SINGLE_COLUMN, DOUBLE_COLUMN = 3.5, 7.1   # in
 
 
 def save(figure: Figure, *paths: Path | str) -> None:
-    """Write a picture; the ending of each path (.png, .svg) says how.  All have the layout of the first."""
+    """Write a picture; the ending of each path (.png, .pdf, .svg) says how.  All have the layout of the first."""
     for path in map(Path, paths):
         kind = path.suffix[1:].lower()
         with rc_context({'svg.hashsalt': 'stickslip'}):   # the same picture is the same file
-            figure.savefig(path, format=kind, metadata={'Date': None} if kind == 'svg' else None)
+            figure.savefig(path, format=kind, metadata=_UNDATED.get(kind))
         figure.set_layout_engine('none')
 
 

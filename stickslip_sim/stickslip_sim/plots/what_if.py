@@ -5,12 +5,11 @@
 from collections.abc import Mapping
 from pathlib import Path
 
-import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from .run import KILO_FROM, dress, head, line
 from .style import BLUE, MILLI, ORANGE, Numbers, save
+from .time_panels import dress, force_unit, head, line
 
 
 def plot_beside(recorded: Mapping[str, Numbers], other: Mapping[str, Numbers], title: str, path: Path | str) -> None:
@@ -20,8 +19,7 @@ def plot_beside(recorded: Mapping[str, Numbers], other: Mapping[str, Numbers], t
     """
     figure = Figure(figsize=(11.0, 8.0), dpi=150, layout=ConstrainedLayoutEngine(w_pad=0.1, h_pad=0.08))
     panels = figure.subplots(3, 1, sharex=True)
-    largest = max(np.abs(side['friction_force']).max() for side in (recorded, other))
-    scale, unit = (1e-3, 'kN') if largest >= KILO_FROM else (1.0, 'N')
+    scale, unit = force_unit(recorded['friction_force'], other['friction_force'])
     for panel, name, factor, label in zip(panels, ('position', 'velocity', 'friction_force'), (MILLI, MILLI, scale),
                                           ('position / mm', 'velocity / (mm/s)', f'friction force / {unit}')):
         line(panel, recorded, name, factor, 'recorded', color=BLUE, linewidth=2.2)

@@ -4,6 +4,7 @@
 
 import os
 import warnings
+from collections.abc import Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -13,18 +14,21 @@ from numpy.typing import NDArray
 
 from ..core.errors import RecordingError, RecordingWarning, one_line
 from ..core.types import Event, Mode
+from ..rig import RigEventKind
+from ..rig.marks import Mark, TimedRigEvent, marks_of_events, marks_of_faults
 from ..runs import COLUMNS, Columns
 from ..runs.views import Views
 from ..scene import Scene
 from ..simulation.cycles import Summary, summary
 from .opening import bag_in, shortfalls
 from .reader import Bag
-from .topics import FRICTION_FORCE, PARAMETER_EVENTS, SLIDER_STATE
+from .topics import DRIVE_VELOCITY, FRICTION_FORCE, PARAMETER_EVENTS, RIG_EVENT, SLIDER_STATE, Topic
 
 _STATE = ('time', 'step', 'position', 'velocity', 'acceleration', 'drive_position', 'drive_velocity', 'drive_force',
           'rest_time', 'mode', 'direction')
 _FRICTION = {'force': 'friction_force', 'coefficient': 'friction_coefficient',
              'contact_deflection': 'contact_deflection'}
+_RIG_EVENT = ('time', 'kind', 'id', 'fault', 'count')   # the fields of TimedRigEvent
 _NO_FORCE = 1e-9   # of the other forces: what rounding leaves where no external force acts
 
 
@@ -121,6 +125,34 @@ class RecordedRun(Views):
         times = [event.time for event in events]
         drive = np.interp(times, time, self.states['drive_position']).tolist() if events else []
         return [event._replace(drive_position=position) for event, position in zip(events, drive)]
+
+    @cached_property
+    def commands(self) -> Columns:
+        """The drive velocities as they were taken, each at the start of the first step in which it holds."""
+        columns = self._columns_of_any(DRIVE_VELOCITY, ('sequence', 'velocity'))
+        times = np.maximum(columns['sequence'].astype(np.float64) - 1.0, 0.0) / self.scene.time.rate
+        return {'time': times, 'velocity': columns['velocity'].astype(np.float64)}
+
+    @cached_property
+    def marks(self) -> list[Mark]:
+        """When faults were in force, and commands refused, limited, lost or missing; raises RecordingError.
+
+        A run of the tool has the faults of its scene, and no rig events.
+        """
+        if self.bag.metadata.get('stickslip', {}).get('origin') == 'offline':
+            return marks_of_faults(self.scene.rig.faults, self.end)
+        columns = self._columns_of_any(RIG_EVENT, _RIG_EVENT)
+        if not np.isin(columns['kind'], list(RigEventKind)).all():
+            raise RecordingError(f'{self.bag.path}: rig events of unknown kinds; recorded by another version?')
+        rows = zip(*(columns[name].tolist() for name in _RIG_EVENT))
+        return marks_of_events((TimedRigEvent(time, RigEventKind(kind), *rest) for time, kind, *rest in rows),
+                               self.begin, self.end)
+
+    def _columns_of_any(self, topic: Topic, fields: Sequence[str]) -> Columns:
+        """Return fields of a topic that a recording need not have."""
+        if topic.type not in self.bag.topics.values():
+            return {name: np.empty(0) for name in fields}
+        return self.bag.columns_of(topic, fields)
 
     @cached_property
     def summary(self) -> Summary:

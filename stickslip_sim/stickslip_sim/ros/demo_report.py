@@ -8,10 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.types import Mode
-from ..plots import plot_run
-from ..recording import Bag, open_bag
-from ..simulation.cycles import Summary, summary
+from ..recording import read_run
+from ..simulation.cycles import Summary
 
 PICTURE = 'run.png'
 _FIGURES = (
@@ -23,31 +21,10 @@ _FIGURES = (
 
 def report(folder: Path) -> list[str]:
     """Draw the picture of a run into its folder; return the lines to print about it."""
-    bag = open_bag(folder)
-    samples, events = sample_columns(bag), bag.events
-    figures = summary(events, float(samples['time'][-1]), Mode(int(samples['mode'][0])))
-    scene = bag.metadata['stickslip']['scene']
-    plot_run(samples, events, f'{scene} in real time\n{headline(figures)}', folder / PICTURE)
-    return [f'bag      {folder} ({sum(bag.counts.values())} messages)', f'picture  {folder / PICTURE}',
-            *cycle_lines(figures), *timing_lines(bag.columns('/timing'))]
-
-
-def sample_columns(bag: Bag) -> dict[str, NDArray[Any]]:
-    """Return the states of a recorded run by the columns of `types.Sample`, and `time`."""
-    states, friction = bag.columns('/slider_state'), bag.columns('/friction_force')
-    force = np.zeros(len(states['step']))
-    for message in bag.messages(['/external_force']):
-        force[states['step'] >= message.sequence] = bag.decode(message).force
-    return {**states, 'friction_force': friction['force'], 'friction_coefficient': friction['coefficient'],
-            'contact_deflection': friction['contact_deflection'], 'external_force': force}
-
-
-def headline(figures: Summary) -> str:
-    """Return the figures of the last cycle in one line."""
-    if figures.last is None:
-        return figures.motion
-    return 'last cycle: ' + ' · '.join(f'{name} {getattr(figures.last, field) * scale:.4g} {unit}'
-                                       for name, field, scale, unit in _FIGURES)
+    run = read_run(folder)
+    run.plot(folder / PICTURE)
+    return [f'bag      {folder} ({sum(run.bag.counts.values())} messages)', f'picture  {folder / PICTURE}',
+            *cycle_lines(run.summary), *timing_lines(run.bag.columns('/timing'))]
 
 
 def cycle_lines(figures: Summary) -> list[str]:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.types import Event, Sample
+from ..rig.marks import Mark
 from ..scene import Scene
 from ..simulation.cycles import Cycle, Summary
 
@@ -60,6 +61,14 @@ class Run(Protocol):
         """The transitions in the order of time."""
 
     @property
+    def commands(self) -> Columns:
+        """The drive velocities that were taken: `time` and `velocity`, m/s; empty where the scene alone decides."""
+
+    @property
+    def marks(self) -> list[Mark]:
+        """When faults were in force, and commands refused, limited, lost or missing."""
+
+    @property
     def summary(self) -> Summary:
         """What the run amounts to."""
 
@@ -93,8 +102,9 @@ class Run(Protocol):
     def frame(self) -> Any:
         """Return the samples as a pandas.DataFrame with COLUMNS; raises InputError without pandas."""
 
-    def plot(self, path: Path | str) -> None:
-        """Draw position, velocity, forces and mode over time into `path` (.png or .svg).
+    def plot(self, path: Path | str, window: tuple[float, float] | None = None) -> None:
+        """Draw the run over time into `path` (.png, .pdf or .svg), and beside it a `window` (begin and end, s) of it.
 
-        Raises InputError without samples, and for other endings.
+        Without a window the last cycles of a long run are beside it.  Raises InputError for other endings, and for a
+        window that is not in the run.
         """

@@ -15,6 +15,7 @@ from ..core.errors import InputError
 from ..core.time_grid import decimal
 from ..core.types import Event, Instant, Mode, Sample
 from ..rig import Rig
+from ..rig.marks import Mark, marks_of_faults
 from ..scene import Scene
 from ..simulation.cycles import Summary, summary
 from .receipt import CostMeter, receipt_of
@@ -59,6 +60,16 @@ class SimulatedRun(Views):
     def states(self) -> Columns:
         """The samples."""
         return self.samples
+
+    @property
+    def commands(self) -> Columns:
+        """None: the scene decides."""
+        return {'time': np.empty(0), 'velocity': np.empty(0)}
+
+    @property
+    def marks(self) -> list[Mark]:
+        """When the faults of the scene were in force."""
+        return marks_of_faults(self.scene.rig.faults, self.end)
 
     def sample_rows(self) -> Iterator[Sample]:
         """Yield the samples one by one."""

@@ -7,14 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from ..core.errors import InputError
+from ..core.picture_formats import check_picture_name
 from ..simulation.cycles import Cycle, cycle_figures
 from .frame import data_frame
 from .kept import kept
 from .run import COLUMNS, Run
-from .wording import headline
-
-_PICTURES = '.png', '.svg'
 
 
 class Views:
@@ -34,18 +31,16 @@ class Views:
         whole = {name: self.samples[name].astype(np.int8) for name in ('mode', 'direction')}
         return data_frame({name: whole.get(name, self.samples[name]) for name in COLUMNS}, 'samples')
 
-    def plot(self: Run, path: Path | str) -> None:
-        """Draw position, velocity, forces and mode over time into `path` (.png or .svg).
+    def plot(self: Run, path: Path | str, window: tuple[float, float] | None = None) -> None:
+        """Draw the run over time into `path` (.png, .pdf or .svg), and beside it a `window` (begin and end, s) of it.
 
-        Raises InputError without samples, and for other endings.
+        Without a window the last cycles of a long run are beside it.  Raises InputError for other endings, and for a
+        window that is not in the run.
         """
-        if Path(path).suffix.lower() not in _PICTURES:
-            raise InputError('path', str(path), f'a file ending in {" or ".join(_PICTURES)}', 'name it so')
-        if not len(self.samples['time']):
-            raise InputError('samples', 0, 'at least one', 'simulate with samples')
-        from ..plots import plot_run  # matplotlib takes half a second
+        check_picture_name('path', path)
+        from .picture import draw_run  # matplotlib takes half a second
 
-        plot_run(self.samples, self.events, f'{self.scene.name}, {self.duration:g} s\n{headline(self.summary)}', path)
+        draw_run(self, window, path)
 
 
 @kept

@@ -1,0 +1,179 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The panels of a run over time, in one window: as lines, or as bands where it has too many transitions for lines."""
+
+from collections.abc import Mapping
+from itertools import groupby
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from ..rig.marks import Mark
+from .drawn_run import DrawnRun, TimeWindow, mode_shares
+from .style import BLACK, BLUE, GREEN, GREY, MILLI, MODE_COLOURS, ORANGE, PURPLE, RED, Numbers
+from .time_panels import force_unit, line
+
+BINS = 240            # of a band, and of the shares of the modes
+CROWDED = 400         # transitions that lines do not show any more
+_MICRO, _FINE = 1e6, 1e-4   # m to µm; m: smaller errors are shown so
+_MANY = 50            # break-aways that are marked smaller
+_CLOSEST, _CLOSEST_POSITION = 1e-4, 1e-6   # of the largest value: what changes less is drawn as a constant
+_DASHES = (0, (5, 2))
+_MARK_COLOURS = {'refused': RED, 'limited': ORANGE, 'lost': PURPLE, 'time lost': BLACK, 'time-out': RED}
+
+
+class WindowPanels:
+    """Draws a run in a window; `is_crowded` where bands take the place of lines."""
+
+    def __init__(self, run: DrawnRun, window: TimeWindow) -> None:
+        self._run, self._window = run, window
+        self._motion, self._inputs = _part(run.motion, window), _part(run.inputs, window)
+        first, last = np.searchsorted(run.event_times, window)
+        self.is_crowded = bool(last - first > CROWDED)
+
+    def position(self, panel: Axes) -> None:
+        """Draw setpoint and position."""
+        line(panel, self._motion, 'drive_position', MILLI, 'setpoint (drive)', color=GREY, linewidth=1.0,
+             linestyle=_DASHES)
+        line(panel, self._motion, 'position', MILLI, 'slider', color=BLUE, linewidth=1.4)
+        panel.set_ylabel('position / mm')
+        _no_closer(panel, _CLOSEST_POSITION)
+
+    def error(self, panel: Axes) -> None:
+        """Draw the following error: setpoint less position."""
+        error = self._motion['drive_position'] - self._motion['position']
+        fine = float(np.abs(error).max(initial=0.0)) < _FINE
+        self._curve(panel, error * (_MICRO if fine else MILLI), '', BLUE, 1.2)
+        panel.set_ylabel(f'error / {"µm" if fine else "mm"}')
+        _no_closer(panel, _CLOSEST)
+
+    def velocity(self, panel: Axes) -> None:
+        """Draw the velocities of slider and drive, and the commands."""
+        self._curve(panel, self._motion['velocity'] * MILLI, 'slider', BLUE, 1.3)
+        commands = _held(self._run.commands, self._window)
+        if len(commands['time']):
+            panel.plot(commands['time'], commands['velocity'] * MILLI, color=ORANGE, linewidth=2.0, label='command',
+                       drawstyle='steps-post', alpha=0.8)
+        line(panel, self._inputs, 'drive_velocity', MILLI, 'drive', color=GREY, linewidth=1.0, linestyle=_DASHES)
+        panel.set_ylabel('velocity / (mm/s)')
+        _no_closer(panel, _CLOSEST)
+
+    def forces(self, panel: Axes) -> None:
+        """Draw the forces on the slider."""
+        motion, inputs = self._motion, self._inputs
+        scale, unit = force_unit(motion['drive_force'], motion['friction_force'], inputs['external_force'])
+        if np.any(self._run.inputs['external_force'] != 0.0):
+            line(panel, inputs, 'external_force', scale, 'external', color=GREEN, linewidth=1.1)
+        self._curve(panel, motion['friction_force'] * scale, 'friction', RED, 2.0)
+        self._curve(panel, motion['drive_force'] * scale, 'drive', BLACK, 1.0)
+        times, forces = self._run.break_aways
+        first, last = np.searchsorted(times, self._window)
+        if last > first and not self.is_crowded:
+            panel.plot(times[first:last], forces[first:last] * scale, 'o', markerfacecolor='white',
+                       markersize=4.5 if last - first < _MANY else 2.5, markeredgecolor=RED,
+                       label='static limit at break-away')
+        panel.set_ylabel(f'force / {unit}')
+        _no_closer(panel, _CLOSEST)
+
+    def modes(self, panel: Axes) -> None:
+        """Draw one lane for each mode, or their shares of the time."""
+        if self.is_crowded:
+            self._mode_shares(panel)
+            return
+        starts, modes = self._run.modes
+        first = max(int(np.searchsorted(starts, self._window.begin, side='right')) - 1, 0)
+        last = int(np.searchsorted(starts, self._window.end))
+        ends = np.append(starts[1:], max(self._window.end, float(starts[-1])))[first:last]
+        for lane, (mode, colour) in enumerate(MODE_COLOURS.items()):
+            bars = [(begin, end - begin) for begin, end, which in zip(starts[first:last].tolist(), ends.tolist(),
+                                                                     modes[first:last].tolist()) if which == mode]
+            panel.broken_barh(bars, (lane - 0.4, 0.8), facecolors=colour, edgecolors=colour, linewidth=0.3, snap=False)
+        _lanes(panel, [mode.name for mode in MODE_COLOURS])
+
+    def marks(self, panel: Axes) -> None:
+        """Draw one lane for each kind of fault and refusal."""
+        lanes = {label: list(marks) for label, marks in groupby(sorted(self._run.marks, key=_label), _label)}
+        for lane, (label, marks) in enumerate(lanes.items()):
+            colour = _MARK_COLOURS.get(label, RED)
+            spans = [(mark.begin, mark.end - mark.begin) for mark in marks if mark.is_span]
+            panel.broken_barh(spans, (lane - 0.35, 0.7), facecolors=colour, edgecolors=colour, linewidth=0.5, alpha=0.7)
+            instants = [mark.begin for mark in marks if not mark.is_span]
+            panel.plot(instants, [lane] * len(instants), '|', color=colour, markersize=9, markeredgewidth=1.2)
+        _lanes(panel, [_counted(label, marks) for label, marks in lanes.items()])
+
+    def _mode_shares(self, panel: Axes) -> None:
+        edges = _edges(self._window)
+        shares = mode_shares(self._run.modes, edges)
+        middles = 0.5 * (edges[1:] + edges[:-1])
+        panel.stackplot(middles, [100.0 * shares[mode] for mode in MODE_COLOURS], colors=list(MODE_COLOURS.values()),
+                        labels=[mode.name.lower() for mode in MODE_COLOURS], step='mid')
+        panel.set(ylabel='time / %', ylim=(0.0, 100.0))
+
+    def _curve(self, panel: Axes, values: Numbers, label: str, colour: str, width: float) -> None:
+        time = self._motion['time']
+        if not self.is_crowded:
+            line(panel, {'time': time, 'values': values}, 'values', 1.0, label, color=colour, linewidth=width)
+            return
+        middles, low, high = band(time, values, self._window)
+        panel.fill_between(middles, low, high, facecolor=colour, edgecolor=colour, linewidth=0.5, alpha=0.45,
+                           label=label)
+
+
+def band(time: Numbers, values: Numbers, window: TimeWindow) -> tuple[Numbers, Numbers, Numbers]:
+    """Return the middles (s) of equal parts of a window that have values, with the least and the largest in each."""
+    edges = _edges(window)
+    places = np.searchsorted(time, edges)
+    has_any = np.diff(places) > 0
+    starts = places[:-1][has_any]
+    middles = (0.5 * (edges[1:] + edges[:-1]))[has_any]
+    end = int(places[-1])
+    return middles, np.minimum.reduceat(values[:end], starts), np.maximum.reduceat(values[:end], starts)
+
+
+def _edges(window: TimeWindow) -> Numbers:
+    return np.asarray(np.linspace(*window, BINS + 1), dtype=np.float64)
+
+
+def _part(columns: Mapping[str, Numbers], window: TimeWindow) -> dict[str, Numbers]:
+    """Return the rows of a window, with one more on either side, so that lines reach its edges."""
+    time = columns['time']
+    first = max(int(np.searchsorted(time, window.begin)) - 1, 0)
+    last = int(np.searchsorted(time, window.end, side='right')) + 1
+    return {name: column[first:last] for name, column in columns.items()}
+
+
+def _held(commands: Mapping[str, Numbers], window: TimeWindow) -> dict[str, Numbers]:
+    """Return the commands of a window, the last one held up to its end."""
+    part = _part(commands, window)
+    part = {name: column[:-1] if len(column) and part['time'][-1] > window.end else column
+            for name, column in part.items()}
+    if not len(part['time']):
+        return part
+    return {'time': np.append(np.maximum(part['time'], window.begin), window.end),
+            'velocity': np.append(part['velocity'], part['velocity'][-1])}
+
+
+def _label(mark: Mark) -> str:
+    return mark.label
+
+
+def _counted(label: str, marks: list[Mark]) -> str:
+    number = sum(mark.number for mark in marks)
+    words = label.replace('_', ' ')
+    return f'{words} ({number})' if number > 1 else words
+
+
+def _no_closer(panel: Axes, share: float) -> None:
+    """Widen the range of values to a share of the largest one, and let the numbers be read as they are."""
+    low, high = panel.get_ylim()
+    if 0.0 < high - low < (least := share * max(abs(low), abs(high))):
+        middle = 0.5 * (low + high)
+        panel.set_ylim(middle - 0.5 * least, middle + 0.5 * least)
+    panel.ticklabel_format(axis='y', useOffset=False)
+
+
+def _lanes(panel: Axes, names: list[str]) -> None:
+    panel.set_yticks(range(len(names)), names, fontsize=8)
+    panel.set_ylim(len(names) - 0.4, -0.6)
+    panel.tick_params(axis='y', length=0)
+    panel.grid(visible=False, axis='y')

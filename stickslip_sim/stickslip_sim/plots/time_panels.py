@@ -1,0 +1,44 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""A panel over time: its lines, its look, the title above."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from .style import GREY, Numbers, thinned
+
+_KILO_FROM = 1e4     # N: larger forces are shown in kN
+
+
+def force_unit(*forces: Numbers) -> tuple[float, str]:
+    """Return the scale and the unit in which forces (N) are shown."""
+    largest = max((float(np.abs(force).max()) for force in forces if len(force)), default=0.0)
+    return (1e-3, 'kN') if largest >= _KILO_FROM else (1.0, 'N')
+
+
+def line(panel: Axes, samples: Mapping[str, Numbers], name: str, scale: float, label: str, **look: Any) -> None:
+    """Draw a column over time."""
+    time, values = thinned(samples['time'], samples[name])
+    panel.plot(time, values * scale, label=label, **look)
+
+
+def dress(panel: Axes) -> None:
+    """Give a panel over time its grid and legend."""
+    panel.spines[['top', 'right']].set_visible(False)
+    panel.grid(axis='both', color='#dddddd', linewidth=0.6)
+    panel.set_axisbelow(True)
+    panel.margins(x=0.0)
+    if panel.get_legend_handles_labels()[0]:
+        panel.legend(loc='lower right', bbox_to_anchor=(1.0, 0.98), ncols=4, frameon=False, fontsize=9,
+                     borderaxespad=0.0, handlelength=2.2)
+
+
+def head(first: Axes, title: str) -> None:
+    """Write a title above the first panel; its first line is the heading."""
+    heading, _, rest = title.partition('\n')
+    first.set_title(heading, loc='left', fontsize=14, fontweight='bold', pad=42 if rest else 22)
+    first.annotate(rest, (0.0, 1.0), xytext=(0.0, 25.0), xycoords='axes fraction', textcoords='offset points',
+                   fontsize=10, color=GREY, in_layout=False)

@@ -1,0 +1,68 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""When something was wrong with the rig: faults and time-outs as spans, refused and lost commands as instants."""
+
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+from .faults import Fault
+from .step_result import RigEventKind
+
+_INSTANTS = {RigEventKind.COMMAND_REFUSED: 'refused', RigEventKind.COMMAND_LIMITED: 'limited',
+             RigEventKind.COMMAND_LOST: 'lost', RigEventKind.TIME_LOST: 'time lost'}
+TIME_OUT = 'time-out'
+
+
+class Mark(NamedTuple):
+    """Something that went on from `begin` to `end` (s; equal: an instant); `number` of them, where one is known."""
+
+    begin: float
+    end: float
+    label: str
+    number: int = 1
+
+    @property
+    def is_span(self) -> bool:
+        """Whether it took time."""
+        return self.end > self.begin
+
+
+class TimedRigEvent(NamedTuple):
+    """A rig event and when it was, s; `fault` is the kind of the fault, if it is about one."""
+
+    time: float
+    kind: RigEventKind
+    id: str
+    fault: str
+    number: int
+
+
+def marks_of_faults(faults: Sequence[Fault], end: float) -> list[Mark]:
+    """Return when the faults of a scene are in force, up to the end of a run, s."""
+    return [Mark(fault.start, min(fault.start + fault.duration, end), fault.kind) for fault in faults
+            if fault.start < end]
+
+
+def marks_of_events(events: Iterable[TimedRigEvent], begin: float, end: float) -> list[Mark]:
+    """Return what the rig events of a run from `begin` to `end` (s) amount to, in the order in which they ended.
+
+    What ends without a start was there before the recording; what starts without an end goes on.
+    """
+    marks: list[Mark] = []
+    open_since: dict[str, tuple[float, str]] = {}
+    for event in events:
+        if event.kind in _INSTANTS:
+            marks.append(Mark(event.time, event.time, _INSTANTS[event.kind], max(event.number, 1)))
+        elif event.kind == RigEventKind.FAULT_BEGIN:
+            open_since[event.id] = event.time, event.fault
+        elif event.kind == RigEventKind.COMMAND_TIMEOUT:
+            open_since.setdefault('', (event.time, TIME_OUT))
+        elif event.kind == RigEventKind.COMMAND_RESUMED or (event.kind == RigEventKind.FAULT_CLEARED and not event.id):
+            since, _ = open_since.pop('', (begin, ''))
+            marks.append(Mark(since, event.time, TIME_OUT))
+        elif event.id in open_since:      # ended or cleared; one that was cleared before it began is none
+            since, label = open_since.pop(event.id)
+            marks.append(Mark(since, event.time, label))
+        elif event.kind == RigEventKind.FAULT_END:
+            marks.append(Mark(begin, event.time, event.fault))
+    return [*marks, *(Mark(since, end, label) for since, label in open_since.values())]

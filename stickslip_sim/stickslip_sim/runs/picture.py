@@ -1,0 +1,58 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The picture of any run: the whole of it, and beside it a window, or the last cycles of a run that is long."""
+
+from pathlib import Path
+
+from ..core.errors import InputError
+from ..plots import plot_run
+from ..plots.drawn_run import TimeWindow, drawn_run
+from .picture_samples import sampled
+from .run import Columns, Run
+from .simulated import SimulatedRun
+from .wording import headline
+
+_READABLE = 40   # cycles of the latest period, in all of a run
+_SHOWN = 5       # cycles at the end of a longer one
+_MARGIN = 0.25   # of a period, before and after them
+
+
+def draw_run(run: Run, window: tuple[float, float] | None, *paths: Path | str) -> None:
+    """Draw a run into each path; raises InputError for a window (s) that is not in it."""
+    windows = windows_of(run, window)
+    samples = _samples_for(run, windows)
+    plot_run(drawn_run(_title(run), samples, run.events, run.commands, run.marks), windows, *paths)
+
+
+def windows_of(run: Run, window: tuple[float, float] | None) -> list[TimeWindow]:
+    """Return what is drawn side by side: the whole run, and a part of it that is asked for or needed."""
+    whole = TimeWindow(run.begin, run.end)
+    if window is not None:
+        begin, end = window
+        if not whole.begin <= begin < end <= whole.end:
+            raise InputError('window', f'{begin:g}:{end:g}', f'A:B with {whole.begin:g} <= A < B <= {whole.end:g} s, '
+                             'the time of the run', 'give two times of the run, in s')
+        return [whole] if TimeWindow(begin, end) == whole else [whole, TimeWindow(begin, end)]
+    last = run.cycles()[-_SHOWN:]
+    if not last:
+        return [whole]
+    period = sum(cycle.period for cycle in last) / len(last)
+    if run.duration <= _READABLE * period:
+        return [whole]
+    begin, end = last[0].begin - _MARGIN * period, last[-1].begin + last[-1].period + _MARGIN * period
+    return [whole, TimeWindow(max(begin, whole.begin), min(end, whole.end))]
+
+
+def _samples_for(run: Run, windows: list[TimeWindow]) -> Columns:
+    """Return the samples of a run; of one that its scene alone decides, those that a picture needs."""
+    if isinstance(run, SimulatedRun) and (run.sample_period is not None or not len(run.samples['time'])):
+        return sampled(run.scene, run.events, windows)
+    return run.samples
+
+
+def _title(run: Run) -> str:
+    """Return the heading, and the figures of the last cycle below it."""
+    heading = f'{run.name} ({run.scene.name}, recorded)' if run.is_recorded else run.name
+    gaps = [] if run.is_complete else ['no end: cut off, or still being written']
+    gaps += [f'{run.missing_steps} steps are missing'] if run.missing_steps else []
+    return '\n'.join([f'{heading}, {run.duration:.6g} s', ' · '.join([headline(run.summary), *gaps])])

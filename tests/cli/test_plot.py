@@ -1,0 +1,101 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""`stickslip plot`: the picture of any run, in the format that its name says, or one line with what is wrong."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from stickslip_sim.plots.run_panels import CROWDED
+from stickslip_sim.runs import SimulatedRun, simulate, simulate_events
+from stickslip_sim.runs.picture import windows_of
+from stickslip_sim.runs.picture_samples import sampled
+from stickslip_sim.scene import load_scene
+from tests.support.check_files import cut
+from tests.support.tool import Capture, answered, refused
+
+BEGINNINGS = {'.png': b'\x89PNG', '.pdf': b'%PDF', '.svg': b'<?xml'}
+
+
+@pytest.fixture(scope='module')
+def hour() -> SimulatedRun:
+    return simulate_events(load_scene('paper_fig8'), 3600.0)
+
+
+@pytest.mark.parametrize('ending', BEGINNINGS)
+def test_the_ending_decides_the_format(ending: str, tmp_path: Path, capsys: Capture) -> None:
+    out = tmp_path / f'run{ending}'
+    code, said, err = answered(capsys, 'plot', 'paper_fig7', '--duration', '2', '--out', out)
+    assert (code, said, err) == (0, f'written: {out}\n', '')
+    assert out.read_bytes().startswith(BEGINNINGS[ending])
+
+
+def test_a_recorded_run_is_drawn_under_its_name(fig8_bag: Path, tmp_path: Path, capsys: Capture,
+                                                monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert answered(capsys, 'plot', fig8_bag, '--window', '1:2.5') == (0, 'written: eight.png\n', '')
+    assert [path.name for path in tmp_path.iterdir()] == ['eight.png']
+
+
+def test_a_run_that_was_cut_off_says_so(fig8_bag: Path, tmp_path: Path, capsys: Capture) -> None:
+    out = tmp_path / 'cut.svg'
+    code, said, _ = answered(capsys, 'plot', cut(fig8_bag, tmp_path / 'cut', 0.5), '--out', out)
+    assert (code, 'has no end' in said) == (0, True)
+    assert 'no end: cut off' in out.read_text()
+
+
+def test_an_hour_is_an_overview_and_its_last_cycles(hour: SimulatedRun, tmp_path: Path, capsys: Capture) -> None:
+    whole, last = windows_of(hour, None)
+    assert whole == (0.0, 3600.0)
+    assert (last.begin, last.end) == pytest.approx((3600.0 - 5.5 * 0.659, 3600.0), abs=1.0)
+    out = tmp_path / 'hour.svg'
+    assert answered(capsys, 'plot', 'paper_fig8', '--duration', '3600', '--out', out)[0] == 0
+    assert out.stat().st_size < 500_000    # drawn from events: one of each sample has a hundred times as much
+    assert 'time / %' in out.read_text()
+
+
+def test_a_long_run_takes_few_samples_and_shows_its_extremes(hour: SimulatedRun) -> None:
+    windows = windows_of(hour, None)
+    samples = sampled(hour.scene, hour.events, windows)
+    assert len(hour.events) > CROWDED
+    assert len(samples['time']) < 60_000
+    known = simulate(hour.scene, 60.0, 0.0005).samples
+    for name in ('velocity', 'friction_force', 'drive_force'):
+        span = np.ptp(known[name])
+        assert samples[name].max() == pytest.approx(known[name].max(), abs=0.02 * span), name
+        assert samples[name].min() == pytest.approx(known[name].min(), abs=0.02 * span), name
+
+
+def test_a_short_run_is_one_window_and_a_long_rest_after_cycles_two() -> None:
+    assert windows_of(simulate_events(load_scene('paper_fig8'), 10.0), None) == [(0.0, 10.0)]
+    assert windows_of(simulate_events(load_scene('fast_feed'), 100.0), None) == [(0.0, 100.0)]
+    assert len(windows_of(simulate_events(load_scene('positioning'), 60.0), None)) == 2
+
+
+def test_a_window_as_long_as_the_run_is_the_run(hour: SimulatedRun) -> None:
+    assert windows_of(hour, (0.0, 3600.0)) == [(0.0, 3600.0)]
+    assert windows_of(hour, (5.0, 6.0)) == [(0.0, 3600.0), (5.0, 6.0)]
+
+
+class TestRefusals:
+    @pytest.mark.parametrize('name', ['run.jpg', 'run', 'run.png.gz'])
+    def test_another_ending(self, name: str, tmp_path: Path, capsys: Capture) -> None:
+        line = refused(capsys, 'plot', 'paper_fig8', '--duration', '1', '--out', tmp_path / name)
+        assert 'must be a file ending in .png, .pdf or .svg; the ending decides the format' in line
+
+    @pytest.mark.parametrize('window', ['1', '2:1', '1:1', 'a:b', '1:2:3', ':', 'nan:1'])
+    def test_what_is_no_window(self, window: str, tmp_path: Path, capsys: Capture) -> None:
+        line = refused(capsys, 'plot', 'paper_fig8', '--duration', '3', '--window', window, '--out', tmp_path / 'a.png')
+        assert 'must be A:B, two times in s, the first before the second; for example 2.5:4' in line
+
+    @pytest.mark.parametrize('window', ['1:4', '-1:2', '5:6', '0:inf'])
+    def test_a_window_beyond_the_run(self, window: str, tmp_path: Path, capsys: Capture) -> None:
+        line = refused(capsys, 'plot', 'paper_fig8', '--duration', '3', f'--window={window}', '--out',
+                       tmp_path / 'a.png')
+        assert 'must be A:B with 0 <= A < B <= 3 s, the time of the run' in line
+        assert not list(tmp_path.iterdir())
+
+    def test_what_is_for_scenes_only(self, fig8_bag: Path, capsys: Capture) -> None:
+        assert '--duration and --set are for a scene' in refused(capsys, 'plot', fig8_bag, '--duration', '1')
+        assert '--duration S is needed' in refused(capsys, 'plot', 'paper_fig8')
