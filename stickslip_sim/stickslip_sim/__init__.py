@@ -18,6 +18,7 @@ floor down; each imports only from the floors below it:
     check        a run against limits
     verify       a recorded run again, bit by bit, or as something else had been
     study        sweeps, maps, critical values, uncertainty
+    identify     from measurements to a scene: friction curves and the laws that fit them
     bench        this solver beside its rivals, which are in bench/peers
     recording    runs as bags: written, read back, played
     runs         a run as one thing, simulated or recorded; its receipt and error; batches of thousands

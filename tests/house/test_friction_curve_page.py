@@ -30,6 +30,14 @@ def test_the_scene_has_the_measured_curve() -> None:
     assert [*zip(kinetic.velocities, kinetic.coefficients, strict=True)] == rows
 
 
+def test_the_fit_is_what_the_page_says(
+        page: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.chdir(ROOT)
+    assert run(['friction', 'examples/friction_curve.csv', '--speed-unit', 'mm/s']) == 0
+    shown = ''.join(f'    {line}'.rstrip() + '\n' for line in capsys.readouterr().out.splitlines())
+    assert shown in page
+
+
 def test_the_critical_feed_is_what_the_page_says(
         page: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.chdir(ROOT)

@@ -39,6 +39,7 @@ TO_RENAME = {   # two meanings, and no reason for it
 SAME_FILES = {
     'critical.py': VERB, 'sweep.py': VERB, 'uncertainty.py': f'{VERB}; {PICTURE}',
     'bifurcation.py': PICTURE, 'characteristics.py': PICTURE, 'what_if.py': PICTURE,
+    'friction.py': 'the command; friction as faults change it',
     'run.py': f'{PICTURE}: of a run, and its folder',
     'pictures.py': 'all pictures of a room',
     'automaton.py': f'{RIVAL}; {JUDGE}', 'problem.py': 'see `Problem`',

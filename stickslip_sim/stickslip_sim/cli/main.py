@@ -26,6 +26,7 @@ from .compare import compare
 from .critical import critical
 from .export import export
 from .extremes import extremes
+from .friction import friction
 from .map import map_
 from .plot import plot
 from .scenes import scenes
@@ -51,7 +52,7 @@ def stickslip(context: click.Context) -> None:
         context.exit(2)
 
 
-for verb in (advise, bench, check, compare, critical, export, extremes, map_, plot, scenes, simulate, sweep,
+for verb in (advise, bench, check, compare, critical, export, extremes, friction, map_, plot, scenes, simulate, sweep,
              uncertainty, verify):
     stickslip.add_command(verb)
 
