@@ -44,7 +44,7 @@ class Constants:
 
 
 def _values(nodes: list[ast.stmt], known: dict[str, Any]) -> dict[str, Any]:
-    """Return what assignments give names to, as far as that can be told from numbers and other constants."""
+    """Return what assignments give names to, as far as that follows from numbers and other constants."""
     found: dict[str, Any] = {}
     for node in nodes:
         if not isinstance(node, ast.Assign | ast.AnnAssign) or node.value is None:

@@ -11,7 +11,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-# the files with records, and the one that tells their fields
+# the files with records, and first the one that reads their fields
 RECORD_FILES = ('axis/fields.py', 'axis/layout.py', 'axis/rows.py', 'solvers/exact/axis_figures.py')
 _APART = 'package_of_the_hot_unit'
 

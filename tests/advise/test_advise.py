@@ -178,7 +178,7 @@ def of(cost: float) -> Cost:
     return Cost(cost, cost, cost, 1)
 
 
-def test_a_solver_that_cannot_do_a_scene_is_told() -> None:
+def test_a_solver_that_cannot_do_a_scene_is_reported() -> None:
     reference = reference_of(scene('paper_fig8', contact={'contact.stiffness': 1e12}), DURATION)
     trial = try_changes(reference, 'euler', {'solver.name': 'fixed_step', 'solver.step': 1e-3})
     assert trial.difference is None

@@ -160,7 +160,7 @@ class TestRuns:
         assert re.search(r'timing .* FAIL  the run has no end, no verdict', out)
         assert 'FAILED: 2 of 3: later, timing' in out
 
-    def test_missing_steps_are_told(self, tmp_path: Path, capsys: Capture) -> None:
+    def test_missing_steps_are_reported(self, tmp_path: Path, capsys: Capture) -> None:
         scene = load_scene('paper_fig7')
         bag = OfflineBag(tmp_path / 'bag', RunFacts.of(scene))
         for step, sample in enumerate(simulate(scene, 0.2, scene.time.step).sample_rows()):

@@ -80,8 +80,8 @@ class TestParquet:
     def test_what_it_takes(self, fig8_bag: Path, tmp_path: Path, capsys: Capture) -> None:
         if importlib.util.find_spec('pandas'):
             pytest.skip('pandas is installed')
-        told = refused(capsys, 'export', fig8_bag, '--parquet', tmp_path / 'x.parquet')
-        assert 'pip install pandas fastparquet' in told
+        reported = refused(capsys, 'export', fig8_bag, '--parquet', tmp_path / 'x.parquet')
+        assert 'pip install pandas fastparquet' in reported
         assert list(tmp_path.iterdir()) == []
         with pytest.raises(RecordingError, match='pip install pandas'):
             open_bag(fig8_bag).frame('slider_state')

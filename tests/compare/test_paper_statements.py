@@ -113,7 +113,7 @@ class TestTwoValues:
         assert figures['decelerating_force'] == pytest.approx(lower * NORMAL, rel=1e-6)
         assert figures['accelerating_force'] == pytest.approx(upper * NORMAL, rel=1e-6)
 
-    def test_one_value_is_told(self) -> None:
+    def test_one_value_is_reported(self) -> None:
         """The conventional run, as if it were said to have two branches."""
         run = densely('paper_fig4_falling', 3.0)
         finding = findings(replace(run, scene=load_scene('paper_fig7')))[TWO_VALUES]
@@ -165,7 +165,7 @@ class TestLimitCycle:
         assert figures['spread'] < 1e-12
         assert figures['own_difference'] < 1e-12
 
-    def test_the_own_cycle_of_a_short_run_is_told_apart(self) -> None:
+    def test_the_own_cycle_of_a_short_run_is_distinguished(self) -> None:
         assert findings(densely('paper_fig8', 2.0))[LIMIT_CYCLE].figures['own_difference'] > 1e-3
 
     def test_two_motions_side_by_side(self) -> None:

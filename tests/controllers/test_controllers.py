@@ -219,5 +219,5 @@ def test_the_same_run_twice() -> None:
     assert first == second
 
 
-def test_the_page_tells_what_is_measured_today() -> None:
+def test_the_page_has_what_is_measured_today() -> None:
     assert '\n'.join(by_model()) in PAGE.read_text(encoding='utf-8')

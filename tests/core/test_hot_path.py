@@ -25,7 +25,7 @@ MOVED = STALE.replace('axis/layout.py', 'axis/moved_since.py')
 @pytest.mark.parametrize(('before', 'why'), [
     (MISSING, 'the compiled hot path is missing ('), (STALE, 'the compiled hot path was built from other sources; '),
     (MOVED, 'the compiled hot path was built from other sources; ')])
-def test_plain_python_in_its_place_is_told_once_with_the_fix(before: str, why: str, in_a_process: Program) -> None:
+def test_plain_python_in_its_place_is_reported_once_with_the_fix(before: str, why: str, in_a_process: Program) -> None:
     words, *lines = in_a_process(before + LOAD, compiled=True).splitlines()
     assert words == 'plain python'
     said, = lines
@@ -35,5 +35,5 @@ def test_plain_python_in_its_place_is_told_once_with_the_fix(before: str, why: s
 
 
 @pytest.mark.parametrize('before', ['', MISSING, STALE, MOVED])
-def test_plain_python_that_was_asked_for_is_not_told(before: str, in_a_process: Program) -> None:
+def test_plain_python_that_was_asked_for_is_not_reported(before: str, in_a_process: Program) -> None:
     assert in_a_process(before + LOAD, compiled=False) == 'plain python\n'

@@ -117,7 +117,7 @@ def _other_content(draw: DrawFn, content: bytes) -> bytes:
 
 
 def _in_a_chunk(draw: DrawFn, records: list[Record]) -> list[Record]:
-    """Put records into a chunk, which may tell of itself what is not true."""
+    """Put records into a chunk, which may say of itself what is not true."""
     compression = draw(st.sampled_from([*_PACK]))
     inside = _joined(records[1:])
     data = _PACK[compression](inside)

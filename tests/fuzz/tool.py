@@ -11,7 +11,7 @@ from stickslip_sim.cli.main import run
 
 
 def tool(*arguments: str) -> None:
-    """Call the tool, which does what it is told or refuses in one line; what it would call internal is raised."""
+    """Call the tool, which does what it is asked to or refuses in one line; what it would call internal is raised."""
     said = StringIO()
     with mock.patch.dict(os.environ, STICKSLIP_DEBUG='1'), redirect_stdout(StringIO()), redirect_stderr(said):
         code = run(arguments)

@@ -69,11 +69,11 @@ def _options() -> argparse.Namespace:
 
 
 def _show(found: Found, folder: Path) -> None:
-    told = reference.confirm(found.case.parts) if found.judge == 'guards' else None
-    place = report.write(found, folder, told)
+    confirmed = reference.confirm(found.case.parts) if found.judge == 'guards' else None
+    place = report.write(found, folder, confirmed)
     print(f'{found.generator}, {found.judge}: {found.text}\n    {place}', flush=True)
-    if told:
-        print(f'    {told}', flush=True)
+    if confirmed:
+        print(f'    {confirmed}', flush=True)
 
 
 def _progress(tally: Tally, seconds: float) -> None:

@@ -16,7 +16,7 @@ from .judges import batch, bounds, guards, images, parts, reference, touch
 PER_ROUND = 10               # scenes of each generator
 REFERENCE_SHARE = 0.02       # of the scenes; one takes a second
 TIES = frozenset({'touching', 'ties', 'steady_at_breakpoint', 'equal_eigenvalues', 'grazing_ramp'})
-TIES_SHARE = 5.0             # times that share, where nothing but exact arithmetic tells what is right
+TIES_SHARE = 5.0             # times that share, where nothing but exact arithmetic shows what is right
 MOST_REFUSED = 0.03          # of plausible machines
 ENOUGH = 200                 # scenes from which on that share means something
 

@@ -28,7 +28,7 @@ class LastBits(Find):
 
 
 class Undecided(Exception):  # noqa: N818
-    """A judge cannot tell: the data differ from a tie by rounding, or it takes too long."""
+    """A judge cannot decide: the data differ from a tie by rounding, or it takes too long."""
 
 
 class Parts(NamedTuple):

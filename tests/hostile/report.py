@@ -19,20 +19,20 @@ def write(found: Found, folder: Path, reference: str | None) -> Path:
     place = folder / f'{found.generator}-{found.judge}-{found.seed.replace("/", "-")}'
     place.mkdir(parents=True, exist_ok=True)
     (place / SCENE).write_text(found.case.scene.text, encoding='utf-8')
-    told: dict[str, Any] = {'generator': found.generator, 'seed': found.seed, 'judge': found.judge,
+    judged: dict[str, Any] = {'generator': found.generator, 'seed': found.seed, 'judge': found.judge,
                             'duration': found.case.duration, 'found': found.text,
                             'again': f'python3 -m tests.hostile --again {place}'}
     if reference is not None:
-        told['reference'] = reference
-    (place / JUDGED).write_text(json.dumps(told, indent=1) + '\n', encoding='utf-8')
+        judged['reference'] = reference
+    (place / JUDGED).write_text(json.dumps(judged, indent=1) + '\n', encoding='utf-8')
     return place
 
 
 def read(place: Path) -> tuple[Case, str]:
     """Return the scene of a folder that `write` made, and the seed of its judges."""
-    told = json.loads((place / JUDGED).read_text(encoding='utf-8'))
+    judged = json.loads((place / JUDGED).read_text(encoding='utf-8'))
     scene = load_scene(str(place / SCENE))
-    return Case(dict(scene.values), float(told['duration'])), str(told['seed'])
+    return Case(dict(scene.values), float(judged['duration'])), str(judged['seed'])
 
 
 def table(tally: Tally) -> str:

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The container files against what they rely on; that they build and run is told in docs/docker.md."""
+"""The container files against what they rely on; that they build and run is written in docs/docker.md."""
 
 import fnmatch
 import os

@@ -46,7 +46,7 @@ def test_what_is_sent_holds(axis: Client) -> None:
     wait_for(lambda: axis.latest('slider_state').drive_velocity == 0.005, 'its effect')
 
 
-def test_a_wrong_unit_is_told_to_the_sender(axis: Client) -> None:
+def test_a_wrong_unit_is_reported_to_the_sender(axis: Client) -> None:
     before = axis.latest('slider_state').drive_velocity
     wait_for(lambda: 'velocity = 5.0 is refused' in python(DRIVE, '5').stderr, 'a refusal that is heard in its second')
     assert axis.latest('slider_state').drive_velocity == before

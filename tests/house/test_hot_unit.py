@@ -87,8 +87,8 @@ def swapped(osc: Oscillator, both: bool) -> tuple[float, int]:
 def test_what_c_does_not_have_is_refused_in_one_line(function: str, what: str, tmp_path: Path) -> None:
     package = package_with(function, tmp_path / 'package')
     _, said = unit_of(package, tmp_path)
-    place, _, told = said.removeprefix('error: ').partition(': ')
-    assert told == f'{what}\n'
+    place, _, fault = said.removeprefix('error: ').partition(': ')
+    assert fault == f'{what}\n'
     file, _, line = place.rpartition(':')
     assert Path(file) == package / HOST
     assert function in (package / HOST).read_text(encoding='utf-8').split('\n')[int(line) - 1]

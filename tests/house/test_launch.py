@@ -42,7 +42,7 @@ def test_all_of_them_are_looked_at() -> None:
 
 @pytest.mark.parametrize('name', FILES)
 class TestEach:
-    def test_arguments_are_told_of(self, name: str) -> None:
+    def test_arguments_are_reported(self, name: str) -> None:
         declared = launched(name, **NEEDED.get(name, {})).arguments
         assert all(len(argument.description) > 10 for argument in declared)
         assert name == 'replay' or {argument.name for argument in declared} >= OF_SIM

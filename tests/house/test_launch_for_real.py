@@ -95,13 +95,13 @@ def test_two_axes_record_until_interrupted(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(('name', 'given'), LAUNCHED)
 def test_the_double_starts_what_launch_starts(name: str, given: dict[str, str], tmp_path: Path) -> None:
-    """Launch puts a program in front of each command, which tells its words and does not run it."""
-    told = tmp_path / 'told'
-    prefix = f'launch-prefix:={sys.executable} {say_words.__file__} {told}'
+    """Launch puts a program in front of each command, which writes its words and does not run it."""
+    written = tmp_path / 'written'
+    prefix = f'launch-prefix:={sys.executable} {say_words.__file__} {written}'
     with launching(name, prefix, *(f'{key}:={value}' for key, value in given.items()), folder=tmp_path) as process:
         output, _ = process.communicate(timeout=DEADLINE)
     assert process.returncode == 0, output
-    commands = [json.loads(line) for line in told.read_text(encoding='utf-8').splitlines()]
+    commands = [json.loads(line) for line in written.read_text(encoding='utf-8').splitlines()]
     assert sorted([Path(program).name, *words] for program, *words in commands) == sorted(
         [started.executable, *started.words] for started in launched(name, **given).processes)
 
@@ -118,14 +118,14 @@ def test_the_double_knows_the_arguments_that_launch_knows(name: str) -> None:
         assert description.startswith(ours[argument].description)    # launch adds the choices
 
 
-@pytest.mark.parametrize(('name', 'word', 'told'), [
+@pytest.mark.parametrize(('name', 'word', 'reported'), [
     ('sim', 'parameters:=seed', 'NAME:=VALUE'),
     ('controlled', 'controller:=cascade', 'Valid options are'),
     ('axes', 'axes:=x', 'NAMESPACE:SCENE'),
 ])
-def test_wrong_words_start_nothing(name: str, word: str, told: str, tmp_path: Path) -> None:
+def test_wrong_words_start_nothing(name: str, word: str, reported: str, tmp_path: Path) -> None:
     with launching(name, word, folder=tmp_path) as process:
         output, _ = process.communicate(timeout=DEADLINE)
     assert process.returncode == 1
-    assert told in output
+    assert reported in output
     assert 'process started' not in output

@@ -32,8 +32,8 @@ ROWS = [line for line in (ROOT / 'docs/security.md').read_text().splitlines() if
 ])
 def test_limits(what: str, limits: tuple[int, ...]) -> None:
     (row,) = [row for row in ROWS if row.startswith(f'| {what}')]
-    told = [int(word) for word in row.split('|')[2].replace(';', ' ').replace(',', ' ').split() if word.isdecimal()]
-    assert tuple(told) == limits
+    given = [int(word) for word in row.split('|')[2].replace(';', ' ').replace(',', ' ').split() if word.isdecimal()]
+    assert tuple(given) == limits
 
 
 def test_limits_of_the_node() -> None:

@@ -18,7 +18,7 @@ from tests.support.check_files import LIMITS, limits_file
 from tests.support.rewritten_bags import rewritten
 from tests.support.tool import Capture, refused
 
-TOLD = 'damaged: it was finished, but is no longer what was written; fetch the file again'
+REPORTED = 'damaged: it was finished, but is no longer what was written; fetch the file again'
 
 
 def data_of(bag: Path) -> bytes:
@@ -44,7 +44,7 @@ def damaged(fig8_bag: Path, tmp_path: Path) -> Path:
 ])
 def test_the_tool_refuses_it(command: list[str], damaged: Path, tmp_path: Path, capsys: Capture) -> None:
     words: dict[str, str | Path] = {'BAG': damaged, 'LIMITS': limits_file(tmp_path, LIMITS), 'OUT': tmp_path / 'out'}
-    assert f'{damaged}: {TOLD}' in refused(capsys, *(words.get(word, word) for word in command))
+    assert f'{damaged}: {REPORTED}' in refused(capsys, *(words.get(word, word) for word in command))
     assert not [path for path in tmp_path.iterdir() if 'out' in path.name]
 
 
@@ -53,7 +53,7 @@ def test_python_refuses_it(compression: CompressionType, fig8_bag: Path, tmp_pat
     path = rewritten(fig8_bag, tmp_path / 'other', compression=compression) / 'run_0.mcap'
     data = path.read_bytes()
     path.write_bytes(flipped(data, len(data) // 2))
-    with pytest.raises(RecordingError, match=TOLD):
+    with pytest.raises(RecordingError, match=REPORTED):
         open_bag(path)
 
 
@@ -62,12 +62,12 @@ def test_damaged_after_it_was_opened(fig8_bag: Path, damaged: Path, tmp_path: Pa
     path.write_bytes(data_of(fig8_bag))
     run = open_bag(path)
     damaged.replace(path)
-    with pytest.raises(RecordingError, match=TOLD):
+    with pytest.raises(RecordingError, match=REPORTED):
         run.columns('slider_state')
 
 
 def test_a_damaged_file_without_an_end_is_read_up_to_the_damage(damaged: Path) -> None:
-    """Nobody can tell: a computer that lost its power leaves such a file, too."""
+    """It cannot be known: a computer that lost its power leaves such a file, too."""
     damaged.write_bytes(damaged.read_bytes()[:-8])
     with pytest.warns(RecordingWarning, match='has no end: cut off'):
         run = open_bag(damaged)
@@ -93,12 +93,12 @@ def test_no_bit_of_the_index_changes_what_is_read(how: Callable[[Path], list[Rec
     data, path, stream = data_of(fig8_bag), tmp_path / 'run.mcap', Random(5)
     path.write_bytes(data)
     whole = how(path)
-    (begin,) = struct.unpack_from('<Q', data, len(data) - 28)    # the footer tells
+    (begin,) = struct.unpack_from('<Q', data, len(data) - 28)    # the footer says
     outcomes = []
     for _ in range(40):
         path.write_bytes(flipped(data, stream.randrange(begin, len(data)), stream.randrange(8)))
         outcomes.append(outcome(how, path))
-        assert outcomes[-1] in (whole, f'{path}: {TOLD}')
+        assert outcomes[-1] in (whole, f'{path}: {REPORTED}')
     assert whole in outcomes
 
 

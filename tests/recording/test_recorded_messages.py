@@ -170,7 +170,7 @@ def values_of(message: Any, like: Any = None) -> Values:
 
 
 def padding_of(codec: MessageCodec, type_name: str, values: Values) -> list[bool]:
-    """Tell which bytes are padding: those that encoding leaves alone (rclpy leaves in them what was there before)."""
+    """Find which bytes are padding: those that encoding leaves alone (rclpy leaves in them what was there before)."""
     message = codec.decode(type_name, codec.encode(type_name, values))
     store = store_of({type_name: schema(type_name).text})
     definition = store.get_msgdef(type_name)

@@ -98,7 +98,7 @@ class TestThread:
         assert first.data == b'only one'
         recorder.close()
 
-    def test_any_failure_is_told_and_stops_nobody(self, tmp_path: Path) -> None:
+    def test_any_failure_is_reported_and_stops_nobody(self, tmp_path: Path) -> None:
         recorder = RecorderThread(open_run(tmp_path / 'run', FACTS))
         recorder.put(99, b'', 0, 0, 0)  # no such topic
         recorder.put(0, b'', 0, 0, 0)

@@ -68,7 +68,7 @@ def test_same_run_twice_is_bit_identical(run: SimulatedRun) -> None:
     assert again.receipt['results'] == run.receipt['results']
 
 
-def test_a_receipt_tells_the_settings_of_the_solver() -> None:
+def test_a_receipt_has_the_settings_of_the_solver() -> None:
     for solver, settings in (('fixed_step', {'method': 'euler', 'step': 1e-3}),
                              ('adaptive', {'method': 'DOP853', 'rtol': 1e-8, 'atol': 1e-10})):
         receipt = simulate_events(load_scene('paper_fig7', {'solver.name': solver}), 0.7).receipt

@@ -22,7 +22,7 @@ def test_names_of_the_shipped_scenes() -> None:
 
 
 @pytest.mark.parametrize('name', scene_names())
-def test_a_shipped_scene_is_named_told_in_a_line_and_loads_from_its_text(name: str, tmp_path: pathlib.Path) -> None:
+def test_a_shipped_scene_is_named_described_and_loads_from_its_text(name: str, tmp_path: pathlib.Path) -> None:
     scene = load_scene(name)
     assert scene.name == name
     assert 20 < len(scene.summary) < 110

@@ -86,7 +86,7 @@ def test_a_run_that_starts_sliding_counts_from_its_start() -> None:
     assert figures.stick_share == 0.0
 
 
-def test_rest_and_single_slip_are_told_apart() -> None:
+def test_rest_and_single_slip_are_distinguished() -> None:
     assert summary([], 1.0).motion == 'at rest'
     assert summary([], 1.0).stick_share == 1.0
     pull = table('drive', (0.0, 0.75, 0.76), (0.002, 0.002, 0.0))
@@ -94,7 +94,7 @@ def test_rest_and_single_slip_are_told_apart() -> None:
     assert (single.motion, single.cycles, single.events[EventKind.BREAKAWAY]) == ('single slip', 0, 1)
 
 
-def test_directions_are_told() -> None:
+def test_directions_are_reported() -> None:
     profile = table('drive', (0.0, 3.0, 3.01), (0.002, 0.002, -0.002))
     cycles = cycle_figures(run_events(paper_axis(RIGID), profile, 12.0))
     assert {cycle.direction for cycle in cycles} == {-1, 1}

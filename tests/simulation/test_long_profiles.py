@@ -59,7 +59,7 @@ def advance(simulator: Simulator, calls: int, begin: float = 0.0) -> Bits:
             for row in bits(simulator.advance(instant(begin + (DURATION - begin) * k / calls)))]
 
 
-def told(kind: str, calls: int) -> list[str]:
+def run_in(kind: str, calls: int) -> list[str]:
     """Return all that a run gives, in hexadecimal."""
     simulator = make(kind)
     events = advance(simulator, calls)
@@ -84,15 +84,15 @@ def test_a_walk_gives_the_bits_of_one_piece_after_the_other(kind: str, calls: in
 
 @pytest.mark.parametrize('kind', KINDS)
 def test_the_split_of_time_changes_no_bit(kind: str) -> None:
-    whole = told(kind, 1)
-    assert all(told(kind, calls) == whole for calls in (2, 333, 4001))
+    whole = run_in(kind, 1)
+    assert all(run_in(kind, calls) == whole for calls in (2, 333, 4001))
 
 
 @pytest.mark.skipif(hot_path.UNIT is None, reason='no compiled code in this source tree')
 @pytest.mark.parametrize('kind', KINDS)
 def test_plain_python_gives_the_same_bits(kind: str, in_a_process: Program) -> None:
-    program = f'from tests.simulation.test_long_profiles import told\nprint(*told({kind!r}, 3), sep="\\n")'
-    assert in_a_process(program, compiled=False).split('\n')[:-1] == told(kind, 3)
+    program = f'from tests.simulation.test_long_profiles import run_in\nprint(*run_in({kind!r}, 3), sep="\\n")'
+    assert in_a_process(program, compiled=False).split('\n')[:-1] == run_in(kind, 3)
 
 
 @pytest.mark.parametrize('solver', [exact.SOLVER, ONE_BY_ONE], ids=['walk', 'one by one'])

@@ -9,28 +9,28 @@ from tests.conftest import Program
 
 pytestmark = pytest.mark.skipif(hot_path.UNIT is None, reason='no compiled code in this source tree; `make test` tests '
                                 'the installed copy')
-TOLD = '''
+PRINTED = '''
 import json
-def told(rows):
+def printed(rows):
     for row in rows:
         print(*(float(number).hex() for number in row))
 '''
-SCENES = TOLD + '''
+SCENES = PRINTED + '''
 from fractions import Fraction
 from stickslip_sim import load_scene, scene_names, simulate
 for name in scene_names():
     run = simulate(load_scene(name, OVERRIDES), 2.0, Fraction(1, 10))
-    told(run.events)
-    told(run.sample_rows())
+    printed(run.events)
+    printed(run.sample_rows())
     print(name, len(run.events), json.dumps(run.receipt['energy']))
 '''
-RANDOM = TOLD + '''
+RANDOM = PRINTED + '''
 import random
 from tests.support.axes import random_axis, run_events
 for seed in range(25):
     rng = random.Random(seed)
     axis = random_axis(rng)
-    told(run_events(axis, rng.choice((-1, 1)) * 10 ** rng.uniform(-3, -1.5), 3.0))
+    printed(run_events(axis, rng.choice((-1, 1)) * 10 ** rng.uniform(-3, -1.5), 3.0))
 '''
 STEPS = [(method, {'solver.name': 'fixed_step', 'solver.method': method, 'solver.step': 1e-3})
          for method in ('euler', 'rk4')]

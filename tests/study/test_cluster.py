@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""`--scheduler`: real Dask processes, one of which is killed in the middle; and what is told when there are none."""
+"""`--scheduler`: real Dask processes, one of which is killed in the middle; and the report when there are none."""
 
 import json
 import os
@@ -106,7 +106,7 @@ def test_ctrl_c_keeps_what_is_done(cluster: Cluster, tmp_path: Path) -> None:
     wait_until(lambda: not cluster.is_at_work(0), 'a worker that is free again')
 
 
-def test_a_scheduler_that_goes_is_told(cluster: Cluster, tmp_path: Path) -> None:
+def test_a_scheduler_that_goes_is_reported(cluster: Cluster, tmp_path: Path) -> None:
     cluster.add_worker()
     out = tmp_path / 'out'
     process = started('stickslip_sim', *LONG, '--scheduler', cluster.address, '--out', out,
@@ -120,7 +120,7 @@ def test_a_scheduler_that_goes_is_told(cluster: Cluster, tmp_path: Path) -> None
     assert '--resume' in error
 
 
-def test_a_worker_without_this_package_is_told(cluster: Cluster, tmp_path: Path, capsys: Capture) -> None:
+def test_a_worker_without_this_package_is_reported(cluster: Cluster, tmp_path: Path, capsys: Capture) -> None:
     paths = os.pathsep.join(path for path in sys.path if path and not Path(path, 'stickslip_sim').exists())
     cluster.add_worker(PYTHONPATH=paths, PYTHONSAFEPATH='1')
     assert run([*LONG, '--scheduler', cluster.address, '--out', str(tmp_path / 'out')]) == 2
@@ -130,7 +130,7 @@ def test_a_worker_without_this_package_is_told(cluster: Cluster, tmp_path: Path,
     assert not (tmp_path / 'out').exists()
 
 
-def test_a_worker_with_other_versions_is_told(cluster: Cluster, tmp_path: Path, capsys: Capture) -> None:
+def test_a_worker_with_other_versions_is_reported(cluster: Cluster, tmp_path: Path, capsys: Capture) -> None:
     cluster.add_worker(STICKSLIP_COMPILED='0')
     assert run([*LONG, '--scheduler', cluster.address, '--out', str(tmp_path / 'out')]) == 2
     assert f'hot_path plain python and not {versions_of_a_study()["hot_path"]}' in capsys.readouterr().err

@@ -52,8 +52,8 @@ def test_constant_friction_has_the_critical_feed_of_the_closed_form(zeta: float,
 
 
 @pytest.mark.parametrize(('law', 'accuracy'), [('exponential', ACCURACY), ('hyperbolic', 2e-3)])
-def test_growth_at_rest_has_its_critical_feed_within_what_is_told(law: str, accuracy: float) -> None:
-    """Near it the drops shrink as 1/n: what cannot be told in some thousand cycles is left open, and said to be."""
+def test_growth_at_rest_has_its_critical_feed_within_what_is_reported(law: str, accuracy: float) -> None:
+    """Near it the drops shrink as 1/n: what cannot be decided in some thousand cycles is left open, and said to be."""
     scene = load_scene('paper_fig4_constant', {**GROWING, 'friction.static.law': law})
     expected = healing_critical_feed(6e5, 3432.3275 * 0.12 / 0.2)
     assert feed_of_theory(scene.axis) == expected
@@ -69,7 +69,7 @@ def test_katos_law_below_one_has_no_critical_feed() -> None:
     assert of_the_feed(scene, 1e-3, 0.1).from_rest == Findings(YES, ())
 
 
-def test_sliding_on_the_papers_slope_is_lost_from_2000_newtons_on_and_both_motions_are_told() -> None:
+def test_sliding_on_the_papers_slope_is_lost_from_2000_newtons_on_and_both_motions_are_reported() -> None:
     scene = load_scene('paper_fig4_falling')
     found = critical(scene, Variation('axis.normal_force', 500.0, 5000.0), 1e-12)
     (lost,) = found.from_sliding.transitions
@@ -110,7 +110,7 @@ def test_sticks_between_reversals_last_however_heavy_the_slider_is() -> None:
 
 @pytest.mark.parametrize(('changes', 'name', 'low', 'high'), [
     ({}, 'axis.drive_damping', 1e4, 1.3e4), ({'drive.velocity': 0.02}, 'axis.normal_force', 1900.0, 2300.0)])
-def test_what_is_told_of_intermittent_stick_slip_is_what_long_runs_do(
+def test_what_is_reported_of_intermittent_stick_slip_is_what_long_runs_do(
         changes: dict[str, object], name: str, low: float, high: float) -> None:
     """Between sticks the slider swings, ever longer towards the border, and may slip out by chance."""
     scene = load_scene('paper_fig8', changes)
@@ -137,7 +137,7 @@ def test_several_changes_are_all_found() -> None:
     assert [found.at(value) for value in (3.0, 4.0, 7.0, 9.9)] == [YES, NO, YES, NO]
 
 
-def test_what_cannot_be_told_stays_open() -> None:
+def test_what_cannot_be_decided_stays_open() -> None:
     def judge(values: Numbers) -> Verdicts:
         return np.where(abs(values - 2.0) < 1e-3, OPEN, values > 2.0).astype(np.int64)
 
@@ -150,7 +150,7 @@ def test_what_cannot_be_told_stays_open() -> None:
         assert found == Findings(verdict, (), (Doubt(1.0, 2.0, verdict == FAILED),))
 
 
-def test_what_cannot_be_told_between_two_equal_verdicts_or_at_an_end_is_told() -> None:
+def test_what_cannot_be_decided_between_two_equal_verdicts_or_at_an_end_is_reported() -> None:
     def judge(values: Numbers) -> Verdicts:
         found = np.where((values > 2.0) & (values < 3.0), OPEN, YES)
         return np.where(values > 8.0, FAILED, found).astype(np.int64)
@@ -161,7 +161,7 @@ def test_what_cannot_be_told_between_two_equal_verdicts_or_at_an_end_is_told() -
     assert [found.at(value) for value in (1.5, 2.5, 5.0, 8.5)] == [YES, OPEN, YES, OPEN]
 
 
-def test_a_failed_run_between_two_verdicts_is_told() -> None:
+def test_a_failed_run_between_two_verdicts_is_reported() -> None:
     def judge(values: Numbers) -> Verdicts:
         return np.where(abs(values - 2.0) < 1e-3, FAILED, values > 2.0).astype(np.int64)
 
@@ -170,7 +170,7 @@ def test_a_failed_run_between_two_verdicts_is_told() -> None:
 
 
 def test_verdicts_that_come_by_turns_are_no_figure() -> None:
-    """As near a motion that sticks by chance: beyond the ends of what is told no verdict contradicts."""
+    """As near a motion that sticks by chance: beyond the ends of what is reported no verdict contradicts."""
     def judge(values: Numbers) -> Verdicts:
         by_chance = np.mod(1e9 * np.sin(12345.0 * values), 1.0) > 0.5
         return np.where(abs(values - 2.0) < 3e-3, by_chance, values > 2.0).astype(np.int64)
@@ -183,7 +183,7 @@ def test_verdicts_that_come_by_turns_are_no_figure() -> None:
 
 
 @pytest.mark.parametrize('seed', range(40))
-def test_both_ends_of_what_is_told_have_the_verdict_that_is_told(seed: int) -> None:
+def test_both_ends_of_what_is_reported_have_the_verdict_that_is_reported(seed: int) -> None:
     rng = np.random.default_rng(seed)
     width, likely = 10.0 ** rng.uniform(-6.0, -1.0), rng.uniform(0.1, 0.9)
 
@@ -212,7 +212,7 @@ def test_the_finest_accuracy_ends() -> None:
     assert one.high - one.low <= 2.0 * math.ulp(math.pi)
 
 
-def test_the_tool_tells_both_values(capsys: Capture) -> None:
+def test_the_tool_prints_both_values(capsys: Capture) -> None:
     assert run(['critical', 'paper_fig4_falling', '--of', 'axis.normal_force', '--between', '500:5000']) == 0
     out = capsys.readouterr().out
     assert 'from rest' in out
@@ -227,13 +227,13 @@ def test_the_tool_says_that_there_is_no_transition(capsys: Capture) -> None:
     assert 'stick-slip all over the range' in out
 
 
-def test_the_tool_tells_what_is_undecided(capsys: Capture) -> None:
+def test_the_tool_prints_what_is_undecided(capsys: Capture) -> None:
     """With no more digits than the stretch has a use for, rounded outwards."""
     assert run(['critical', 'paper_fig8', '--set', 'drive.velocity=0.02', '--of', 'axis.normal_force', '--between',
                 '1900:2300']) == 0
     out = capsys.readouterr().out
-    told = r'^from rest      between [\d.]+ and [\d.]+ N, undecided: no stick-slip below, stick-slip above$'
-    assert re.search(told, out, re.MULTILINE), out
+    line = r'^from rest      between [\d.]+ and [\d.]+ N, undecided: no stick-slip below, stick-slip above$'
+    assert re.search(line, out, re.MULTILINE), out
     low, high = re.findall(r'between ([\d.]+) and ([\d.]+) N', out)[0]
     assert float(low) < 2098.9463 < 2098.9472 < float(high)
     assert max(len(low), len(high)) <= 10    # the stretch is 0.001 N wide

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Points of a study whose run went wrong, or whose motion cannot be told: a class of their own in all that is made."""
+"""Points of a study whose run went wrong, or whose motion cannot be decided: a class of their own everywhere."""
 
 import json
 import math

@@ -44,26 +44,29 @@ def mapped(folder: Path) -> list[str]:
 
 
 def without(name: str) -> Callable[[Any], None]:
-    return lambda told: told.pop(name)
+    return lambda sidecar: sidecar.pop(name)
+
+
+def with_value(name: str, value: object) -> Callable[[Any], None]:
+    return lambda sidecar: sidecar.update({name: value})
 
 
 def with_first(name: str, value: object) -> Callable[[Any], None]:
-    return lambda told: told['over'][0].update({name: value})
+    return lambda sidecar: sidecar['over'][0].update({name: value})
 
 
 @pytest.mark.parametrize('change', [
     *map(without, ('duration', 'over', 'sobol', 'uncertain', 'scene_text')),
-    lambda told: told.update(scene_text=5), lambda told: told.update(duration='x'), lambda told: told.update(over=5),
-    lambda told: told.update(over=[{}]), lambda told: told.update(sobol=5), lambda told: told.update(uncertain=5),
-    lambda told: told.update(sobol={'points': 10**12, 'seed': 0}),
+    with_value('scene_text', 5), with_value('duration', 'x'), with_value('over', 5), with_value('over', [{}]),
+    with_value('sobol', 5), with_value('uncertain', 5), with_value('sobol', {'points': 10**12, 'seed': 0}),
     with_first('name', ['a']), with_first('low', 'x'), with_first('low', 10**400), with_first('count', 'x'),
     with_first('count', -3), with_first('log', 5),
 ])
 def test_a_description_that_is_none(change: Callable[[Any], None], folder: Path,
                                     capsys: pytest.CaptureFixture[str]) -> None:
-    told = json.loads((folder / SIDECAR).read_text())
-    change(told)
-    (folder / SIDECAR).write_text(json.dumps(told))
+    sidecar = json.loads((folder / SIDECAR).read_text())
+    change(sidecar)
+    (folder / SIDECAR).write_text(json.dumps(sidecar))
     refusal(capsys, *mapped(folder))
 
 
@@ -95,10 +98,10 @@ def test_a_file_without_end(name: str, make: Callable[[Path], None], folder: Pat
 
 def test_a_line_without_end(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """The description says that there are so many points that a file of any size may be their table."""
-    told = json.loads((folder / SIDECAR).read_text())
-    told['over'][0]['count'] *= 10**10
-    told['points'] *= 10**10
-    (folder / SIDECAR).write_text(json.dumps(told))
+    sidecar = json.loads((folder / SIDECAR).read_text())
+    sidecar['over'][0]['count'] *= 10**10
+    sidecar['points'] *= 10**10
+    (folder / SIDECAR).write_text(json.dumps(sidecar))
     (folder / TABLE).write_bytes((folder / TABLE).read_bytes().splitlines(keepends=True)[0])
     sparse(folder / TABLE)
     assert TABLE in refusal(capsys, *mapped(folder))

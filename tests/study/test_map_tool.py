@@ -61,14 +61,14 @@ def test_only_a_picked_point_that_the_table_lacks_is_run_until_it_settles(
     assert len(ran) == times
 
 
-def test_the_table_tells_the_motion_that_a_run_of_the_point_ends_in(swept: Path) -> None:
+def test_the_table_has_the_motion_that_a_run_of_the_point_ends_in(swept: Path) -> None:
     study = study_of(Folder(swept).described())
     table = read_columns(swept / TABLE, study)
     without = {name: column[:0] for name, column in table.items()}
     for point in study.points(0, study.count)[::5]:
-        *told, of_table = ending_at(study, table, point)
+        *in_table, of_table = ending_at(study, table, point)
         *found, of_run = ending_at(study, without, point)
-        assert (told, of_table.end, of_table.events) == (found, of_run.end, of_run.events)
+        assert (in_table, of_table.end, of_table.events) == (found, of_run.end, of_run.events)
 
 
 def test_a_sweep_whose_steps_numpy_rounded_otherwise_is_drawn(swept: Path, tmp_path: Path) -> None:
@@ -137,11 +137,11 @@ def test_what_is_no_complete_sweep_of_one_or_two_parameters_is_refused(swept: Pa
     assert run(['sweep', 'paper_fig7', *drawn]) == 0
     capsys.readouterr()
     assert 'a grid of two parameters' in refused(capsys, 'map', tmp_path / 's', *picture)
-    told = json.loads((swept / SIDECAR).read_text())
-    over = told['over']
+    sidecar = json.loads((swept / SIDECAR).read_text())
+    over = sidecar['over']
     for changed in ({'over': None}, {'over': [{**one, 'count': '7'} for one in over]}, {'scene_text': 3}, {'points': 7},
                     {'over': [{**one, 'low': 'a'} for one in over]}, {'duration': '1'}, {'sobol': {'points': 4}}):
-        (tmp_path / 'part' / SIDECAR).write_text(json.dumps({**told, **changed}))
+        (tmp_path / 'part' / SIDECAR).write_text(json.dumps({**sidecar, **changed}))
         assert 'it was changed' in refused(capsys, 'map', tmp_path / 'part', *picture), changed
     (tmp_path / 'part' / SIDECAR).write_text('[' * 100_000)
     assert 'study.json' in refused(capsys, 'map', tmp_path / 'part', *picture)
@@ -157,11 +157,11 @@ def test_an_edited_description_is_refused(tmp_path: Path, capsys: Capture, place
     out = tmp_path / 'out'
     assert run(['sweep', 'paper_fig7', '--over', 'drive.velocity=0.001:0.01:3', '--duration', '1', '--out',
                 str(out)]) == 0
-    told = node = json.loads((out / SIDECAR).read_text())
+    sidecar = node = json.loads((out / SIDECAR).read_text())
     for key in place[:-1]:
         node = node[key]
     node[place[-1]] = value
-    (out / SIDECAR).write_text(json.dumps(told))
+    (out / SIDECAR).write_text(json.dumps(sidecar))
     capsys.readouterr()
     refused(capsys, 'map', out, '--out', tmp_path / 'map.svg')
     assert not (tmp_path / 'map.svg').exists()

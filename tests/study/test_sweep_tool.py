@@ -58,10 +58,10 @@ def uninterrupted(finished: Path) -> bytes:
 def test_a_sweep_says_what_it_is_and_can_be_read_back(tmp_path: Path, capsys: Capture) -> None:
     assert run(['sweep', *SMALL, '--set', 'axis.mass=300.0', '--out', str(tmp_path / 'out')]) == 0
     assert '24 points' in capsys.readouterr().out
-    told = json.loads((tmp_path / 'out' / SIDECAR).read_text())
-    assert {'stickslip', 'numpy', 'python', 'hot_path'} <= told['versions'].keys()
-    assert 'mass: 300.0' in told['scene_text']
-    study = study_of(told)
+    sidecar = json.loads((tmp_path / 'out' / SIDECAR).read_text())
+    assert {'stickslip', 'numpy', 'python', 'hot_path'} <= sidecar['versions'].keys()
+    assert 'mass: 300.0' in sidecar['scene_text']
+    study = study_of(sidecar)
     columns = read_columns(tmp_path / 'out' / TABLE, study)
     points, figures = study.points(0, 24), study.figures(0, 24)
     assert np.array_equal(columns['drive.velocity'], points[:, 0])
@@ -150,7 +150,7 @@ def test_a_full_disk_gets_one_line_and_keeps_whole_chunks(tmp_path: Path, uninte
     assert (out / TABLE).read_bytes() == uninterrupted
 
 
-def test_a_worker_that_dies_is_told(tmp_path: Path) -> None:
+def test_a_worker_that_dies_is_reported(tmp_path: Path) -> None:
     process = started(*LONG, '--workers', '2', '--out', tmp_path / 'out')
     wait_for_lines(tmp_path / 'out' / PARTIAL, process)
     children = Path(f'/proc/{process.pid}/task/{process.pid}/children').read_text().split()
@@ -180,8 +180,8 @@ def test_resuming_another_study_is_refused(tmp_path: Path, capsys: Capture) -> N
                        (['--over', 'axis.mass=300:400:2'], 'points')):
         assert said in refused(capsys, 'sweep', *SMALL, *more, '--out', out, '--resume')
     assert {path.name: path.read_bytes() for path in out.iterdir()} == before
-    told = json.loads(before[SIDECAR])
-    (out / SIDECAR).write_text(json.dumps({**told, 'versions': {**told['versions'], 'stickslip': '0.0.1'}}))
+    sidecar = json.loads(before[SIDECAR])
+    (out / SIDECAR).write_text(json.dumps({**sidecar, 'versions': {**sidecar['versions'], 'stickslip': '0.0.1'}}))
     assert 'versions' in refused(capsys, 'sweep', *SMALL, '--out', out, '--resume')
 
 

@@ -168,7 +168,7 @@ def test_points_without_a_cycle_have_a_share_and_no_percentile() -> None:
     assert decides['drive.velocity'].total == pytest.approx(1.0, abs=0.1)   # the only one there is
 
 
-def test_of_points_that_nobody_could_solve_nothing_is_told() -> None:
+def test_of_points_that_nobody_could_solve_nothing_is_reported() -> None:
     sample = Saltelli((uniform('axis.mass', 300.0, 400.0),), 16)
     columns = {**{name: np.full(sample.count, np.nan) for name in FIGURES}, 'settled': np.zeros(sample.count),
                'motion': np.full(sample.count, float(Motion.FAILED))}

@@ -26,16 +26,16 @@ def file(tmp_path: Path) -> str:
     return str(path)
 
 
-def test_it_tells_percentiles_and_indices_and_writes_them(tmp_path: Path, file: str, capsys: Capture) -> None:
+def test_it_prints_percentiles_and_indices_and_writes_them(tmp_path: Path, file: str, capsys: Capture) -> None:
     out = tmp_path / 'out'
     assert run(['uncertainty', 'paper_fig7', '--with', file, '--samples', '32', '--out', str(out)]) == 0
     said = capsys.readouterr().out
-    told = json.loads((out / 'uncertainty.json').read_text())
+    figures = json.loads((out / 'uncertainty.json').read_text())
     assert '32 samples of 2 parameters, 128 points, 128 run now' in said
     assert 'cut to 0.18 .. 0.3 (0.0027 off)' in said
-    assert told['stick_slip'] == 1.0
-    assert list(told['percentiles']['period']) == ['5', '25', '50', '75', '95']
-    index = told['indices']['period']['friction.static.time_constant']
+    assert figures['stick_slip'] == 1.0
+    assert list(figures['percentiles']['period']) == ['5', '25', '50', '75', '95']
+    index = figures['indices']['period']['friction.static.time_constant']
     assert f'{index["first_order"]:6.3f} ± {index["error"]:.3f}' in said
     assert study_of(Folder(out).described()).count == 128
 
@@ -101,7 +101,7 @@ def test_a_wrong_file_is_named(tmp_path: Path, capsys: Capture) -> None:
     assert 'did you mean mean?' in error
 
 
-def test_where_nothing_was_solved_that_is_what_it_tells(tmp_path: Path, file: str, capsys: Capture) -> None:
+def test_where_nothing_was_solved_that_is_what_it_prints(tmp_path: Path, file: str, capsys: Capture) -> None:
     command = ['uncertainty', 'paper_fig7', '--with', file, '--samples', '16', '--duration', '2', '--out',
                str(tmp_path / 'out')]
     assert run(command) == 0

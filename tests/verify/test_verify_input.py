@@ -96,40 +96,40 @@ class TestAlteredAndForeign:
         assert out.startswith('note: scene.yaml was changed after the recording\ndiffers after 0 steps')
         assert 'step 0 (t = 0 s), /slider_state acceleration: recorded ' in err
 
-    @pytest.mark.parametrize(('content', 'told'), [
+    @pytest.mark.parametrize(('content', 'reported'), [
         (b'axis: [', 'its scene.yaml is none of this version'),
         (b'/**:\n  ros__parameters:\n    axis: {weight: 1.0}\n', 'axis.weight'),
         (b'\xff\xfe\x00', 'its scene.yaml is none of this version'),
     ])
-    def test_a_scene_of_another_kind(self, content: bytes, told: str, bag: Path, tmp_path: Path, capsys: Capture
+    def test_a_scene_of_another_kind(self, content: bytes, reported: str, bag: Path, tmp_path: Path, capsys: Capture
                                      ) -> None:
         folder = rewritten(bag, tmp_path / 'other', contents=lambda name, data: (
             content if name == 'scene.yaml' else data))
-        assert told in refused(capsys, folder)
+        assert reported in refused(capsys, folder)
 
-    @pytest.mark.parametrize(('content', 'told'), [
+    @pytest.mark.parametrize(('content', 'reported'), [
         (b'{', 'its checkpoint.json is no JSON object'), (b'{}', "damaged or of another version: 'drive'"),
         (b'[]', 'damaged or of another version'), (b'\xff', 'its checkpoint.json is no JSON object'),
     ])
-    def test_a_checkpoint_of_another_kind(self, content: bytes, told: str, bag: Path, tmp_path: Path, capsys: Capture
-                                          ) -> None:
+    def test_a_checkpoint_of_another_kind(self, content: bytes, reported: str, bag: Path, tmp_path: Path,
+                                          capsys: Capture) -> None:
         folder = rewritten(bag, tmp_path / 'other', metadata=lambda facts: {**facts, 'origin': 'node'},
                            attachment=lambda name: 'checkpoint.json' if name == 'receipt.json' else name,
                            contents=lambda name, data: content if name == 'receipt.json' else data)
-        assert told in refused(capsys, folder)
+        assert reported in refused(capsys, folder)
 
-    @pytest.mark.parametrize(('facts', 'told'), [
+    @pytest.mark.parametrize(('facts', 'reported'), [
         ({}, 'does not say whether a node or the tool made it'),
         ({'origin': 'offline', 'duration': 'long', 'sample_period': '1/1000'}, 'does not say whether'),
         ({'origin': 'offline', 'duration': '3.0', 'sample_period': '1/0'}, 'does not say whether'),
         ({'origin': 'offline', 'duration': '-3.0', 'sample_period': '1/1000'}, 'duration = -3.0'),
         ({'origin': 'offline', 'duration': '2.0', 'sample_period': '1/1000'}, 'beyond the duration'),
     ])
-    def test_what_made_it_is_unknown(self, facts: dict[str, str], told: str, bag: Path, tmp_path: Path, capsys: Capture
-                                     ) -> None:
+    def test_what_made_it_is_unknown(self, facts: dict[str, str], reported: str, bag: Path, tmp_path: Path,
+                                     capsys: Capture) -> None:
         code, _, err = verified(capsys, rewritten(bag, tmp_path / 'other', metadata=lambda _: facts))
         assert code == 2
-        assert told in err
+        assert reported in err
 
     @pytest.mark.parametrize('topic', ['/slider_state', '/friction_force', '/mode_event'])
     def test_a_missing_topic(self, topic: str, bag: Path, tmp_path: Path, capsys: Capture) -> None:
@@ -155,10 +155,10 @@ class TestAlteredAndForeign:
 class TestWhatIf:
     def test_figures_of_both(self, bag: Path, tmp_path: Path, capsys: Capture) -> None:
         out = tmp_path / 'out'
-        code, told, _ = verified(capsys, bag, '--set', 'axis.normal_force=3000.0', '--set', 'drive.velocity=0.003',
-                                 '--out', out)
+        code, report, _ = verified(capsys, bag, '--set', 'axis.normal_force=3000.0', '--set', 'drive.velocity=0.003',
+                                   '--out', out)
         assert code == 0
-        assert [line.split() for line in told.splitlines()[1:3]] == [
+        assert [line.split() for line in report.splitlines()[1:3]] == [
             ['recorded', 'what', 'if'], ['motion', 'stick-slip', 'stick-slip']]
         assert sorted(path.name for path in out.iterdir()) == ['scene.yaml', 'what_if.json', 'what_if.png']
         figures = json.loads((out / 'what_if.json').read_text())
@@ -174,11 +174,11 @@ class TestWhatIf:
         assert (out / 'what_if.png').stat().st_size > 20_000
 
     def test_refused(self, bag: Path, tmp_path: Path, capsys: Capture) -> None:
-        for words, told in (
+        for words, reported in (
                 (('--out', tmp_path / 'out'), '--out is of no use alone'),
                 (('--set', 'axis.mass'), "--set = 'axis.mass'"),
                 (('--set', 'axis.mass=-1.0'), 'axis.mass = -1.0'),
                 (('--set', 'axis.weight=1.0'), 'axis.weight'),
                 (('--set', 'axis.mass=300.0', '--out', tmp_path), 'a folder that does not exist')):
-            assert told in refused(capsys, bag, *words)
+            assert reported in refused(capsys, bag, *words)
         assert list(tmp_path.iterdir()) == []

@@ -4,7 +4,7 @@
 
 With mu_s = mu_k(0), no damper and inputs at rest, the contact force starts on the limit at an arrest and moves inwards.
 It is back there after each whole period, exactly, and never beyond: what breaks away then is invented.  No arithmetic
-can tell, not even that of the reference; the argument does.
+can know, not even that of the reference; the argument does.
 """
 
 import math

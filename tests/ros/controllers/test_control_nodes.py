@@ -51,16 +51,16 @@ def refused(program: str, *ros_args: str) -> str:
 
 
 class TestRefusedStart:
-    @pytest.mark.parametrize(('argument', 'told'), [
+    @pytest.mark.parametrize(('argument', 'reported'), [
         ('moves.feed:=-0.001', ['moves.feed = -0.001', '>= 1e-12']),
         ('moves.fed:=0.001', ['moves.fed = 0.001', 'did you mean moves.feed?']),
         ('position_gain:=.nan', ['position_gain = nan']),
         ('integral_time:=0.0', ['integral_time = 0.0', 'or .inf']),
         ('compensation.share:=0.5', ['compensation.share = 0.5', 'one of moves.travel']),
     ])
-    def test_parameters(self, argument: str, told: list[str]) -> None:
+    def test_parameters(self, argument: str, reported: list[str]) -> None:
         line = refused('cascade_controller', '-p', argument)
-        assert all(word in line for word in told), line
+        assert all(word in line for word in reported), line
 
     def test_a_model_that_is_no_scene(self) -> None:
         line = refused('compensating_controller', '-p', 'compensation.model:=paper_fig9')
@@ -188,14 +188,14 @@ def test_parameters_and_restart_while_it_runs() -> None:
     assert errors.count('the moves begin') >= 2
 
 
-@pytest.mark.parametrize(('message', 'told'), [
+@pytest.mark.parametrize(('message', 'reported'), [
     (JointState(), 'axis_slider'),
     (JointState(name=['axis_slider'], position=[0.0], velocity=[0.0]), 'axis_drive'),
     (JointState(name=['axis_slider', 'axis_drive'], position=[0.0, 0.0], velocity=[0.0]), 'as long as name'),
     (JointState(name=['axis_slider', 'axis_drive'], position=[0.0, math.nan], velocity=[0.0, 0.0]), 'encoder lost'),
 ])
-def test_measurements_that_are_none(message: JointState, told: str) -> None:
-    with pytest.raises(InputError, match=told):
+def test_measurements_that_are_none(message: JointState, reported: str) -> None:
+    with pytest.raises(InputError, match=reported):
         measurement(message)
 
 

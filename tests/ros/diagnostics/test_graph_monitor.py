@@ -51,9 +51,9 @@ class TestGraphMonitor:
             assert axis.trigger('reset').success
             no_trouble(axis)
             _, errors = process.end()
-        told = [line.split(']: ')[1] for line in errors.splitlines() if 'velocity' in line and 'real-time' not in line]
+        lines = [line.split(']: ')[1] for line in errors.splitlines() if 'velocity' in line and 'real-time' not in line]
         alone, gone = '/first alone commands the velocity', 'the controller of the velocity is gone, and its {} stays'
-        assert [line.split(':')[0].split(' in force')[0] for line in told[-5:]] == [
+        assert [line.split(':')[0].split(' in force')[0] for line in lines[-5:]] == [
             '2 controllers at once on /drive_velocity, /joint_commands', alone, gone.format(0.003), alone,
             gone.format(0.005)]
 
@@ -86,7 +86,7 @@ class TestGraphMonitor:
         assert '/joint_states has one publisher again' in errors
 
     @pytest.mark.parametrize('rule', [Rule.ALL_POSITIONS, Rule.COMMANDED_POSITIONS])
-    def test_one_that_never_sends_is_told_of(self, rule: Rule) -> None:
+    def test_one_that_never_sends_is_reported(self, rule: Rule) -> None:
         """They compare positions, and none is commanded: at position 0, or for ever, there is no difference."""
         with running(*ON, '-p', 'drive.velocity:=0.0') as process, client() as axis:
             axis.connect()

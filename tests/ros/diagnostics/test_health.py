@@ -26,16 +26,16 @@ def health(*ros_args: str) -> tuple[int, str, str]:
 class TestAxis:
     def test_one_that_runs_is_well(self) -> None:
         with running('-r', '__ns:=/press'):
-            code, told, errors = health('-r', '__ns:=/press', '-p', 'patience:=20.0')
+            code, out, errors = health('-r', '__ns:=/press', '-p', 'patience:=20.0')
         assert (code, errors) == (0, '')
-        assert told.startswith('/press/feed_axis is well')
+        assert out.startswith('/press/feed_axis is well')
 
     def test_one_that_hangs_says_nothing(self) -> None:
         with running() as process, client() as axis:
             axis.connect()
             process.send(signal.SIGSTOP)
-            code, told, errors = health('-p', 'patience:=3.0')
-        assert (code, told) == (1, '')
+            code, out, errors = health('-p', 'patience:=3.0')
+        assert (code, out) == (1, '')
         assert errors.startswith('health: /feed_axis said nothing on /diagnostics within 3 s')
 
     def test_one_of_another_namespace_is_not_meant(self) -> None:
@@ -48,30 +48,30 @@ class TestAxis:
 
     def test_one_whose_recording_failed_is_not_well(self) -> None:
         with running('-p', 'record.enabled:=true', '-p', 'record.folder:=/proc/nowhere') as process:
-            code, told, errors = health('-p', 'patience:=20.0')
+            code, out, errors = health('-p', 'patience:=20.0')
             process.end()
-        assert (code, told) == (1, '')
+        assert (code, out) == (1, '')
         assert errors.startswith('health: /feed_axis is not well: recorder: ')
         assert len(errors.splitlines()) == 1
 
 
-@pytest.mark.parametrize(('words', 'told'), [
+@pytest.mark.parametrize(('words', 'reported'), [
     (['-p', 'patience:=0.0'], 'patience = 0.0'),
     (['-p', 'patence:=3.0'], 'did you mean patience?'),
     (['--', 'now'], "argument = 'now'"),
 ])
-def test_refused(words: list[str], told: str) -> None:
+def test_refused(words: list[str], reported: str) -> None:
     code, _, errors = health(*words)
     assert code == 2
-    assert told in errors
+    assert reported in errors
     assert len(errors.splitlines()) == 1
 
 
 class TestJudge:
     def test_by_the_worst(self) -> None:
-        fine, slow, full = (DiagnosticStatus(name=name, level=level, message=f'{name} told')
+        fine, slow, full = (DiagnosticStatus(name=name, level=level, message=f'{name} reported')
                             for name, level in (('loop', b'\0'), ('command', b'\1'), ('recorder', b'\2')))
-        assert health_of('/a', [fine]) == '/a is well: loop: loop told'
-        assert health_of('/a', [fine, slow]) == '/a is well, with warnings: command: command told'
-        with pytest.raises(StickslipError, match=r'not well: recorder: recorder told$'):
+        assert health_of('/a', [fine]) == '/a is well: loop: loop reported'
+        assert health_of('/a', [fine, slow]) == '/a is well, with warnings: command: command reported'
+        with pytest.raises(StickslipError, match=r'not well: recorder: recorder reported$'):
             health_of('/a', [slow, full, fine])

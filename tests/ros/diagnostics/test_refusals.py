@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""What the node tells of commands that it refuses, over DDS and in the bag: of which kind, how many, and why."""
+"""What the node reports of commands that it refuses, over DDS and in the bag: of which kind, how many, and why."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -22,7 +22,7 @@ FAILED = 'fault after a time-out: the drive takes no command until ~/clear_fault
 
 
 @contextmanager
-def told(folder: Path, *ros_args: str) -> Iterator[tuple[Client, Callable[[str], Any]]]:
+def reported(folder: Path, *ros_args: str) -> Iterator[tuple[Client, Callable[[str], Any]]]:
     """Run a node; yield its client, and what waits for a refusal with a text and returns its name, count and text."""
     from stickslip_msgs.msg import RigEvent
     with node_and_client(folder, 'realtime', *ros_args) as (_, axis):
@@ -42,9 +42,9 @@ def told(folder: Path, *ros_args: str) -> Iterator[tuple[Client, Callable[[str],
         yield axis, refusal
 
 
-def test_each_kind_is_told_with_its_own_reason_once(tmp_path: Path) -> None:
-    """A velocity that is refused now is not told with the reason of a force that was refused long ago."""
-    with told(tmp_path, *recording_into(tmp_path / 'run')) as (axis, refusal):
+def test_each_kind_is_reported_with_its_own_reason_once(tmp_path: Path) -> None:
+    """A velocity that is refused now is not reported with the reason of a force that was refused long ago."""
+    with reported(tmp_path, *recording_into(tmp_path / 'run')) as (axis, refusal):
         axis.send_force(math.nan)
         assert refusal(FORCE) == ('force', 1, FORCE)
         axis.send_velocity(5.0)
@@ -57,7 +57,7 @@ def test_each_kind_is_told_with_its_own_reason_once(tmp_path: Path) -> None:
 
 
 def test_a_reset_forgets_what_was_refused(tmp_path: Path) -> None:
-    with told(tmp_path) as (axis, refusal):
+    with reported(tmp_path) as (axis, refusal):
         axis.send_force(math.nan)
         refusal(FORCE)
         assert axis.status('command')[1]['force last refusal'] == FORCE
@@ -67,7 +67,7 @@ def test_a_reset_forgets_what_was_refused(tmp_path: Path) -> None:
 
 def test_the_drive_says_why_it_takes_none_after_a_time_out(tmp_path: Path) -> None:
     """They are good commands, refused by the drive: until the fault is cleared."""
-    with told(tmp_path, '-p', 'command.timeout:=0.5', '-p', 'command.on_timeout:=fault', '-p',
+    with reported(tmp_path, '-p', 'command.timeout:=0.5', '-p', 'command.on_timeout:=fault', '-p',
               'command.timeout_deceleration:=1.0', *recording_into(tmp_path / 'run')) as (axis, refusal):
         axis.send_velocity(0.004)
         axis.next('slider_state', lambda state: state.drive_velocity == 0.004)

@@ -62,15 +62,15 @@ def test_heard_as_sent(node: Any, topic: topics.Topic, field: str) -> None:
 
 
 @pytest.mark.parametrize('topic', [topics.DRIVE_VELOCITY, topics.EXTERNAL_FORCE])
-@pytest.mark.parametrize(('data', 'told'), [
+@pytest.mark.parametrize(('data', 'reported'), [
     (b'', '0 bytes'), (b'\0\1\0\0', 'its sender is broken'), (b'\0\1\0\0' + b'\xff' * 100, 'its sender is broken'),
     (bytes(5000), 'at most 4096 bytes'),
 ])
-def test_bytes_that_are_no_command(topic: topics.Topic, data: bytes, told: str) -> None:
+def test_bytes_that_are_no_command(topic: topics.Topic, data: bytes, reported: str) -> None:
     from stickslip_sim.ros.node.topics import command_reader
     with pytest.raises(InputError, match=topic.name) as refusal:
         command_reader(topic)(data)
-    assert told in str(refusal.value)
+    assert reported in str(refusal.value)
 
 
 def test_a_node_outlives_senders_that_mean_no_good(tmp_path: Path) -> None:

@@ -82,7 +82,7 @@ class TestFlood:
             assert timing.total_refused == 0
             assert timing.total_received <= controller.sent
 
-    def test_of_what_is_no_number_is_refused_counted_and_told_once_a_second(self, tmp_path: Path) -> None:
+    def test_of_what_is_no_number_is_refused_counted_and_reported_once_a_second(self, tmp_path: Path) -> None:
         with running('-p', 'drive.velocity:=0.001') as process, client() as axis:
             axis.connect()
             begin = time.monotonic()

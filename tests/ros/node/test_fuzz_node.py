@@ -45,13 +45,13 @@ def axis() -> Iterator[Client]:
 @FEW
 @given(steps=st.integers(-2**63, 3) | st.integers(100_001, 2**63 - 1), velocity=NUMBERS, force=NUMBERS)
 def test_steps(axis: Client, steps: int, velocity: float, force: float) -> None:
-    is_told(axis.call(Step, 'step', steps=steps, velocity=velocity, force=force))
+    is_answered(axis.call(Step, 'step', steps=steps, velocity=velocity, force=force))
 
 
 @FEW
 @given(id=WORDS, kind=KINDS, start=NUMBERS, duration=NUMBERS, value=NUMBERS)
 def test_faults(axis: Client, **request: Any) -> None:
-    is_told(axis.call(InjectFault, 'inject_fault', **request))
+    is_answered(axis.call(InjectFault, 'inject_fault', **request))
 
 
 @FEW
@@ -61,7 +61,7 @@ def test_parameters(axis: Client, changes: dict[str, Any]) -> None:
     assert result.successful or one_line(result.reason), result
 
 
-def is_told(response: Any) -> None:
+def is_answered(response: Any) -> None:
     assert one_line(response.message), response
 
 

@@ -26,14 +26,14 @@ def refusal(program: str, path: Path) -> str:
 
 
 @pytest.mark.parametrize('program', PROGRAMS)
-@pytest.mark.parametrize(('text', 'told'), [
+@pytest.mark.parametrize(('text', 'reported'), [
     (HEAD + '[' * 100_000, 'nested more than 16 deep'),
     (HEAD + '[' + '0.1,' * 1_000_000 + '0.2]\n', 'at most 1048576 bytes'),
 ])
-def test_too_deep_or_too_long(program: str, text: str, told: str, tmp_path: Path) -> None:
+def test_too_deep_or_too_long(program: str, text: str, reported: str, tmp_path: Path) -> None:
     path = tmp_path / 'parameters.yaml'
     path.write_text(text)
-    assert told in refusal(program, path)
+    assert reported in refusal(program, path)
 
 
 def test_one_that_is_fit_to_read_takes_effect(tmp_path: Path) -> None:

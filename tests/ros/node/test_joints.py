@@ -49,7 +49,7 @@ class TestCommandedVelocity:
     def test_none_yet(self) -> None:
         assert math.isnan(commanded_velocity(JointState(name=NAMES, velocity=[math.nan])))
 
-    @pytest.mark.parametrize(('message', 'told'), [
+    @pytest.mark.parametrize(('message', 'reported'), [
         (JointState(), 'joint_commands.name = [] is refused: must be axis_drive'),
         (JointState(velocity=[0.1]), 'joint_commands.name = []'),
         (JointState(name=['axis_x', 'axis_drive'], velocity=[0.1]), "name = ['axis_x'] is refused: must be of axis_sl"),
@@ -62,21 +62,21 @@ class TestCommandedVelocity:
         (JointState(name=['axis_drive'], velocity=[0.1] * 2), 'one for each of axis_drive'),
         (JointState(name=['x' * 10_000] * 100, velocity=[0.1]), 'name the joints of this axis only'),
     ])
-    def test_refused(self, message: JointState, told: str) -> None:
+    def test_refused(self, message: JointState, reported: str) -> None:
         with pytest.raises(InputError) as refusal:
             commanded_velocity(message)
-        assert told in str(refusal.value)
+        assert reported in str(refusal.value)
         assert len(str(refusal.value)) < 300
 
-    @pytest.mark.parametrize(('message', 'told'), [
+    @pytest.mark.parametrize(('message', 'reported'), [
         (JointState(name=NAMES, velocity=[0.1]), ''),
         (JointState(name=NAMES, velocity=[0.0, 0.1]), ''),
         (JointState(name=NAMES, velocity=[math.nan, 0.1], position=[math.nan]), ''),
         (JointState(name=NAMES, velocity=[0.2, 0.1]), 'velocity of axis_slider'),
         (JointState(name=NAMES[::-1], velocity=[0.2, 0.1], position=[0.0]), 'position and velocity of axis_slider'),
     ])
-    def test_what_is_disregarded(self, message: JointState, told: str) -> None:
-        assert disregarded(message) == told
+    def test_what_is_disregarded(self, message: JointState, reported: str) -> None:
+        assert disregarded(message) == reported
 
 
 def test_a_refused_message_counts_and_leaves_the_command() -> None:

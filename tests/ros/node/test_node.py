@@ -53,15 +53,15 @@ class TestParameters:
         assert set(connected.parameter_names()) - of_ros == {entry.name for entry in PARAMETERS}
 
     def test_descriptions(self, connected: Client) -> None:
-        for entry, told in zip(PARAMETERS, connected.describe(*[entry.name for entry in PARAMETERS]), strict=True):
-            assert told.name == entry.name
-            assert told.type == ParameterType[entry.type]
-            assert told.read_only is not entry.live
-            assert entry.description in told.description
-            assert entry.unit in told.description
-            assert entry.allowed in told.additional_constraints
+        for entry, described in zip(PARAMETERS, connected.describe(*[entry.name for entry in PARAMETERS]), strict=True):
+            assert described.name == entry.name
+            assert described.type == ParameterType[entry.type]
+            assert described.read_only is not entry.live
+            assert entry.description in described.description
+            assert entry.unit in described.description
+            assert entry.allowed in described.additional_constraints
             if entry.type == 'double':
-                assert [told.floating_point_range[0].from_value, told.floating_point_range[0].to_value] == [
+                assert [described.floating_point_range[0].from_value, described.floating_point_range[0].to_value] == [
                     entry.low, math.inf if entry.infinite else entry.high]
 
     def test_values_are_those_of_the_default_scene(self, connected: Client) -> None:
@@ -75,7 +75,7 @@ class TestParameters:
         absent, mass = connected.values('drive.times', 'axis.mass')
         assert (absent.type, mass.double_value) == (0, 350.0)
 
-    @pytest.mark.parametrize(('values', 'told'), [
+    @pytest.mark.parametrize(('values', 'reported'), [
         ({'axis__mass': -1.0}, ['axis.mass = -1.0', '>= 1e-09 and <= 1e+12 kg']),
         ({'axis__mass': math.nan}, ['axis.mass = nan', '>= 1e-09']),
         ({'axis__mass': 'heavy'}, ["axis.mass = 'heavy'", 'a number']),
@@ -89,11 +89,11 @@ class TestParameters:
         ({'start_type_description_service': False}, ['must be true, as at the start', READ_ONLY]),
         ({'axis__weight': 1.0}, ['axis.weight']),
     ])
-    def test_refused(self, connected: Client, values: dict[str, object], told: list[str]) -> None:
+    def test_refused(self, connected: Client, values: dict[str, object], reported: list[str]) -> None:
         answer = connected.set_parameters(**values)
         assert not answer.successful
         assert '\n' not in answer.reason
-        assert all(words in answer.reason for words in told), answer.reason
+        assert all(words in answer.reason for words in reported), answer.reason
         assert connected.values('axis.mass')[0].double_value == 350.0
 
     def test_what_param_load_sends_of_a_dump_changes_nothing(self, connected: Client) -> None:

@@ -34,7 +34,7 @@ PLACES = {'step loop': IN_THE_STEP_LOOP, 'player': IN_THE_PLAYER, 'executor': IN
 
 
 @pytest.mark.parametrize('place', PLACES)
-def test_a_defect_is_told_and_shown_where(tmp_path: Path, place: str) -> None:
+def test_a_defect_is_reported_and_shown_where(tmp_path: Path, place: str) -> None:
     write_bag(tmp_path / 'run', FACTS, samples(3), [], {})
     bag = ['--ros-args', '-p', f'bag:={tmp_path}/run'] if place == 'player' else []
     command = [sys.executable, '-c', PROGRAM, *PLACES[place], *bag]

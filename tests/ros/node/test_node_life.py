@@ -130,7 +130,7 @@ class TestSignals:
             time.sleep(1.0)
             process.send(signal.SIGCONT)
             axis.next('timing', lambda timing: timing.lateness_max > 0.5)
-            # a stop at the end of a second is told by that second's report, the late step by the next one's
+            # a stop at the end of a second is reported by that second's report, the late step by the next one's
             wait_for(lambda: any(timing.real_time_factor < 0.95 for timing in axis.heard['timing'][reports:]),
                      'a report of the lost time')
             _, values = axis.status('step loop')

@@ -68,7 +68,7 @@ class TestRecording:
                               capture_output=True, text=True, timeout=DEADLINE, check=True)
         assert abs(float(done.stdout)) < 0.25, done.stderr
 
-    def test_the_receipt_tells_the_solver_and_its_settings(self, tmp_path: Path) -> None:
+    def test_the_receipt_has_the_solver_and_its_settings(self, tmp_path: Path) -> None:
         folder = tmp_path / 'run'
         wanted = [*recording_into(folder), '-p', 'solver.name:=fixed_step', '-p', 'solver.step:=0.0005']
         with running(*wanted) as process, client() as axis:

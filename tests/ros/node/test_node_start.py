@@ -16,7 +16,7 @@ pytestmark = pytest.mark.ros
 
 
 class TestRefusedStart:
-    @pytest.mark.parametrize(('content', 'told'), [
+    @pytest.mark.parametrize(('content', 'reported'), [
         ('axis: {mass: -1.0}', ['axis.mass = -1.0', '>= 1e-09 and <= 1e+12 kg']),
         ('axis: {weight: 1.0}', ['axis.weight = 1.0']),
         ('axis: {mass: heavy}', ["axis.mass = 'heavy'"]),
@@ -24,7 +24,7 @@ class TestRefusedStart:
         ('axis: [', ['scene.yaml', 'YAML as ROS reads it']),
         (None, ['scene.yaml', 'No such file']),
     ])
-    def test_one_line_and_exit_code(self, tmp_path: Path, content: str | None, told: list[str]) -> None:
+    def test_one_line_and_exit_code(self, tmp_path: Path, content: str | None, reported: list[str]) -> None:
         file = tmp_path / 'scene.yaml'
         if content is not None:
             file.write_text(f'/**:\n  ros__parameters:\n    scene: mine\n    {content}\n')
@@ -32,7 +32,7 @@ class TestRefusedStart:
         assert code == 2
         assert errors.startswith('sim_node: ')
         assert len(errors.splitlines()) == 1, errors
-        assert all(words in errors for words in told), errors
+        assert all(words in errors for words in reported), errors
 
     @pytest.mark.parametrize('text', [
         '', '# nothing\n', 'other:\n  ros__parameters:\n    scene: mine\n', '/**:\n  ros__parameters:\n',
@@ -53,46 +53,46 @@ class TestRefusedStart:
         assert (code, len(errors.splitlines())) == (2, 1), errors
         assert 'axis.mass = 1.0 is refused: must be in a section of /feed_axis' in errors
 
-    @pytest.mark.parametrize(('name', 'value', 'told'), [
+    @pytest.mark.parametrize(('name', 'value', 'reported'), [
         ('ROS_DOMAIN_ID', '9999', '0 to 232'), ('ROS_DOMAIN_ID', '-1', '0 to 232'), ('ROS_DOMAIN_ID', 'x', '0 to 232'),
         ('ROS_STATIC_PEERS', 'no address', 'Unable to resolve peer'),
         ('AMENT_PREFIX_PATH', '', 'setup.bash'),
         ('RMW_IMPLEMENTATION', 'rmw_smoke_signals', 'rmw_fastrtps_cpp'), ('ROS_LOG_DIR', '/proc/x', '/proc/x'),
     ])
-    def test_environment(self, monkeypatch: pytest.MonkeyPatch, name: str, value: str, told: str) -> None:
+    def test_environment(self, monkeypatch: pytest.MonkeyPatch, name: str, value: str, reported: str) -> None:
         program = executable('sim_node')
         monkeypatch.setenv(name, value)
         code, errors = run(program)
         assert (code, len(errors.splitlines())) == (2, 1), errors
         assert value in errors
-        assert told in errors
+        assert reported in errors
 
-    @pytest.mark.parametrize(('settings', 'told'), [
+    @pytest.mark.parametrize(('settings', 'reported'), [
         ({'ENABLE': 'True'}, "ENABLE = 'True' is refused: must be true or false"),
         ({'ENABLE': 'true', 'STRATEGY': 'enforce'}, "STRATEGY = 'enforce' is refused: must be Enforce or Permissive"),
         ({'ENABLE': 'true', 'STRATEGY': 'Enforce'}, "KEYSTORE = '' is refused: must be the folder of the keys"),
         ({'ENABLE': 'true', 'STRATEGY': 'Enforce', 'KEYSTORE': '.'}, "ENABLE = 'true' is refused"),
     ])
     def test_security_names_its_variables(self, monkeypatch: pytest.MonkeyPatch, tmp_path: Path,
-                                          settings: dict[str, str], told: str) -> None:
+                                          settings: dict[str, str], reported: str) -> None:
         monkeypatch.chdir(tmp_path)
         for name, value in settings.items():
             monkeypatch.setenv(f'ROS_SECURITY_{name}', value)
         code, errors = start('--enclave', '/stickslip/feed_axis')
         assert (code, len(errors.splitlines())) == (2, 1), errors
-        assert errors.startswith(f'sim_node: ROS_SECURITY_{told}'), errors
+        assert errors.startswith(f'sim_node: ROS_SECURITY_{reported}'), errors
 
-    @pytest.mark.parametrize(('arguments', 'told'), [
+    @pytest.mark.parametrize(('arguments', 'reported'), [
         (['-p', 'axis.mas:=1.0'], ['axis.mas = 1.0', 'did you mean axis.mass?']),
         (['-p', 'scene:=paper_fig9'], ['paper_fig9', 'paper_fig8']),
         (['--nonsense'], ['--nonsense']),
         (['-p', 'record.enabled:=true', '-p', 'axis.mass:=-1.0'], ['axis.mass = -1.0']),
         (['-p', 'solver.name:=adaptive'], ['solver.name', 'exact or fixed_step in the node']),
     ])
-    def test_arguments(self, arguments: list[str], told: list[str]) -> None:
+    def test_arguments(self, arguments: list[str], reported: list[str]) -> None:
         code, errors = start(*arguments)
         assert (code, len(errors.splitlines())) == (2, 1), errors
-        assert all(words in errors for words in told), errors
+        assert all(words in errors for words in reported), errors
 
 
 def start(*ros_args: str) -> tuple[int, str]:

@@ -146,7 +146,7 @@ class TestCommands:
             _, errors = process.end()
         assert errors.count('velocity = nan is refused') <= 5
 
-    def test_what_cannot_be_followed_is_refused_counted_and_told(self) -> None:
+    def test_what_cannot_be_followed_is_refused_counted_and_reported(self) -> None:
         messages = [JointState(name=['spindle'], velocity=[0.001]), JointState(),
                     JointState(name=['axis_drive'], position=[0.1]),
                     JointState(name=['axis_slider', 'axis_drive'], velocity=[math.nan])]

@@ -233,12 +233,12 @@ class TestFreeRun:
             assert_clean(*process.end())
 
 
-@pytest.mark.parametrize(('given', 'told'), [
+@pytest.mark.parametrize(('given', 'reported'), [
     ({'time.mode': 'lockstep', 'time.factor': math.inf}, 'only time.mode: free_run'),
     ({'time.mode': 'realtime', 'time.factor': math.inf}, 'only time.mode: free_run'),
     ({'time.mode': 'lockstep', 'clock.rate': 1001.0}, 'at most time.rate'),
     ({'clock.rate': 100.0}, 'clock.rate'), ({'time.mode': 'fast'}, 'time.mode'),
 ])
-def test_times_that_do_not_fit_are_refused(given: dict[str, object], told: str) -> None:
-    with pytest.raises(InputError, match=told):
+def test_times_that_do_not_fit_are_refused(given: dict[str, object], reported: str) -> None:
+    with pytest.raises(InputError, match=reported):
         load_scene('paper_fig8', given)

@@ -158,7 +158,7 @@ class TestTime:
         with client() as viewer, replaying(tmp_path / 'run', *PAUSED, '-p', 'clock:=200.0') as process:
             clocks: list[int] = []
             viewer.node.create_subscription(
-                Clock, '/clock', lambda told: clocks.append(told.clock.sec * SECOND + told.clock.nanosec), 1000)
+                Clock, '/clock', lambda sent: clocks.append(sent.clock.sec * SECOND + sent.clock.nanosec), 1000)
             wait_for(lambda: len(clocks) > 3, 'a clock that stands still')
             assert set(clocks) == {start}
             assert call(viewer, 'resume').success
@@ -228,7 +228,7 @@ class TestProcess:
         assert (code, 'Traceback' in errors) == (2, False)
         assert f'replay_node: {file}: damaged behind 1.' in errors
 
-    @pytest.mark.parametrize(('arguments', 'told'), [
+    @pytest.mark.parametrize(('arguments', 'reported'), [
         ([], "bag = '' is refused: must be the folder of a run"),
         (['-p', 'bag:=nowhere'], 'nowhere: no recorded run there'),
         (['-p', 'bag:=BAG', '-p', 'rate:=0'], 'rate = 0 is refused: must be a number, > 0'),
@@ -242,7 +242,7 @@ class TestProcess:
         (['-p', 'bag:=UNKNOWN'], 'no definition of nobody_msgs/msg/Nothing'),
         (['-p', 'bag:=UNKNOWN', '-p', 'mode:=commands'], 'no drive velocities and no forces in it'),
     ])
-    def test_refused_in_one_line(self, bag: Path, tmp_path: Path, arguments: list[str], told: str) -> None:
+    def test_refused_in_one_line(self, bag: Path, tmp_path: Path, arguments: list[str], reported: str) -> None:
         bags = {'BAG': bag, 'OTHER': another(tmp_path / 'other.mcap', SLIDER_STATE.type, 'RIHS01_0'),
                 'UNKNOWN': another(tmp_path / 'unknown.mcap', 'nobody_msgs/msg/Nothing', '')}
         for name, path in bags.items():
@@ -250,7 +250,7 @@ class TestProcess:
         code, errors = run(*arguments)
         assert (code, len(errors.splitlines())) == (2, 1), errors
         assert errors.startswith('replay_node: ')
-        assert told in errors
+        assert reported in errors
 
     @pytest.mark.parametrize('topic', ['', '/a b', '/../x', '/\x1b[31m', '/' + 'x' * 5000])
     def test_a_topic_by_a_name_that_ros_refuses(self, tmp_path: Path, topic: str) -> None:
@@ -268,8 +268,8 @@ class TestProcess:
     def test_parameters_are_described(self, bag: Path) -> None:
         with client() as viewer, replaying(bag, *PAUSED) as process:
             names = [entry.name for entry in PARAMETERS]
-            told = viewer.call(DescribeParameters, 'describe_parameters', 'replay', names=names).descriptors
-            for entry, one in zip(PARAMETERS, told, strict=True):
+            described = viewer.call(DescribeParameters, 'describe_parameters', 'replay', names=names).descriptors
+            for entry, one in zip(PARAMETERS, described, strict=True):
                 assert one.name == entry.name
                 assert entry.description in one.description
                 assert one.read_only is not entry.live

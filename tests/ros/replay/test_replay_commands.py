@@ -117,13 +117,13 @@ class TestLockStep:
         assert code == 2
         assert "axis = '/feed_axis' is refused: must be a sim_node that runs; " in errors
 
-    @pytest.mark.parametrize(('arguments', 'options', 'told'), [
+    @pytest.mark.parametrize(('arguments', 'options', 'reported'), [
         (['-p', 'time.rate:=500.0'], [], 'time.rate = 500.0 is refused: must be that of the recording, whose step 1'),
         ([], ['-p', 'start_offset:=0.1'], 'start_offset = 0.1 is refused: must be 0 in lock-step'),
         (['-p', 'time.mode:=free_run'], [], "time.mode = 'free_run' is refused: must be realtime or lockstep"),
     ])
-    def test_another_axis(self, recorded: Path, arguments: list[str], options: list[str], told: str) -> None:
-        assert told in refused(recorded, *options, axis=arguments)
+    def test_another_axis(self, recorded: Path, arguments: list[str], options: list[str], reported: str) -> None:
+        assert reported in refused(recorded, *options, axis=arguments)
 
     def test_a_recording_begun_in_mid_run(self, tmp_path: Path) -> None:
         assert 'step 1 is missing; only a run that was recorded' in refused(commanded(tmp_path / 'mid', first=400))
@@ -131,7 +131,7 @@ class TestLockStep:
     def test_orders_that_the_axis_refuses(self, tmp_path: Path) -> None:
         assert '/feed_axis gave up: velocity = 5.0 is refused' in refused(commanded(tmp_path / 'fast', velocity=5.0))
 
-    def test_a_time_out_is_left_to_the_axis_and_told(self, tmp_path: Path) -> None:
+    def test_a_time_out_is_left_to_the_axis_and_reported(self, tmp_path: Path) -> None:
         timeout = RigEvent(kind=RigEvent.KIND_COMMAND_TIMEOUT, step=20, value=0.5)
         folder = commanded(tmp_path / 'silent', {20: (RIG_EVENT, serialize_message(timeout))})
         with running(*LOCKSTEP) as axis, replaying(folder) as process:

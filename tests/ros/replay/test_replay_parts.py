@@ -24,7 +24,7 @@ SECOND = 1_000_000_000
 
 
 class StillClock:
-    """A clock that goes only when it is told to."""
+    """A clock that goes only when it is asked to."""
 
     def __init__(self) -> None:
         self.time = 5 * SECOND
@@ -116,7 +116,7 @@ class TestPlayer:
         assert script.done == [0, 1, 2, 3]
         assert player.crash is None
 
-    def test_goes_faster_when_told(self, play: Callable[..., Player]) -> None:
+    def test_goes_faster_when_asked(self, play: Callable[..., Player]) -> None:
         script = Counting([0, 3600 * SECOND])
         player = play(script)
         wait_for(lambda: script.done == [0], 'the first message')
@@ -196,10 +196,10 @@ class TestRecording:
         assert 500 < len(steps) < 1500
         assert recording.end == (len(steps) - 1) * 1_000_000
 
-    @pytest.mark.parametrize(('size', 'told'), [(0, 'not an MCAP file'), (5, 'not an MCAP file'),
+    @pytest.mark.parametrize(('size', 'reported'), [(0, 'not an MCAP file'), (5, 'not an MCAP file'),
                                                 (20, 'not an MCAP file'), (60, 'no message can be read')])
-    def test_cut_off_before_all(self, bag: Path, tmp_path: Path, size: int, told: str) -> None:
-        with pytest.raises(RecordingError, match=told):
+    def test_cut_off_before_all(self, bag: Path, tmp_path: Path, size: int, reported: str) -> None:
+        with pytest.raises(RecordingError, match=reported):
             Recording(changed(bag, tmp_path / 'cut.mcap', lambda data: data[:size]))
 
     def test_damaged_in_the_middle(self, bag: Path, tmp_path: Path) -> None:

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Requests that would keep the node busy for minutes: answered at once, without results, and told in the log."""
+"""Requests that would keep the node busy for minutes: answered at once, without results, and reported in the log."""
 
 from pathlib import Path
 from typing import Any

@@ -43,11 +43,11 @@ class Storm:
         self.stream.choices([self.step, self.inject, self.clear, self.reset, self.pause, self.record, self.parameter],
                           [6, 4, 1, 1, 2, 1, 2])[0]()
 
-    def expect(self, answer: Any, success: bool, *told: str) -> None:
+    def expect(self, answer: Any, success: bool, *reported: str) -> None:
         assert answer.success is success, answer
         assert answer.message
         assert '\n' not in answer.message
-        for words in told:
+        for words in reported:
             assert words in answer.message
 
     def step(self) -> None:
@@ -180,7 +180,7 @@ class TestStorm:
             answer = axis.call(Step, 'step', steps=300, velocity=math.nan, force=math.nan)
             storm.follow(answer, 300, math.nan, math.nan)
 
-    def test_in_real_time_the_bag_tells_all_that_the_motion_depends_on(self, tmp_path: Path) -> None:
+    def test_in_real_time_the_bag_has_all_that_the_motion_depends_on(self, tmp_path: Path) -> None:
         with node_and_client(tmp_path, 'realtime', *recording_into(tmp_path / 'run')) as (_, axis):
             storm = LiveStorm(axis, 2)
             for _ in range(CALLS):
@@ -209,7 +209,7 @@ def test_a_recorded_run_that_has_not_begun_can_be_reset(tmp_path: Path) -> None:
     assert steps.tolist() == list(range(11))
 
 
-def test_what_was_cleared_is_told(tmp_path: Path) -> None:
+def test_what_was_cleared_is_reported(tmp_path: Path) -> None:
     with node_and_client(tmp_path, 'lockstep', '-p', 'command.timeout:=0.05', '-p', 'command.on_timeout:=fault'
                          ) as (_, axis):
         def step(count: int, velocity: float = math.nan) -> Any:

@@ -86,7 +86,7 @@ def test_an_event_that_is_none_ends_the_run(contact: Contact, mode: Mode) -> Non
 
 @pytest.mark.parametrize('contact', [RIGID, COMPLIANT])
 @pytest.mark.parametrize('mode', [Mode.STICK, Mode.ACCELERATING, Mode.COASTING, Mode.DECELERATING])
-def test_an_event_that_is_missed_is_told_at_the_end(contact: Contact, mode: Mode) -> None:
+def test_an_event_that_is_missed_is_reported_at_the_end(contact: Contact, mode: Mode) -> None:
     with pytest.raises(UnsoundError, match=f'at t = 3.0 s, in mode {mode.name}'):
         run_in_steps(paper_axis(contact), doctored(no_event, mode))
 
@@ -107,10 +107,10 @@ def test_the_tool_gives_no_figure_of_such_a_run(monkeypatch: pytest.MonkeyPatch,
                                                 capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.setattr('stickslip_sim.scene.solver.exact.SOLVER', doctored(event_too_early))
     assert tool(['simulate', 'paper_fig7', '--duration', '5']) == 4
-    told = capsys.readouterr()
-    assert told.out == ''
-    assert 'contradicts its own motion or balance of energy at t = ' in told.err
-    assert len(told.err.splitlines()) == 1
+    reported = capsys.readouterr()
+    assert reported.out == ''
+    assert 'contradicts its own motion or balance of energy at t = ' in reported.err
+    assert len(reported.err.splitlines()) == 1
 
 
 def test_an_axis_of_a_batch_beyond_the_range_of_numbers_is_not_complete() -> None:

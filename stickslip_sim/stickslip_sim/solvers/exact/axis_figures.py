@@ -15,7 +15,7 @@ class AxisFigures:
     These values are where an axis begins.
     """
 
-    # of the run and its last cycle; `batch.BatchFigures` tells what they are
+    # of the run and its last cycle; `batch.BatchFigures` has what they are
     events: float = 0.0
     cycles: float = 0.0
     complete: float = math.nan
@@ -35,7 +35,7 @@ class AxisFigures:
     static_coefficient: float = math.nan
     last_break_away: float = math.nan
     settling_time: float = math.nan
-    # of its rounds; `batch.Rounds` tells what they are
+    # of its rounds; `batch.Rounds` has what they are
     sticks: float = 0.0
     last_stick: float = math.nan
     longest_pause: float = 0.0
