@@ -36,7 +36,7 @@ KNOWN = {
         draw.paper() | draw.contact(5e6, 15000.0) | draw.kinetic([0.0, 0.035], [0.12, 0.05], branches=True)
         | {'friction.excess.velocities': [0.0, 0.00021428571427], 'friction.excess.fractions': [1.0, 0.0]}
         | draw.constant(0.002), 1.2),
-    'a fast fade ends in a falling piece': (
+    'a fast fade ends in a falling segment': (
         draw.axis(1.0, 0.0, 0.0, 1.0) | draw.contact() | draw.static(0.1)
         | draw.kinetic([0.0, 1e-6], [0.1, 0.001], 1e9) | draw.constant(0.0)
         | {'initial.velocity': 1000.0, 'initial.rest_time': 0.0}, 1.0),

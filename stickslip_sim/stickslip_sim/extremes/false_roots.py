@@ -20,7 +20,7 @@ from .shared_axes import RIGID, paper_axis, run_events
 _REST = InitialState()
 
 
-def steep_pieces(setup: Setup) -> Measurement:
+def steep_segments(setup: Setup) -> Measurement:
     """X22: kinetic friction that falls within 0.05 to 50 mm/s: slips grow by e²⁴⁰ and more."""
     tally = Tally(1e-12)
     tally.judge(_equals_the_reference, setup.solver, _blown_up(), 0.1, 0.0, 60.0)

@@ -14,7 +14,7 @@ from .break_aways import at_the_limit, blows
 from .convergence import orders
 from .energy_integrals import energy_balance
 from .estimates import estimates
-from .false_roots import near_critical, steep_pieces, touched_limits
+from .false_roots import near_critical, steep_segments, touched_limits
 from .grazing_peaks import grazing
 from .linear_modes import edges_of_the_modes, unstable_slip
 from .outcome import Extreme, ExtremeResult, Setup
@@ -78,7 +78,7 @@ EXTREMES = (
             'the events of the reference, <= 1e-12', shaken),
     Extreme('X22', 'kinetic friction that falls within 0.05 to 50 mm/s: slips grow by a factor of up to e⁶⁰⁰',
             'stickslip 0.1.0: a product of three derivatives overflowed, and a step of 0 passed for the root; 8 of 400 '
-            'axes left for 1e95 km/s', 'the events of the reference, <= 1e-12', steep_pieces),
+            'axes left for 1e95 km/s', 'the events of the reference, <= 1e-12', steep_segments),
     Extreme('X23', 'slips critically damped to 1e-5 to 1e-13, from both sides',
             'stickslip 0.1.0: the same product underflowed, and 1 axis of 1000 missed its events',
             'the events of the reference, <= 1e-12', near_critical),

@@ -29,7 +29,7 @@ def slopes(rng: random.Random) -> Case:
 
 
 def critical_slip(rng: random.Random) -> Case:
-    """A piece of the table on which a slip is damped critically, or nearly so; growing ones, too."""
+    """A segment of the table on which a slip is damped critically, or nearly so; growing ones, too."""
     mass, stiffness = rng.choice(((1.0, 4.0), (350.0, 6e5), (3.0, 700.0), (1.0, 1.0)))
     normal = rng.choice((mass * 9.80665, 1.0))
     at_rest = rng.uniform(0.2, 1.0)
@@ -47,7 +47,7 @@ def critical_slip(rng: random.Random) -> Case:
     damping = target - normal * slope
     end_slope = 0.0
     if rng.random() < 0.2 and k + 1 < n:
-        # a falling piece that grows at the critical rate
+        # a falling segment that grows at the critical rate
         damping = 0.0
         falls[k + 1] = max(falls[k] - draw.near(rng, critical) * (breakpoints[k + 1] - breakpoints[k]) / normal, 0.0)
     elif rng.random() < 0.2:

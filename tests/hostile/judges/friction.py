@@ -36,18 +36,18 @@ class Table:
         self._kinetic = kinetic.velocities, kinetic.coefficients, kinetic.end_slope
         self._excess = (excess.velocities, excess.fractions, 0.0) if excess else ((0.0,), (0.0,), 0.0)
 
-    def piece(self, speed: float, rising: bool) -> int:
-        """Return the piece at a speed: at a breakpoint the one above it, or below it where the speed falls."""
+    def segment(self, speed: float, rising: bool) -> int:
+        """Return the segment at a speed: at a breakpoint the one above it, or below it where the speed falls."""
         index = bisect_right(self.breakpoints, speed) - 1
         return index - 1 if not rising and index > 0 and self.breakpoints[index] == speed else index
 
-    def kinetic(self, piece: int) -> Line:
-        """Return mu_k on a piece."""
-        return _line(*self._kinetic, self.breakpoints[piece])
+    def kinetic(self, segment: int) -> Line:
+        """Return mu_k on a segment."""
+        return _line(*self._kinetic, self.breakpoints[segment])
 
-    def psi(self, piece: int) -> Line:
-        """Return psi on a piece."""
-        return _line(*self._excess, self.breakpoints[piece])
+    def psi(self, segment: int) -> Line:
+        """Return psi on a segment."""
+        return _line(*self._excess, self.breakpoints[segment])
 
 
 def _line(speeds: Any, values: Any, end_slope: float, speed: float) -> Line:

@@ -105,14 +105,14 @@ def _excess(event: Event, excess: tuple[Any, Any], table: Table) -> tuple[Any, A
     if event.kind not in (EventKind.BREAKAWAY, EventKind.REVERSE):
         return excess
     speed = abs(event.velocity)
-    piece = table.piece(speed, True)
-    psi, coefficient = table.psi(piece).of(Long(speed)), table.kinetic(piece).of(Long(speed))
+    segment = table.segment(speed, True)
+    psi, coefficient = table.psi(segment).of(Long(speed)), table.kinetic(segment).of(Long(speed))
     limit = Long(event.static_coefficient)
     if not (table.has_branches and psi > 0 and limit >= coefficient):
         return Long(0), Long(0)
     return (limit - coefficient) / psi, 4 * EPSILON * (4 * (limit - coefficient) + limit + abs(
-        table.kinetic(piece).slope * speed)) / psi + EPSILON * (limit - coefficient) * abs(
-            table.psi(piece).slope * speed) / (psi * psi)
+        table.kinetic(segment).slope * speed)) / psi + EPSILON * (limit - coefficient) * abs(
+            table.psi(segment).slope * speed) / (psi * psi)
 
 
 def _node_of_event(event: Event, excess: Any, excess_noise: Any, jumped: bool, parts: Parts) -> Node:
@@ -144,14 +144,14 @@ def _segment(parts: Parts, table: Table, begin: Node, end: Node, length: Any, ca
     mode, sigma, u = begin.mode, Long(begin.direction), Long(begin.velocity)
     moves = mode in (Mode.ACCELERATING, Mode.DECELERATING) or (mode == Mode.STICK and contact is not None)
     stiff, damper, slope_size = c, h, Long(0)
-    piece = 0
+    segment = 0
     speed = abs(float(u))
     lower, upper = np.zeros(d, dtype=Long), np.zeros(d, dtype=Long)
     friction, friction_slope = Long(0), Long(0)      # of the slip: σ N (μ + b (w − w₀))
     if mode in (Mode.ACCELERATING, Mode.DECELERATING):
         rising = mode == Mode.ACCELERATING
-        piece = table.piece(speed, rising)
-        kinetic, psi = table.kinetic(piece), table.psi(piece)
+        segment = table.segment(speed, rising)
+        kinetic, psi = table.kinetic(segment), table.psi(segment)
         friction, friction_slope = kinetic.of(Long(speed)), kinetic.slope
         slope_size = abs(kinetic.slope)
         if rising:
@@ -163,13 +163,13 @@ def _segment(parts: Parts, table: Table, begin: Node, end: Node, length: Any, ca
         lower[F] = way
         upper[U] = -way
         if rising:
-            upper[ONE] = table.breakpoints[piece + 1] if piece + 1 < len(table.breakpoints) else Long('inf')
+            upper[ONE] = table.breakpoints[segment + 1] if segment + 1 < len(table.breakpoints) else Long('inf')
         else:
-            upper[ONE] = -Long(table.breakpoints[piece])
+            upper[ONE] = -Long(table.breakpoints[segment])
     elif mode == Mode.COASTING:
-        piece = table.piece(speed, True)
-        friction = table.kinetic(piece).of(Long(speed))
-        band = normal * begin.excess * table.psi(piece).of(Long(speed))
+        segment = table.segment(speed, True)
+        friction = table.kinetic(segment).of(Long(speed))
+        band = normal * begin.excess * table.psi(segment).of(Long(speed))
         lower[F], lower[ONE] = sigma, -normal * friction
         upper[F], upper[ONE] = -sigma, normal * friction + band
     elif contact is not None:
@@ -258,7 +258,7 @@ def _segment(parts: Parts, table: Table, begin: Node, end: Node, length: Any, ca
     if mode in (Mode.ACCELERATING, Mode.DECELERATING):
         slack = np.array([_UNFELT * sum(sizes), 4 * EPSILON * abs(u)], dtype=Long)
     e_noise = begin.excess_noise if mode == Mode.ACCELERATING else Long(0)
-    drift = float((4 * EPSILON * (h + normal * slope_size) + normal * abs(table.psi(piece).slope) * e_noise) / m
+    drift = float((4 * EPSILON * (h + normal * slope_size) + normal * abs(table.psi(segment).slope) * e_noise) / m
                   + 4 * EPSILON * omega)
     return Segment(begin, end, length, rates, start, noise, float(pace),
                    float(length * max(ringing, fastest) / (2 * _PI)), drift, np.stack([lower, upper]) * unit, slack,

@@ -22,7 +22,7 @@ from .always_compiled import always_compiled
 from ...friction.static import CONSTANT, EXPONENTIAL, HYPERBOLIC, KATO
 from ...core.types import Mode
 
-TIME, MODE, DIRECTION, PIECE, EXCESS = range(5)
+TIME, MODE, DIRECTION, SEGMENT, EXCESS = range(5)
 X, U, S, DEFLECTION, REST = range(5, 10)      # at the reset; S: drive position
 V, V_RATE, F, F_RATE = range(10, 14)          # the inputs from the reset on, waves apart
 SIZE = 14
@@ -62,27 +62,27 @@ def static_coefficient(law, low, limit, tau, exponent, rest):
 
 
 @always_compiled
-def breakpoint_at(p, piece):
-    """Return the speed at which a piece of the friction table begins."""
-    return p[TABLE + SEGMENT_SIZE * int(piece)]
+def breakpoint_at(p, segment):
+    """Return the speed at which a segment of the friction table begins."""
+    return p[TABLE + SEGMENT_SIZE * int(segment)]
 
 
 @always_compiled
-def piece_of(p, speed, rises):
-    """Return the piece of the table that goes on from a speed, upwards or downwards."""
-    piece = 0
+def segment_of(p, speed, rises):
+    """Return the segment of the table that goes on from a speed, upwards or downwards."""
+    segment = 0
     for i in range(1, int(p[SEGMENT_COUNT])):
         breakpoint = p[TABLE + SEGMENT_SIZE * i]
         if breakpoint < speed or (rises and breakpoint == speed):
-            piece = i
-    return float(piece)
+            segment = i
+    return float(segment)
 
 
 @always_compiled
-def friction_lines(p, piece):
-    """Return mu_k, its slope, psi and its slope as lines through speed 0, along a piece of the table."""
-    at = TABLE + SEGMENT_SIZE * int(piece)
-    if piece + 1.0 >= p[SEGMENT_COUNT]:
+def friction_lines(p, segment):
+    """Return mu_k, its slope, psi and its slope as lines through speed 0, along a segment of the table."""
+    at = TABLE + SEGMENT_SIZE * int(segment)
+    if segment + 1.0 >= p[SEGMENT_COUNT]:
         return p[at + 1] - p[END_SLOPE] * p[at], p[END_SLOPE], p[at + 2], 0.0
     width = p[at + SEGMENT_SIZE] - p[at]
     mu_slope = (p[at + SEGMENT_SIZE + 1] - p[at + 1]) / width
@@ -93,10 +93,10 @@ def friction_lines(p, piece):
 @always_compiled
 def motion_of(p, m):
     """Return the tuple q of the present mode."""
-    normal, excess, piece = p[NORMAL], m[EXCESS], m[PIECE]
-    mu, mu_slope, psi, psi_slope = friction_lines(p, piece)
-    above = breakpoint_at(p, piece + 1.0) if piece + 1.0 < p[SEGMENT_COUNT] else math.inf
-    below = breakpoint_at(p, piece) if piece > 0.0 else -math.inf
+    normal, excess, segment = p[NORMAL], m[EXCESS], m[SEGMENT]
+    mu, mu_slope, psi, psi_slope = friction_lines(p, segment)
+    above = breakpoint_at(p, segment + 1.0) if segment + 1.0 < p[SEGMENT_COUNT] else math.inf
+    below = breakpoint_at(p, segment) if segment > 0.0 else -math.inf
     return (m[MODE], m[DIRECTION], p[MASS], p[STIFFNESS], p[DAMPING],
             normal * mu, normal * mu_slope, normal * excess * psi, normal * excess * psi_slope, below, above,
             p[CONTACT_STIFFNESS], p[CONTACT_DAMPING], m[X] - m[DEFLECTION],

@@ -11,9 +11,9 @@ from ...axis.layout import (
 from .always_compiled import always_compiled
 from ...core.types import EventKind
 from .automaton import (
-    ACCELERATING, COASTING, DECELERATING, DEFLECTION, DIRECTION, EXCESS, F, F_RATE, MODE, PIECE, REST, ROUNDING, S,
+    ACCELERATING, COASTING, DECELERATING, DEFLECTION, DIRECTION, EXCESS, F, F_RATE, MODE, REST, ROUNDING, S, SEGMENT,
     STICK, TIME, TURN, U, V, V_RATE, X, applied, breakpoint_at, contact, friction_lines, inputs, is_compliant,
-    motion_of, piece_of, static_coefficient, static_margin,
+    motion_of, segment_of, static_coefficient, static_margin,
 )
 
 BREAKAWAY, COAST, ACCELERATE = float(EventKind.BREAKAWAY), float(EventKind.COAST), float(EventKind.ACCELERATE)
@@ -45,9 +45,9 @@ def static_at(p, rest):
 
 
 @always_compiled
-def kinetic_and_shape(p, piece, speed):
-    """Return mu_k and psi at a speed, along a piece of the table."""
-    mu, mu_slope, psi, psi_slope = friction_lines(p, piece)
+def kinetic_and_shape(p, segment, speed):
+    """Return mu_k and psi at a speed, along a segment of the table."""
+    mu, mu_slope, psi, psi_slope = friction_lines(p, segment)
     return mu + mu_slope * speed, psi + psi_slope * speed
 
 
@@ -68,21 +68,21 @@ def move(p, m, w, t, x, u):
 def choose_slip(p, m, w):
     """Set the slip sub-mode from R and B, ties by where the force moves next; a slider without speed may stick."""
     direction, speed = m[DIRECTION], abs(m[U])
-    piece = piece_of(p, speed, True)
-    mu, psi = kinetic_and_shape(p, piece, speed)
+    segment = segment_of(p, speed, True)
+    mu, psi = kinetic_and_shape(p, segment, speed)
     force = applied(motion_of(p, m), w, 0.0, m[X], m[U])
     lower = direction * force - p[NORMAL] * mu
     band = p[NORMAL] * m[EXCESS] * psi
     tie = ROUNDING * (abs(force) + p[NORMAL] * mu + band)
     rising = direction * _force_rate(p, m, w) > 0.0
     if lower > band + tie or (abs(lower - band) <= tie and rising):
-        m[MODE], m[PIECE] = ACCELERATING, piece
+        m[MODE], m[SEGMENT] = ACCELERATING, segment
     elif speed == 0.0:
         _stick(p, m)
     elif band > 0.0 and (lower > tie or (abs(lower) <= tie and rising)):
-        m[MODE], m[PIECE] = COASTING, piece
+        m[MODE], m[SEGMENT] = COASTING, segment
     else:
-        m[MODE], m[PIECE] = DECELERATING, piece_of(p, speed, False)
+        m[MODE], m[SEGMENT] = DECELERATING, segment_of(p, speed, False)
 
 
 @always_compiled
@@ -100,7 +100,7 @@ def _force_rate(p, m, w):
 def _break_away(p, m, w, direction, coefficient):
     """Begin a slip at a coefficient; the excess makes friction continuous where branches are distinguished."""
     speed = abs(m[U])
-    mu, psi = kinetic_and_shape(p, piece_of(p, speed, True), speed)
+    mu, psi = kinetic_and_shape(p, segment_of(p, speed, True), speed)
     m[EXCESS] = 0.0
     if p[BRANCHES] != 0.0 and psi > 0.0:
         m[EXCESS] = max(coefficient - mu, 0.0) / psi
@@ -128,7 +128,7 @@ def reset(p, m, w, guard):
     direction = m[DIRECTION]
     if mode == COASTING:
         m[MODE] = DECELERATING if guard == 0 else ACCELERATING
-        m[PIECE] = piece_of(p, abs(m[U]), guard == 1)
+        m[SEGMENT] = segment_of(p, abs(m[U]), guard == 1)
         return DECELERATE if guard == 0 else ACCELERATE, direction
     if guard == 1:
         _cross_breakpoint(p, m)
@@ -152,8 +152,8 @@ def _release(p, m, w):
 @always_compiled
 def _cross_breakpoint(p, m):
     step = 1.0 if m[MODE] == ACCELERATING else -1.0
-    m[U] = m[DIRECTION] * breakpoint_at(p, m[PIECE] + (1.0 if step > 0.0 else 0.0))
-    m[PIECE] += step
+    m[U] = m[DIRECTION] * breakpoint_at(p, m[SEGMENT] + (1.0 if step > 0.0 else 0.0))
+    m[SEGMENT] += step
 
 
 @always_compiled
@@ -173,13 +173,13 @@ def _arrest(p, m, w):
 @always_compiled
 def _turn(p, m):
     """Leave a sub-mode where its acceleration vanishes."""
-    _, psi = kinetic_and_shape(p, m[PIECE], abs(m[U]))
+    _, psi = kinetic_and_shape(p, m[SEGMENT], abs(m[U]))
     if m[EXCESS] * psi > 0.0:
         m[MODE] = COASTING
         return COAST
     rises = m[MODE] == DECELERATING
     m[MODE] = ACCELERATING if rises else DECELERATING
-    m[PIECE] = piece_of(p, abs(m[U]), rises)
+    m[SEGMENT] = segment_of(p, abs(m[U]), rises)
     return ACCELERATE if rises else DECELERATE
 
 
