@@ -122,7 +122,7 @@ class TestSeveral:
         assert (both['passed'], [(one['run']['name'], one['passed']) for one in both['runs']]) == (
             False, [(str(bag), False), ('fast_feed', True)])
 
-    def test_folders_of_one_name_are_told_apart(self, tmp_path: Path, bag: Path, capsys: Capture) -> None:
+    def test_folders_of_one_name_keep_theirs_apart(self, tmp_path: Path, bag: Path, capsys: Capture) -> None:
         other = cut(bag, tmp_path / 'jump', 0.7)
         limits = limits_file(tmp_path, 'limits: {sticks: {max: 1}}')
         code, out, _ = checked(capsys, bag, other, '--limits', limits)
