@@ -29,7 +29,6 @@ SAME_NAMES = {
     'run': 'the run of the tool; of a rival; of the judge',
     'as_json': 'a result as values for JSON',
     'Run': 'a run, simulated or recorded; the run of the judge',
-    'headline': 'the last cycle in one line, for the tool and for the demonstration on topics',
     'Grid': 'even times of steps; the points of a study on an even grid',
     'Problem': 'the task of the contestants of a race; that of the judge',
 }
