@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from .files import check_distinct, check_file, write_text
+from .scene_changes import SceneChanges, scene_changes
 
 if TYPE_CHECKING:
     from ..advise.advice import Advice
@@ -20,12 +21,12 @@ _ROUNDS = 5
 @click.argument('scene', metavar='SCENE')
 @click.option('--tolerance', type=float, required=True, metavar='T', help='Relative error that is allowed, as 1e-3.')
 @click.option('--duration', type=float, metavar='S', help='Simulated time, s [default: 10 s, or more for 20 cycles].')
-@click.option('--set', 'changes', multiple=True, metavar='A.B=VALUE', help='Change a parameter of the scene.')
 @click.option('--out', metavar='FILE.json', help='Write everything that was measured.')
 @click.option('--scene-out', metavar='FILE.yaml', help='Write the least scene.')
 @click.option('--rounds', type=click.IntRange(1, 1000), default=_ROUNDS, metavar='N',
               help=f'Samples of each cost [default: {_ROUNDS}].')
-def advise(scene: str, tolerance: float, duration: float | None, changes: tuple[str, ...], out: str | None,
+@scene_changes('Change a parameter of the scene.')
+def advise(scene: str, tolerance: float, duration: float | None, changes: SceneChanges, out: str | None,
            scene_out: str | None, rounds: int) -> None:
     """Run SCENE without each of its parts and with each solver; print what changes, and the least that T asks for."""
     _check(out, scene_out)
@@ -33,19 +34,17 @@ def advise(scene: str, tolerance: float, duration: float | None, changes: tuple[
     from ..advise.advice_report import as_json, text_lines, verdict_lines
     from ..advise.duration import check_duration, default_duration
     from ..advise.trial_runs import changes_between
-    from ..scene import load_scene, parse_override
     from ..scene.values import overridden
     from .progress import progress_bar
 
     work.check_tolerance(tolerance)
     if duration is not None:
         check_duration(duration)
-    given = dict(parse_override(change) for change in changes)
-    loaded = load_scene(scene, given)
+    loaded = changes.load(scene)
     with progress_bar('advising') as progress:
         advice = work.advise(loaded, tolerance, duration or default_duration(loaded), rounds, progress)
     least = advice.least.trial.scene or loaded
-    overrides = overridden(given, changes_between(loaded, least))
+    overrides = overridden(changes.given(), changes_between(loaded, least))
     print('\n'.join([*text_lines(advice), *verdict_lines(advice, overrides)]))
     if out is not None:
         write_text(out, [json.dumps(as_json(advice, overrides), indent=1, allow_nan=False) + '\n'])

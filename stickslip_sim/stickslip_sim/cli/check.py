@@ -9,6 +9,7 @@ import click
 
 from .files import STDOUT, check_distinct, check_file, write_text
 from .run_or_scene import is_recorded, recorded_run
+from .scene_changes import SceneChanges, scene_changes
 
 if TYPE_CHECKING:
     from ..check.limits import Limits
@@ -19,10 +20,10 @@ if TYPE_CHECKING:
 @click.argument('sources', nargs=-1, required=True, metavar='RUN_OR_SCENE...')
 @click.option('--limits', 'limits_file', required=True, metavar='FILE.yaml', help='The limits (docs/check.md).')
 @click.option('--duration', type=float, metavar='S', help='Time to simulate a scene, s.')
-@click.option('--set', 'changes', multiple=True, metavar='A.B=VALUE', help='Change a parameter of a scene.')
 @click.option('--junit', metavar='FILE.xml', help='Write JUnit XML for a CI server ("-": to standard output).')
 @click.option('--json', 'json_file', metavar='FILE.json', help='Write everything measured ("-": to standard output).')
-def check(sources: tuple[str, ...], limits_file: str, duration: float | None, changes: tuple[str, ...],
+@scene_changes('Change a parameter of a scene.')
+def check(sources: tuple[str, ...], limits_file: str, duration: float | None, changes: SceneChanges,
           junit: str | None, json_file: str | None) -> None:
     """Check each RUN_OR_SCENE - a run folder, or a scene to simulate - against limits; exit with 3 when one fails."""
     _check_outputs(junit, json_file)
@@ -63,10 +64,10 @@ def _check_outputs(junit: str | None, json_file: str | None) -> None:
     check_distinct(targets)
 
 
-def _check_sources(sources: tuple[str, ...], duration: float | None, changes: tuple[str, ...]) -> None:
+def _check_sources(sources: tuple[str, ...], duration: float | None, changes: SceneChanges) -> None:
     """Raise before the work begins when an option has no effect or one is missing, or a source comes twice."""
     recorded = [is_recorded(source) for source in sources]
-    if all(recorded) and (duration is not None or changes):
+    if all(recorded) and (duration is not None or changes.overrides):
         raise click.UsageError('--duration and --set are for a scene; a run stays as it was recorded.')
     if not all(recorded) and duration is None:
         raise click.UsageError('--duration S is needed to simulate a scene.')
@@ -74,22 +75,21 @@ def _check_sources(sources: tuple[str, ...], duration: float | None, changes: tu
         raise click.UsageError('RUN_OR_SCENE: give each once.')
 
 
-def _run(source: str, limits: 'Limits', duration: float | None, changes: tuple[str, ...]) -> 'Run':
+def _run(source: str, limits: 'Limits', duration: float | None, changes: SceneChanges) -> 'Run':
     if is_recorded(source) or duration is None:   # a scene has one
         return recorded_run(source)
     return _simulated(source, limits, duration, changes)
 
 
-def _simulated(source: str, limits: 'Limits', duration: float, changes: tuple[str, ...]) -> 'Run':
+def _simulated(source: str, limits: 'Limits', duration: float, changes: SceneChanges) -> 'Run':
     """Return the run of a scene with a sample each step, as its node would record it."""
     from ..check.limits import check_fit
     from ..runs import simulate
     from ..runs.simulated import check_times
-    from ..scene import load_scene, parse_override
     from .progress import progress_bar
 
     check_times(duration, None)
     check_fit(limits, 0.0, duration, has_timing=False, commands=None)
-    scene = load_scene(source, dict(parse_override(change) for change in changes))
+    scene = changes.load(source)
     with progress_bar('simulating') as progress:
         return simulate(scene, duration, progress=progress)

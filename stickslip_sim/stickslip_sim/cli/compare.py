@@ -9,6 +9,7 @@ import click
 
 from .files import check_new_folder, new_folder
 from .run_or_scene import is_recorded, recorded_run
+from .scene_changes import SceneChanges, scene_changes
 
 if TYPE_CHECKING:
     from ..compare.report_folder import Judged
@@ -22,8 +23,8 @@ _MOST = 8   # runs, rows of a picture
 @click.option('--out', required=True, metavar='FOLDER', help='New folder for the report and the pictures.')
 @click.option('--duration', type=float, metavar='S',
               help='Simulated time of a scene, s [default: 10 s, or more for 20 cycles].')
-@click.option('--set', 'changes', multiple=True, metavar='A.B=VALUE', help='Change a parameter of every scene.')
-def compare(runs: tuple[str, ...], out: str, duration: float | None, changes: tuple[str, ...]) -> None:
+@scene_changes('Change a parameter of every scene.')
+def compare(runs: tuple[str, ...], out: str, duration: float | None, changes: SceneChanges) -> None:
     """Draw runs as the paper's figures 4, 6, 7 and 8, and judge what the paper says on each.
 
     A run is the folder of a recorded one, or a scene, which is simulated.  Exit with 3 when a statement that applies
@@ -50,7 +51,7 @@ def compare(runs: tuple[str, ...], out: str, duration: float | None, changes: tu
         raise VerdictError(f'{len(failed)} of the statements that apply do not hold ({"; ".join(failed)})')
 
 
-def _check(runs: tuple[str, ...], out: str, duration: float | None, changes: tuple[str, ...]) -> None:
+def _check(runs: tuple[str, ...], out: str, duration: float | None, changes: SceneChanges) -> None:
     """Raise before the work begins when the output cannot be written or an option has no effect."""
     from ..core.errors import InputError
 
@@ -58,21 +59,20 @@ def _check(runs: tuple[str, ...], out: str, duration: float | None, changes: tup
     if len(runs) > _MOST:
         raise InputError('RUN_OR_SCENE', f'{len(runs)} runs', f'at most {_MOST} at once', 'compare fewer')
     if all(map(is_recorded, runs)):
-        for option, given in (('--duration', duration), ('--set', changes or None)):
+        for option, given in (('--duration', duration), ('--set', changes.overrides or None)):
             if given is not None:
                 raise click.UsageError(f'{option} is for scenes, and all of these are recorded runs.')
 
 
-def _run(source: str, duration: float | None, changes: tuple[str, ...]) -> 'Run':
+def _run(source: str, duration: float | None, changes: SceneChanges) -> 'Run':
     from ..advise.duration import default_duration
     from ..compare.fresh import simulate_densely
-    from ..scene import load_scene, parse_override
 
     if is_recorded(source):
         run = recorded_run(source)
         _ = run.samples, run.scene, run.events   # what cannot be read is refused before the work begins
         return run
-    scene = load_scene(source, dict(parse_override(change) for change in changes))
+    scene = changes.load(source)
     return simulate_densely(scene, default_duration(scene) if duration is None else duration)
 
 

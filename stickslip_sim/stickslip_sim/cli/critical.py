@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from .scene_changes import SceneChanges, scene_changes
+
 if TYPE_CHECKING:
     from ..scene import Scene
     from ..study.critical import Critical
@@ -23,15 +25,16 @@ _DIGITS = 12   # of ends that are too small or large to be written out
 @click.option('--between', metavar='LOW:HIGH', help='Where to look [default: 1/100 to 100 times its value].')
 @click.option('--accuracy', type=float, default=_ACCURACY, metavar='REL',
               help=f'Relative width of what is left open [default: {_ACCURACY:g}].')
-@click.option('--set', 'changes', multiple=True, metavar='A.B=VALUE', help='Change a parameter of the scene.')
-def critical(scene: str, name: str, between: str | None, accuracy: float, changes: tuple[str, ...]) -> None:
+@scene_changes('Change a parameter of the scene.')
+def critical(scene: str, name: str, between: str | None, accuracy: float, changes: SceneChanges) -> None:
     """Find where SCENE goes over from stick-slip to sliding: from rest, and from sliding."""
-    from ..scene import load_scene, parse_override
     from ..study import critical as work
     from .progress import progress_bar
 
-    loaded = load_scene(scene, dict(parse_override(change) for change in changes))
+    loaded = changes.load(scene)
     over = _range(loaded, name, between)
+    if between is not None:
+        changes.check_ranges([over])
     with progress_bar('narrowing') as progress:
         found = work.critical(loaded, over, accuracy, progress)
     print('\n'.join(_lines(loaded, found)))

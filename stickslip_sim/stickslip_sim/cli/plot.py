@@ -10,6 +10,7 @@ import click
 
 from .files import check_picture, whole
 from .run_or_scene import is_recorded, recorded_run
+from .scene_changes import SceneChanges, scene_changes
 
 if TYPE_CHECKING:
     from ..runs import Run
@@ -22,8 +23,8 @@ if TYPE_CHECKING:
 @click.option('--out', metavar='FILE.png|FILE.pdf|FILE.svg', help='Write the picture there; the ending decides the '
                                                                   'format [default: NAME.png].')
 @click.option('--duration', type=float, metavar='S', help='Time to simulate a scene, s.')
-@click.option('--set', 'changes', multiple=True, metavar='A.B=VALUE', help='Change a parameter of a scene.')
-def plot(source: str, window: str | None, out: str | None, duration: float | None, changes: tuple[str, ...]) -> None:
+@scene_changes('Change a parameter of a scene.')
+def plot(source: str, window: str | None, out: str | None, duration: float | None, changes: SceneChanges) -> None:
     """Draw RUN_OR_SCENE - a run folder, or a scene to simulate - over time.
 
     Setpoint, position, error, velocity and command, forces, modes; faults and commands that were refused or limited.
@@ -51,9 +52,9 @@ def _times(text: str) -> tuple[float, float]:
     return begin, end
 
 
-def _run(source: str, duration: float | None, changes: tuple[str, ...]) -> 'Run':
+def _run(source: str, duration: float | None, changes: SceneChanges) -> 'Run':
     if is_recorded(source):
-        if duration is not None or changes:
+        if duration is not None or changes.overrides:
             raise click.UsageError('--duration and --set are for a scene; a run stays as it was recorded.')
         run = recorded_run(source)
         for note in run.notes:
@@ -64,14 +65,13 @@ def _run(source: str, duration: float | None, changes: tuple[str, ...]) -> 'Run'
     return _simulated(source, duration, changes)
 
 
-def _simulated(source: str, duration: float, changes: tuple[str, ...]) -> 'Run':
+def _simulated(source: str, duration: float, changes: SceneChanges) -> 'Run':
     from ..runs import simulate_events
     from ..runs.simulated import check_times
-    from ..scene import load_scene, parse_override
     from .progress import progress_bar
 
     check_times(duration, None)
-    scene = load_scene(source, dict(parse_override(change) for change in changes))
+    scene = changes.load(source)
     with progress_bar('simulating') as progress:
         return simulate_events(scene, duration, progress)
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import click
 
 from .files import STDOUT, check_distinct, check_file, check_new_folder, check_picture, whole, write_text
+from .scene_changes import SceneChanges, scene_changes
 
 if TYPE_CHECKING:
     from ..runs import SimulatedRun
@@ -34,7 +35,6 @@ class _Wishes(NamedTuple):
 @click.command(short_help='Simulate a scene: figures, tables, picture, bag.')
 @click.argument('scene', metavar='SCENE')
 @click.option('--duration', type=float, required=True, metavar='S', help='Simulated time, s.')
-@click.option('--set', 'changes', multiple=True, metavar='A.B=VALUE', help='Change a parameter of the scene.')
 @click.option('--events', metavar='FILE.csv', help='Write the events ("-": to standard output).')
 @click.option('--knots', is_flag=True, help='List the crossings of breakpoints of friction tables among the events.')
 @click.option('--samples', metavar='FILE.csv', help='Write the state over time ("-": to standard output).')
@@ -42,7 +42,8 @@ class _Wishes(NamedTuple):
 @click.option('--bag', metavar='FOLDER', help='Record the run as a ROS 2 bag, one state a step.')
 @click.option('--receipt', metavar='FILE.json', help='Write versions, figures, energy, error and cost.')
 @click.option('--plot', metavar='FILE.png', help='Draw the run, as `stickslip plot` does (.png, .pdf or .svg).')
-def simulate(scene: str, changes: tuple[str, ...], **options: object) -> None:
+@scene_changes('Change a parameter of the scene.')
+def simulate(scene: str, changes: SceneChanges, **options: object) -> None:
     """Simulate SCENE, the name of a shipped scene or a file.
 
     A summary is printed, unless something else is written to standard output ("-").
@@ -51,11 +52,10 @@ def simulate(scene: str, changes: tuple[str, ...], **options: object) -> None:
     _check(wishes)
     from ..runs import simulate, simulate_events
     from ..runs.simulated import check_times
-    from ..scene import load_scene, parse_override
     from .progress import progress_bar
 
     check_times(wishes.duration, wishes.sample_period)
-    loaded = load_scene(scene, dict(parse_override(change) for change in changes))
+    loaded = changes.load(scene)
     period = _sample_period(wishes, loaded)
     with progress_bar('simulating') as progress:
         if period is None:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from .scene_changes import SceneChanges
 from .sweeping import carry_out, print_failed, study_options, workers_of
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 @click.option('--sobol', type=int, metavar='N', help='Draw N points (Sobol) instead; then --over A.B=LOW:HIGH[:log].')
 @study_options
 def sweep(scene: str, ranges: tuple[str, ...], sobol: int | None, out: str, duration: float | None,
-          workers: str | None, scheduler: str | None, resume: bool, changes: tuple[str, ...]) -> None:
+          workers: str | None, scheduler: str | None, resume: bool, changes: SceneChanges) -> None:
     """Run SCENE at many values of its parameters; write motion, amplitude, period and more of each.
 
     Ctrl-C keeps the finished points.  `stickslip map FOLDER` draws it.
@@ -33,12 +34,12 @@ def sweep(scene: str, ranges: tuple[str, ...], sobol: int | None, out: str, dura
 
 
 def _study(scene: str, ranges: tuple[str, ...], sobol: int | None, duration: float | None,
-           changes: tuple[str, ...]) -> 'Study':
-    from ..scene import load_scene, parse_override
+           changes: SceneChanges) -> 'Study':
     from ..study import Grid, Sobol, Study, variation
 
-    loaded = load_scene(scene, dict(parse_override(change) for change in changes))
+    loaded = changes.load(scene)
     variations = tuple(variation(text, drawn=sobol is not None) for text in ranges)
+    changes.check_ranges(variations)
     sample = Grid(variations) if sobol is None else Sobol(variations, sobol, loaded.seed)
     return Study(loaded.values, sample, duration)
 

@@ -5,11 +5,12 @@
 import os
 import shlex
 import sys
-from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
+
+from .scene_changes import Command, scene_changes
 
 if TYPE_CHECKING:
     from ..study import Study
@@ -25,9 +26,8 @@ _OPTIONS = (
     click.option('--workers', metavar='N|all', help='Processes to use [default: 1].'),
     click.option('--scheduler', metavar='ADDRESS', help='Use the workers of this Dask scheduler instead.'),
     click.option('--resume', is_flag=True, help='Go on with what was interrupted.'),
-    click.option('--set', 'changes', multiple=True, metavar='A.B=VALUE', help='Change a parameter of the scene.'),
+    scene_changes('Change a parameter of the scene.'),
 )
-Command = Callable[..., Any]
 
 
 def study_options(command: Command) -> Command:

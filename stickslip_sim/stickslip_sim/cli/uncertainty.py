@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .files import check_picture, whole, write_text
+from .scene_changes import SceneChanges
 from .sweeping import carry_out, print_failed, study_options, workers_of
 
 if TYPE_CHECKING:
@@ -26,7 +27,7 @@ _RESULT = 'uncertainty.json'
 @click.option('--plot', metavar='FILE.png', help='Draw the spread of the figures and the indices (.png or .svg).')
 @study_options
 def uncertainty(scene: str, file: str, samples: int, plot: str | None, out: str, duration: float | None,
-                workers: str | None, scheduler: str | None, resume: bool, changes: tuple[str, ...]) -> None:
+                workers: str | None, scheduler: str | None, resume: bool, changes: SceneChanges) -> None:
     """Run SCENE with parameters drawn from distributions: percentiles, and which parameter decides.
 
     FOLDER gets uncertainty.json beside the table of all points.  Ctrl-C keeps the finished points.
@@ -34,14 +35,13 @@ def uncertainty(scene: str, file: str, samples: int, plot: str | None, out: str,
     if plot is not None:
         check_picture('--plot', plot)
     members = workers_of(workers, scheduler)
-    from ..scene import load_scene, parse_override
     from ..study import Saltelli, Study
     from ..study.uncertain_file import load_uncertain
     from ..study.uncertainty import uncertainty_of
 
     known = load_uncertain(file)
     sample = Saltelli(known.distributions, samples, known.seed)
-    loaded = load_scene(scene, dict(parse_override(change) for change in changes))
+    loaded = changes.load(scene)
     study = Study(loaded.values, sample, duration)
     folder, swept = carry_out(study, out, members, resume)
     found = uncertainty_of(sample, swept.columns)

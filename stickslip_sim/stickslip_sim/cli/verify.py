@@ -10,6 +10,7 @@ import click
 
 from .files import check_new_folder, new_folder
 from .run_or_scene import recorded_run
+from .scene_changes import SceneChanges, scene_changes
 
 if TYPE_CHECKING:
     from ..recording import RecordedRun
@@ -20,9 +21,9 @@ if TYPE_CHECKING:
 
 @click.command(short_help='Run a recorded run again; with --set, what would have been.')
 @click.argument('run', metavar='RUN')
-@click.option('--set', 'changes', multiple=True, metavar='A.B=VALUE', help='What if this parameter had been another?')
 @click.option('--out', metavar='FOLDER', help='With --set: new folder for figures, picture and scene of what if.')
-def verify(run: str, changes: tuple[str, ...], out: str | None) -> None:
+@scene_changes('What if this parameter had been another?')
+def verify(run: str, changes: SceneChanges, out: str | None) -> None:
     """Simulate the recorded RUN again from its scene and its orders, without ROS, and compare every bit.
 
     "identical", or exit code 3 and the first difference.  With --set, the same orders under another scene are set
@@ -30,7 +31,6 @@ def verify(run: str, changes: tuple[str, ...], out: str | None) -> None:
     """
     _check(changes, out)
     from ..core.errors import VerdictError
-    from ..scene import parse_override
     from ..verify.origin import doubts_about
     from ..verify.verification import verify as judge
     from ..verify.what_if import other_scene
@@ -38,8 +38,9 @@ def verify(run: str, changes: tuple[str, ...], out: str | None) -> None:
 
     recorded = recorded_run(run)
     doubts = doubts_about(recorded)
-    given = dict(parse_override(change) for change in changes)
+    given = changes.given()
     scene = other_scene(recorded, given)
+    changes.check_changed(scene)
     for doubt in doubts:
         print(f'note: {doubt}')
     with progress_bar('verifying') as progress:
@@ -51,11 +52,11 @@ def verify(run: str, changes: tuple[str, ...], out: str | None) -> None:
         raise VerdictError(f'{run} differs from its re-simulation at {verdict.difference}')
 
 
-def _check(changes: tuple[str, ...], out: str | None) -> None:
+def _check(changes: SceneChanges, out: str | None) -> None:
     """Raise before the work begins when the output cannot be written or an option has no effect."""
     if out is None:
         return
-    if not changes:
+    if not changes.overrides:
         raise click.UsageError('--out is of no use alone: give --set A.B=VALUE too.')
     check_new_folder('--out', out)
 

@@ -1,7 +1,65 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Numbers that a feed axis has, to ask back when a unit was mistaken: far narrower than what the engine can take."""
+"""Numbers that a feed axis has, to ask back when a unit was mistaken: far narrower than what the engine can take.
 
-MEANT = '--meant'          # the option of the tool that says so
+A drive at 5 m/s, or friction that falls up to 100 m/s, is most likely meant in mm/s; simulated as it stands it slides
+without stick-slip, and nothing in that answer shows the mistake.  So the tool refuses such a number once, with the unit
+in which it was read, until it is said to be meant.  The node has its own guard, `command.max_velocity`.
+"""
+
+import difflib
+from collections.abc import Collection, Iterator, Mapping
+from typing import NamedTuple
+
+from ..core.errors import InputError
+
+MEANT = '--meant'          # the option of the tool
 FASTEST = 3.0              # m/s: 180 m/min, above the rapid traverse of linear motors
 ROUGHEST = 2.0             # a coefficient of friction: rubber on dry concrete is 1
+_SPEED_FIX, _COEFFICIENT_FIX = '5 mm/s is 0.005', 'a force is divided by the normal force'
+
+
+class Plausible(NamedTuple):
+    """The largest size of a parameter that passes without a question, in its unit, and the usual mistake."""
+
+    most: float
+    unit: str
+    usual: str
+
+
+_SPEED, _COEFFICIENT = Plausible(FASTEST, 'm/s', _SPEED_FIX), Plausible(ROUGHEST, '', _COEFFICIENT_FIX)
+PLAUSIBLE: Mapping[str, Plausible] = {
+    **dict.fromkeys(('drive.velocity', 'drive.velocities', 'drive.amplitude', 'drive.amplitudes', 'initial.velocity',
+                     'friction.kinetic.velocities', 'friction.kinetic.stribeck_velocity',
+                     'friction.excess.velocities', 'friction.excess.limit_velocity'), _SPEED),
+    **dict.fromkeys(('friction.static.initial', 'friction.static.limit', 'friction.kinetic.initial',
+                     'friction.kinetic.limit', 'friction.kinetic.coefficients'), _COEFFICIENT),
+}
+
+
+def check_plausible(values: Mapping[str, object], meant: Collection[str]) -> None:
+    """Raise InputError on a value, SI units, that no feed axis has, unless its name is among those `meant`."""
+    for name in meant:
+        if name not in PLAUSIBLE:
+            close = difflib.get_close_matches(name, PLAUSIBLE, 1)
+            raise InputError(MEANT, name, 'one of ' + ', '.join(PLAUSIBLE),
+                             f'did you mean {close[0]}?' if close else 'nothing else is asked about')
+    for name, limit in PLAUSIBLE.items():
+        if name not in meant:
+            for value in _numbers(values.get(name)):
+                check_number(name, value, limit)
+
+
+def check_number(name: str, value: float, limit: Plausible) -> None:
+    """Raise InputError on a number beyond a limit: it is asked back."""
+    if abs(value) > limit.most:
+        read = f'{value:g} {limit.unit}'.rstrip()
+        raise InputError(name, value, f'plausible for a feed axis, up to {limit.most:g} {limit.unit}'.rstrip(),
+                         f'it was read as {read}, and {limit.usual}; if {read} is meant, add {MEANT} {name}')
+
+
+def _numbers(value: object) -> Iterator[float]:
+    if isinstance(value, float):
+        yield value
+    elif isinstance(value, tuple):
+        yield from value
