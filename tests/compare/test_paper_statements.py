@@ -18,7 +18,8 @@ from stickslip_sim.runs import Run, SimulatedRun
 from stickslip_sim.scene import load_scene
 
 HOLDS, FAILS, NOT_APPLICABLE = StatementOutcome
-CONTINUITY, TWO_VALUES, OSCILLATION, LIMIT_CYCLE, CONTACT, LONG_REST = (statement.name for statement in STATEMENTS)
+BALANCE, CONTINUITY, TWO_VALUES, OSCILLATION, LIMIT_CYCLE, CONTACT, LONG_REST = (
+    statement.name for statement in STATEMENTS)
 NORMAL = 3432.3275   # N
 KINETIC = 0.12 * NORMAL   # N, at rest
 
@@ -38,11 +39,11 @@ def outcomes(run: Run) -> list[StatementOutcome]:
 
 
 @pytest.mark.parametrize(('scene', 'expected'), [
-    ('paper_fig4_constant', [NOT_APPLICABLE, NOT_APPLICABLE, HOLDS, HOLDS, NOT_APPLICABLE, HOLDS]),
-    ('paper_fig4_falling', [NOT_APPLICABLE, NOT_APPLICABLE, HOLDS, HOLDS, NOT_APPLICABLE, HOLDS]),
-    ('paper_fig7', [NOT_APPLICABLE, HOLDS, HOLDS, HOLDS, HOLDS, HOLDS]),
-    ('paper_fig8', [HOLDS] * 6),
-    ('stribeck', [HOLDS] * 6)])
+    ('paper_fig4_constant', [HOLDS, NOT_APPLICABLE, NOT_APPLICABLE, HOLDS, HOLDS, NOT_APPLICABLE, HOLDS]),
+    ('paper_fig4_falling', [HOLDS, NOT_APPLICABLE, NOT_APPLICABLE, HOLDS, HOLDS, NOT_APPLICABLE, HOLDS]),
+    ('paper_fig7', [HOLDS, NOT_APPLICABLE, HOLDS, HOLDS, HOLDS, HOLDS, HOLDS]),
+    ('paper_fig8', [HOLDS] * 7),
+    ('stribeck', [HOLDS] * 7)])
 def test_what_the_paper_says_holds_on_its_scenes(scene: str, expected: list[StatementOutcome]) -> None:
     assert outcomes(densely(scene)) == expected
 
@@ -57,7 +58,22 @@ def test_a_run_whose_parameters_changed_is_not_judged(fig8_bag: Path) -> None:
     recorded = read_run(fig8_bag)
     assert NOT_APPLICABLE not in outcomes(recorded)
     recorded.is_changed = True
-    assert outcomes(recorded) == [NOT_APPLICABLE] * 6
+    assert outcomes(recorded) == [NOT_APPLICABLE] * 7
+
+
+class TestBalanceAtTheStart:
+    def test_a_force_that_nothing_holds_at_the_start_is_no_balance(self) -> None:
+        finding = findings(densely('paper_fig8', 1.0, force__constant=-300.0))[BALANCE]
+        assert finding.outcome == FAILS
+        assert finding.figures == {'spring_force': 0.0, 'external_force': pytest.approx(-300.0), 'contact_force': 0.0,
+                                   'limit': pytest.approx(0.24 * NORMAL)}
+
+    def test_a_rigid_contact_holds_any_force_up_to_its_limit(self) -> None:
+        assert findings(densely('paper_fig7', 1.0, force__constant=-300.0))[BALANCE].outcome == HOLDS
+
+    def test_a_run_that_begins_in_slip_has_nothing_to_say(self) -> None:
+        finding = findings(densely('paper_fig8', 1.0, initial__velocity=0.02))[BALANCE]
+        assert finding.outcome == NOT_APPLICABLE
 
 
 class TestContinuity:

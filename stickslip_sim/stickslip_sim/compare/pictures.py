@@ -17,9 +17,12 @@ from .fresh import simulate_densely
 from .windows import drawn_motion
 
 KINDS = ('png', 'svg')
-_OF_MOTION = ('(a) drive and friction force, (b) velocity and acceleration as the motion begins; (c), (d) the same '
-              'over one slip; (e) friction force over velocity; (f) phase plane; grey: at most 30 cycles from the '
-              'start on, coloured: the last complete one.')
+_OF_MOTION = (
+    '(a) drive and friction force, (d) velocity and acceleration as the motion begins: the highest break-away after '
+    'the longest rest, then cycles that repeat; (b), (e) the same over one slip: with a contact force is continuous '
+    'from stick to slip and back, and small vanishing oscillations follow; (c) friction and, in slip, drive force '
+    'over velocity: friction has two values at one velocity, one speeding up, one slowing down; (f) phase plane: a '
+    'stable limit cycle.  Grey and dashed: at most 30 cycles from the start on, coloured: the last complete one.')
 _OF_FRICTION = ('Friction characteristics as in Fig. 6 of the paper: (a) kinetic friction of both branches over '
                 'velocity; (b) static friction over rest time, with the break-aways of this run.')
 _OF_ROWS = 'forces and velocity over time, friction force over velocity, as in Fig. 4 of the paper.'

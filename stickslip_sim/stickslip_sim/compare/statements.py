@@ -8,10 +8,12 @@ from .continuity import CONTINUITY
 from .limit_cycle import LIMIT_CYCLE
 from .long_rest import LONG_REST
 from .oscillation import OSCILLATION
+from .start_balance import START_BALANCE
 from .statement import Finding, Statement, not_applicable
 from .two_values import TWO_VALUES
 
-STATEMENTS: tuple[Statement, ...] = (CONTINUITY, TWO_VALUES, OSCILLATION, LIMIT_CYCLE, CONTACT_EFFECT, LONG_REST)
+STATEMENTS: tuple[Statement, ...] = (START_BALANCE, CONTINUITY, TWO_VALUES, OSCILLATION, LIMIT_CYCLE, CONTACT_EFFECT,
+                                     LONG_REST)
 
 
 def judged(run: Run) -> list[tuple[Statement, Finding]]:

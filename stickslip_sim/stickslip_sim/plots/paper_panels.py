@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The motion as in Fig. 7 and 8 of the paper: six panels, in its units, for a journal's double column."""
+"""The motion as in Fig. 7 and 8 of the paper: its panels, letters and units, for a journal's double column."""
 
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
@@ -34,8 +34,10 @@ KILO = 1e-3   # N to kN
 _EARLIER = '#b0b0b0'
 _DASHES = {Mode.STICK: (0, (1.0, 1.2)), Mode.ACCELERATING: 'solid', Mode.COASTING: (0, (5.0, 1.5)),
            Mode.DECELERATING: (0, (6.0, 1.5, 1.0, 1.5))}
+_DRIVE_DASHES: Any = (0, (4.0, 1.6))
 _MODE_NAMES = [mode.name.lower() for mode in Mode]
 _ABOVE: dict[str, Any] = {'loc': 'lower right', 'bbox_to_anchor': (1.0, 0.99), 'ncols': 2, 'borderaxespad': 0.0}
+_LETTERS = 'adbecf'   # the paper counts down the columns
 _ARROWED = 0.15   # of the picture's extent: a shorter stretch gets no arrow
 
 Stretch = tuple[float, float]   # s, from and to
@@ -53,7 +55,7 @@ class DrawnMotion(NamedTuple):
 
 
 def plot_motion(motion: DrawnMotion, *paths: Path | str) -> None:
-    """Draw forces, speed and acceleration over time, and magnified; the friction loop; the phase plane."""
+    """Draw forces (a), velocity and acceleration (d) over time; (b), (e) the same magnified; the loops (c), (f)."""
     with rc_context(JOURNAL):
         figure = Figure(figsize=(DOUBLE_COLUMN, 7.8), layout=ConstrainedLayoutEngine(w_pad=0.06, h_pad=0.06))
         panels = list(figure.subplots(3, 2).flat)
@@ -67,8 +69,9 @@ def plot_motion(motion: DrawnMotion, *paths: Path | str) -> None:
         forces(panels[2], slip, label)
         _speed_and_acceleration(panels[3], slip, label)
         friction_loop(panels[4], motion)
+        _drive_force_loop(panels[4], motion)
         phase_plane(panels[5], motion)
-        for panel, name in zip(panels, 'abcdef'):
+        for panel, name in zip(panels, _LETTERS):
             letter(panel, name)
         legend_below(figure, panels[4])
         save(figure, *paths)
@@ -91,7 +94,7 @@ def part(columns: Mapping[str, Numbers], begin: float, end: float) -> dict[str, 
 def forces(panel: Axes, columns: Mapping[str, Numbers], label: str) -> None:
     """Draw the drive force and the friction force over time."""
     for name, what, colour, style, width in (('friction_force', 'friction force', RED, 'solid', 1.3),
-                                             ('drive_force', 'drive force', BLACK, (0, (4.0, 1.6)), 1.0)):
+                                             ('drive_force', 'drive force', BLACK, _DRIVE_DASHES, 1.0)):
         panel.plot(*thinned(columns['time'], columns[name] * KILO), color=colour, linestyle=style, linewidth=width,
                    label=what)
     panel.set(xlabel=label, ylabel='force / kN')
@@ -110,6 +113,16 @@ def friction_loop(panel: Axes, motion: DrawnMotion) -> None:
     """Draw the friction force over the velocity: all of it, and the stressed cycle by mode."""
     _orbit(panel, motion, motion.columns['velocity'] * MILLI, motion.columns['friction_force'] * KILO)
     panel.set(xlabel='velocity / (mm/s)', ylabel='friction force / kN')
+
+
+def _drive_force_loop(panel: Axes, motion: DrawnMotion) -> None:
+    """Add the drive force over the velocity, in slip alone."""
+    shown = _rows(motion, *motion.orbit)
+    slips = motion.columns['mode'][shown] != Mode.STICK
+    force = np.where(slips, motion.columns['drive_force'][shown] * KILO, np.nan)
+    panel.plot(motion.columns['velocity'][shown] * MILLI, force, color=BLACK, linewidth=0.6, linestyle=_DRIVE_DASHES,
+               label='drive force, in slip')
+    panel.set_ylabel('friction and drive force / kN')
 
 
 def _speed_and_acceleration(panel: Axes, columns: Mapping[str, Numbers], label: str) -> None:

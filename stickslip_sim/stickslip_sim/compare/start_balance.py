@@ -1,0 +1,36 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Statement: the initial displacements correspond to the stick balance condition."""
+
+from ..axis import CompliantContact
+from ..core.types import Mode
+from ..runs import Run
+from .drawn import external_force
+from .statement import Finding, Statement, found, not_applicable
+
+_EQUAL = 1e-9   # relative: rounding of the forces
+
+
+def judge(run: Run) -> Finding:
+    """Compare the forces that displacements make at the start: of the drive spring, of the contact, and from outside.
+
+    The drive damper is left out: a drive that sets off at a velocity has its force from the first instant on.
+    """
+    if run.begin != 0.0:
+        return not_applicable(f'the recording begins at t = {run.begin:g} s, in mid-run')
+    first = {name: float(column[0]) for name, column in run.samples.items()}
+    if Mode(int(first['mode'])) != Mode.STICK:
+        return not_applicable(f'the run begins in slip, at {first["velocity"]:.4g} m/s')
+    axis = run.scene.axis
+    spring = axis.drive_stiffness * (first['drive_position'] - first['position'])
+    outside = float(external_force(run)[0])
+    limit = axis.normal_force * axis.friction.static.coefficient(first['rest_time'])
+    held = first['friction_force'] if isinstance(axis.contact, CompliantContact) else spring + outside
+    open_by = abs(spring + outside - held)
+    text = f'drive spring {spring:.6g} N, outside {outside:.6g} N, contact {held:.6g} N of at most {limit:.6g} N'
+    balanced = open_by <= _EQUAL * max(abs(spring), abs(outside), limit) and abs(held) <= (1.0 + _EQUAL) * limit
+    return found(balanced, text, spring_force=spring, external_force=outside, contact_force=held, limit=limit)
+
+
+START_BALANCE = Statement('start in balance', 'The initial displacements correspond to the stick balance condition.',
+                          judge)
