@@ -381,14 +381,14 @@ def lost(contact):
     simulator.advance(Instant(3.0, 0.0))
     return simulator.energy.relative_residual
 engine.event_is_sound = lambda p, s, begin: True   # which ends a run at such an event
-right = engine.find_event, engine._transition, motion.short_integrals
+right = engine.find_event, engine.make_transition, motion.short_integrals
 for contact in (RIGID, COMPLIANT):
     print(lost(contact))
     engine.find_event = late(right[0])
     print(lost(contact))
-    engine.find_event, engine._transition = right[0], jumping(right[1])
+    engine.find_event, engine.make_transition = right[0], jumping(right[1])
     print(lost(contact))
-    engine._transition = right[1]
+    engine.make_transition = right[1]
     for item in range(3):
         motion.short_integrals = roots.short_integrals = off(right[2], item)
         print(lost(contact))

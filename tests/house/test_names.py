@@ -32,9 +32,6 @@ SAME_NAMES = {
     'Grid': 'even times of steps; the points of a study on an even grid',
     'Problem': 'the task of the contestants of a race; that of the judge',
 }
-TO_RENAME = {   # two meanings, and no reason for it
-    'inputs_at': 'the inputs at a time, with sinusoids and without',
-}
 SAME_FILES = {
     'critical.py': VERB, 'sweep.py': VERB, 'uncertainty.py': f'{VERB}; {PICTURE}',
     'bifurcation.py': PICTURE, 'characteristics.py': PICTURE, 'what_if.py': PICTURE,
@@ -81,9 +78,5 @@ def test_a_name_stands_for_one_thing(named: Callable[[], Iterator[tuple[str, str
                                      listed: Mapping[str, str]) -> None:
     """No listed name is gone, either: the list does not grow old."""
     found = in_several_rooms(named())
-    assert {name: rooms for name, rooms in found.items() if name not in {**listed, **TO_RENAME}} == {}
+    assert {name: rooms for name, rooms in found.items() if name not in listed} == {}
     assert set(listed) - set(found) == set()
-
-
-def test_what_is_to_be_renamed_is_still_there() -> None:
-    assert set(TO_RENAME) - set(in_several_rooms(definitions())) == set()

@@ -101,7 +101,7 @@ def test_the_shares_of_the_modes_are_those_of_the_time() -> None:
     assert shares[Mode.COASTING].tolist() == [0.0, 0.0, 0.0]
 
 
-def test_what_hardly_changes_is_no_mountain(tmp_path: Path) -> None:
+def test_what_has_settled_is_no_mountain(tmp_path: Path) -> None:
     """Sliding that has settled is a line, not the rounding of its last digits."""
     run = simulate(load_scene('fast_feed'), 10.0, 0.001)
     plot_run(drawn(run), [TimeWindow(9.0, 10.0)], tmp_path / 'settled.svg')

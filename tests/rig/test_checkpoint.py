@@ -8,6 +8,8 @@ from typing import Any
 
 import pytest
 
+from stickslip_sim.axis.fields import places_of
+from stickslip_sim.axis.layout import State
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.recording import checkpoint_file
 from stickslip_sim.rig import Fault, Rig, StepResult
@@ -78,16 +80,15 @@ def test_the_order_of_faults_and_parameters_between_two_steps_does_not_matter() 
 
 
 @pytest.mark.parametrize(('place', 'value'), [
-    ('state', [0.0] * 7), ('state', 'none'), ('mode', 4.0), ('mode', 0.5), ('piece', -1.0), ('piece', 1e300),
-    ('waves', 3.0), ('until', 'soon'), ('time', [1.0]), ('waiting', [[1.0]]),
+    ('state', [0.0] * 7), ('state', 'none'), ('mode', 4.0), ('mode', 0.5), ('segment', -1.0), ('segment', 1e300),
+    ('sinusoid_count', 3.0), ('until', 'soon'), ('time', [1.0]), ('waiting', [[1.0]]),
 ])
 def test_a_state_that_no_solver_may_see(place: str, value: Any) -> None:
     scene = load_scene('paper_fig8')
     rig = scene.make_rig()
     saved = rig.checkpoint()
-    indices = {'mode': 2, 'piece': 4, 'waves': 46}
-    if place in indices:
-        saved['simulator']['state'][indices[place]] = value
+    if place in places_of(State):
+        saved['simulator']['state'][places_of(State).index(place)] = value
     else:
         saved['simulator'][place] = value
     with pytest.raises((TypeError, ValueError)):

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """∫z² of a free motion near critical damping, where splitting it into two exponentials would divide by what vanishes.
 
-Over a short span it is a quadratic form in value and rate at the begin, known from a power series; that of the double
+Over a short span it is a quadratic form in value and rate at the start, known from a power series; that of the double
 span follows from it, and so on.
 """
 

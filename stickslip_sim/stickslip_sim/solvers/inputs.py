@@ -42,7 +42,7 @@ def inputs_vary(s: State) -> bool:
 
 
 @compiled
-def inputs_at(s: State, second: float, fraction: float) -> tuple[float, float]:
+def given_inputs_at(s: State, second: float, fraction: float) -> tuple[float, float]:
     """Return v and F_e at a time."""
     t = (second - s.given.second) + (fraction - s.given.fraction)
     v = s.given.v + s.given.v_rate * t
@@ -57,7 +57,7 @@ def inputs_at(s: State, second: float, fraction: float) -> tuple[float, float]:
 @compiled
 def refresh_inputs(s: State) -> None:
     """Set V, F and their rates to those at the time of the state."""
-    s.inputs.v, s.inputs.f = inputs_at(s, s.second, s.fraction)
+    s.inputs.v, s.inputs.f = given_inputs_at(s, s.second, s.fraction)
     s.inputs.v_rate, s.inputs.f_rate = s.given.v_rate, s.given.f_rate
     for k in range(int(s.given_sinusoids)):
         frequency = s.sinusoids[k].frequency

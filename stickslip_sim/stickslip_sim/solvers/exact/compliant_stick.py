@@ -117,7 +117,7 @@ def _leap(p: Parameters, s: State, osc: Oscillator, contact: ContactForce, t: fl
 @compiled
 def _frozen_leap(p: Parameters, s: State, osc: Oscillator, sag_second: float,
                  contact: ContactForce, t: float) -> float:
-    """Return how long the force keeps off the limit of now, which no law takes back, whatever the free motion does.
+    """Return how long the force keeps off the limit of now, which no law takes back, for any free motion.
 
     It serves where P is bent or the law is not concave, under which the guard less the envelope may vanish twice.
     """

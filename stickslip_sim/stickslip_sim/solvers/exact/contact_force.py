@@ -93,7 +93,7 @@ def moves(s: State) -> bool:
 def rings_within(p: Parameters, s: State, osc: Oscillator, motion: ContactMotion, rounding: float) -> bool:
     """Whether a contact that the drive does not load any further stays within the limit of now, which never falls.
 
-    Without a damper it may come back to the limit in every period, and touch it: no break-away, whatever rounding says.
+    Without a damper it may come back to the limit in every period, and touch it: no break-away, with any rounding.
     """
     _, _, free, free_rate, _, _ = contact_at(p, osc, motion, 0.0)
     size, _ = amplitude(osc, free, free_rate)

@@ -128,7 +128,7 @@ def _pass_event(p: Parameters, s: State, due: float, second: float, fraction: fl
         return False
     s.cache.last[mode] = due if s.next.kind != COAST else 0.0
     contact = contact_energy(p, s, 0.0) if accounting else 0.0
-    _transition(p, s, events, row, acceleration)
+    make_transition(p, s, events, row, acceleration)
     if accounting:
         book_contact(p, s, contact)
     return True
@@ -221,7 +221,8 @@ def _start_at(p: Parameters, s: State, second: float, fraction: float) -> None:
 
 
 @inlined
-def _transition(p: Parameters, s: State, events: Events, row: int, before: float) -> None:
+def make_transition(p: Parameters, s: State, events: Events, row: int, before: float) -> None:
+    """Go over to the mode that follows on the event that is due; `before` is the acceleration just before it."""
     kind = s.next.kind
     if kind == BREAKAWAY:
         release(p, s, events, row)

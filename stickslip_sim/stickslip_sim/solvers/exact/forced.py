@@ -12,7 +12,7 @@ while coasting, 0 and nothing in a slip.  The search marches in safe steps, and 
 2. An event is declared only where the gap is below −ε in fact, or where the same bound with the other sign proves that
    it falls through −2ε: a sinusoid whose peak stays below its limit, or on it, holds.  Either gives a bracket with a
    sign change, in which Newton's step finds the root to rounding.
-3. In a slip the speed is monotone up to the first root of the acceleration, so its value at the end of each step tells
+3. In a slip the speed is monotone up to the first root of the acceleration, so its value at the end of each step shows
    whether a breakpoint, or standstill, was passed.
 4. As long as mean + amplitudes + what is left of the free motion is below the limit, nothing can happen: the search
    leaps to the end of that, which under a constant mean is never.

@@ -6,7 +6,7 @@ No guard is scanned; `linear.roots` gives the arguments why none of its roots ca
 floating point; `judge` holds each event of a run to it.
 
 * Slip: the acceleration of a linear mode vanishes at a closed-form time, and until then the speed is monotone; so the
-  sign of (speed − knot) at that time decides whether the breakpoint, or standstill, is reached before.
+  sign of (speed − breakpoint) at that time decides whether the breakpoint, or standstill, is reached before.
 * Coasting: the residual force is a polynomial of the time.
 * Stick: `static_guards` for a rigid contact, `compliant_stick` for a compliant one.  The force of a contact that has
   rung for long may change by more than rounding within the last bit of the time since the segment start.  Then the

@@ -40,7 +40,7 @@ _NEAR = 1.0         # up to which its phase is taken from that of the oscillator
 _CLOSE = 0.07       # (|γ| + |w − ν|) t up to which a sinusoid is interpolated
 _WIDE = 1.25        # radians over which it is,
 _OF_OWN = 0.6       # or that part of the oscillator's own, which is not to be turned back
-_HARDLY = 0.01      # radians of a sinusoid and of the oscillator that are left to panels, however fast others are
+_LITTLE = 0.01      # radians of a sinusoid and of the oscillator that are left to panels, however fast others are
 # Chebyshev's twenty points, those above 0, and Lagrange's weights for the middle between them
 _POINTS = (0.996917333733127976, 0.972369920397676602, 0.923879532511286756, 0.852640164354092222,
            0.760405965600030938, 0.649448048330183656, 0.522498564715948865, 0.382683432365089772,
@@ -130,9 +130,9 @@ def moving_works(p: Parameters, s: State, t: float) -> Works:
     for k in range(int(s.sinusoid_count)):
         w = TURN * s.sinusoids[k].frequency
         close = close or _is_close(osc, w, t)
-        slow = slow or w * t < _HARDLY
+        slow = slow or w * t < _LITTLE
     rate = max(fastest_sinusoid(s), abs(osc.gamma) + abs(osc.nu))
-    if rate * t <= (_SOME if close else _FEW) or (slow and own < _HARDLY):
+    if rate * t <= (_SOME if close else _FEW) or (slow and own < _LITTLE):
         return panels(p, s, t, rate)
     if not close:
         return _closed(p, s, osc, t, 0.0)
@@ -151,7 +151,7 @@ def moving_works(p: Parameters, s: State, t: float) -> Works:
 
 @compiled
 def _is_close(osc: Oscillator, w: float, t: float) -> bool:
-    """Whether a sinusoid hardly leaves the oscillator's own within t."""
+    """Whether a sinusoid stays close to the oscillator's own within t."""
     gamma, _, nu, _, _ = osc
     return nu > 0.0 and (abs(gamma) + abs(w - nu)) * t < _CLOSE
 

@@ -33,7 +33,7 @@ from ...axis.transitions import (
 )
 from ...core.hot_path import compiled
 from .. import DONE, FULL, OUT_OF_RANGE
-from ..inputs import hold_inputs, inputs_at, inputs_vary, refresh_inputs, same_inputs
+from ..inputs import given_inputs_at, hold_inputs, inputs_vary, refresh_inputs, same_inputs
 from ..sampling import write_sample
 from ..state import begin_state, change_contact
 from .steps import friction_at, segment_near, step
@@ -108,7 +108,7 @@ def sample(p: Parameters, s: State, second: float, fraction: float, out: SampleR
     y, u, drive = 0.0, s.velocity, 0.0
     if t > 0.0:
         y, u, drive = step(p, s, t)
-    v, f = inputs_at(s, second, fraction)
+    v, f = given_inputs_at(s, second, fraction)
     of_drive = drive_force(p, s.spring + (drive - y), v, u)
     applied = of_drive + f
     friction = friction_at(p, s, applied, u, s.deflection + y)

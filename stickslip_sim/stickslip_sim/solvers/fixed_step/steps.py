@@ -11,7 +11,7 @@ step the first segment of the table is continued.
 from ...axis.layout import Parameters, State
 from ...axis.motion import STICK, breakpoint_speed, contact_force, drive_force, friction_line, is_rigid_stick
 from ...core.hot_path import compiled
-from ..inputs import inputs_at
+from ..inputs import given_inputs_at
 
 EULER, RK4 = 0.0, 1.0
 
@@ -66,8 +66,8 @@ def _rk4(p: Parameters, s: State, h: float) -> tuple[float, float, float]:
     """Classical Runge-Kutta; the drive's travel is then Simpson's rule."""
     half = 0.5 * h
     v0, f0 = s.inputs.v, s.inputs.f
-    v1, f1 = inputs_at(s, s.second, s.fraction + half)
-    v2, f2 = inputs_at(s, s.second, s.fraction + h)
+    v1, f1 = given_inputs_at(s, s.second, s.fraction + half)
+    v2, f2 = given_inputs_at(s, s.second, s.fraction + h)
     drive = h / 6.0 * (v0 + 4.0 * v1 + v2)
     if is_rigid_stick(p, s):
         return 0.0, 0.0, drive
