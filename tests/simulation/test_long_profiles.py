@@ -5,15 +5,17 @@
 import math
 import random
 from collections.abc import Sequence
+from typing import Any
 
 import pytest
 
 from stickslip_sim.axis import InitialState, pack
 from stickslip_sim.core import hot_path
+from stickslip_sim.core.errors import UnsoundError
 from stickslip_sim.core.input_profile import InputProfile, steps, table
 from stickslip_sim.core.types import Event
 from stickslip_sim.simulation.simulator import Simulator
-from stickslip_sim.solvers import DONE, FULL, Solver, exact, fixed_step, with_advance
+from stickslip_sim.solvers import DONE, FULL, PieceWalk, Solver, exact, fixed_step, with_advance
 from stickslip_sim.solvers.walk import walk_of
 from tests.conftest import Program
 from tests.support.axes import COMPLIANT, instant, paper_axis
@@ -116,6 +118,29 @@ def test_a_table_that_fills_in_mid_walk_loses_no_event(solver: Solver, room: int
     assert until > 2.0
     assert filled == len(found) // room > 0
     assert [tuple(map(float, row)) for row in found] == bits(simulator.advance(instant(2.0)))
+
+
+def doctored(solver: Solver) -> Solver:
+    """Return a solver with energy that the run never had, from the first walk through pieces on."""
+    walk = walk_of(solver)
+
+    def run(p: Any, s: Any, *arguments: Any) -> Any:
+        s.stored_at_start += 1e3   # J
+        return walk.run(p, s, *arguments)
+
+    return solver._replace(walk=PieceWalk(walk.pieces_of, run))   # type: ignore[attr-defined, no-any-return]
+
+
+def test_a_run_that_gives_up_in_mid_walk_says_when_and_stands_there() -> None:
+    ends = []
+    for solver in (exact.SOLVER, ONE_BY_ONE):
+        simulator = make('plain', doctored(solver))
+        with pytest.raises(UnsoundError, match='contradicts its own motion or balance of energy at t = ') as failure:
+            simulator.advance(instant(2.0))
+        assert 0.0 < simulator.time.seconds < 0.5
+        assert repr(simulator.time.seconds) in str(failure.value)
+        ends.append((str(failure.value), simulator.time, simulator.sample()))
+    assert ends[0] == ends[1]
 
 
 def test_commands_in_between_and_a_checkpoint_go_on_with_the_pieces() -> None:
