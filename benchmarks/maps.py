@@ -99,21 +99,21 @@ def pictures() -> None:
     shutil.rmtree(RUNS, ignore_errors=True)
     RUNS.mkdir(parents=True)
     for name, commands in PICTURES.items():
-        replace_generated(PAGE, '\n'.join(map(_shown, commands)) + '\n', name)
+        replace_generated(PAGE, '\n'.join(map(shown, commands)) + '\n', name)
         for command in commands:
             _said(command)
 
 
 def critical() -> None:
     """Find the critical values."""
-    replace_generated(PAGE, '\n'.join(f'{_shown(command)}\n\n{_quoted(command)}' for command in CRITICAL), 'critical')
+    replace_generated(PAGE, '\n'.join(f'{shown(command)}\n\n{_quoted(command)}' for command in CRITICAL), 'critical')
 
 
 def uncertainty() -> None:
     """Run an axis whose friction is known only roughly."""
     RUNS.mkdir(parents=True, exist_ok=True)
     shutil.rmtree(RUNS / 'uncertainty', ignore_errors=True)
-    replace_generated(PAGE, f'{_shown(UNCERTAIN)}\n\n{_quoted(UNCERTAIN)}', 'uncertainty')
+    replace_generated(PAGE, f'{shown(UNCERTAIN)}\n\n{_quoted(UNCERTAIN)}', 'uncertainty')
 
 
 def throughput() -> None:
@@ -194,7 +194,7 @@ def _seconds(study: Study) -> float:
     return time.process_time() - begin
 
 
-def _shown(command: str) -> str:
+def shown(command: str) -> str:
     """Return a command as a user gives it, folded to the width of the page."""
     rows = ['    python3 -m stickslip_sim']
     for word in command.replace(' --', '\n--').split('\n'):   # an option stays with its value

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.maps import CRITICAL, PAGE, PICTURES, UNCERTAIN, _shown
+from benchmarks.maps import CRITICAL, PAGE, PICTURES, UNCERTAIN, shown
 from stickslip_sim.cli.main import run
 from tests.support.tool import Capture
 
@@ -19,7 +19,7 @@ def page() -> str:
 
 @pytest.mark.parametrize('name', PICTURES)
 def test_each_picture_has_its_commands(name: str, page: str) -> None:
-    part = '\n'.join(map(_shown, PICTURES[name]))
+    part = '\n'.join(map(shown, PICTURES[name]))
     assert f'<!-- {name}: begin -->\n\n{part}\n\n<!-- {name}: end -->' in page
     picture = PICTURES[name][-1].partition('--out docs/')[2].split()[0]
     assert f']({picture})' in page
@@ -27,7 +27,7 @@ def test_each_picture_has_its_commands(name: str, page: str) -> None:
 
 
 def test_every_critical_value_has_its_command(page: str) -> None:
-    assert all(_shown(command) in page for command in CRITICAL)
+    assert all(shown(command) in page for command in CRITICAL)
 
 
 def test_a_critical_value_is_what_the_page_says(page: str, capsys: Capture) -> None:
@@ -39,7 +39,7 @@ def test_a_critical_value_is_what_the_page_says(page: str, capsys: Capture) -> N
 
 def test_the_uncertainty_is_what_the_page_says(page: str, tmp_path: Path, capsys: Capture) -> None:
     """All but its last line, which names the folder."""
-    assert _shown(UNCERTAIN) in page
+    assert shown(UNCERTAIN) in page
     elsewhere = UNCERTAIN.replace('runs/maps', str(tmp_path)).replace('docs/images', str(tmp_path))
     assert run(shlex.split(elsewhere)) == 0
     assert (tmp_path / 'uncertainty.png').read_bytes().startswith(b'\x89PNG')

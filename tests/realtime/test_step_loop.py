@@ -169,7 +169,7 @@ def test_the_loop_makes_step_0_before_it_hears_requests() -> None:
 
     def restart() -> None:
         loop.restart()
-        loop._requests.append(step_twice)    # as one that came meanwhile
+        loop.request(step_twice)    # as one that came meanwhile
 
     for _ in range(20):
         assert loop.at_boundary(restart)

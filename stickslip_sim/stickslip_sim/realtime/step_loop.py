@@ -84,6 +84,11 @@ class StepLoop:
         if self._thread.ident is not None:
             self._thread.join(_PATIENCE)
 
+    def request(self, action: Callable[[], None]) -> None:
+        """Have an action done between two steps by the loop's thread, without waiting for it."""
+        self._requests.append(action)
+        self._wake.set()
+
     def at_boundary(self, action: Callable[[], object], patience: float = _PATIENCE) -> bool:
         """Have an action done between two steps by the loop's thread; wait for it and return whether it was done."""
         done = threading.Event()
@@ -92,8 +97,7 @@ class StepLoop:
             action()
             done.set()
 
-        self._requests.append(do)
-        self._wake.set()
+        self.request(do)
         if not done.wait(patience):
             with suppress(ValueError):    # it was begun after all
                 self._requests.remove(do)

@@ -9,7 +9,7 @@ import pytest
 from sensor_msgs.msg import JointState
 
 from stickslip_sim.recording import topics as names
-from stickslip_sim.ros.diagnostics import graph_monitor
+from stickslip_sim.ros.diagnostics.graph_monitor import PublisherWatch
 from tests.support.ros2_control_client import THRESHOLD, Rule, always, hardware_interface, near_is_silent
 from tests.support.ros_nodes import Client, client, running
 from tests.support.waiting import wait_for
@@ -57,11 +57,10 @@ class TestGraphMonitor:
             '2 controllers at once on /drive_velocity, /joint_commands', alone, gone.format(0.003), alone,
             gone.format(0.005)]
 
-    def test_a_controller_bears_its_name_from_the_first_look_on(self, monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_a_controller_bears_its_name_from_the_first_look_on(self) -> None:
         """ROS knows a publisher some 40 ms before it knows whose it is."""
-        monkeypatch.setattr(graph_monitor, '_PATIENCE', 60)    # looks, which take as long as those of the node
         with client() as watcher:
-            publishers = graph_monitor._Publishers(watcher.node, [names.JOINT_COMMANDS])
+            publishers = PublisherWatch(watcher.node, [names.JOINT_COMMANDS], patience=60)
 
             def changed() -> bool:
                 time.sleep(0.05)

@@ -49,17 +49,18 @@ def test_a_defect_is_reported_and_shown_where(tmp_path: Path, place: str) -> Non
 
 CORRUPTED = """
 import sys
-from stickslip_sim.rig import Rig
 from stickslip_sim.ros import sim_node
+from stickslip_sim.solvers import exact, with_advance
 
-make_step = Rig.make_step
+done = []
 
-def corrupted(rig, *commands):
-    if rig.step == 5:
-        rig.simulator._state.stored_at_start += 1e3      # J that the run never had
-    return make_step(rig, *commands)
+def corrupted(p, s, second, fraction, *arguments):
+    if not done and fraction > 0.005:
+        done.append(True)
+        s.stored_at_start += 1e3      # J that the run never had
+    return exact.advance(p, s, second, fraction, *arguments)
 
-Rig.make_step = corrupted
+exact.SOLVER = with_advance(exact.SOLVER, corrupted)
 sys.exit(sim_node.main(sys.argv[1:]))
 """
 

@@ -42,11 +42,14 @@ class GraphMonitor:
         return [trouble for watched in self._watched if (trouble := watched.look())]
 
 
-class _Publishers:
-    """Which nodes publish on some topics; their names cost ten times the count and are asked for when that changed."""
+class PublisherWatch:
+    """Which nodes publish on some topics; their names cost ten times the count and are asked for when that changed.
 
-    def __init__(self, node: Node, topics: Sequence[names.Topic]) -> None:
-        self._node = node
+    For `patience` looks a publisher whose node is not known yet counts as none.
+    """
+
+    def __init__(self, node: Node, topics: Sequence[names.Topic], patience: int = _PATIENCE) -> None:
+        self._node, self._patience = node, patience
         self._topics = [node.resolve_topic_name(topic.name) for topic in topics]
         self._counts: list[int] = []
         self._unnamed = 0    # looks
@@ -60,7 +63,7 @@ class _Publishers:
         nodes = sorted(f'{info.node_namespace.rstrip("/")}/{info.node_name}' for topic in self._topics
                        for info in self._node.get_publishers_info_by_topic(topic))
         self._unnamed = self._unnamed + 1 if any(_UNKNOWN in node for node in nodes) else 0
-        if 0 < self._unnamed < _PATIENCE:
+        if 0 < self._unnamed < self._patience:
             return False
         before, self._counts, self.nodes = self.nodes, counts, nodes
         return nodes != before
@@ -72,7 +75,7 @@ class _Output:
     def __init__(self, node: Node, topic: names.Topic) -> None:
         self._log, self._own = node.get_logger(), node.get_fully_qualified_name()
         self._topic = node.resolve_topic_name(topic.name)
-        self._publishers = _Publishers(node, [topic])
+        self._publishers = PublisherWatch(node, [topic])
         self._trouble = ''
 
     def look(self) -> str:
@@ -99,7 +102,7 @@ class _Input:
         self._log = node.get_logger()
         self._name, self._held = slot.name, held
         self._topics = ', '.join(node.resolve_topic_name(topic.name) for topic in topics)
-        self._publishers = _Publishers(node, topics)
+        self._publishers = PublisherWatch(node, topics)
         self._trouble = ''
 
     def look(self) -> str:
@@ -126,7 +129,7 @@ class _Bridge:
 
     def __init__(self, node: Node, slot: CommandSlot) -> None:
         self._log, self._slot = node.get_logger(), slot
-        self._publishers = _Publishers(node, [names.JOINT_COMMANDS])
+        self._publishers = PublisherWatch(node, [names.JOINT_COMMANDS])
         self._silent = 0     # looks
 
     def look(self) -> str:
