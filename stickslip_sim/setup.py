@@ -39,10 +39,10 @@ setup(
     python_requires='>=3.10',
     install_requires=[
         'setuptools', 'numpy', 'scipy', 'PyYAML', 'mcap', 'zstandard', 'lz4', 'rosbags',
-        'matplotlib>=3.6', 'click',
+        'matplotlib>=3.6', 'click', 'mpmath',
     ],
     extras_require={
-        'bench': ['mpmath', 'numba'], 'cluster': ['distributed'], 'tables': ['pandas', 'fastparquet'],
+        'bench': ['numba'], 'cluster': ['distributed'], 'tables': ['pandas', 'fastparquet'],
         'test': ['numba', 'pytest'],
     },
     entry_points={

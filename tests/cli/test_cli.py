@@ -9,12 +9,14 @@ import shutil
 import subprocess
 import sys
 from fractions import Fraction
+from importlib import import_module
 from pathlib import Path
 
+import click
 import pytest
 
-from stickslip_sim import __version__
-from stickslip_sim.cli.main import run
+from stickslip_sim import __version__, cli
+from stickslip_sim.cli.main import run, stickslip
 from stickslip_sim.core.types import EventKind, Mode
 from stickslip_sim.runs import simulate, simulate_events
 from stickslip_sim.runs.error_estimate import error_estimate
@@ -29,10 +31,27 @@ SAMPLE_HEADER = 'time,position,velocity,acceleration,drive_position,drive_force,
 def test_version_and_help() -> None:
     done = tool('--version')
     assert (done.returncode, done.stdout) == (0, f'stickslip {__version__}\n')
-    _, _, verbs = tool('--help').stdout.partition('Commands:')
+    _, _, verbs = tool('--help').stdout.partition('\nRun:\n')
     assert 'simulate' in verbs
     assert '...' not in verbs    # each line is whole
     assert '--sample-period' in tool('simulate', '--help').stdout
+
+
+def test_every_verb_stands_in_one_section_of_the_help() -> None:
+    """A new verb is a file in cli/; without a section nobody would find it."""
+    rooms = [import_module(f'{cli.__name__}.{file.stem}') for file in Path(cli.__path__[0]).glob('*.py')]
+    written = {str(value.name) for room in rooms for value in vars(room).values()
+               if isinstance(value, click.Command) and not isinstance(value, click.Group)}
+    listed = [str(verb.name) for verbs in stickslip.sections.values() for verb in verbs]
+    assert sorted(listed) == sorted(written)
+    assert {section: [line.split()[0] for line in lines] for section, lines in sections(tool('--help').stdout)} \
+        == {section: [verb.name for verb in verbs] for section, verbs in stickslip.sections.items()}
+
+
+def sections(text: str) -> list[tuple[str, list[str]]]:
+    """Return the titles of a help with the lines below each."""
+    parts = [part.splitlines() for part in text.split('\n\n')]
+    return [(lines[0][:-1], lines[1:]) for lines in parts if lines[0].endswith(':') and lines[0] != 'Options:']
 
 
 def test_the_installed_tool_has_a_bare_name(tmp_path: Path) -> None:

@@ -30,17 +30,26 @@ from .friction import friction
 from .map import map_
 from .plot import plot
 from .scenes import scenes
+from .sections import SectionedGroup
 from .simulate import simulate
 from .sweep import sweep
 from .uncertainty import uncertainty
 from .verify import verify
 
+_SECTIONS: dict[str, tuple[click.Command, ...]] = {   # each verb by what a reader wants, as in the help
+    'Run': (scenes, simulate),
+    'Look': (plot, compare, export),
+    'Judge': (check, verify),
+    'Study': (critical, sweep, map_, uncertainty),
+    'Identify': (friction,),
+    'Measure the engine': (advise, bench, extremes),
+}
 _INTERRUPTED = 130
 _UNWRITABLE = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EBADF, errno.EPIPE)
 _TERMINATED = 143
 
 
-@click.group(context_settings={'help_option_names': ['-h', '--help'], 'max_content_width': 100},
+@click.group(cls=SectionedGroup, context_settings={'help_option_names': ['-h', '--help'], 'max_content_width': 100},
              epilog='For a start: stickslip simulate paper_fig8 --duration 10 --plot run.png',
              invoke_without_command=True, subcommand_metavar='COMMAND [ARGS]...')
 @click.version_option(__version__, message='stickslip %(version)s')
@@ -52,9 +61,8 @@ def stickslip(context: click.Context) -> None:
         context.exit(2)
 
 
-for verb in (advise, bench, check, compare, critical, export, extremes, friction, map_, plot, scenes, simulate, sweep,
-             uncertainty, verify):
-    stickslip.add_command(verb)
+for title, verbs in _SECTIONS.items():
+    stickslip.add_section(title, verbs)
 
 
 def main(arguments: Sequence[str] | None = None) -> NoReturn:
