@@ -19,6 +19,7 @@ from stickslip_sim.recording import (
     open_bag,
     open_run,
     receipt_file,
+    recorded_topics,
     samples_of,
     write_bag,
 )
@@ -159,7 +160,7 @@ class TestLayout:
             assert {chunk.compression for chunk in summary.chunk_indexes} == {'zstd'}
 
     def test_true_from_the_start(self, tmp_path: Path) -> None:
-        writer = open_run(tmp_path / 'new', FACTS, '/cell')
+        writer = open_run(tmp_path / 'new', FACTS, recorded_topics('/cell'))
         body = yaml.safe_load((tmp_path / 'new' / 'metadata.yaml').read_text())['rosbag2_bagfile_information']
         assert body['message_count'] == 0
         assert [topic['topic_metadata']['name'] for topic in body['topics_with_message_count']][:2] == [

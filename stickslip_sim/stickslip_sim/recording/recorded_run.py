@@ -57,7 +57,8 @@ class RecordedRun(Views):
         self.bag = bag
         self.notes = shortfalls(bag)
         self.is_complete = bag.is_complete
-        self.is_changed = bag.counts.get(PARAMETER_EVENTS.name, 0) > 0
+        self.is_changed = any(bag.counts.get(name) for name, kind in bag.topics.items()
+                              if kind == PARAMETER_EVENTS.type)
         self._given = path
 
     @property

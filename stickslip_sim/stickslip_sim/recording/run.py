@@ -4,7 +4,7 @@
 
 import json
 import platform
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from importlib.metadata import PackageNotFoundError, version
@@ -16,7 +16,7 @@ from ..core.version import __version__
 from ..runs.receipt import plain
 from .bag import BagWriter
 from .metadata import ros_distro
-from .topics import recorded_topics
+from .topics import Topic, recorded_topics
 
 if TYPE_CHECKING:
     from ..scene import Scene
@@ -73,9 +73,12 @@ class RunFacts:
         return {'origin': 'offline', 'duration': repr(self.duration), 'sample_period': str(self.sample_period)}
 
 
-def open_run(folder: Path | str, facts: RunFacts, namespace: str = '/') -> BagWriter:
-    """Make a run folder with the recorded topics of a node in `namespace`; raises RecordingError if it exists."""
-    return BagWriter(folder, recorded_topics(namespace), {SCENE_FILE: facts.scene_text.encode()}, facts.as_metadata())
+def open_run(folder: Path | str, facts: RunFacts, topics: Sequence[Topic] = ()) -> BagWriter:
+    """Make a run folder with the recorded topics by these names (none: those of RECORDED in the namespace /).
+
+    Raises RecordingError if it exists.
+    """
+    return BagWriter(folder, topics or recorded_topics(), {SCENE_FILE: facts.scene_text.encode()}, facts.as_metadata())
 
 
 def receipt_file(receipt: Mapping[str, object]) -> dict[str, bytes]:

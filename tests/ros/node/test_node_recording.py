@@ -11,8 +11,9 @@ from typing import Any
 import pytest
 
 from stickslip_sim.core.errors import RecordingWarning
-from stickslip_sim.recording import Bag, open_bag
+from stickslip_sim.recording import Bag, open_bag, read_run
 from stickslip_sim.scene import load_scene
+from stickslip_sim.verify.verification import verify
 from tests.support.ros_nodes import assert_clean, client, recording_into, running
 from tests.support.tool import restore_interrupt
 from tests.support.waiting import DEADLINE, wait_for
@@ -87,6 +88,21 @@ class TestRecording:
             assert axis.next('/diagnostics').status[0].hardware_id == '/cell/press/feed_axis'
             assert_clean(*process.end())
         assert set(open_bag(folder).topics) >= {'/cell/press/slider_state', '/parameter_events'}
+
+    def test_the_bag_has_the_names_that_the_topics_have(self, tmp_path: Path) -> None:
+        """As those of `ros2 bag record`; readers go by the types."""
+        folder = tmp_path / 'run'
+        rules = [word for rule in ('slider_state:=/mill/state', 'drive_velocity:=command', 'rig_event:=~/rig_event')
+                 for word in ('-r', rule)]
+        with running(*rules, *recording_into(folder)) as process, client() as axis:
+            names = {'/mill/state', '/command', '/feed_axis/rig_event', '/friction_force'}
+            wait_for(lambda: names <= {name for name, _ in axis.node.get_topic_names_and_types()}, 'the topics')
+            axis.next('friction_force', lambda message: message.step > 10)
+            assert_clean(*process.end())
+        bag = open_bag(folder)
+        assert set(bag.topics) >= names
+        assert not {'/slider_state', '/drive_velocity', '/rig_event'} & set(bag.topics)
+        assert verify(read_run(folder)).difference is None
 
     def test_only_below_the_folder_of_the_start(self, tmp_path: Path) -> None:
         """Who may set parameters may not write anywhere: not up, not elsewhere, not through a link."""

@@ -11,7 +11,7 @@ import pytest
 
 from stickslip_sim.recording import RECORDED, Bag, flat_layout, open_bag, open_run
 from stickslip_sim.recording.messages import Packer
-from stickslip_sim.recording.topics import DRIVE_VELOCITY, RIG_EVENT, SLIDER_STATE, Topic
+from stickslip_sim.recording.topics import DRIVE_VELOCITY, RIG_EVENT, SLIDER_STATE, Topic, recorded_topics
 from tests.support.busy_machine import judged_by_time
 from tests.support.eventful_runs import eventful_run
 from tests.support.recorded_runs import FACTS, samples
@@ -177,7 +177,7 @@ def commanded(folder: Path, others: Mapping[int, tuple[Topic, bytes]] = MappingP
     """Write a run of 50 steps with one command, before its second step, and `others` by step."""
     states, command = Packer(SLIDER_STATE), flat_layout(DRIVE_VELOCITY.type).pack(0, velocity)
     messages = {first + 1: (DRIVE_VELOCITY, command), **others}
-    writer = open_run(folder, FACTS, namespace)
+    writer = open_run(folder, FACTS, recorded_topics(namespace))
     for step, sample in enumerate(samples(50, first), first):
         if step in messages:
             topic, data = messages[step]

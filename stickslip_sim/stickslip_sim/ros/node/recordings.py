@@ -3,7 +3,7 @@
 """Recordings of the node: begun, watched and ended while the axis runs."""
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +14,7 @@ from ...recording import (
     MessageCodec,
     RecorderThread,
     RunFacts,
+    Topic,
     checkpoint_file,
     open_run,
     receipt_file,
@@ -30,15 +31,15 @@ class Recordings:
     """At most one recording at a time; a failure ends the recording and is kept to be reported, never raised.
 
     All lie below the folder of the one that the scene names at the start, or below runs/: a user who may set parameters
-    may not write anywhere.
+    may not write anywhere.  `topics` are those of RECORDED by the names that they have on the graph.
     """
 
-    def __init__(self, namespace: str, scene: Scene) -> None:
+    def __init__(self, namespace: str, scene: Scene, topics: Sequence[Topic] = ()) -> None:
         self.recorder: RecorderThread | None = None
         self.folder = ''             # of the recording under way
         self.failure = ''            # why the latest recording ended or did not begin
         self.dropped = 0             # messages of earlier recordings
-        self._namespace = namespace
+        self._namespace, self._topics = namespace, topics
         given = os.path.expanduser(scene.record.folder)
         self._root = Path(os.path.realpath(Path(given).parent if given else _RUNS))
         self._codec = MessageCodec([PARAMETER_EVENTS.type])
@@ -56,7 +57,7 @@ class Recordings:
     def begin(self, scene: Scene) -> None:
         """Open a new run folder; raises RecordingError."""
         try:
-            writer = open_run(self._folder_of(scene), RunFacts.of(scene), self._namespace)
+            writer = open_run(self._folder_of(scene), RunFacts.of(scene), self._topics)
         except InputError as error:
             self.failure = str(error)
             raise RecordingError(self.failure) from None

@@ -23,7 +23,7 @@ PARAMETERS = (
     Parameter('clock', 'double', 0.0, 'Hz', 'how often /clock is published; 0: not at all', 0.0, 1e4),
     Parameter('topics', 'string_array', (), '', 'which are played; left out: all'),
     Parameter('axis', 'string', '', '', 'with mode: commands: the node that takes them; empty: feed_axis in the'
-              ' namespace of the recording'),
+              ' namespace of the recorded commands'),
 )
 
 

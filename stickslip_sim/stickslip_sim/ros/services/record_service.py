@@ -9,6 +9,7 @@ from std_srvs.srv import SetBool
 
 from ...core.errors import RecordingError
 from ...realtime.step_loop import StepLoop
+from ...recording import RECORDED
 from ..node.parameters import SceneNode
 from ..node.publishers import Publishers
 from ..node.recordings import Recordings
@@ -23,7 +24,8 @@ class RecordService:
 
     def __init__(self, node: SceneNode, loop: StepLoop, publishers: Publishers, publish: Callable[[], None],
                  receipt: Callable[[], dict[str, Any]]) -> None:
-        self.recordings = Recordings(node.get_namespace(), node.scene)
+        self.recordings = Recordings(node.get_namespace(), node.scene, [
+            topic._replace(name=node.resolve_topic_name(topic.name)) for topic in RECORDED])
         self._node, self._loop, self._publishers = node, loop, publishers
         self._publish, self._receipt = publish, receipt
         node.create_service(SetBool, '~/record', self._set_recording)
