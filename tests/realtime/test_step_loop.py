@@ -190,3 +190,31 @@ def test_a_paused_loop_that_is_reset_has_its_start() -> None:
     wait_for(lambda: loop.step == 0, 'the start again')
     loop.stop()
     assert [result.step for result in results] == [*range(11), 0]
+
+
+def test_what_has_arrived_is_heard_before_each_step_but_the_start() -> None:
+    results: list[StepResult] = []
+    waiting = [0.003]
+    velocity, force = slots()
+
+    def hear() -> None:
+        while waiting:
+            velocity.offer(waiting.pop(), 1)
+
+    loop = StepLoop(make_rig(), Unpaced(Grid(1000.0)), (velocity, force), [results.append], Watchdog(0.0),
+                    by_request=True, hear=hear)
+    loop.start()
+    wait_for(lambda: loop.step == 0, 'the start')
+    assert results[0].velocity is None
+    waiting.append(0.004)
+    assert loop.at_boundary(lambda: loop.run_steps(2, None, None, lambda: False))
+    assert [result.velocity for result in results[1:]] == [0.004, None]
+    waiting.append(0.005)    # an order goes before what arrived earlier
+    assert loop.at_boundary(lambda: loop.run_steps(1, 0.006, None, lambda: False))
+    assert results[-1].velocity == 0.006
+    waiting.append(0.007)    # a reset forgets it
+    assert loop.at_boundary(loop.restart)
+    assert loop.at_boundary(lambda: loop.run_steps(2, None, None, lambda: False))
+    loop.stop()
+    assert [result.velocity for result in results[-2:]] == [None, None]
+    assert velocity.received == 0

@@ -3,7 +3,8 @@
 """The step loop: a thread that brings the rig from step to step, as its clock says.  Knows no ROS.
 
 Step n reaches from (n − 1)/rate to n/rate (step 0 is the start).  In real time it is made when its end is due on the
-steady clock: first the latest commands are taken, which hold from its begin on, then its events and its state go out.
+steady clock: first the commands that have arrived are heard, of which the latest hold from its begin on, then its
+events and its state go out.
 So a controller that answers a state within a period acts on the very next step, as in lock-step.
 """
 
@@ -30,10 +31,11 @@ class StepLoop:
     """Runs the steps in a thread of its own; everything else asks for changes `at_boundary`.
 
     `sinks` get each step result, in the loop's thread.  With `by_request` time moves with `run_steps` only.
+    `hear` puts what has arrived into the slots; where others do that, it does nothing.
     """
 
     def __init__(self, rig: Rig, clock: StepClock, slots: tuple[CommandSlot, CommandSlot], sinks: Sequence[Sink],
-                 watchdog: Watchdog, by_request: bool = False) -> None:
+                 watchdog: Watchdog, by_request: bool = False, hear: Callable[[], None] = lambda: None) -> None:
         self.rig = rig
         self.paused = False
         self.by_request = by_request
@@ -41,7 +43,7 @@ class StepLoop:
         self.crash: BaseException | None = None
         self.timing_statistics, self.pacing_counters = TimingStatistics(), clock.counters
         self._clock, self._sinks, self._watchdog = clock, sinks, watchdog
-        self._inputs = CommandInputs(slots)
+        self._inputs, self._hear = CommandInputs(slots), hear
         self._requests: deque[Callable[[], None]] = deque()
         self._is_over, self._wake = threading.Event(), threading.Event()
         self._thread = threading.Thread(target=self._run, name='steps', daemon=True)
@@ -112,6 +114,7 @@ class StepLoop:
 
     def restart(self) -> None:
         """Begin anew with step 0 and the initial state, without commands; at a boundary only."""
+        self._hear()
         self._inputs.forget()
         self.rig.reset()
         self._watchdog.forget()
@@ -126,6 +129,7 @@ class StepLoop:
 
         Returns what came of them; when the solver gives up on the way, `failure` says why.
         """
+        self._hear()
         self._inputs.put((velocity, force), self._clock.now())
         results: list[StepResult] = []
         try:
@@ -150,9 +154,12 @@ class StepLoop:
             while self._requests and (self.step >= 0 or self.failure):    # first of all a run has its start
                 self._requests.popleft()()
             if self._stands_still:
+                self._hear()
                 self._wake.wait(_IDLE)
             elif self._clock.wait(self.step + 1):
                 self._make_step(*self._clock.begin(self.step + 1))
+            elif self.step >= 0:    # a long period: what comes meanwhile is counted, and the latest will hold
+                self._hear()
         except SolverError as error:
             self.failure = str(error)
 
@@ -161,7 +168,9 @@ class StepLoop:
         return bool(self.failure) or (self.step >= 0 and (self.paused or self.by_request))
 
     def _make_step(self, begin: int, lateness: int) -> StepResult:
-        new = self._inputs.take(begin)
+        if self.step >= 0:    # the first step is the start, which comes before any command
+            self._hear()
+        new = self._inputs.take(self._clock.now())
         self._watch()
         result = self.rig.make_step(new.velocity, new.force)
         for take in self._sinks:

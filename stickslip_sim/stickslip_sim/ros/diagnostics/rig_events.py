@@ -10,6 +10,7 @@ from stickslip_msgs.msg import RigEvent as RigEventMessage
 from ...recording.topics import RECORDED, RIG_EVENT
 from ...rig import RigEvent, RigEventKind, StepResult
 from ..node.conversion import set_stamp
+from ..node.deferred_log import DeferredLog
 from ..node.publishers import Publishers
 from ..node.topics import publisher
 
@@ -21,8 +22,8 @@ _QUIET = 1.0   # s of simulation time between two lines of a kind in the log
 class RigEvents:
     """Publishes, records and logs the events of the steps, and those that come from elsewhere."""
 
-    def __init__(self, node: Node, publishers: Publishers) -> None:
-        self._log = node.get_logger()
+    def __init__(self, node: Node, publishers: Publishers, log: DeferredLog) -> None:
+        self._log = log
         self._publishers = publishers
         self._publish = publisher(node, RIG_EVENT).publish
         self._index = RECORDED.index(RIG_EVENT)

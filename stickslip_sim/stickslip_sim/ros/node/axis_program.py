@@ -30,7 +30,7 @@ def _run(files: 'FileParameters', signals: 'Signals') -> None:
     from .feed_axis import FeedAxis
 
     node = FeedAxis(files, lambda: signals.stop)
-    spin(node, signals, lambda: node.loop.crash is not None)
+    spin(node, signals, lambda: node.loop.crash is not None, node.log.write)
     if node.loop.crash is not None:
         raise node.loop.crash
 

@@ -3,7 +3,7 @@
 """The node `feed_axis`: wires topics, services and parameters to the step loop.  No physics in here."""
 
 import gc
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from rclpy.parameter import Parameter
@@ -30,6 +30,7 @@ from ..services.standard_services import offer_standard_services
 from ..services.time_services import TimeServices
 from . import conversion
 from .clock import ClockOut
+from .deferred_log import DeferredLog
 from .joints import JointStates
 from .parameters import FileParameters, SceneNode
 from .publishers import Publishers
@@ -46,6 +47,8 @@ class FeedAxis(SceneNode):
     offline use only.
     """
 
+    _hidden: Sequence[Any] = ()
+
     def __init__(self, files: FileParameters, is_stopping: Callable[[], bool]) -> None:
         super().__init__(NODE, files)
         scene = self.scene
@@ -56,13 +59,22 @@ class FeedAxis(SceneNode):
         self._slots = (CommandSlot('velocity', 'm/s', scene.command.max_velocity),
                        CommandSlot('force', 'N', scene.command.max_force))
         self._outputs = Publishers(self)
-        self._rig_events = RigEvents(self, self._outputs)
+        self.log = DeferredLog(self.get_logger())
+        self._rig_events = RigEvents(self, self._outputs, self.log)
         grid = Grid(scene.time.rate)
         self._step_clock = step_clock(grid, scene.time.mode, scene.time.factor)
-        self.loop = StepLoop(scene.make_rig(), self._step_clock, self._slots, self._sinks(grid),
-                             Watchdog(scene.command.timeout), by_request=scene.time.mode == 'lockstep')
+        sinks = self._sinks(grid)
+        self._subscribers = Subscribers(self, *self._slots, self._step_clock.now, self.log, scene.rig.measures)
+        self._hidden = self._subscribers.hidden
+        self.loop = StepLoop(scene.make_rig(), self._step_clock, self._slots, sinks, Watchdog(scene.command.timeout),
+                             by_request=scene.time.mode == 'lockstep', hear=self._subscribers.hear)
         self._cost = CostMeter()
         self._open_endpoints(is_stopping)
+
+    @property
+    def subscriptions(self) -> Iterator[Any]:
+        """Those that an executor serves: all but those that the step loop takes from by itself."""
+        return (subscription for subscription in super().subscriptions if subscription not in self._hidden)
 
     def begin(self) -> None:
         """Start recording if the scene wants it, and the steps; raises RecordingError when it cannot be recorded."""
@@ -75,6 +87,8 @@ class FeedAxis(SceneNode):
             self._record_service.begin_at_start(self._start)
         else:
             self._start(self._publish_run_info)
+        if self._subscribers.trouble:
+            self.get_logger().info(f'commands are heard by callbacks: {self._subscribers.trouble}')
         self.get_logger().info(f'{self.scene.name}: {self.scene.time.rate:g} steps a second, {self.scene.time.mode}')
 
     def end(self) -> None:
@@ -82,6 +96,7 @@ class FeedAxis(SceneNode):
         self.loop.stop()
         if self._record_service.is_recording:
             self._report.report()    # the second that was cut short
+        self.log.write()
         if self.loop.step >= 0:
             self.get_logger().info(verdict(self.scene, self.loop).text)
         self._record_service.close()
@@ -115,7 +130,6 @@ class FeedAxis(SceneNode):
 
     def _open_endpoints(self, is_stopping: Callable[[], bool]) -> None:
         self._run_info_out = publisher(self, names.RUN_INFO)
-        Subscribers(self, *self._slots, self._step_clock.now, with_joints=self.scene.rig.measures)
         self._record_service: RecordService = RecordService(self, self.loop, self._outputs, self._publish_run_info,
                                                             self._receipt)
         times = TimeServices(self, self.loop, self._outputs, self._restart,

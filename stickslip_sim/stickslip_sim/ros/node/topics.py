@@ -60,9 +60,10 @@ def subscription(node: Node, topic: Topic, callback: Callable[[Any], None]) -> A
     return node.create_subscription(message_type(topic), topic.name, callback, qos(topic.qos))
 
 
-def raw_subscription(node: Node, topic: Topic, callback: Callable[[bytes], None]) -> Any:
-    """Create a subscription whose callback gets the bytes of each message, unchecked."""
-    return node.create_subscription(message_type(topic), topic.name, callback, qos(topic.qos), raw=True)
+def raw_subscription(node: Node, topic: Topic, callback: Callable[[bytes], None], depth: int) -> Any:
+    """Create a subscription that keeps `depth` messages, whose callback gets the bytes of each, unchecked."""
+    quality = qos(topic.qos._replace(depth=depth))
+    return node.create_subscription(message_type(topic), topic.name, callback, quality, raw=True)
 
 
 def message_of(topic: Topic, data: bytes) -> Any:

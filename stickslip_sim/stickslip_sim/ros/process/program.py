@@ -38,8 +38,9 @@ def live(args: Sequence[str], signals: 'Signals', program: Program) -> int:
         return _refuse(program, internal_error(error), 1)
 
 
-def spin(node: Any, signals: 'Signals', is_over: Callable[[], bool] = lambda: False) -> None:
-    """Let a node begin, hear, and end with a signal or when it is over."""
+def spin(node: Any, signals: 'Signals', is_over: Callable[[], bool] = lambda: False,
+         look: Callable[[], None] = lambda: None) -> None:
+    """Let a node begin, hear, and end with a signal or when it is over; `look` is called every now and then."""
     executor = make_executor()
     executor.add_node(node)
     try:
@@ -48,6 +49,7 @@ def spin(node: Any, signals: 'Signals', is_over: Callable[[], bool] = lambda: Fa
             node.begin()
         while not signals.stop and not is_over():
             executor.spin_once(timeout_sec=_POLL)
+            look()
     finally:
         node.end()
         executor.shutdown()      # lets go of what still arrives; removing the node would do so with the next spin only

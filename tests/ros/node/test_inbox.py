@@ -1,0 +1,189 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The step loop takes commands from the middleware by itself: which, in which order, and when they arrived."""
+
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from stickslip_sim.realtime.command_slot import CommandSlot
+from stickslip_sim.recording import topics
+from tests.support.ros_nodes import client, rclpy, running
+from tests.support.waiting import wait_for
+
+pytestmark = pytest.mark.ros
+
+
+class Bench:
+    """Subscribers in one node, publishers in another; nothing spins."""
+
+    def __init__(self) -> None:
+        from rclpy.context import Context
+
+        from stickslip_sim.ros.node.subscribers import Subscribers
+        from stickslip_sim.ros.node.topics import publisher
+        self.context = Context()
+        rclpy.init(context=self.context)
+        self.node, self.sender = (rclpy.create_node(name, context=self.context) for name in ('inbox', 'sender'))
+        self.velocity = CommandSlot('velocity', 'm/s', 1.0)
+        self.warnings: list[str] = []
+        self.subscribers = Subscribers(self.node, self.velocity, CommandSlot('force', 'N', 1e5), time.monotonic_ns,
+                                       self, with_joints=True)
+        self.velocities, self.joints = (publisher(self.sender, topic)
+                                        for topic in (topics.DRIVE_VELOCITY, topics.JOINT_COMMANDS))
+        for out in (self.velocities, self.joints):
+            wait_for(out.get_subscription_count, 'the inbox')
+
+    def warning(self, text: str) -> None:
+        self.warnings.append(text)
+
+    def send(self, *velocities: float) -> None:
+        from stickslip_msgs.msg import DriveVelocity
+        for velocity in velocities:
+            self.velocities.publish(DriveVelocity(velocity=velocity))
+
+    def hears(self, count: int) -> bool:
+        """Hear what has arrived; return whether it is as much as this since the start."""
+        self.subscribers.hear()
+        return self.velocity.received >= count
+
+    def close(self) -> None:
+        self.node.destroy_node()
+        self.sender.destroy_node()
+        self.context.try_shutdown()
+
+
+@pytest.fixture
+def bench() -> Iterator[Bench]:
+    bench = Bench()
+    yield bench
+    bench.close()
+
+
+def settle(bench: Bench) -> None:
+    """Wait until all that was sent has been received, without taking it: a later message on a topic unheard."""
+    from stickslip_msgs.msg import ExternalForce
+    from stickslip_sim.ros.node.topics import publisher
+    out = publisher(bench.sender, topics.EXTERNAL_FORCE)
+    wait_for(out.get_subscription_count, 'the inbox')
+    force = bench.subscribers.hidden[1].handle
+
+    def came() -> Any:
+        out.publish(ExternalForce(force=1.0))
+        with force:
+            return force.take_message(ExternalForce, True)
+
+    wait_for(came, 'a later message')
+
+
+def test_all_that_arrived_is_heard_and_the_latest_counts(bench: Bench) -> None:
+    assert bench.subscribers.trouble == ''
+    begin = time.monotonic_ns()
+    bench.send(0.1, 0.2, 5.0, 0.3)
+    settle(bench)
+    assert bench.velocity.received == 0    # no thread of the middleware offers anything
+    bench.subscribers.hear()
+    assert (bench.velocity.received, bench.velocity.refused) == (4, 1)
+    assert len(bench.warnings) == 1
+    assert 'velocity = 5.0 is refused' in bench.warnings[0]
+    assert bench.velocity.latest is not None
+    assert bench.velocity.latest.value == 0.3
+    assert begin < bench.velocity.latest.arrival < time.monotonic_ns()
+
+
+def test_arrival_is_when_the_middleware_received_it_not_when_it_was_taken(bench: Bench) -> None:
+    bench.send(0.1)
+    settle(bench)
+    received = time.monotonic_ns()
+    wait_for(lambda: time.monotonic_ns() > received + 100_000_000, 'a tenth of a second')
+    bench.subscribers.hear()
+    assert bench.velocity.latest is not None
+    assert bench.velocity.latest.arrival < received
+
+
+def test_of_two_topics_the_command_that_arrived_last_counts(bench: Bench) -> None:
+    from sensor_msgs.msg import JointState
+    bench.joints.publish(JointState(name=['axis_drive'], velocity=[0.5]))
+    settle(bench)
+    bench.send(0.1)
+    settle(bench)
+    bench.subscribers.hear()
+    assert bench.velocity.received == 2
+    assert bench.velocity.latest is not None
+    assert bench.velocity.latest.value == 0.1
+
+
+def test_of_more_than_fit_the_latest_are_heard(bench: Bench) -> None:
+    from stickslip_sim.ros.node.inbox import DEPTH
+    bench.send(*(1e-3 * number for number in range(3 * DEPTH)))
+    settle(bench)
+    bench.subscribers.hear()
+    assert 1 <= bench.velocity.received <= DEPTH
+
+    def last_is_heard() -> bool:
+        bench.send(0.9)    # again: one may get lost on a best-effort topic
+        bench.subscribers.hear()
+        return bench.velocity.latest is not None and bench.velocity.latest.value == 0.9
+
+    wait_for(last_is_heard, 'the last')
+
+
+@pytest.mark.parametrize('jump', [-3_600_000_000_000, 3_600_000_000_000])
+def test_a_clock_that_is_set_between_moves_no_arrival_out_of_the_step(bench: Bench, monkeypatch: pytest.MonkeyPatch,
+                                                                      jump: int) -> None:
+    bench.subscribers.hear()
+    before, now = time.monotonic_ns(), time.time_ns
+    monkeypatch.setattr(time, 'time_ns', lambda: now() + jump)
+    bench.send(0.1)
+    settle(bench)
+    bench.subscribers.hear()
+    assert bench.velocity.latest is not None
+    assert before - 1_000_000_000 < bench.velocity.latest.arrival <= time.monotonic_ns()
+
+
+def test_a_node_that_comes_down_hears_nothing(bench: Bench) -> None:
+    bench.send(0.1)
+    settle(bench)
+    bench.node.destroy_node()
+    assert not bench.hears(1)
+
+
+def test_an_rclpy_that_takes_messages_otherwise_is_noticed(bench: Bench) -> None:
+    from stickslip_sim.ros.node.inbox import trouble
+
+    class Handle:
+        """One whose method wants other arguments."""
+
+        def __enter__(self) -> None:
+            pass
+
+        def __exit__(self, *_: object) -> None:
+            pass
+
+        def take_message(self) -> None:
+            pass
+
+    other = SimpleNamespace(handle=Handle(), msg_type=bench.subscribers.hidden[0].msg_type)
+    assert 'another way to take messages' in trouble(other)
+
+
+def test_callbacks_hear_where_the_loop_may_not(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv('STICKSLIP_COMMANDS', 'callbacks')
+    with running(folder=tmp_path) as process:
+        with client() as axis:
+            axis.connect()
+
+            def obeys() -> bool:
+                axis.send_velocity(0.004)
+                return bool(axis.latest('slider_state').drive_velocity == 0.004)
+
+            wait_for(obeys, 'an axis that hears')
+            axis.send_velocity(5.0)
+            axis.next('timing', lambda timing: timing.total_refused == 1 and timing.latency_p50 > 0.0)
+        code, errors = process.end()
+    assert code == 0
+    assert 'commands are heard by callbacks: STICKSLIP_COMMANDS=callbacks' in errors
