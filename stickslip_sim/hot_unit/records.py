@@ -35,6 +35,7 @@ def record_words(package: Path) -> dict[str, Any]:
         'GIVEN_SINUSOID_SIZE': len(rows.GIVEN_SINUSOID_FIELDS),
         'EVENT_VALUES': _of('e', fields.names_of(rows.EventRow)),
         'SAMPLE_FIELDS': ', '.join(fields.names_of(rows.SampleRow)),
+        'SAMPLE_SIZE': len(fields.names_of(rows.SampleRow)),
         'SAMPLE_VALUES': _of('self', fields.names_of(rows.SampleRow)),
         'ENERGY_FIELDS': ', '.join(fields.names_of(rows.EnergyRow)),
         'ENERGY_VALUES': _of('self', fields.names_of(rows.EnergyRow)),

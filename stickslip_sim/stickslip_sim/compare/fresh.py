@@ -11,8 +11,10 @@ import numpy as np
 
 from ..core.errors import InputError
 from ..core.input_profile import InputProfile
+from ..core.time_grid import Instants
 from ..core.types import Event, Instant, Sample
 from ..runs import SimulatedRun, simulate_events
+from ..runs.samples import HeldSamples
 from ..runs.simulated import columns_of_rows
 from ..scene import Scene
 from ..simulation.simulator import Simulator
@@ -38,12 +40,10 @@ def densely_sampled(run: SimulatedRun) -> SimulatedRun:
         raise InputError('duration', duration, f'short enough for at most {MAX_EVENTS} events',
                          f'there are {len(run.events)}: simulate a shorter time')
     simulator = Simulator(scene.axis, scene.initial, scene.drive, scene.force, scene.solver.make(scene.axis))
-    instants = _instants(scene, duration, run.events)
-    rows = np.empty((len(instants), len(Sample._fields)))
-    for row, instant in zip(rows, instants):
-        simulator.advance(instant)
-        row[:] = simulator.sample()
-    return replace(run, samples=columns_of_rows(rows))
+    seconds, fractions = np.array(_instants(scene, duration, run.events)).T
+    rows = np.empty((len(seconds), len(Sample._fields)))
+    simulator.take_samples(Instants(seconds.copy(), fractions.copy()), rows)
+    return replace(run, sampled=HeldSamples(columns_of_rows(rows)))
 
 
 def _instants(scene: Scene, duration: float, events: list[Event]) -> list[Instant]:

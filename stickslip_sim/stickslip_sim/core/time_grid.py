@@ -4,8 +4,36 @@
 
 import math
 from fractions import Fraction
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
 
 from .types import Instant, tuple_of
+
+_WHOLE = 2 ** 53   # up to which integers are floats, too
+
+
+class Instants(NamedTuple):
+    """Instants in the order of time, as two arrays."""
+
+    seconds: NDArray[np.float64]     # whole ones
+    fractions: NDArray[np.float64]   # s
+
+    def before(self, instant: Instant, *, included: bool = False) -> int:
+        """Return how many of them are before an instant, or at it."""
+        first = int(np.searchsorted(self.seconds, instant.second, 'left'))
+        last = int(np.searchsorted(self.seconds, instant.second, 'right'))
+        return first + int(np.searchsorted(self.fractions[first:last], instant.fraction,
+                                           'right' if included else 'left'))
+
+    def nanoseconds(self) -> NDArray[np.int64]:
+        """Return them rounded to nanoseconds, as `Instant.nanoseconds` does."""
+        return self.seconds.astype(np.int64) * 1_000_000_000 + np.rint(self.fractions * 1e9).astype(np.int64)
+
+    def part(self, first: int, last: int) -> 'Instants':
+        """Return those from one place up to another."""
+        return Instants(self.seconds[first:last], self.fractions[first:last])
 
 
 class Grid:
@@ -32,3 +60,21 @@ class Grid:
 def decimal(number: float) -> Fraction:
     """Return the decimal number that a float was written as, so that 3333 steps at 333.3 Hz take 10 s."""
     return Fraction(repr(number))
+
+
+def instants(period: Fraction, first: int, last: int) -> Instants:
+    """Return k · period for k from `first` on and before `last`, each rounded once."""
+    count, size = period.numerator, period.denominator
+    if size <= _WHOLE and last * count < 2 ** 63:
+        whole, rest = np.divmod(np.arange(first, last, dtype=np.int64) * count, size)
+        return Instants(whole.astype(np.float64), rest / size)
+    pairs = [divmod(k * count, size) for k in range(first, last)]
+    return Instants(np.array([float(second) for second, _ in pairs]), np.array([rest / size for _, rest in pairs]))
+
+
+def multiples(period: Fraction, first: int, last: int) -> NDArray[np.float64]:
+    """Return k · period for k from `first` on and before `last`, each as one number, rounded once."""
+    count, size = period.numerator, period.denominator
+    if size <= _WHOLE and last * count <= _WHOLE:
+        return np.arange(first, last, dtype=np.int64) * count / size
+    return np.array([k * count / size for k in range(first, last)], dtype=np.float64)

@@ -4,7 +4,7 @@
 
 import os
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -117,6 +117,10 @@ class RecordedRun(Views):
                                  'modes')
         columns['external_force'] = _external_force(columns, self.scene.axis.mass)
         return columns
+
+    def sample_blocks(self) -> Iterator[Columns]:
+        """Yield the samples as one block."""
+        yield self.samples
 
     @cached_property
     def events(self) -> list[Event]:

@@ -6,10 +6,13 @@ from collections.abc import Mapping, Sequence
 from math import isfinite
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ..axis import Axis, InitialState
 from ..core.errors import InputError
 from ..core.input_profile import InputProfile
-from ..core.time_grid import Grid
+from ..core.time_grid import Grid, Instants
 from ..core.types import Event, Instant, tuple_of
 from ..simulation.simulator import Simulator, SolverOf
 from ..solvers import Solver
@@ -163,11 +166,37 @@ class Rig:
     def advance(self, to: Instant) -> list[Event]:
         """Bring the axis to any time, through the faults of the scene; for runs without steps.  Returns its events."""
         events: list[Event] = []
-        while (begin := self._grid.instant(int(min(self._faults.next_change, _NEVER)) - 1)) < to:
-            events += self.simulator.advance(begin)
-            self._enter_faults(int(self._faults.next_change))
-            self._plant.act()
+        while (change := self._next_change()) < to:
+            events += self._pass_change(change)
         return events + self.simulator.advance(to)
+
+    def take_samples(self, at: Instants, out: NDArray[np.float64]) -> list[Event]:
+        """Bring the axis to one time after the other, as `advance` does, and fill a row with the sample at each.
+
+        Returns the events up to the last.
+        """
+        events: list[Event] = []
+        taken = 0
+        while taken < len(out):
+            change = self._next_change()
+            last = at.before(change, included=True)
+            if last > taken:
+                events += self.simulator.take_samples(at.part(taken, last), out[taken:last])
+                taken = last
+            else:
+                events += self._pass_change(change)
+        return events
+
+    def _next_change(self) -> Instant:
+        """Return when the next fault of the scene begins or ends."""
+        return self._grid.instant(int(min(self._faults.next_change, _NEVER)) - 1)
+
+    def _pass_change(self, change: Instant) -> list[Event]:
+        """Bring the axis to that time, and through it; return its events."""
+        events = self.simulator.advance(change)
+        self._enter_faults(int(self._faults.next_change))
+        self._plant.act()
+        return events
 
     def _command_drive(self, sent: float | None, step: int) -> None:
         velocity = self._through_channel(sent, step)

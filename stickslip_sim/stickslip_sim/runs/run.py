@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A run as one thing: the same to read whether it was simulated or recorded."""
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -95,6 +96,9 @@ class Run(Protocol):
     @property
     def missing_steps(self) -> int:
         """How many steps have no recorded state between the first and the last that has."""
+
+    def sample_blocks(self) -> Iterator[Columns]:
+        """Yield the samples block by block, in memory that does not grow with them."""
 
     def cycles(self) -> list[Cycle]:
         """Return the complete cycles of stick-slip, from break-away to break-away."""

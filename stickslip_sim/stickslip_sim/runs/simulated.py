@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import InputError
-from ..core.time_grid import decimal
+from ..core.time_grid import decimal, instants, multiples
 from ..core.types import Event, Instant, Mode, Sample
 from ..rig import Rig
 from ..rig.marks import Mark, marks_of_faults
@@ -20,12 +20,15 @@ from ..scene import Scene
 from ..simulation.cycles import Summary, summary
 from .receipt import CostMeter, receipt_of
 from .run import Columns
+from .samples import HeldSamples, RemadeSamples, Samples
 from .views import Views
 
 MAX_DURATION = 1e9         # s
 MAX_SAMPLES = 10_000_000   # 1.2 GB
 MAX_EVENTS = 5_000_000     # about as much
+MOST_HELD = 200_000        # samples that a run holds (25 MB); more are made again when they are asked for
 _PARTS = 200               # of a run: progress is reported, and Ctrl-C heard, this often
+_BLOCK = 16_384            # samples at a time
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +39,7 @@ class SimulatedRun(Views):
     end: float
     sample_period: Fraction | None   # s; None: without samples, or not evenly spaced
     events: list[Event]
-    samples: Columns
+    sampled: Samples
     summary: Summary
     receipt: dict[str, Any] = field(default_factory=dict)
     begin: float = 0.0
@@ -57,6 +60,11 @@ class SimulatedRun(Views):
         return f'simulated for {self.duration:g} s with the {self.scene.solver.name} solver'
 
     @property
+    def samples(self) -> Columns:
+        """The samples as columns, in memory."""
+        return self.sampled.columns
+
+    @property
     def states(self) -> Columns:
         """The samples."""
         return self.samples
@@ -71,10 +79,15 @@ class SimulatedRun(Views):
         """When the faults of the scene were in force."""
         return marks_of_faults(self.scene.rig.faults, self.end)
 
+    def sample_blocks(self) -> Iterator[Columns]:
+        """Yield the samples block by block."""
+        return self.sampled.blocks()
+
     def sample_rows(self) -> Iterator[Sample]:
         """Yield the samples one by one."""
-        for second, fraction, mode, direction, *rest in zip(*(self.samples[name] for name in Sample._fields)):
-            yield Sample(float(second), float(fraction), Mode(int(mode)), int(direction), *map(float, rest))
+        for block in self.sample_blocks():
+            for second, fraction, mode, direction, *rest in zip(*(block[name].tolist() for name in Sample._fields)):
+                yield Sample(second, fraction, Mode(int(mode)), int(direction), *rest)
 
 
 Progress = Callable[[float], None] | None
@@ -107,35 +120,50 @@ def _simulated(scene: Scene, duration: float, sample_period: float | Fraction | 
     rig = _loaded_rig(scene)
     simulator = rig.simulator
     start = simulator.sample().mode
+    period = _decimal(sample_period) if sample_period else None
+    few = _sample_count(duration, period) <= MOST_HELD
+    events: list[Event] = []
+    held: list[NDArray[np.float64]] = []
     cost = CostMeter()
-    events, rows = _run(rig, duration, sample_period, _PARTS, progress)
+    for new_events, rows in _passage(rig, duration, period, progress):
+        events += new_events
+        _check_count(events, duration)
+        if few:
+            held.append(rows)
     spent = cost.so_far()
     simulator.judge()
     figures = summary(events, duration, start)
     receipt = receipt_of(scene, duration, float(sample_period) if sample_period else None, figures,
                          simulator.root_iterations, simulator.sample(), simulator.energy, *spent)
-    period = _decimal(sample_period) if sample_period else None
-    return SimulatedRun(scene, duration, period, events, _columns(rows, period or Fraction(0)), figures, receipt)
+    samples: Samples = (HeldSamples(_columns(np.concatenate(held), period, 0)) if few
+                        else RemadeSamples(lambda: _blocks(scene, duration, period)))
+    return SimulatedRun(scene, duration, period, events, samples, figures, receipt)
 
 
-def _run(rig: Rig, duration: float, sample_period: float | Fraction | None, parts: int,
-         progress: Progress) -> tuple[list[Event], NDArray[np.float64]]:
-    """Return the events, and a row for each sample."""
-    events: list[Event] = []
-    rows = np.empty((_sample_count(duration, sample_period), len(Sample._fields)))
+def _passage(rig: Rig, duration: float, period: Fraction | None, progress: Progress = None
+             ) -> Iterator[tuple[list[Event], NDArray[np.float64]]]:
+    """Bring a rig through a run; yield its events, and a row for each sample, block by block."""
     done = 0
-    for part in range(1, parts + 1):
-        end = _decimal(duration) * part / parts
-        taken = int(end / _decimal(sample_period)) + 1 if sample_period else 0
-        for k, instant in zip(range(done, taken), _sample_instants(sample_period, done)):
-            events += rig.advance(instant)
-            rows[k] = rig.simulator.sample()
-        events += rig.advance(_instant(end))
+    for part in range(1, _PARTS + 1):
+        end = _decimal(duration) * part / _PARTS
+        taken = int(end / period) + 1 if period else 0
+        for first in range(done, taken, _BLOCK):
+            at = instants(period or Fraction(0), first, min(first + _BLOCK, taken))
+            rows = np.empty((len(at.seconds), len(Sample._fields)))
+            yield rig.take_samples(at, rows), rows
+        yield rig.advance(_instant(end)), np.empty((0, len(Sample._fields)))
         done = taken
-        _check_count(events, duration)
         if progress:
-            progress(part / parts)
-    return events, rows
+            progress(part / _PARTS)
+
+
+def _blocks(scene: Scene, duration: float, period: Fraction | None) -> Iterator[Columns]:
+    """Run a scene again for its samples: the same to the last bit."""
+    done = 0
+    for _, rows in _passage(_loaded_rig(scene), duration, period):
+        if len(rows):
+            yield _columns(rows, period, done)
+            done += len(rows)
 
 
 def check_times(duration: float, sample_period: float | Fraction | None) -> None:
@@ -183,23 +211,13 @@ def _instant(time: Fraction) -> Instant:
     return Instant(float(second), rest / time.denominator)
 
 
-def _sample_instants(sample_period: float | Fraction | None, first: int) -> Iterator[Instant]:
-    """Yield k · period for k from `first` on, each rounded once."""
-    period = _decimal(sample_period or 0)
-    count, size = period.numerator, period.denominator
-    position = first * count
-    while True:
-        second, rest = divmod(position, size)
-        yield Instant(float(second), rest / size)
-        position += count
-
-
 def _check_count(events: list[Event], duration: float) -> None:
     if len(events) > MAX_EVENTS:
         raise InputError('duration', duration, f'short enough for at most {MAX_EVENTS} events',
                          f'they were reached at t = {events[-1].time:.6g} s: simulate a shorter time')
 
 
-def _columns(rows: NDArray[np.float64], period: Fraction) -> Columns:
-    times = [k * period.numerator / period.denominator for k in range(len(rows))]
-    return {'time': np.array(times, dtype=np.float64), **{name: rows[:, i] for i, name in enumerate(Sample._fields)}}
+def _columns(rows: NDArray[np.float64], period: Fraction | None, first: int) -> Columns:
+    """Return rows, the first of them at `first` periods, as columns by name."""
+    times = multiples(period or Fraction(0), first, first + len(rows))
+    return {'time': times, **{name: rows[:, i] for i, name in enumerate(Sample._fields)}}

@@ -6,12 +6,17 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ..axis import Axis, InitialState, check_start, pack
 from ..core.energy import EnergyBalance
 from ..core.errors import InputError, SolverError, UnsoundError
 from ..core.input_profile import Input, InputProfile
+from ..core.time_grid import Instants
 from ..core.types import Event, EventKind, Instant, Mode, Sample, tuple_of
 from ..solvers import DONE, FULL, OUT_OF_RANGE, UNSOUND, Solver, exact
+from ..solvers.block import sample_block_of
 from ..solvers.walk import walk_of
 from .checkpoint import check_state, event_of, numbers_of
 from .inputs import Inputs
@@ -19,6 +24,7 @@ from .inputs import Inputs
 SolverOf = Callable[[Axis], Solver]
 
 _KINDS, _MODES = tuple(EventKind), tuple(Mode)
+_MOVES = slice(4, 12)            # of a sample; the rest may be infinite
 _ROWS = 64                       # of the event table; it is emptied as often as it fills
 MAX_EVENTS_PER_ADVANCE = 100_000
 
@@ -114,15 +120,28 @@ class Simulator:
         then that of the last event.
         """
         second, fraction = to
-        if not (self._time <= to and math.isfinite(second) and 0.0 <= fraction < 1.0):
-            raise InputError('time', tuple(to), f'finite and not before {self._time.seconds!r} s',
-                             'time does not go back: reset to begin anew')
-        if self._inputs.are_commanded:
-            self._obey()
-        events, self._waiting = self._waiting, []
+        events = self._set_out(to)
         if self._inputs.until <= second + fraction:
             self._enter_more(second + fraction, events)
         self._advance(to, events)
+        for event in events:
+            self._counts[event.kind] += 1
+        return events
+
+    def take_samples(self, at: Instants, out: NDArray[np.float64]) -> list[Event]:
+        """Bring the state to one time after the other, as `advance` does, and fill a row with the sample at each.
+
+        Returns the events up to the last; raises as `advance` and `sample` do.
+        """
+        times = at.seconds + at.fractions
+        events = self._set_out(Instant(float(at.seconds[0]), float(at.fractions[0])))
+        taken = 0
+        while taken < len(times):
+            if self._inputs.until <= times[taken]:
+                self._enter_more(float(times[taken]), events)
+            last = int(np.searchsorted(times, self._inputs.until, 'left'))
+            self._take_samples(at, taken, last, out, events)
+            taken = last
         for event in events:
             self._counts[event.kind] += 1
         return events
@@ -162,9 +181,8 @@ class Simulator:
         second, fraction = self._time
         self._solver.sample(self._parameters, self._state, second, fraction, self._row)
         row = self._row.tolist()
-        if not math.isfinite(sum(row)) and not all(map(math.isfinite, row[4:12])):    # what does not move may be inf
-            raise SolverError(f'the state leaves the range of numbers at t = {second + fraction!r} s; '
-                              f'{self._solver.advice}')
+        if not math.isfinite(sum(row)) and not all(map(math.isfinite, row[_MOVES])):
+            raise self._out_of_range(second + fraction)
         row[2], row[3] = _MODES[int(row[2])], int(row[3])
         return tuple_of(Sample, row)
 
@@ -196,7 +214,7 @@ class Simulator:
 
     def _take_axis(self, axis: Axis) -> None:
         self._axis, self._solver = axis, self._solver_of(axis)
-        self._walk = walk_of(self._solver)
+        self._walk, self._sample_block = walk_of(self._solver), sample_block_of(self._solver)
         self._parameters = self._solver.records.Parameters(pack(axis))
 
     def _obey(self) -> None:
@@ -217,6 +235,41 @@ class Simulator:
                 self._time = to
                 return
             self._check_end(end, taken)
+
+    def _set_out(self, to: Instant) -> list[Event]:
+        """Begin to go on to a time; return the events so far.  Raises InputError when it is before, or no time."""
+        if not (self._time <= to and math.isfinite(to.second) and 0.0 <= to.fraction < 1.0):
+            raise InputError('time', tuple(to), f'finite and not before {self._time.seconds!r} s',
+                             'time does not go back: reset to begin anew')
+        if self._inputs.are_commanded:
+            self._obey()
+        events, self._waiting = self._waiting, []
+        return events
+
+    def _take_samples(self, at: Instants, first: int, last: int, out: NDArray[np.float64], events: list[Event]
+                      ) -> None:
+        """Fill the rows from `first` on and before `last`, within the pieces of the inputs that are in force."""
+        taken = 0
+        while True:
+            reached, rows, end = self._sample_block(self._parameters, self._state, *at, first, last, self._table, out)
+            events.extend(self._rows(rows))
+            self._check_samples(out[first:reached])
+            if reached > first:
+                self._time, taken = Instant(float(at.seconds[reached - 1]), float(at.fractions[reached - 1])), 0
+            if end == DONE:
+                return
+            first, taken = reached, taken + rows
+            self._check_end(end, taken)
+
+    def _check_samples(self, rows: NDArray[np.float64]) -> None:
+        """Raise SolverError unless the states in rows of samples are finite."""
+        lost = ~np.isfinite(rows[:, _MOVES]).all(axis=1)
+        if lost.any():
+            second, fraction = rows[lost.argmax(), :2].tolist()
+            raise self._out_of_range(second + fraction)
+
+    def _out_of_range(self, time: float) -> SolverError:
+        return SolverError(f'the state leaves the range of numbers at t = {time!r} s; {self._solver.advice}')
 
     def _enter_more(self, time: float, events: list[Event]) -> None:
         """Go on through the pieces of the inputs that begin up to a time, s."""

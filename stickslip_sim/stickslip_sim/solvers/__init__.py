@@ -82,6 +82,10 @@ class Solver(Protocol):
     def walk(self) -> 'PieceWalk | None':
         """What enters many pieces of the inputs in one call; None: `walk.walk` does, by `advance` and `set_inputs`."""
 
+    @property
+    def sample_block(self) -> 'Callable[..., tuple[int, int, int]] | None':
+        """What takes many samples in one call; None: `block.sample_block` does, by `advance` and `sample`."""
+
 
 class PieceWalk(NamedTuple):
     """What `walk.walk` does, in another way: `run` takes the inputs as what `pieces_of` made of their profiles."""
@@ -104,6 +108,7 @@ class SolverOfFunctions(NamedTuple):
     records: Any = PLAIN
     advice: str = 'a parameter or an input is too extreme for this axis: check the scene'
     walk: PieceWalk | None = None
+    sample_block: Callable[..., tuple[int, int, int]] | None = None
 
 
 def with_advance(solver: Solver, advance: Callable[..., tuple[int, int]]) -> Solver:

@@ -10,6 +10,7 @@ from ..core.errors import InputError
 from ..core.types import Event, Sample
 from ..recording import RecordedRun
 from ..runs import SimulatedRun
+from ..runs.samples import HeldSamples
 from ..runs.simulated import columns_of_rows
 from ..scene import Scene, changed
 from ..scene.schema import BY_NAME
@@ -46,4 +47,5 @@ def other_run(run: RecordedRun, scene: Scene, changes: Mapping[str, object], pro
             events += made.events
     begin, end = samples[0].time, samples[-1].time
     figures = summary([event for event in events if begin <= event.time <= end], end - begin, samples[0].mode, begin)
-    return SimulatedRun(scene, end, None, events, columns_of_rows(np.array(samples)), figures, begin=begin)
+    columns = HeldSamples(columns_of_rows(np.array(samples)))
+    return SimulatedRun(scene, end, None, events, columns, figures, begin=begin)

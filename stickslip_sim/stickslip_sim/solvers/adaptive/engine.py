@@ -65,6 +65,7 @@ class Engine:
     energy: ClassVar[None] = None
     is_sound: ClassVar[None] = None
     walk: ClassVar[None] = None
+    sample_block: ClassVar[None] = None
 
     @_QUIET
     def start(self, p: Parameters, s: State, position: float, velocity: float, rest: float, v: float, v_rate: float,
