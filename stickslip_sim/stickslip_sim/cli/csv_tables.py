@@ -2,10 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Events and samples as CSV: a line of names, then numbers with 17 digits, which give the same floats back."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any
+
+from numpy.typing import NDArray
 
 from ..core.types import Event, EventKind, Mode
 from ..runs import Columns
+from .csv_numbers import rows_text
 
 EVENT_COLUMNS = ('time', 'kind', 'direction', 'position', 'velocity', 'drive_force', 'friction_force',
                  'static_coefficient', 'rest_time')
@@ -24,12 +28,15 @@ def event_lines(events: Iterable[Event], knots: bool = False) -> Iterator[str]:
                 + ','.join(f'{number:.17g}' for number in numbers) + '\n'
 
 
-def sample_lines(samples: Columns) -> Iterator[str]:
-    """Yield the lines of a table of samples."""
+def sample_lines(blocks: Iterable[Columns]) -> Iterator[str]:
+    """Yield the text of a table of samples, which come block by block."""
     yield ','.join(SAMPLE_COLUMNS) + '\n'
-    layout = '%.17g,' * (len(SAMPLE_COLUMNS) - 1) + '%s\n'
-    names = {float(mode): mode.name for mode in Mode}
-    for begin in range(0, len(samples['time']), _BLOCK):
-        columns = [samples[name][begin:begin + _BLOCK].tolist() for name in SAMPLE_COLUMNS]
-        for *numbers, mode in zip(*columns, strict=True):
-            yield layout % (*numbers, names[mode])
+    words = [[mode.name for mode in Mode] if name == 'mode' else None for name in SAMPLE_COLUMNS]
+    for block in blocks:
+        yield from (rows_text(part, words) for part in parts([block[name] for name in SAMPLE_COLUMNS]))
+
+
+def parts(columns: Sequence[NDArray[Any]]) -> Iterator[list[NDArray[Any]]]:
+    """Yield columns in parts of some thousand rows."""
+    for begin in range(0, len(columns[0]), _BLOCK):
+        yield [column[begin:begin + _BLOCK] for column in columns]

@@ -17,8 +17,6 @@ from .files import STDOUT, check_distinct, check_file, whole, write_text
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-_BLOCK = 10_000   # rows
-
 
 @click.command(short_help='Write a recorded run as a table, CSV or Parquet.')
 @click.argument('run', metavar='RUN')
@@ -47,13 +45,13 @@ def export(run: str, csv_file: str | None, parquet: str | None, topic: str) -> N
 
 def csv_lines(columns: 'dict[str, NDArray[Any]]') -> Iterator[str]:
     """Yield a line of names, then a line for each row; 17 digits give the same floats back."""
+    from .csv_numbers import are_numbers, rows_text
+    from .csv_tables import parts
+
     yield ','.join(columns) + '\n'
     count = min(map(len, columns.values()))
-    for begin in range(0, count, _BLOCK):
-        text = io.StringIO()
-        block = (_cells(column[begin:begin + _BLOCK]) for column in columns.values())
-        csv.writer(text, lineterminator='\n').writerows(zip(*block, strict=True))
-        yield text.getvalue()
+    for block in parts([column[:count] for column in columns.values()]):
+        yield rows_text(block) if are_numbers(block) else _text(block)
 
 
 def _check(csv_file: str | None, parquet: str | None) -> None:
@@ -67,6 +65,13 @@ def _check(csv_file: str | None, parquet: str | None) -> None:
     check_distinct(targets)
     if parquet is not None:
         _check_parquet(parquet)
+
+
+def _text(columns: 'list[NDArray[Any]]') -> str:
+    """Return the rows of columns with texts in them, in quotation marks where they need some."""
+    text = io.StringIO()
+    csv.writer(text, lineterminator='\n').writerows(zip(*map(_cells, columns), strict=True))
+    return text.getvalue()
 
 
 def _cells(column: 'NDArray[Any]') -> list[object]:

@@ -109,7 +109,7 @@ def _write(wishes: _Wishes, run: 'SimulatedRun') -> None:
         _draw(wishes.plot, run)
     receipt = json.dumps(run.receipt, indent=2, allow_nan=False) + '\n'
     texts = [(wishes.receipt, [receipt]), (wishes.events, event_lines(run.events, wishes.knots)),
-             (wishes.samples, sample_lines(run.samples))]
+             (wishes.samples, sample_lines(run.sample_blocks()))]
     for path, lines in sorted(texts, key=lambda text: text[0] == STDOUT):
         if path is not None:
             write_text(path, lines)
