@@ -119,7 +119,7 @@ def _write(wishes: _Wishes, run: 'SimulatedRun') -> None:
 
 def _write_bag(folder: str, run: 'SimulatedRun') -> None:
     """Record the run step by step; a folder that was begun vanishes on any error."""
-    from ..recording.offline_bag import write_bag
+    from ..recording.offline_bag import write_blocks
     from ..recording.run import RunFacts
 
     sampled = _sampled(run, run.scene.time.step)
@@ -128,7 +128,7 @@ def _write_bag(folder: str, run: 'SimulatedRun') -> None:
     facts = RunFacts.of(run.scene, run.duration, run.sample_period)
     check_new_folder('--bag', folder)
     try:
-        write_bag(folder, facts, run.sample_rows(), run.events, run.receipt)
+        write_blocks(folder, facts, run.sample_blocks(), run.events, run.receipt)
     except BaseException:
         shutil.rmtree(folder, ignore_errors=True)
         raise

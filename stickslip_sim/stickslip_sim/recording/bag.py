@@ -7,11 +7,13 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NoReturn
 
-from mcap.writer import CompressionType, Writer
+from mcap.records import Message
 
 from ..core.errors import RecordingError
 from ..core.version import __version__
 from .blocks import to_yaml
+from .mcap_chunk import MessageBlock
+from .mcap_file import McapFile
 from .metadata import MessageTally, information, write_metadata
 from .schemas import schema
 from .topics import Topic
@@ -39,15 +41,14 @@ class BagWriter:
         self._schemas = {topic.type: schema(topic.type) for topic in topics}
         self._metadata = dict(metadata)
         self._tally = MessageTally([0] * len(topics))
-        self._size = self._on_disk = 0
         _make(self.folder)
         try:
             self._file = _File(self.path)
         except OSError as error:
             self.folder.rmdir()
             _refuse(self.path, error)
-        self._mcap = Writer(self._file, CHUNK_SIZE, CompressionType.ZSTD, enable_data_crcs=True)  # type: ignore[arg-type]
         try:
+            self._mcap = McapFile(self._file, CHUNK_SIZE, f'stickslip_sim {__version__}')
             self._begin(attachments)
         except OSError as error:
             self.abandon()
@@ -62,17 +63,24 @@ class BagWriter:
     @property
     def on_disk(self) -> int:
         """How many of them the operating system has; the others wait for their chunk to fill."""
-        return self._on_disk
+        return self._mcap.on_disk
 
     def write(self, topic_index: int, data: bytes, log_time_ns: int, publish_time_ns: int, sequence: int) -> None:
         """Add a message (CDR) to the topic at that place in the list of topics."""
         try:
-            self._mcap.add_message(topic_index + 1, log_time_ns, data, publish_time_ns, sequence & _SEQUENCE_MASK)
+            self._mcap.add_message(Message(topic_index + 1, log_time_ns, data, publish_time_ns,
+                                           sequence & _SEQUENCE_MASK))
         except OSError as error:
             _refuse(self.path, error)
         self._tally.add(topic_index, log_time_ns)
-        if self._file.size != self._size:  # that closed a chunk
-            self._note_on_disk()
+
+    def write_block(self, block: MessageBlock) -> None:
+        """Add messages whose channels are the places of their topics in the list, from 1 on."""
+        try:
+            self._mcap.add_block(block)
+        except OSError as error:
+            _refuse(self.path, error)
+        self._tally.add_many(block.channels - 1, block.times)
 
     def attach(self, attachments: Mapping[str, bytes]) -> None:
         """Add attachments by file name while the run goes on."""
@@ -84,19 +92,17 @@ class BagWriter:
     def flush(self) -> None:
         """Hand everything to the operating system: a process that is killed afterwards loses nothing of it."""
         try:
-            self._mcap.flush()  # type: ignore[no-untyped-call]
+            self._mcap.flush()
         except OSError as error:
             _refuse(self.path, error)
-        self._note_on_disk()
 
     def close(self, attachments: Mapping[str, bytes] | None = None) -> None:
         """Finish the bag: attachments, index, counts in metadata.yaml."""
         try:
             self._attach(attachments or {}, self._tally.last)
             self._add_information()
-            self._mcap.finish()  # type: ignore[no-untyped-call]
+            self._mcap.finish()
             self._file.close()
-            self._note_on_disk()
             write_metadata(self.folder, self._information())
         except OSError as error:
             self.abandon()
@@ -107,15 +113,12 @@ class BagWriter:
         self._file.close()
 
     def _begin(self, attachments: Mapping[str, bytes]) -> None:
-        self._mcap.start(profile='ros2', library=f'stickslip_sim {__version__}')
         self._mcap.add_metadata(METADATA, self._metadata)
         self._attach(attachments, 0)
-        ids = {
-            name: self._mcap.register_schema(name, 'ros2msg', known.text.encode())
-            for name, known in self._schemas.items()
-        }
+        ids = {name: self._mcap.add_schema(name, 'ros2msg', known.text.encode())
+               for name, known in self._schemas.items()}
         for topic in self._topics:
-            self._mcap.register_channel(topic.name, 'cdr', ids[topic.type], {
+            self._mcap.add_channel(topic.name, 'cdr', ids[topic.type], {
                 'offered_qos_profiles': to_yaml([topic.qos.as_yaml()]),
                 'topic_type_hash': self._schemas[topic.type].hash,
             })
@@ -129,10 +132,7 @@ class BagWriter:
     def _attach(self, attachments: Mapping[str, bytes], log_time_ns: int) -> None:
         for name, data in attachments.items():
             media = _MEDIA.get(Path(name).suffix, 'application/octet-stream')
-            self._mcap.add_attachment(0, log_time_ns, name, media, data)
-
-    def _note_on_disk(self) -> None:
-        self._size, self._on_disk = self._file.size, self._tally.total
+            self._mcap.add_attachment(log_time_ns, name, media, data)
 
     def _information(self) -> dict[str, object]:
         hashes = {name: known.hash for name, known in self._schemas.items()}
@@ -152,12 +152,6 @@ class _File:
             view = view[self._raw.write(view) or 0:]
         self.size += len(data)
         return len(data)
-
-    def tell(self) -> int:
-        return self.size
-
-    def flush(self) -> None:
-        pass
 
     def close(self) -> None:
         self._raw.close()

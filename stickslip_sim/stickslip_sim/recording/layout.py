@@ -19,6 +19,7 @@ _NUMBERS = {
 _CDR = b'\0\1\0\0'                  # before the message: CDR, little endian
 _HEADER = 'std_msgs/msg/Header'
 _HEADER_FORMAT, _HEADER_SIZE = '<4siIIx', 13  # sec, nanosec, a text of one byte, which is its end
+_STAMP = {'stamp.sec': ('<i4', 4), 'stamp.nanosec': ('<u4', 8)}
 _NANOSECONDS = 1_000_000_000
 
 
@@ -35,10 +36,11 @@ class Layout:
             at += gap + size
         self.names = tuple(fields)
         self._struct = struct.Struct(code)
-        self._dtype = np.dtype({
-            'names': list(fields), 'formats': [f'<{np.dtype(kind).str[1:]}' for kind in fields.values()],
-            'offsets': [place + len(_CDR) for place in places.values()], 'itemsize': self._struct.size,
-        })
+        formats = [f'<{np.dtype(kind).str[1:]}' for kind in fields.values()]
+        offsets = [place + len(_CDR) for place in places.values()]
+        self._dtype = np.dtype({'names': list(fields), 'formats': formats, 'offsets': offsets,
+                                'itemsize': self._struct.size})
+        self.places = {**_STAMP, **dict(zip(fields, zip(formats, offsets)))}   # type and place in a message, by name
 
     @property
     def size(self) -> int:

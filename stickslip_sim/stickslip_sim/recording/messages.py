@@ -2,7 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The messages of a run, made from the words of the simulation; stamps in ns."""
 
+from collections.abc import Iterable, Mapping
 from operator import attrgetter
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from ..core.types import Event, Sample
 from ..core.version import __version__
@@ -14,6 +19,14 @@ from .topics import Topic
 Fields = dict[str, object]
 
 _WORDS = {'force': 'friction_force', 'coefficient': 'friction_coefficient'}   # for the fields with names of their own
+
+
+def numbers_of_steps(names: Iterable[str], steps: NDArray[np.int64], columns: Mapping[str, NDArray[Any]]
+                     ) -> dict[str, NDArray[Any]]:
+    """Return the fields of messages of steps: the number of the step, then fields named as in Sample."""
+    of_step, *others = names
+    known = {**columns, 'time': columns['second'] + columns['fraction']}
+    return {of_step: steps, **{name: known[_WORDS.get(name, name)] for name in others}}
 
 
 class Packer:

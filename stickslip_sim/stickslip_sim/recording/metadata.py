@@ -7,6 +7,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+
 from .blocks import to_yaml
 from .topics import Topic, Yaml
 
@@ -26,6 +29,15 @@ class MessageTally:
         self.last = max(self.last, time_ns)
         self.counts[topic_index] += 1
         self.total += 1
+
+    def add_many(self, topic_indexes: NDArray[np.int64], times_ns: NDArray[np.int64]) -> None:
+        """Count messages."""
+        begin = int(times_ns.min())
+        self.first = min(self.first, begin) if self.total else begin
+        self.last = max(self.last, int(times_ns.max()))
+        for topic_index, count in enumerate(np.bincount(topic_indexes).tolist()):
+            self.counts[topic_index] += count
+        self.total += len(times_ns)
 
 
 def ros_distro() -> str:

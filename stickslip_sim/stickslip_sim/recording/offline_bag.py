@@ -2,18 +2,28 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes the bag of an offline run: topics, fields and conventions of the node's, stamps are simulation time."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import islice
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
+import numpy as np
+from mcap.records import Message
 from numpy.typing import NDArray
 
+from ..core.time_grid import Instants
 from ..core.types import Event, EventKind, Mode, Sample
+from ..runs import Columns
+from ..runs.simulated import columns_of_rows
 from . import messages, topics
-from .messages import Packer
+from .mcap_chunk import MessageBlock, bytes_of
+from .messages import Packer, numbers_of_steps
+from .rows import MessageRows
 from .run import RunFacts, open_run, receipt_file
 from .schemas import MessageCodec, flat_layout
 from .topics import Topic
+
+_BLOCK = 10_000   # samples
 
 
 def write_bag(
@@ -24,15 +34,21 @@ def write_bag(
 
     Returns the number of messages by topic.  Raises RecordingError; a folder that exists is not touched.
     """
+    return write_blocks(folder, facts, _in_blocks(samples), events, receipt)
+
+
+def write_blocks(folder: Path | str, facts: RunFacts, blocks: Iterable[Columns], events: Iterable[Event],
+                 receipt: Mapping[str, object]) -> dict[str, int]:
+    """Write a run as `write_bag` does, with samples that come as columns, block by block."""
     bag = OfflineBag(folder, facts)
     try:
-        waiting = iter(events)
-        event = next(waiting, None)
-        for step, sample in enumerate(samples):
-            while event is not None and event.instant <= sample.instant:
-                bag.event(max(step, 1), event)
-                event = next(waiting, None)
-            bag.sample(step, sample)
+        waiting = [event for event in events if event.kind != EventKind.KNOT]   # as the node does
+        first = done = 0
+        for block in blocks:
+            end = Sample(*(block[name][-1] for name in Sample._fields)).instant
+            count = next((k for k, event in enumerate(waiting[done:]) if event.instant > end), len(waiting) - done)
+            bag.steps(first, block, waiting[done:done + count])
+            first, done = first + len(block['time']), done + count
         return bag.close(receipt)
     except BaseException:
         bag.abandon()
@@ -45,37 +61,41 @@ def samples_of(columns: Mapping[str, NDArray[Any]]) -> Iterator[Sample]:
         yield Sample(second, fraction, Mode(int(mode)), int(direction), *rest)
 
 
+class _Other(NamedTuple):
+    """A message between those of the steps: before which of them, as a record, and its log time (ns)."""
+
+    place: int
+    channel: int
+    time: int
+    record: bytes
+
+
 class OfflineBag:
-    """A bag to which an offline run gives its samples and events, step by step."""
+    """A bag to which an offline run gives its samples and events, block by block."""
 
     def __init__(self, folder: Path | str, facts: RunFacts) -> None:
         self._writer = open_run(folder, facts)
-        self._places = {topic.name: place for place, topic in enumerate(topics.RECORDED)}
-        self._state, self._friction = Packer(topics.SLIDER_STATE), Packer(topics.FRICTION_FORCE)
+        self._channels = {topic.name: place for place, topic in enumerate(topics.RECORDED, 1)}
+        self._rows = [MessageRows(self._channels[topic.name], flat_layout(topic.type))
+                      for topic in (topics.SLIDER_STATE, topics.FRICTION_FORCE)]
         self._event = Packer(topics.MODE_EVENT)
-        self._velocity: float | None = None
-        self._force: float | None = None
+        self._latest: dict[Topic, float] = {}            # the commands in force
         info = messages.run_info(facts, 0, 0, str(self._writer.folder))
         data = MessageCodec([topics.RUN_INFO.type]).encode(topics.RUN_INFO.type, info)
-        self._write(topics.RUN_INFO, data, 0, 0)
+        self._writer.write(self._channels[topics.RUN_INFO.name] - 1, data, 0, 0, 0)
 
-    def event(self, step: int, event: Event) -> None:
-        """Add a transition that fell into a step (counted from 1); none of kind knot, as the node does."""
-        if event.kind != EventKind.KNOT:
-            at = event.instant.nanoseconds
-            self._write(topics.MODE_EVENT, self._event.pack(at, step, event), at, step)
+    def steps(self, first: int, samples: Columns, events: Sequence[Event]) -> None:
+        """Add the states at the ends of steps from `first` on, the transitions up to the last, and the commands.
 
-    def sample(self, step: int, sample: Sample) -> None:
-        """Add the state at the end of a step (0: the start), and the commands of the next step if they are new."""
-        at = sample.instant.nanoseconds
-        self._write(topics.SLIDER_STATE, self._state.pack(at, step, sample), at, step)
-        self._write(topics.FRICTION_FORCE, self._friction.pack(at, step, sample), at, step)
-        if sample.drive_velocity != self._velocity:
-            self._velocity = sample.drive_velocity
-            self._command(topics.DRIVE_VELOCITY, self._velocity, at, step + 1)
-        if sample.external_force != self._force:
-            self._force = sample.external_force
-            self._command(topics.EXTERNAL_FORCE, self._force, at, step + 1)
+        A command is that of the next step.
+        """
+        at = Instants(samples['second'], samples['fraction'])
+        times = at.nanoseconds()
+        steps = np.arange(first, first + len(times))
+        rows = [of.packed(times, times, steps, numbers_of_steps(of.names, steps, samples)) for of in self._rows]
+        others = [*self._commands(first, samples, times), *self._events(first, at, events)]
+        others.sort(key=lambda other: other.place)
+        self._writer.write_block(_interleaved(rows, times, others))
 
     def close(self, receipt: Mapping[str, object]) -> dict[str, int]:
         """Finish the bag; return the number of messages by topic."""
@@ -86,8 +106,49 @@ class OfflineBag:
         """Leave the bag as it is, readable but without an index."""
         self._writer.abandon()
 
-    def _command(self, topic: Topic, value: float, at: int, step: int) -> None:
-        self._write(topic, flat_layout(topic.type).pack(at, value), at, step)
+    def _events(self, first: int, at: Instants, events: Sequence[Event]) -> Iterator[_Other]:
+        """Yield the transitions; each belongs to the step that it fell into, counted from 1."""
+        for event in events:
+            place = at.before(event.instant)
+            step, time = max(first + place, 1), event.instant.nanoseconds
+            yield self._other(topics.MODE_EVENT, place, time, step, self._event.pack(time, step, event))
 
-    def _write(self, topic: Topic, data: bytes, at: int, step: int) -> None:
-        self._writer.write(self._places[topic.name], data, at, at, step)
+    def _commands(self, first: int, samples: Columns, times: NDArray[np.int64]) -> Iterator[_Other]:
+        """Yield the commands that are new, behind the state at the begin of their step."""
+        for topic, name in ((topics.DRIVE_VELOCITY, 'drive_velocity'), (topics.EXTERNAL_FORCE, 'external_force')):
+            values = samples[name]
+            for k in np.flatnonzero(np.diff(values, prepend=np.nan) != 0.0).tolist():
+                value, time = float(values[k]), int(times[k])
+                if value != self._latest.get(topic):
+                    self._latest[topic] = value
+                    data = flat_layout(topic.type).pack(time, value)
+                    yield self._other(topic, k + 1, time, first + k + 1, data)
+
+    def _other(self, topic: Topic, place: int, time: int, step: int, data: bytes) -> _Other:
+        channel = self._channels[topic.name]
+        return _Other(place, channel, time, bytes_of(Message(channel, time, data, time, step & 0xFFFFFFFF)))
+
+
+def _interleaved(rows: Sequence[NDArray[Any]], times: NDArray[np.int64], others: Sequence[_Other]) -> MessageBlock:
+    """Return the messages of steps, those of a step one behind the other, with others in front of their steps."""
+    kinds, places = len(rows), np.array([other.place * len(rows) for other in others], np.int64)
+    size = sum(of.itemsize for of in rows)
+    data = np.concatenate([of.view(np.uint8).reshape(len(times), -1) for of in rows], axis=1).tobytes()
+    pieces: list[bytes] = []
+    done = 0
+    for other in others:
+        pieces += [data[done * size:other.place * size], other.record]
+        done = other.place
+    lengths = np.insert(np.tile([of.itemsize for of in rows], len(times)), places,
+                        [len(other.record) for other in others])
+    return MessageBlock(
+        b''.join([*pieces, data[done * size:]]), np.cumsum(lengths) - lengths,
+        np.insert(np.tile([int(of['channel'][0]) for of in rows], len(times)), places,
+                  [other.channel for other in others]),
+        np.insert(np.repeat(times, kinds), places, [other.time for other in others]))
+
+
+def _in_blocks(samples: Iterable[Sample]) -> Iterator[Columns]:
+    waiting = iter(samples)
+    while block := list(islice(waiting, _BLOCK)):
+        yield columns_of_rows(np.array(block))
