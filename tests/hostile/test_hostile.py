@@ -48,6 +48,12 @@ KNOWN = {
         | draw.steps('drive', 'velocities', [0.0, 4.985474025992694e-06], [-2.3909339958413123e-05, 0.0])
         | draw.steps('force', 'forces', [0.0, 4.985474025992694e-06], [5951.615297993354, -25499.80368371414])
         | {'initial.velocity': 2.3909339958413123e-05, 'initial.rest_time': 0.0}, 1.0),
+    'inputs jump 3e-16 s behind a breakpoint': (
+        draw.axis(10842.618240937254, 3909994.376985498, 0.0, 106329.76217248732) | draw.contact()
+        | draw.static(0.414685514075227)
+        | draw.kinetic([0.0, 0.04006154993181895], [0.4017584183515003, 0.3032136640736198])
+        | draw.steps('drive', 'velocities', [0.0, 5.474463056003837], [0.00170958991821635, 0.0034191798364327])
+        | draw.steps('force', 'forces', [0.0, 5.474463056003837], [8237.754924945439, -79949.06925104363]), 6.0),
     'a contact damper leaves no digits of a free motion': (
         draw.axis(4.64e-5, 111.0, 0.0, 0.0024) | draw.contact(1.22e11, 4e13) | draw.static(2.46e-6, 3.16e-4, 0.0024)
         | draw.kinetic([0.0], [2.46e-6], 6.7e-9) | draw.constant(-3e5, 1.85e-8), 1e-3),

@@ -162,6 +162,15 @@ def test_start_beyond_the_limit_breaks_away_at_once() -> None:
     assert (first.kind, first.time, first.direction) == ('breakaway', 0, 1)
 
 
+def test_a_contact_without_a_normal_force_gives_way_at_once() -> None:
+    """However little it is pushed beside what the damper of the drive would do."""
+    parameters = coulomb(1.0, 1.0, stiffness=1e8, damping=2e14, feed=-5000.0)
+    parameters['axis'] |= {'mass': 0.0003, 'normal_force': 0.0}
+    parameters['contact'] = {'model': 'compliant', 'stiffness': 22000.0, 'damping': 0.0}
+    first = simulate(parameters, 1e-16, 30)[0]
+    assert (first.kind, first.time, first.direction) == ('breakaway', 0, -1)
+
+
 def test_initial_velocity_is_a_slip_without_excess() -> None:
     parameters = paper()
     parameters['initial']['velocity'] = 0.01

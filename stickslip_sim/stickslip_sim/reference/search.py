@@ -87,6 +87,8 @@ def stick_step(physics: Physics, stick: Stick, flow: Flow, state: State, t: mpf,
     force = physics.stick_force_series(state, series)
     law, normal, age = physics.axis.static, physics.axis.normal, stick.rest_time(t)
     lowest, span = normal * law.value(age), law.span(age)
+    if not normal:
+        return _out(state, flow, series, h, _unheld(force))
     scale, time = physics.force_scale(state), _time_scale(flow, state, h)
     while True:
         if abs(force[0]) + reach(scaled(force, h)) < lowest * (1 - mpf(10) ** -9):
@@ -102,6 +104,15 @@ def stick_step(physics: Physics, stick: Stick, flow: Flow, state: State, t: mpf,
 
 
 Found = tuple[mpf, int]
+
+
+def _unheld(force: Series) -> Found | None:
+    """Return when and on which side a rest without a normal force ends: at once, if it is pushed at all.
+
+    No force is small beside a limit of 0; against the other forces of the axis the contact's may be.
+    """
+    first = next((c for c in force if c), None)
+    return None if first is None else (mpf(0), 1 if first > 0 else -1)
 
 
 def _over(limit: Series, force: Series, h: mpf, scale: mpf, time: mpf) -> Found | None:

@@ -15,10 +15,10 @@ from typing import Any
 import numpy as np
 
 from stickslip_sim.axis import Axis, CompliantContact
-from stickslip_sim.core.input_profile import InputProfile
+from stickslip_sim.core.input_profile import InputProfile, Piece
 from stickslip_sim.core.types import Event, EventKind, Instant, Mode, Sample
 
-from ..case import Parts, Run, borders
+from ..case import Parts, Run, borders, instant
 from .friction import Table, static
 
 Long = np.longdouble
@@ -89,8 +89,7 @@ def _nodes(run: Run, table: Table) -> Iterator[Node]:
     parts = run.parts
     jumps = {Instant(0.0, 0.0)}
     for border in borders(parts):     # the end, too: an input may jump there
-        whole = math.floor(border)
-        jumps.add(Instant(float(whole), border - whole))
+        jumps.add(instant(border))
     excess = Long(0), Long(0)
     stretches = [(run.at_start, run.start), *run.stretches]
     for events, sample in stretches:
@@ -136,8 +135,7 @@ def _segment(parts: Parts, table: Table, begin: Node, end: Node, length: Any, ca
     m, c, h, normal = (Long(x) for x in (axis.mass, axis.drive_stiffness, axis.drive_damping, axis.normal_force))
     sinusoids = [(w, 0) for w in parts.drive.sinusoids] + [(w, 1) for w in parts.force.sinusoids]
     d = WAVE + 2 * len(sinusoids)
-    now = begin.at.seconds
-    drive, force = parts.drive.piece_at(now), parts.force.piece_at(now)
+    drive, force = _piece(parts.drive, begin.at), _piece(parts.force, begin.at)
     v, v_rate = Long(drive.value) + Long(drive.rate) * (_long(begin.at) - Long(drive.start)), Long(drive.rate)
     f, f_rate = Long(force.value) + Long(force.rate) * (_long(begin.at) - Long(force.start)), Long(force.rate)
     contact = axis.contact if isinstance(axis.contact, CompliantContact) else None
@@ -211,7 +209,7 @@ def _segment(parts: Parts, table: Table, begin: Node, end: Node, length: Any, ca
         elif kind == EventKind.BREAKAWAY:   # begins as it swung; the spring is the difference of two ways
             noise[F] += EPSILON * c * abs(Long(begin.position))
     start[U], noise[U] = u, 2 * EPSILON * abs(u)
-    start[V], noise[V] = v, 2 * EPSILON * (abs(v) + _size(parts.drive, now))
+    start[V], noise[V] = v, 2 * EPSILON * (abs(v) + _size(parts.drive, begin.at.seconds))
     start[ONE], noise[ONE] = Long(1), 4 * EPSILON
 
     rates = np.zeros((d, d), dtype=Long)
@@ -280,6 +278,12 @@ def _balanced(rates: Any, start: Any, noise: Any, pace: Any, mass: Any) -> tuple
     return rates * unit[None, :] / unit[:, None], start / unit, noise / unit, unit
 
 
+def _piece(profile: InputProfile, at: Instant) -> Piece:
+    """Return the piece at an instant, which as one double may be a jump that is still to come."""
+    piece = profile.piece_at(at.seconds)
+    return piece if instant(piece.start) <= at else profile.piece_at(math.nextafter(at.seconds, -math.inf))
+
+
 def _size(profile: InputProfile, time: float) -> Any:
     """Return a size of all values that a profile had so far: their rounding adds up from piece to piece."""
     return Long(max(abs(value) + abs(rate) * max(time - start, 0.0) for start, value, rate in zip(
@@ -298,10 +302,10 @@ def _phase(frequency: float, phase: float, at: Instant) -> tuple[Any, Any]:
 
 def _force_at(parts: Parts, begin: Node, end: Node) -> Any:
     """Return F_e at the end of a segment, before anything jumps there."""
-    piece = parts.force.piece_at(begin.at.seconds)
+    piece = _piece(parts.force, begin.at)
     time = _long(end.at)
     if end.event is None or end.new_force:
-        piece = parts.force.piece_at(end.at.seconds)
+        piece = _piece(parts.force, end.at)
     total = Long(piece.value) + Long(piece.rate) * (time - Long(piece.start))
     return total + sum((Long(w.amplitude) * _phase(w.frequency, w.phase, end.at)[0] for w in parts.force.sinusoids),
                        Long(0))
