@@ -25,7 +25,7 @@ from stickslip_sim.scene import Scene, changed, load_scene, scene_from_values
 from tests.support.tool import Capture
 
 DURATION = 2.0   # s; the second break-away of paper_fig7 comes at 1.33 s
-TWO_WAVES: dict[str, object] = {'force.amplitudes': [1.0, 1.0], 'force.frequencies': [5.0, 5.0],
+TWO_SINUSOIDS: dict[str, object] = {'force.amplitudes': [1.0, 1.0], 'force.frequencies': [5.0, 5.0],
                                'force.phases': [0.0, 0.0]}
 KNOTTED: dict[str, object] = {'friction.kinetic.velocities': [0.0, 0.0175, 0.035],
                              'friction.kinetic.coefficients': [0.12, 0.085, 0.05]}
@@ -37,7 +37,7 @@ def scene(name: str = 'paper_fig7', **sections: dict[str, object]) -> Scene:
 
 @pytest.fixture(scope='module')
 def advised() -> Advice:
-    return work.advise(scene(sinusoids=TWO_WAVES, breakpoints=KNOTTED), 1e-3, DURATION, rounds=1)
+    return work.advise(scene(sinusoids=TWO_SINUSOIDS, breakpoints=KNOTTED), 1e-3, DURATION, rounds=1)
 
 
 def test_parts_are_those_of_the_scene() -> None:
@@ -52,7 +52,7 @@ def test_parts_are_those_of_the_scene() -> None:
 
 
 @pytest.mark.parametrize(('name', 'values'), [
-    ('paper_fig8', {}), ('paper_fig8', KNOTTED), ('paper_fig8', TWO_WAVES), ('stribeck', {}), ('cutting_force', {}),
+    ('paper_fig8', {}), ('paper_fig8', KNOTTED), ('paper_fig8', TWO_SINUSOIDS), ('stribeck', {}), ('cutting_force', {}),
     ('cutting_force', {'drive.course': 'sine', 'drive.amplitude': 0.001, 'drive.frequency': 2.0}),
     ('stribeck', {'friction.excess.velocities': [0.0, 0.01, 0.035], 'friction.excess.fractions': [1.0, 0.4, 0.0]}),
     ('paper_fig8', {'friction.kinetic.end_slope': 0.1}), ('stribeck', {'friction.excess.law': 'cosine'}),
@@ -143,8 +143,8 @@ def test_a_part_that_changes_nothing_is_left_out_and_the_others_stay(advised: Ad
 
 
 def test_what_is_left_out_together_stays_within_the_tolerance() -> None:
-    """Either wave may go, for which the tolerance is just enough; both may not."""
-    reference = reference_of(scene(sinusoids=TWO_WAVES), DURATION)
+    """Either sinusoid may go, for which the tolerance is just enough; both may not."""
+    reference = reference_of(scene(sinusoids=TWO_SINUSOIDS), DURATION)
     trials = [best_trial(reference, part) for part in parts_of(reference.scene)]
     sinusoids = [found for found in trials if found.part.name.startswith('sine')]
     one, other = (found.trial.difference.largest for found in sinusoids if found.trial.difference is not None)

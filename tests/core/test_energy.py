@@ -328,9 +328,9 @@ def count(frame, event, argument):
         raise SystemExit('no end')
 def counted(contact, frequency, duration, accounting):
     global calls
-    waves = InputProfile((0.0,), (0.0,), (0.0,), sinusoids=(Sinusoid(1e-7, frequency, 0.1),)), InputProfile(
+    inputs = InputProfile((0.0,), (0.0,), (0.0,), sinusoids=(Sinusoid(1e-7, frequency, 0.1),)), InputProfile(
         (0.0,), (0.0,), (0.0,), sinusoids=(Sinusoid(50.0, frequency, 0.2),))
-    simulator = Simulator(paper_axis(contact), InitialState(), *waves, accounting=accounting)
+    simulator = Simulator(paper_axis(contact), InitialState(), *inputs, accounting=accounting)
     calls = 0
     sys.setprofile(count)
     simulator.advance(Instant(duration, 0.0))

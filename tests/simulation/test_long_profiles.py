@@ -42,7 +42,7 @@ def profiles(kind: str) -> tuple[InputProfile, InputProfile]:
     forces = [rng.uniform(-1.0, 1.0) * 0.05 * AXIS.normal_force for _ in range(400)]
     begins = [0.0, *sorted(rng.sample(times[1:1000], 199)), *sorted(rng.uniform(1.0, 2.5) for _ in range(200))]
     force = steps('force', begins, forces, 2.6 if kind == 'periods' else math.inf)
-    if kind == 'waves':
+    if kind == 'sinusoids':
         return with_sinusoids(drive, (5e-3, 31.0, 0.3)), with_sinusoids(force, (0.03 * AXIS.normal_force, 7.0, 1.0))
     return drive, force
 
@@ -69,7 +69,7 @@ def run_in(kind: str, calls: int) -> list[str]:
     return [' '.join(float(number).hex() for number in row) for row in rows]
 
 
-KINDS = ['plain', 'held', 'periods', 'waves']
+KINDS = ['plain', 'held', 'periods', 'sinusoids']
 
 
 @pytest.mark.parametrize('kind', KINDS)

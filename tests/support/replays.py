@@ -37,12 +37,12 @@ def made_again(recorded: Bag, scene: Scene) -> list[StepResult]:
     return run(scene.make_rig(), recorded.counts['/slider_state'], orders_of(recorded, scene))
 
 
-def assert_same_states(recorded: Bag, products: list[StepResult]) -> None:
+def assert_same_states(recorded: Bag, results: list[StepResult]) -> None:
     """Compare the states of a bag with those of a rig, bit by bit."""
     states = recorded.columns('/slider_state')
-    assert list(states['step']) == [result.step for result in products]
+    assert list(states['step']) == [result.step for result in results]
     for name in FIELDS:
-        ours = np.array([getattr(result.sample, name) for result in products])
+        ours = np.array([getattr(result.sample, name) for result in results])
         np.testing.assert_array_equal(states[name], ours, err_msg=name)
 
 

@@ -41,11 +41,11 @@ def overshoot(motion: ObservedMotion, target: float) -> MeasuredFigure:
 
     Raises InputError when it begins on the target: there is no sense then.
     """
-    way = target - motion.position[0]
-    if way == 0.0:
+    move = target - motion.position[0]
+    if move == 0.0:
         raise InputError('target', target, f'another place than that of the slider at t = {motion.begin:g} s',
                          'let the window begin before the move')
-    beyond = math.copysign(1.0, way) * (motion.points.position - target)
+    beyond = math.copysign(1.0, move) * (motion.points.position - target)
     return MeasuredFigure(max(0.0, float(beyond.max())), f'at t = {motion.points.time[beyond.argmax()]:.6g} s'
                           if beyond.max() > 0.0 else 'the target is not passed')
 

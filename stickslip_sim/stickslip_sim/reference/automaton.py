@@ -214,12 +214,13 @@ class _Automaton:
         if not (old.silent and phase == ACCELERATE):
             self._emit(phase, old.direction, self.physics.friction(self.mode, self.state))
 
-    def _cross_breakpoint(self, way: int) -> None:
+    def _cross_breakpoint(self, sense: int) -> None:
         slip = self._slip()
-        bound = self.physics.upper_breakpoint(slip.segment) if way > 0 else self.physics.lower_breakpoint(slip.segment)
+        bound_of = self.physics.upper_breakpoint if sense > 0 else self.physics.lower_breakpoint
+        bound = bound_of(slip.segment)
         assert bound is not None
         self.state = self.state._replace(velocity=slip.direction * bound)
-        self.mode = replace(slip, segment=slip.segment + way)
+        self.mode = replace(slip, segment=slip.segment + sense)
         self._emit('knot', slip.direction, self.physics.friction(self.mode, self.state))
 
     def _enter_slip(self, direction: int, excess: mpf) -> None:

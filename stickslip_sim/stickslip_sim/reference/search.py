@@ -66,13 +66,13 @@ def _coast_guards(physics: Physics, slip: Slip, state: State, series: Expansion)
 def _moving_guards(physics: Physics, slip: Slip, state: State, series: Expansion) -> list[Guard]:
     """σ u' keeps its sign, and |u| its table segment (or stays above zero)."""
     rising = slip.phase == ACCELERATE
-    way = mpf(1 if rising else -1)
-    acceleration = [way * slip.direction * c for c in derivative(series.velocity)]
+    sense = mpf(1 if rising else -1)
+    acceleration = [sense * slip.direction * c for c in derivative(series.velocity)]
     scale = physics.force_scale(state) / physics.axis.mass
     guards = [(SURPLUS_DOWN if rising else SURPLUS_UP, acceleration, scale)]
     bound = physics.upper_breakpoint(slip.segment) if rising else physics.lower_breakpoint(slip.segment)
     if bound is not None:
-        distance = combine((way * bound, [mpf(1)]), (-way * slip.direction, series.velocity))
+        distance = combine((sense * bound, [mpf(1)]), (-sense * slip.direction, series.velocity))
         guards.append((SPEED_UP if rising else SPEED_DOWN, distance, max(bound, abs(state.velocity))))
     return guards
 

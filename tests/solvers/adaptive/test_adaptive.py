@@ -164,7 +164,7 @@ class TestWaves:
             0.2 * 1.3 + 0.3 / omega * (math.cos(-0.2) - math.cos(omega * 1.3 - 0.2)), rel=1e-12)
 
     def test_no_sinusoid_of_a_stuck_axis_is_passed_over(self) -> None:
-        """At rest nothing bounds the step but the wave itself; its first crest beyond the limit breaks the contact."""
+        """At rest nothing bounds the step but the sinusoid; its first crest beyond the limit breaks the contact."""
         force = InputProfile((0.0,), (0.0,), (0.0,), sinusoids=(Sinusoid(900.0, 0.5, 0.0),))
         event = simulate(TIGHT, paper_axis(RIGID), 0.0, 3.0, force)[0][0]
         assert event.time == pytest.approx(math.asin(0.24 * 350 * 9.80665 / 900.0) / math.pi, rel=1e-12)

@@ -7,9 +7,9 @@ little beyond the guard that ends it (an integrator looks there).  A guard is a 
 mode and whose fall through zero ends it.  Nothing here is taken from the exact engine: equations and rules are those of
 docs/model.md.
 
-`p` is the array of `axis.pack`.  `m` is the state of the automaton at the last reset (below), `w` the waves: frequency
-in Hz, phase in turns, amplitude in m/s, amplitude in N for each.  What the motion until the next reset depends on is
-taken together in a tuple `q`, which machine code keeps in registers.
+`p` is the array of `axis.pack`.  `m` is the state of the automaton at the last reset (below), `w` the sinusoids:
+frequency in Hz, phase in turns, amplitude in m/s, amplitude in N for each.  What the motion until the next reset
+depends on is taken together in a tuple `q`, which machine code keeps in registers.
 """
 
 import math
@@ -24,7 +24,7 @@ from ...core.types import Mode
 
 TIME, MODE, DIRECTION, SEGMENT, EXCESS = range(5)
 X, U, S, DEFLECTION, REST = range(5, 10)      # at the reset; S: drive position
-V, V_RATE, F, F_RATE = range(10, 14)          # the inputs from the reset on, waves apart
+V, V_RATE, F, F_RATE = range(10, 14)          # the inputs from the reset on, sinusoids apart
 SIZE = 14
 GUARDS = 3                                    # of a mode, at most
 
@@ -111,14 +111,14 @@ def inputs(q, w, t):
     v = q[Q_V] + q[Q_V_RATE] * t
     f = q[Q_F] + q[Q_F_RATE] * t
     if len(w) > 0:
-        ds, dv, df = _waves(w, q[Q_TIME], t)
+        ds, dv, df = _sinusoids(w, q[Q_TIME], t)
         return s + ds, v + dv, f + df
     return s, v, f
 
 
 @always_compiled
-def _waves(w, begin, t):
-    """Return what the waves add to the inputs at τ = t."""
+def _sinusoids(w, begin, t):
+    """Return what the sinusoids add to the inputs at τ = t."""
     s = v = f = 0.0
     for i in range(0, len(w), 4):
         before = TURN * (w[i] * begin + w[i + 1])

@@ -146,11 +146,11 @@ def run(p, begin, pieces, w, duration, tolerance, longest, m, events, steps, wor
 
 
 def _prepare(problem: Problem, setting: Setting) -> Callable[[], Outcome]:
-    p, begin, pieces, waves = problem.parameters, problem.start, problem.pieces, problem.sinusoids
+    p, begin, pieces, sinusoids = problem.parameters, problem.start, problem.pieces, problem.sinusoids
     m, events, steps, work = np.zeros(SIZE), problem.event_rows(), np.zeros(4), np.zeros((5, MORE))
 
     def simulate() -> Outcome:
-        rows = run(p, begin, pieces, waves, problem.duration, setting.value, problem.longest_step, m, events,
+        rows = run(p, begin, pieces, sinusoids, problem.duration, setting.value, problem.longest_step, m, events,
                    steps, work)
         if rows < 0:
             raise SolverError('more events than the table holds')

@@ -105,16 +105,16 @@ class _Code:
 
         @numba.cfunc(types.intc(real, word, word, word))
         def right_side(t: Any, y: Any, dy: Any, user: Any) -> Any:
-            waves = int(numbers(user, 1)[0])
-            known = numbers(user, 1 + _Q + waves)
+            sinusoids = int(numbers(user, 1)[0])
+            known = numbers(user, 1 + _Q + sinusoids)
             state, rate = numbers(data(y), 2), numbers(data(dy), 2)
             rate[0], rate[1] = rates(known[1:1 + _Q], known[1 + _Q:], t, state[0], state[1])
             return 0
 
         @numba.cfunc(types.intc(real, word, word, word))
         def root_function(t: Any, y: Any, out: Any, user: Any) -> Any:
-            waves = int(numbers(user, 1)[0])
-            known = numbers(user, 1 + _Q + waves)
+            sinusoids = int(numbers(user, 1)[0])
+            known = numbers(user, 1 + _Q + sinusoids)
             state, values = numbers(data(y), 2), numbers(out, 3)
             values[0], values[1], values[2] = guards(known[1:1 + _Q], known[1 + _Q:], t, state[0], state[1])
             return 0
