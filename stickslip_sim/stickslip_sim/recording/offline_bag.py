@@ -114,7 +114,7 @@ class OfflineBag:
             yield self._other(topics.MODE_EVENT, place, time, step, self._event.pack(time, step, event))
 
     def _commands(self, first: int, samples: Columns, times: NDArray[np.int64]) -> Iterator[_Other]:
-        """Yield the commands that are new, behind the state at the begin of their step."""
+        """Yield the commands that are new, behind the state at the start of their step."""
         for topic, name in ((topics.DRIVE_VELOCITY, 'drive_velocity'), (topics.EXTERNAL_FORCE, 'external_force')):
             values = samples[name]
             for k in np.flatnonzero(np.diff(values, prepend=np.nan) != 0.0).tolist():
