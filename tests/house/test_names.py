@@ -44,6 +44,8 @@ SAME_FILES = {
     'orders.py': 'commands and calls of a recorded run: given to a node, and to a rig',
     'parameters.py': 'the numbers of the axis; the parameters of the node, as ROS has them',
     'records.py': 'the numbers of an axis by name; the records of an MCAP file',
+    'rows.py': 'what a solver fills; messages of one size as an array',
+    'sections.py': 'of the help of the tool; of a parameter file',
     'steps.py': 'the steps of a fixed-step solver; those of a run that is simulated again',
     'topics.py': 'topics as they are recorded; as the node has them',
 }

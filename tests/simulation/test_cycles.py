@@ -10,7 +10,7 @@ import pytest
 from stickslip_sim.axis import InitialState
 from stickslip_sim.core.input_profile import table
 from stickslip_sim.core.types import Event, EventKind, Mode
-from stickslip_sim.simulation.cycles import Cycle, EventTally, Span, cycle_figures, mode_spans, summary
+from stickslip_sim.simulation.cycles import Cycle, EventTally, ModeSpan, cycle_figures, mode_spans, summary
 from tests.support.axes import COMPLIANT, RIGID, Contact, paper_axis, run_events
 
 
@@ -143,7 +143,8 @@ def test_times_late_in_a_run_keep_their_digits() -> None:
 def test_spans_within_a_window() -> None:
     events = [_event(1.0, EventKind.BREAKAWAY, Mode.ACCELERATING, 1, 0.0, 0.0),
               _event(2.0, EventKind.STICK, Mode.STICK, 1, 0.5, 0.0)]
-    assert mode_spans(events, 1.5, 3.0, Mode.STICK) == [Span(1.5, 2.0, Mode.ACCELERATING), Span(2.0, 3.0, Mode.STICK)]
+    assert mode_spans(events, 1.5, 3.0, Mode.STICK) == [
+        ModeSpan(1.5, 2.0, Mode.ACCELERATING), ModeSpan(2.0, 3.0, Mode.STICK)]
 
 
 def test_only_time_within_the_window_counts() -> None:

@@ -38,7 +38,7 @@ class Cycle(NamedTuple):
     static_coefficient: float      # at the break-away
 
 
-class Span(NamedTuple):
+class ModeSpan(NamedTuple):
     """A stretch of time in one mode."""
 
     begin: float  # s
@@ -65,16 +65,16 @@ def cycle_figures(events: Sequence[Event]) -> list[Cycle]:
     return [cycle for event in events if (cycle := finder.take(event)) is not None]
 
 
-def mode_spans(events: Sequence[Event], begin: float, end: float, mode: Mode) -> list[Span]:
+def mode_spans(events: Sequence[Event], begin: float, end: float, mode: Mode) -> list[ModeSpan]:
     """Return which mode held when, from `begin` to `end` (s); `mode` holds until the first event."""
     spans = []
     for event in events:
         if event.mode != mode and begin < event.time < end:
-            spans.append(Span(begin, event.time, mode))
+            spans.append(ModeSpan(begin, event.time, mode))
             begin = event.time
         if event.time < end:
             mode = event.mode
-    return [*spans, Span(begin, end, mode)]
+    return [*spans, ModeSpan(begin, end, mode)]
 
 
 def summary(events: Sequence[Event], duration: float, start: Mode = Mode.STICK, begin: float = 0.0) -> Summary:
