@@ -40,7 +40,7 @@ def tick_cost() -> Callable[[], float]:
     instants = [(float(k // 1000), k % 1000 / 1000.0) for k in range(1, TICKS + 1)]
 
     def measure() -> float:
-        solver.start(p, state, *problem.start, *problem.pieces[0, 1:], sinusoids, events, 0)
+        solver.start(p, state, *problem.start, 0.0, 0.0, *problem.pieces[0, 1:], sinusoids, events, 0)
         advance = solver.advance
         begin = time.process_time()
         for second, fraction in instants:

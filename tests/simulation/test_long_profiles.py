@@ -25,7 +25,7 @@ DURATION = 3.0
 PIECES = 3000
 ONE_BY_ONE = with_advance(exact.SOLVER, exact.advance)   # without a walk of its own
 AXIS = paper_axis(COMPLIANT)
-START = 0.0, 0.0, math.inf   # position, velocity, rest time: those of InitialState()
+START = 0.0, 0.0, math.inf, 0.0, 0.0   # those of InitialState()
 Bits = list[tuple[float, ...]]
 
 

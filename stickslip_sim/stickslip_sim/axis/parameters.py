@@ -70,14 +70,20 @@ class Axis:
 
 @dataclass(frozen=True, slots=True)
 class InitialState:
-    """Start: position m, velocity m/s, rest_time s (infinite: prolonged rest).  The spring is unstretched."""
+    """Start: position m, velocity m/s, rest_time s (infinite: prolonged rest), and displacements of the springs.
+
+    `stretch` m of the drive spring, s₀ of the paper; `deflection` m of a compliant contact.  A slider that moves slips,
+    unless the contact is deflected: then it rings in stick.
+    """
 
     position: float = 0.0
     velocity: float = 0.0
     rest_time: float = math.inf
+    stretch: float = 0.0
+    deflection: float = 0.0
 
     def __post_init__(self) -> None:
-        for name, unit in (('position', 'm'), ('velocity', 'm/s')):
+        for name, unit in (('position', 'm'), ('velocity', 'm/s'), ('stretch', 'm'), ('deflection', 'm')):
             if not math.isfinite(getattr(self, name)):
                 raise InputError(f'initial.{name}', getattr(self, name), f'finite, in {unit}', 'use 0')
         if not self.rest_time >= 0.0:
@@ -85,10 +91,21 @@ class InitialState:
 
 
 def check_start(axis: Axis, initial: InitialState) -> None:
-    """Raise InputError when the start asks for an infinite static friction."""
+    """Raise InputError when the start asks for an infinite static friction, or for more than the contact holds."""
     if math.isinf(initial.rest_time) and not axis.friction.static.bounded:
         raise InputError('initial.rest_time', initial.rest_time, 'finite with the logarithmic static law',
                          'its coefficient grows without bound; give the seconds of rest before the start')
+    if initial.deflection == 0.0:
+        return
+    if not isinstance(axis.contact, CompliantContact):
+        raise InputError('initial.deflection', initial.deflection, '0 with a rigid contact',
+                         'leave it out, or use contact.type: compliant')
+    force = axis.contact.stiffness * initial.deflection + axis.contact.damping * initial.velocity
+    limit = axis.normal_force * axis.friction.static.coefficient(initial.rest_time)
+    if not abs(force) <= limit:
+        raise InputError('initial.deflection', initial.deflection,
+                         f'such that the contact carries at most N mu_s = {limit:g} N; it would carry {force:g} N',
+                         'lower it, or lengthen initial.rest_time')
 
 
 def pack(axis: Axis) -> Sequence[float]:

@@ -73,7 +73,7 @@ def _prepare(problem: Problem, solver: Solver) -> Callable[[], Outcome]:
     fraction = problem.duration - second
 
     def simulate() -> Outcome:
-        rows = solver.start(p, s, position, velocity, rest, v, v_rate, f, f_rate, sinusoids, events, 0)
+        rows = solver.start(p, s, position, velocity, rest, 0.0, 0.0, v, v_rate, f, f_rate, sinusoids, events, 0)
         _, rows, end = walk.run(p, s, drive, force, until, before, sinusoids, events, rows)
         if end == DONE:
             rows, end = solver.advance(p, s, second, fraction, events, rows)

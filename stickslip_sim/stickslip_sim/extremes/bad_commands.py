@@ -23,7 +23,8 @@ _BAD = (math.nan, math.inf, -math.inf)
 _PARAMETERS = (
     'axis.mass', 'axis.drive_stiffness', 'axis.drive_damping', 'axis.normal_force', 'contact.stiffness',
     'contact.damping', 'friction.static.initial', 'friction.static.limit', 'friction.static.time_constant',
-    'drive.velocity', 'force.constant', 'initial.position', 'initial.velocity', 'time.rate')
+    'drive.velocity', 'force.constant', 'initial.position', 'initial.velocity', 'initial.stretch',
+    'initial.deflection', 'time.rate')
 
 
 def bad_commands(setup: Setup) -> Measurement:

@@ -137,13 +137,15 @@ class _Automaton:
         self.drive, self.force = Input(axis.drive), Input(axis.force)
         self.result = Run(self.physics, digits)
         zero = self.t = mpf(0)
-        self.state = State(zero, axis.velocity, zero, axis.position, self.drive.at(zero), self.force.at(zero))
+        self.state = State(
+            axis.stretch, axis.velocity, axis.deflection, axis.position, self.drive.at(zero), self.force.at(zero)
+        )
         self.mode: Mode = Stick(zero, axis.rest_time)
         self.flow: Flow
 
     def run(self) -> Run:
         """Follow the modes and the segments of the inputs to the end."""
-        if self.axis.velocity:
+        if self.axis.velocity and not self.axis.deflection:
             self._enter_slip(1 if self.axis.velocity > 0 else -1, mpf(0))
         self.flow = self.physics.flow(self.mode)
         while (stop := min(self.drive.until, self.force.until)) <= self.duration:

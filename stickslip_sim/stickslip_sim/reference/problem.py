@@ -65,6 +65,8 @@ class Problem:
     position: mpf
     velocity: mpf
     rest_time: mpf
+    stretch: mpf
+    deflection: mpf
 
     def breakpoints(self) -> list[mpf]:
         """Return the speeds above zero at which a friction table bends."""
@@ -100,6 +102,8 @@ def problem(axis: product.Axis, initial: product.InitialState, drive: profiles.I
         position=mpf(initial.position),
         velocity=mpf(initial.velocity),
         rest_time=mpf(initial.rest_time),
+        stretch=mpf(initial.stretch),
+        deflection=mpf(initial.deflection),
     )
 
 

@@ -166,7 +166,7 @@ def _rows_of(axis: Axis, duration: float, window: int, drive_velocity: ArrayLike
         parameters[:, column.at] = values
     _check_friction(parameters)
     inputs = np.stack([np.broadcast_to(velocity, count), np.broadcast_to(force, count)], axis=1)
-    starts = np.tile([initial.position, initial.velocity, initial.rest_time], (count, 1))
+    starts = np.tile(astuple(initial), (count, 1))
     return _run(parameters, inputs, starts, float(duration), window, threads or os.cpu_count() or 1)
 
 

@@ -106,11 +106,14 @@ PARAMETERS: tuple[Parameter, ...] = (
     *profile('force', 'constant', 'rate', 'forces', 'N', 'external force on the slider, along +x', ranges.FORCE,
             ranges.FORCE_RATE),
 
-    number('initial.position', 0.0, 'm', 'position of slider and drive at the start; the spring is unstretched',
-           within=ranges.PLACE),
+    number('initial.position', 0.0, 'm', 'position of the slider at the start', within=ranges.PLACE),
     number('initial.velocity', 0.0, 'm/s', 'velocity of the slider at the start', within=ranges.VELOCITY),
     number('initial.rest_time', math.inf, 's', 'rest time before the start (.inf: prolonged rest)',
            within=ranges.TIME, infinite=True),
+    number('initial.stretch', 0.0, 'm', 'stretch of the drive spring at the start, s_0: drive position minus position',
+           within=ranges.PLACE),
+    number('initial.deflection', 0.0, 'm', 'deflection of a compliant contact at the start; it must hold that',
+           within=ranges.PLACE),
 
     choice('solver.name', 'exact', 'exact: closed form, from event to event; fixed_step: the usual loop, to compare'
            ' with; adaptive: steps of a stated tolerance, offline only (docs/solvers.md)', _SOLVERS),

@@ -60,7 +60,8 @@ class Simulator:
         self._time = Instant(0.0, 0.0)
         start = self._initial
         rows = self._solver.start(self._parameters, self._state, start.position, start.velocity, start.rest_time,
-                                  v.value, v.rate, f.value, f.rate, self._sinusoids, self._table, 0)
+                                  start.stretch, start.deflection, v.value, v.rate, f.value, f.rate, self._sinusoids,
+                                  self._table, 0)
         self._waiting = list(self._rows(rows))
         self._counts = dict.fromkeys(EventKind, 0)
         return self._waiting

@@ -47,9 +47,10 @@ class Solver(Protocol):
     def advice(self) -> str:
         """What to try when it gives up."""
 
-    def start(self, p: Parameters, s: State, position: float, velocity: float, rest: float, v: float, v_rate: float,
-              f: float, f_rate: float, sinusoids: Sinusoids, events: Events, row: int, /) -> int:
-        """Set the state at time 0: the spring unstretched; position in m, velocity in m/s, rest time in s."""
+    def start(self, p: Parameters, s: State, position: float, velocity: float, rest: float, stretch: float,
+              deflection: float, v: float, v_rate: float, f: float, f_rate: float, sinusoids: Sinusoids, events: Events,
+              row: int, /) -> int:
+        """Set the state at time 0: position, stretch and deflection in m, velocity in m/s, rest time in s."""
 
     def advance(self, p: Parameters, s: State, second: float, fraction: float, events: Events, row: int, /
                 ) -> tuple[int, int]:

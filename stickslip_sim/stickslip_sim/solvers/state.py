@@ -4,19 +4,27 @@
 
 from ..axis.layout import Parameters, State, clear_state
 from ..axis.motion import DECELERATING, STICK
-from ..core.hot_path import compiled
+from ..core.hot_path import compiled, inlined
 
 
 @compiled
-def begin_state(s: State, position: float, velocity: float, rest: float) -> None:
-    """Set the state at time 0, the spring unstretched: at rest, or slipping with E = 0 on some branch."""
+def begin_state(s: State, position: float, velocity: float, rest: float, stretch: float, deflection: float) -> None:
+    """Set the state at time 0: in stick, or slipping with E = 0 on some branch."""
     clear_state(s)
     s.origin, s.velocity, s.mode = position, velocity, STICK
-    if velocity == 0.0:
+    s.drive = s.spring = stretch
+    s.deflection = deflection
+    if is_stuck(velocity, deflection):
         s.rest = rest
     else:
         s.direction = 1.0 if velocity > 0.0 else -1.0
         s.mode = DECELERATING
+
+
+@inlined
+def is_stuck(velocity: float, deflection: float) -> bool:
+    """Whether a start is in stick: at rest, or in a compliant contact that carries a force, in which it rings."""
+    return velocity == 0.0 or deflection != 0.0
 
 
 @compiled

@@ -61,7 +61,8 @@ def _brief(event: Event) -> str:
 
 
 def _mirrored(parts: Parts) -> Parts:
-    initial = InitialState(-parts.initial.position, -parts.initial.velocity, parts.initial.rest_time)
+    initial = InitialState(-parts.initial.position, -parts.initial.velocity, parts.initial.rest_time,
+                           -parts.initial.stretch, -parts.initial.deflection)
     return parts._replace(initial=initial, drive=_scaled(parts.drive, -1.0), force=_scaled(parts.force, -1.0))
 
 
@@ -78,7 +79,8 @@ def _mass_unit(parts: Parts, k: float) -> Parts:
 
 def _length_unit(parts: Parts, k: float) -> Parts:
     axis = replace(_faster(parts.axis, k), normal_force=k * parts.axis.normal_force)
-    initial = replace(parts.initial, position=k * parts.initial.position, velocity=k * parts.initial.velocity)
+    initial = replace(parts.initial, **{name: k * getattr(parts.initial, name)
+                                        for name in ('position', 'velocity', 'stretch', 'deflection')})
     return parts._replace(axis=axis, initial=initial, drive=_scaled(parts.drive, k), force=_scaled(parts.force, k))
 
 

@@ -68,13 +68,14 @@ class Engine:
     sample_block: ClassVar[None] = None
 
     @_QUIET
-    def start(self, p: Parameters, s: State, position: float, velocity: float, rest: float, v: float, v_rate: float,
-              f: float, f_rate: float, sinusoids: Sinusoids, events: Events, row: int) -> int:
-        """Set the state at time 0: the spring unstretched, at rest (it may break away at once) or sliding."""
-        begin_state(s, position, velocity, rest)
+    def start(self, p: Parameters, s: State, position: float, velocity: float, rest: float, stretch: float,
+              deflection: float, v: float, v_rate: float, f: float, f_rate: float, sinusoids: Sinusoids, events: Events,
+              row: int) -> int:
+        """Set the state at time 0: in stick (it may break away at once) or sliding."""
+        begin_state(s, position, velocity, rest, stretch, deflection)
         hold_inputs(s, 0.0, 0.0, v, v_rate, f, f_rate, sinusoids)
         refresh_inputs(s)
-        if velocity == 0.0:
+        if s.mode == STICK:
             return self._apply(p, s, events, row)
         self._choose(p, s)
         return row

@@ -47,6 +47,7 @@ from ...axis.transitions import (
 from ...core.hot_path import compiled, inlined
 from .. import DONE, FULL, NO_PROGRESS, UNSOUND
 from ..sampling import write_sample
+from ..state import is_stuck
 from .account import book_contact, book_parameters, book_works, read_account
 from .judge import event_is_sound
 from .search import RENEWAL, find_event
@@ -56,9 +57,9 @@ _SAME_INSTANT = 64   # events without progress in time; a sound model needs thre
 
 
 @compiled
-def start(p: Parameters, s: State, position: float, velocity: float, rest: float, v: float, v_rate: float, f: float,
-          f_rate: float, sinusoids: Sinusoids, events: Events, row: int) -> int:
-    """Set the state at time 0: the spring unstretched, at rest (it may break away at once) or sliding."""
+def start(p: Parameters, s: State, position: float, velocity: float, rest: float, stretch: float, deflection: float,
+          v: float, v_rate: float, f: float, f_rate: float, sinusoids: Sinusoids, events: Events, row: int) -> int:
+    """Set the state at time 0: in stick (it may break away at once) or, moving without a deflection, sliding."""
     accounting = s.accounting
     clear_state(s)
     s.accounting = accounting
@@ -66,11 +67,13 @@ def start(p: Parameters, s: State, position: float, velocity: float, rest: float
     s.origin = position
     s.velocity = velocity
     s.rest = rest
+    s.drive = s.spring = stretch
+    s.deflection = deflection
     s.inputs.v, s.inputs.v_rate, s.inputs.f, s.inputs.f_rate = v, v_rate, f, f_rate
     load_sinusoids(s, sinusoids)
     s.mode = STICK
-    s.stored_at_start = 0.5 * p.mass * velocity * velocity
-    if velocity == 0.0:
+    s.stored_at_start = stored_energy(p, s, 0.0)
+    if is_stuck(velocity, deflection):
         row = _apply(p, s, events, row)
     else:
         s.rest = 0.0

@@ -36,11 +36,12 @@ _SAME = 1e-12        # of the least speed of a swing: one that loses less is the
 
 def run_axes(parameters: Any, inputs: Any, starts: Any, duration: float, first: int, last: int, p: Any, s: State,
              events: Events, sinusoids: Sinusoids, out: Any) -> None:
-    """Run the axes `first` to `last` of the rows of `parameters`, `inputs` (v, F_e), `starts` (x, ẋ, rest time).
+    """Run the axes `first` to `last` of the rows of `parameters`, `inputs` and `starts`.
 
-    Rows of `out` have the numbers of an `AxisFigures`, and behind them those of as many `KeptRound` as there is room
-    for; they are brought up to date.  Pauses between sticks count in the second half alone.  `s` is a state that keeps
-    the account of energy, `p` room for the parameters of an axis.
+    A row of `inputs` is v and F_e, one of `starts` an `InitialState`.  Rows of `out` have the numbers of an
+    `AxisFigures`, and behind them those of as many `KeptRound` as there is room for; they are brought up to date.
+    Pauses between sticks count in the second half alone.  `s` is a state that keeps the account of energy, `p` room for
+    the parameters of an axis.
     """
     second = math.floor(duration)
     fraction = duration - second
@@ -49,9 +50,9 @@ def run_axes(parameters: Any, inputs: Any, starts: Any, duration: float, first: 
         a = AxisFigures(*map(float, out[i, :size]))
         latest = [KeptRound(*map(float, kept)) for kept in out[i, size:].reshape(-1, ROUND_SIZE)]
         p = Parameters(parameters[i].tolist())
-        position, velocity, rest = map(float, starts[i])
+        position, velocity, rest, stretch, deflection = map(float, starts[i])
         v, f = map(float, inputs[i])
-        rows = start(p, s, position, velocity, rest, v, 0.0, f, 0.0, sinusoids, events, 0)
+        rows = start(p, s, position, velocity, rest, stretch, deflection, v, 0.0, f, 0.0, sinusoids, events, 0)
         a.final_mode = STICK if rows > 0 else s.mode
         ended = FULL
         while ended == FULL:

@@ -44,15 +44,15 @@ _FAR = 1e100   # m, m/s: so far that forces overflow soon
 
 
 @compiled
-def start(p: Parameters, s: State, position: float, velocity: float, rest: float, v: float, v_rate: float, f: float,
-          f_rate: float, sinusoids: Sinusoids, events: Events, row: int, method: float, step_ticks: float,
-          second_ticks: float) -> int:
+def start(p: Parameters, s: State, position: float, velocity: float, rest: float, stretch: float, deflection: float,
+          v: float, v_rate: float, f: float, f_rate: float, sinusoids: Sinusoids, events: Events, row: int,
+          method: float, step_ticks: float, second_ticks: float) -> int:
     """Set the state at time 0, as the exact engine does; a step lasts step_ticks / second_ticks seconds."""
-    begin_state(s, position, velocity, rest)
+    begin_state(s, position, velocity, rest, stretch, deflection)
     s.grid.method, s.grid.step_ticks, s.grid.second_ticks = method, step_ticks, second_ticks
     hold_inputs(s, 0.0, 0.0, v, v_rate, f, f_rate, sinusoids)
     refresh_inputs(s)
-    if velocity == 0.0:
+    if s.mode == STICK:
         return _look(p, s, events, row)
     residual, _, tolerance = _residual(p, s)
     s.mode = _sub_mode(s.mode, residual, 0.0, tolerance)
