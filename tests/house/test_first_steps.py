@@ -17,6 +17,7 @@ from tests.support.waiting import wait_for
 pytestmark = pytest.mark.ros
 
 DRIVE = ROOT / 'examples' / 'drive.py'
+SETPOINT = ROOT / 'examples' / 'setpoint.py'
 CONTROLLER = ROOT / 'examples' / 'controller.py'
 
 
@@ -63,3 +64,24 @@ def test_the_controller_is_the_one_of_the_page() -> None:
     shown = [line.strip() for line in (ROOT / 'docs/hil.md').read_text(encoding='utf-8').splitlines()]
     assert code
     assert [line.strip() for line in code.splitlines() if line.strip() and line.strip() not in shown] == []
+
+
+ENCODERS = ('-p', 'drive.velocity:=0.0', '-p', 'joint_interface.enabled:=true', '-p', 'encoder.resolution:=1.0e-6')
+
+
+def test_a_setpoint_is_followed_on_the_encoders(tmp_path: Path) -> None:
+    with running(*ENCODERS, folder=tmp_path), client() as axis:
+        axis.connect()
+        done = python(SETPOINT)
+        assert done.returncode == 0, done.stderr
+        rest = axis.next('slider_state', lambda state: state.drive_velocity == 0.0)
+        assert abs(rest.position - 0.010) < 1e-3
+
+
+def test_and_in_lock_step_to_the_last_bit(tmp_path: Path) -> None:
+    with running(*ENCODERS, '-p', 'time.mode:=lockstep', '-r', '__ns:=/stepped', folder=tmp_path):
+        runs = [python(SETPOINT, '--lockstep', '--ros-args', '-r', '__ns:=/stepped') for _ in range(2)]
+    assert [run.returncode for run in runs] == [0, 0], runs
+    first, second = (run.stderr.rpartition(']: ')[2] for run in runs)
+    assert first == second
+    assert first.startswith('done: the largest error was 1.')

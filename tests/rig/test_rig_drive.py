@@ -78,7 +78,7 @@ class TestRamp:
         now = Instant(second, 0.123)
         simulator = Simulator(AXIS, InitialState(), constant(0.0), constant(0.0))
         simulator.advance(now)
-        drive = Drive(constant(0.0), DriveLimits(acceleration=0.5))
+        drive = Drive(constant(0.0), DriveLimits(acceleration=0.5), 1e-3)
         drive.follow(0.1, now)
         simulator.command_drive(drive.profile)
         for k in range(1, 400):
@@ -92,7 +92,7 @@ class TestRamp:
         assert simulator.sample().drive_velocity == 0.1
 
     def test_too_short_for_the_clock_is_a_jump(self) -> None:
-        drive = Drive(constant(0.0), DriveLimits(acceleration=1e9))
+        drive = Drive(constant(0.0), DriveLimits(acceleration=1e9), 1e-3)
         drive.follow(1e-9, Instant(1e9, 0.5))
         assert drive.profile == 1e-9
 
@@ -120,7 +120,21 @@ class TestLimits:
     def test_of_acceleration_are_counted_while_the_drive_is_behind(self) -> None:
         rig = limited(acceleration=1.0)
         run(rig, 40, {step: [velocity(0.012)] for step in range(10, 30)})
-        assert rig.counts.limited == 10      # 10 mm/s take 10 ms
+        assert rig.counts.limited == 9       # 10 mm/s take 10 ms, and the tenth is had by the end of its step
+
+    @pytest.mark.parametrize(('acceleration', 'follows'), [(0.2, True), (0.05, False)])
+    def test_are_counted_where_the_drive_has_not_what_was_commanded(self, acceleration: float, follows: bool) -> None:
+        """A setpoint that needs up to 0.1 m/s²: each command is another, none a jump that the drive cannot make."""
+        rig = limited(acceleration=acceleration, drive=0.0)
+        commands = {step: 1e-4 * min(step, 100) for step in range(1, 301)}
+        speeds = drive_velocities(run(rig, 301, {step: [velocity(value)] for step, value in commands.items()}))
+        missed = sum(abs(speeds[step] - value) > 1e-12 for step, value in commands.items())
+        assert (rig.counts.limited, missed == 0) == (missed, follows)
+
+    def test_what_comes_while_the_drive_is_frozen_is_no_matter_of_its_limits(self) -> None:
+        rig = limited(0.02, 1.0)
+        run(rig, 120, {50: [inject('drive_freeze')], 60: [velocity(0.01)], 70: [velocity(0.03)]})
+        assert rig.counts.limited == 1       # beyond what it may ever have
 
     def test_none_means_at_once_and_nothing_to_report(self) -> None:
         rig = make()

@@ -196,8 +196,9 @@ class Client:
         return states
 
     def stop_commanding(self) -> None:
-        """Leave the velocity to others."""
+        """Leave velocity and force to others."""
         self.node.destroy_publisher(self._velocity)
+        self.node.destroy_publisher(self._force)
 
     def add(self, node: Node) -> None:
         """Let the callbacks of another node of this context run too."""

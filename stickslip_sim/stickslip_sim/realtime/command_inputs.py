@@ -15,7 +15,7 @@ class CommandTotals(NamedTuple):
     received: int
     refused: int
     lost: int         # to a fault
-    limited: int      # the drive could not follow at once
+    limited: int      # changed by a limit of the drive
     timed_out: int    # times that they stopped coming
 
 

@@ -23,10 +23,14 @@ class DriveLimits:
 
 
 class Drive:
-    """The profile of the drive velocity from the present instant on; at first that of the scene."""
+    """The profile of the drive velocity from the present instant on; at first that of the scene.
 
-    def __init__(self, profile: InputProfile, limits: DriveLimits) -> None:
+    `period` (s) is how long a command holds at least: that of the steps.
+    """
+
+    def __init__(self, profile: InputProfile, limits: DriveLimits, period: float) -> None:
         self._limits = limits
+        self._within_reach = limits.acceleration * period * _ROUNDED_UP   # m/s: what it can gain or lose in a step
         self._own = profile               # while nothing was commanded
         self._profile: Input = profile
         self._target: float | None = None
@@ -42,11 +46,11 @@ class Drive:
     def follow(self, velocity: float, now: Instant, acceleration: float = math.inf) -> bool:
         """Make for a velocity (m/s) within the limits, and within `acceleration` (m/s²) if that is lower.
 
-        Returns whether the limits let it take that velocity on at once.
+        Returns whether the limits let it have that velocity by the end of the step; those of a frozen drive do.
         """
         limits = self._limits
         is_within = -limits.velocity <= velocity <= limits.velocity
-        takes_it_on = is_within and (limits.acceleration == math.inf or velocity == self._at(now))
+        is_followed = is_within and (self._frozen or abs(velocity - self._at(now)) <= self._within_reach)
         target = velocity if is_within else math.copysign(limits.velocity, velocity)
         acceleration = min(acceleration, limits.acceleration)
         if target != self._target or acceleration != self._acceleration:
@@ -55,7 +59,7 @@ class Drive:
                 self.is_new = True
                 self._profile = (target if acceleration == math.inf
                                  else _ramp(self._at(now), target, now, acceleration))
-        return takes_it_on
+        return is_followed
 
     def freeze(self, frozen: bool, now: Instant) -> None:
         """Stand still at once, or make for the latest target again: from standstill, within the limits."""
@@ -83,6 +87,7 @@ class Drive:
 
 
 _STANDSTILL = 0.0
+_ROUNDED_UP = 1.0 + 1e-9
 
 
 def _ramp(start: float, target: float, now: Instant, acceleration: float) -> Input:

@@ -35,7 +35,7 @@ class Plant:
         self._simulator.reset()
 
     def follow(self, velocity: float, acceleration: float = math.inf) -> bool:
-        """Let the drive make for a velocity (m/s); return whether its limits let it take that on at once."""
+        """Let the drive make for a velocity (m/s); return whether its limits let it, within the step."""
         self.is_changed = True
         return self._drive.follow(velocity, self._simulator.time, acceleration)
 

@@ -52,7 +52,8 @@ class Rig:
         self.has_failed = False               # on_timeout: fault; until cleared
         self._faults = Faults(self._grid, settings.faults)
         self._channel = CommandChannel(self._grid, settings.seed)
-        self._plant = Plant(self.simulator, Drive(drive, settings.limits), force, self._faults)
+        self._plant = Plant(self.simulator, Drive(drive, settings.limits, 1.0 / self._grid.rate),
+                            force, self._faults)
         self._encoder = Encoder(settings.encoder, self._grid.rate, settings.encoder_delay_steps, settings.seed)
         self._rig_events: list[RigEvent] = []
         self.is_silent = False                # since a command time-out, until the next command

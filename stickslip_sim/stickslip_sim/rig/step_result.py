@@ -56,5 +56,5 @@ class Counts:
     heard: int = 0        # reached the drive
     refused: int = 0      # after a time-out with on_timeout: fault
     lost: int = 0
-    limited: int = 0      # the drive could not follow at once
+    limited: int = 0      # changed by a limit of the drive
     timed_out: int = 0    # times that they stopped coming

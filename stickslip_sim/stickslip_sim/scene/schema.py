@@ -147,8 +147,8 @@ PARAMETERS: tuple[Parameter, ...] = (
            within=ranges.RAMP, when=_STOPS),
     number('command.velocity_limit', math.inf, 'm/s', 'largest velocity of the drive: commands beyond it are followed'
            ' up to it, and counted as limited', within=ranges.SPEED, above=True, infinite=True),
-    number('command.acceleration_limit', math.inf, 'm/s²', 'largest acceleration of the drive: faster changes are'
-           ' followed on a ramp, and counted as limited', within=ranges.RAMP, infinite=True),
+    number('command.acceleration_limit', math.inf, 'm/s²', 'largest acceleration of the drive: changes follow a'
+           ' ramp, and are counted as limited when it takes longer than a step', within=ranges.RAMP, infinite=True),
 
     number('encoder.resolution', 0.0, 'm', 'resolution of the positions on joint_states; 0: none',
            within=Range(0.0, 1.0)),

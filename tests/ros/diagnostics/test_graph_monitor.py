@@ -57,6 +57,24 @@ class TestGraphMonitor:
             '2 controllers at once on /drive_velocity, /joint_commands', alone, gone.format(0.003), alone,
             gone.format(0.005)]
 
+    def test_what_a_time_out_has_ended_does_not_stay_in_force(self) -> None:
+        """Nor does a force trouble anybody: no time-out ends it, and it is meant to act until the next."""
+        with running('-p', 'command.timeout:=0.05', '-p', 'command.on_timeout:=ramp_to_zero') as process, \
+                client() as axis:
+            axis.connect()
+            axis.send_velocity(0.004)
+            axis.send_force(300.0)
+            axis.status('command', lambda values: values['timed out'] == '1' and values['force received'] == '1')
+            axis.stop_commanding()
+            looks = len(axis.heard['/diagnostics'])
+            wait_for(lambda: not axis.node.count_publishers('drive_velocity'), 'nobody who commands')
+            wait_for(lambda: len(axis.heard['/diagnostics']) > looks + 3, 'looks around')
+            no_trouble(axis)
+            _, errors = process.end()
+        assert 'stays in force' not in errors
+        assert 'velocity is gone, and the command time-out has struck' in errors
+        assert 'nobody commands the force any more: the latest acts until the next' in errors
+
     def test_a_controller_bears_its_name_from_the_first_look_on(self) -> None:
         """ROS knows a publisher some 40 ms before it knows whose it is."""
         with client() as watcher:

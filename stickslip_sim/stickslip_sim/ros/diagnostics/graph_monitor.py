@@ -5,7 +5,7 @@
 ROS lets anyone publish anywhere: two nodes on one topic are no error to it, but seldom what was meant.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 from rclpy.node import Node
 
@@ -34,8 +34,8 @@ class GraphMonitor:
             topics.append(names.JOINT_COMMANDS)
             self._watched.append(_Bridge(node, velocity))
         self._watched += [_Output(node, topic) for topic in outputs]
-        self._watched += [_Input(node, topics, velocity, lambda: loop.held[0]),
-                          _Input(node, [names.EXTERNAL_FORCE], force, lambda: loop.held[1])]
+        self._watched += [_VelocityInput(node, topics, velocity, loop, scene.command.timeout),
+                          _Input(node, [names.EXTERNAL_FORCE], force)]
 
     def look(self) -> list[str]:
         """Look around; return the troubles, each in a line."""
@@ -97,10 +97,8 @@ class _Output:
 class _Input:
     """The topics of one kind of command, of which one controller at a time makes sense."""
 
-    def __init__(self, node: Node, topics: Sequence[names.Topic], slot: CommandSlot, held: Callable[[], float | None]
-                 ) -> None:
-        self._log = node.get_logger()
-        self._name, self._held = slot.name, held
+    def __init__(self, node: Node, topics: Sequence[names.Topic], slot: CommandSlot) -> None:
+        self._log, self._slot = node.get_logger(), slot
         self._topics = ', '.join(node.resolve_topic_name(topic.name) for topic in topics)
         self._publishers = PublisherWatch(node, topics)
         self._trouble = ''
@@ -108,7 +106,7 @@ class _Input:
     def look(self) -> str:
         if self._publishers.have_changed():
             self._log_change(self._publishers.nodes)
-        elif not self._publishers.nodes and self._held() is None:    # since a reset
+        elif not self._publishers.nodes and not self._left_behind():
             self._trouble = ''
         return self._trouble
 
@@ -116,12 +114,42 @@ class _Input:
         self._trouble = ''
         if len(nodes) > 1:
             self._trouble = f'{len(nodes)} controllers at once on {self._topics}: {", ".join(nodes)}'
-            self._log.warning(f'{self._trouble}; the latest {self._name} counts')
+            self._log.warning(f'{self._trouble}; the latest {self._slot.name} counts')
         elif nodes:
-            self._log.info(f'{nodes[0]} alone commands the {self._name}')
-        elif (held := self._held()) is not None:
-            self._trouble = f'the controller of the {self._name} is gone, and its {held:g} stays in force'
-            self._log.warning(f'{self._trouble} (command.timeout ends that)')
+            self._log.info(f'{nodes[0]} alone commands the {self._slot.name}')
+        else:
+            self._log_gone()
+
+    def _log_gone(self) -> None:
+        if self._slot.latest is not None:
+            self._log.info(f'nobody commands the {self._slot.name} any more: the latest acts until the next')
+
+    def _left_behind(self) -> str:
+        """Return the trouble that a controller leaves which is gone."""
+        return ''
+
+
+class _VelocityInput(_Input):
+    """The drive velocity, of which a controller that dies leaves the latest in force until a time-out."""
+
+    def __init__(self, node: Node, topics: Sequence[names.Topic], slot: CommandSlot, loop: StepLoop, timeout: float
+                 ) -> None:
+        super().__init__(node, topics, slot)
+        self._loop, self._timeout = loop, timeout
+
+    def _log_gone(self) -> None:
+        self._trouble = self._left_behind()
+        if self._trouble:
+            self._log.warning(f'{self._trouble} (command.timeout ends that'
+                              f'{f" after {self._timeout:g} s" if self._timeout else ""})')
+        elif self._loop.rig.is_silent:
+            self._log.info('the controller of the velocity is gone, and the command time-out has struck')
+
+    def _left_behind(self) -> str:
+        held = self._loop.held[0]
+        if held is None or self._loop.rig.is_silent:    # since a reset; since the time-out
+            return ''
+        return f'the controller of the velocity is gone, and its {held:g} stays in force'
 
 
 class _Bridge:
