@@ -38,24 +38,24 @@ PICTURES = {   # by the name of the part of the page: the commands, the last of 
     'stiffness': (
         'sweep paper_fig7 --over drive.velocity=1e-4:0.1:160:log --over axis.drive_stiffness=1e5:1e7:100:log'
         ' --out runs/maps/stiffness',
-        'map runs/maps/stiffness --out docs/images/map_stiffness.png --pick 0.002,6e5 --pick 0.02,6e5'
+        'map runs/maps/stiffness --out runs/maps/map_stiffness.png --pick 0.002,6e5 --pick 0.02,6e5'
         ' --pick 0.033,6e5 --pick 0.06,6e5'),
     'damping': (
         f'sweep paper_fig4_constant {CONSTANT} --over drive.velocity=1e-3:0.2:160:log'
         ' --over axis.drive_damping=50:8000:100:log --out runs/maps/damping',
-        'map runs/maps/damping --out docs/images/map_damping.png --pick 0.005,1000 --pick 0.03,1000'
+        'map runs/maps/damping --out runs/maps/map_damping.png --pick 0.005,1000 --pick 0.03,1000'
         ' --pick 0.05,1000 --pick 0.04,6000'),
     'load': (
         'sweep paper_fig8 --over drive.velocity=1e-3:0.06:160 --over axis.normal_force=200:5000:100'
         ' --out runs/maps/load',
-        'map runs/maps/load --out docs/images/map_load.png --show stick_share --pick 0.005,3432'
+        'map runs/maps/load --out runs/maps/map_load.png --show stick_share --pick 0.005,3432'
         ' --pick 0.02,3432 --pick 0.025,2300 --pick 0.04,4800'),
     'bifurcation': (
         'sweep paper_fig8 --over drive.velocity=1e-4:0.06:400:log --out runs/maps/feed',
-        'map runs/maps/feed --out docs/images/bifurcation.png'),
+        'map runs/maps/feed --out runs/maps/bifurcation.png'),
     'groups': (
         'sweep paper_fig8 --over axis.drive_stiffness=5e5:6e6:600 --out runs/maps/groups',
-        'map runs/maps/groups --out docs/images/bifurcation_stiffness.png'),
+        'map runs/maps/groups --out runs/maps/bifurcation_stiffness.png'),
 }
 CRITICAL = (
     'critical paper_fig7 --of drive.velocity',
@@ -65,7 +65,7 @@ CRITICAL = (
     'critical stribeck --of drive.velocity',
 )
 UNCERTAIN = ('uncertainty paper_fig7 --with examples/friction.yaml --set drive.velocity=0.025 --samples 512'
-             ' --out runs/maps/uncertainty --plot docs/images/uncertainty.png')
+             ' --out runs/maps/uncertainty --plot runs/maps/uncertainty.png')
 SETTING = Setting(1e-8, 'tolerance')
 MACHINES, CORES = (1, 4, 16), 16   # of a cluster, and of each machine
 MILLION, CHUNKS = 1_000_000, 500   # points, and the pieces that are handed out
@@ -97,11 +97,11 @@ def main() -> None:
 def pictures() -> None:
     """Sweep and draw."""
     shutil.rmtree(RUNS, ignore_errors=True)
-    RUNS.mkdir(parents=True)
     for name, commands in PICTURES.items():
         replace_generated(PAGE, '\n'.join(map(shown, commands)) + '\n', name)
         for command in commands:
             _said(command)
+        _keep_picture(commands[-1])
 
 
 def critical() -> None:
@@ -111,9 +111,9 @@ def critical() -> None:
 
 def uncertainty() -> None:
     """Run an axis whose friction is known only roughly."""
-    RUNS.mkdir(parents=True, exist_ok=True)
     shutil.rmtree(RUNS / 'uncertainty', ignore_errors=True)
     replace_generated(PAGE, f'{shown(UNCERTAIN)}\n\n{_quoted(UNCERTAIN)}', 'uncertainty')
+    _keep_picture(UNCERTAIN)
 
 
 def throughput() -> None:
@@ -192,6 +192,17 @@ def _seconds(study: Study) -> float:
     begin = time.process_time()
     lines(study, rows_of(study.points(0, study.count), study.figures(0, study.count)))
     return time.process_time() - begin
+
+
+def picture_of(command: str) -> pathlib.Path:
+    """Return the picture that a command draws."""
+    return next(pathlib.Path(word) for word in shlex.split(command) if word.endswith('.png'))
+
+
+def _keep_picture(command: str) -> None:
+    """Make the picture of a command that of the page."""
+    picture = picture_of(command)
+    shutil.copyfile(picture, IMAGES / picture.name)
 
 
 def shown(command: str) -> str:

@@ -90,7 +90,7 @@ class TestRefusals:
         (['no/such/folder', '--duration', '1'], ['folder', 'readable']),
         (['no_such.mcap'], ['no_such.mcap', 'no recorded run']),
         (['paper_fig7', '--duration', '1', '--set', 'axis.mass=-1'], ['axis.mass']),
-        (['paper_fig7', '--duration', '1', '--junit', '/no/folder/c.xml'], ['--junit', '/no/folder']),
+        (['paper_fig7', '--duration', '1', '--junit', '/dev/null/c.xml'], ['--junit', '/dev/null']),
         (['paper_fig7', '--duration', '1', '--junit', '-', '--json', '-'], ['--json', '--junit']),
         (['BAG', '--duration', '1'], ['--duration and --set', 'recorded']),
         (['BAG', '--set', 'axis.mass=1.0'], ['--duration and --set', 'recorded']),

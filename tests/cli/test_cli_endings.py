@@ -32,7 +32,7 @@ from tests.support.tool import Capture, answered, refused, restore_interrupt
     (['simulate', 'paper_fig7', '--duration', '1e6', '--samples', '-', '--sample-period', '1e-6'], ['rows']),
     (['simulate', 'paper_fig7', '--duration', '1', '--events', '-', '--samples', '-'], ['--samples', '--events']),
     (['simulate', 'paper_fig7', '--duration', '1', '--plot', 'run.jpg'], ['--plot', '.png']),
-    (['simulate', 'paper_fig7', '--duration', '1', '--events', '/no/folder/e.csv'], ['--events', '/no/folder']),
+    (['simulate', 'paper_fig7', '--duration', '1', '--events', '/dev/null/e.csv'], ['--events', '/dev/null']),
     (['simulate', 'paper_fig7', '--duration', '1', '--receipt', '/'], ['--receipt', 'file name']),
     (['simulate', 'paper_fig7', '--duration', '1', '--frobnicate'], ['--frobnicate']),
     (['sing'], ['sing']),

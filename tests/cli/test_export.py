@@ -59,10 +59,14 @@ class TestCsv:
         found = refused(capsys, 'export', fig8_bag, '--csv', '-', '--topic', 'state')
         assert 'no topic state; there are /slider_state, ' in found
         assert 'no recorded run there' in refused(capsys, 'export', tmp_path, '--csv', '-')
-        assert 'a folder that exists' in refused(capsys, 'export', fig8_bag, '--csv', tmp_path / 'no' / 'x.csv')
+        assert 'in a folder; ' in refused(capsys, 'export', fig8_bag, '--csv', Path(__file__) / 'x.csv')
         place = tmp_path / 'x'
         assert 'another place' in refused(capsys, 'export', fig8_bag, '--csv', place, '--parquet', place)
         assert list(tmp_path.iterdir()) == []
+
+    def test_the_folders_of_an_output_are_made(self, fig8_bag: Path, tmp_path: Path) -> None:
+        assert run(['export', str(fig8_bag), '--csv', str(tmp_path / 'no' / 'where' / 'x.csv')]) == 0
+        assert (tmp_path / 'no' / 'where' / 'x.csv').stat().st_size > 0
 
 
 class TestParquet:

@@ -129,8 +129,9 @@ def test_an_existing_folder_stays(fig8_bag: Path, tmp_path: Path, capsys: Captur
     assert run(['compare', str(fig8_bag), '--out', str(tmp_path)]) == 2
     assert 'a folder that does not exist' in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
-    assert run(['compare', str(fig8_bag), '--out', str(tmp_path / 'no' / 'where')]) == 2
-    assert 'make the folder' in capsys.readouterr().err
+    (tmp_path / 'file').touch()
+    assert run(['compare', str(fig8_bag), '--out', str(tmp_path / 'file' / 'where')]) == 2
+    assert f'in a folder; {tmp_path / "file"} is none' in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(('arguments', 'word'), [

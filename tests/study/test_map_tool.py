@@ -12,7 +12,9 @@ import numpy as np
 import pytest
 
 from stickslip_sim.cli.main import run
+from stickslip_sim.runs import simulate_events
 from stickslip_sim.scene import load_scene
+from stickslip_sim.simulation.cycles import cycle_figures
 from stickslip_sim.study import Grid, Study, variation
 from stickslip_sim.study.bifurcation import bifurcation
 from stickslip_sim.study.borders import borders
@@ -39,7 +41,7 @@ def test_a_map_with_picks(swept: Path, tmp_path: Path) -> None:
                 '--pick', '0.002,6e5', '--pick', '0.05,3e5', '--show', 'period']) == 0
     assert pictures[0].read_bytes().startswith(b'\x89PNG')
     text = pictures[1].read_text()
-    for words in ('drive velocity / (mm/s)', 'drive stiffness / (N/µm)', 'period / s', 'smooth sliding',
+    for words in ('drive velocity / (mm/s)', 'drive stiffness / (N/µm)', 'period / ms', 'smooth sliding',
                   'steady sliding loses stability', 'spring stretch / mm'):
         assert words in text
     assert run(['map', str(swept), '--out', str(tmp_path / 'again.svg'), '--pick', '0.002,6e5', '--pick', '0.05,3e5',
@@ -113,11 +115,26 @@ def test_a_bifurcation_diagram(tmp_path: Path) -> None:
         assert words in text
 
 
+@pytest.mark.parametrize('over', ['drive.velocity=1e-3:0.03:4:log', 'axis.drive_stiffness=2.3e6:2.6e6:3'])
+def test_the_cycles_of_a_diagram_are_the_last_of_the_whole_run(over: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """To the last bit, also where cycles come in groups; no run is looked at but at its end."""
+    study = Study(load_scene('paper_fig8').values, Grid((variation(over),)))
+    figures = study.figures(0, study.count)
+    points = study.points(0, study.count)
+    expected = []
+    for k, point in enumerate(points):
+        cycles = cycle_figures(simulate_events(study.scene_at(point), float(figures.duration[k])).events)
+        expected += [(point[0], cycle.break_away_drive_force, cycle.arrest_drive_force, cycle.jump)
+                     for cycle in cycles[len(cycles) // 2:][-40:]]
+    monkeypatch.setattr('stickslip_sim.study.bifurcation.simulate_events', None)
+    assert bifurcation(study, figures).cycles.tolist() == [list(row) for row in expected]
+
+
 @pytest.mark.parametrize(('arguments', 'said'), [
     (['--out', 'map.jpg'], '.png'), (['--out', 'map.png', '--show', 'colour'], 'amplitude'),
     (['--out', 'map.png', '--pick', '1'], '--pick'), (['--out', 'map.png', '--pick', '1,2'], '--pick'),
     (['--out', 'map.png', '--pick', 'a,b'], '--pick'), (['--out', 'map.png', '--pick', 'nan,6e5'], '--pick'),
-    (['--out', '/no/folder/map.png'], '/no/folder'), (['--out', 'map.png', '--out', 'map.png'], 'another place'),
+    (['--out', '/dev/null/map.png'], '/dev/null'), (['--out', 'map.png', '--out', 'map.png'], 'another place'),
     (['--out', 'map.png', *['--pick', '0.002,6e5'] * 7], 'at most 6')])
 def test_a_map_that_cannot_be_is_refused(swept: Path, arguments: list[str], said: str, tmp_path: Path, capsys: Capture,
                                          monkeypatch: pytest.MonkeyPatch) -> None:

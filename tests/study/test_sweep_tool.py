@@ -203,20 +203,21 @@ def test_resuming_another_study_is_refused(tmp_path: Path, capsys: Capture) -> N
     (['paper_fig7', '--over', 'axis.mass=1:2:1000000', '--over', 'axis.drive_damping=1:2:1000000'], 'MB of memory')])
 def test_wrong_use_gets_one_line_and_leaves_nothing(arguments: list[str], said: str, tmp_path: Path,
                                                     capsys: Capture) -> None:
-    assert said in refused(capsys, 'sweep', *arguments, '--out', tmp_path / 'out')
+    assert said in refused(capsys, 'sweep', *arguments, '--out', tmp_path / 'no' / 'where' / 'out')
     assert list(tmp_path.iterdir()) == []
 
 
 def test_places_that_cannot_be_are_refused(tmp_path: Path, capsys: Capture) -> None:
     (tmp_path / 'there').mkdir()
+    (tmp_path / 'there' / 'file').touch()
     assert '--resume' in refused(capsys, 'sweep', *SMALL, '--out', tmp_path / 'there')
     assert 'study.json' in refused(capsys, 'sweep', *SMALL, '--out', tmp_path / 'there', '--resume')
     assert 'study.json' in refused(capsys, 'sweep', *SMALL, '--out', tmp_path / 'nowhere', '--resume')
-    assert 'make the folder' in refused(capsys, 'sweep', *SMALL, '--out', tmp_path / 'no' / 'where')
+    assert 'Not a directory' in refused(capsys, 'sweep', *SMALL, '--out', tmp_path / 'there' / 'file' / 'where')
     error = refused(capsys, 'sweep', *SMALL, '--out', '/sys/sweep')
     assert 'can be written' in error
     assert 'nothing is left behind' in error
-    assert sorted(path.name for path in tmp_path.rglob('*')) == ['there']
+    assert sorted(path.name for path in tmp_path.rglob('*')) == ['file', 'there']
 
 
 def test_a_table_of_something_else_is_not_gone_on_with(tmp_path: Path, capsys: Capture) -> None:

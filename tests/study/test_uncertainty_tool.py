@@ -51,6 +51,22 @@ def test_a_picture_of_it(tmp_path: Path, file: str) -> None:
     assert text == (tmp_path / 'two.svg').read_text()
 
 
+def test_elements_of_a_table_name_their_speed_and_times_are_read_in_one_unit(tmp_path: Path, capsys: Capture) -> None:
+    file, picture = tmp_path / 'two.yaml', tmp_path / 'two.svg'
+    file.write_text('parameters:\n' + ''.join(
+        f'  friction.kinetic.coefficients[{k}]: {{distribution: uniform, low: {low}, high: {low + 0.01}}}\n'
+        for k, low in ((0, 0.1), (1, 0.05))))
+    assert run(['uncertainty', 'paper_fig7', '--with', str(file), '--samples', '16', '--out', str(tmp_path / 'out'),
+                '--plot', str(picture)]) == 0
+    said, text = capsys.readouterr().out, picture.read_text()
+    for place in ('0 m/s', '35 mm/s'):
+        assert said.count(f'(at {place})') >= 3   # the distribution, and each figure that has indices
+        assert f'] at {place}' in text
+    (period,) = (line for line in said.splitlines() if line.startswith('period '))
+    assert period.count(' ms') == 5
+    assert 'period / ms' in text
+
+
 def test_a_picture_where_nothing_sticks_and_slips(tmp_path: Path, file: str) -> None:
     picture = tmp_path / 'none.svg'
     assert run(['uncertainty', 'paper_fig7', '--with', file, '--samples', '16', '--set', 'drive.velocity=0.0', '--out',
@@ -78,8 +94,8 @@ def test_resumed_it_gives_the_same_files(tmp_path: Path, file: str) -> None:
     (['--set', 'friction.static.limit=-1.0'], ('friction.static.limit',)),
     (['--set', 'friction.static.initial=0.2'], ('at friction.static.limit=0.18', 'friction.static.limit')),
     (['--workers', '0'], ('--workers', '0')),
-    (['--plot', 'picture.jpg'], ('--plot', '.png or .svg')),
-    (['--plot', '/no/where.png'], ('--plot', '/no')),
+    (['--plot', 'picture.jpg'], ('--plot', '.pdf or .svg')),
+    (['--plot', '/dev/null/where.png'], ('--plot', '/dev/null')),
     (['--resume'], ('sweep',))])
 def test_misuse_gets_one_line_and_writes_nothing(arguments: list[str], words: tuple[str, ...], tmp_path: Path,
                                                  file: str, capsys: Capture) -> None:

@@ -50,11 +50,13 @@ def _range(scene: 'Scene', name: str, between: str | None) -> 'Variation':
 
 def _lines(scene: 'Scene', found: 'Critical') -> list[str]:
     from ..study.theory import feed_of_theory
+    from ..study.variation import with_place
 
     over = found.over
     unit = f' {over.unit}'.rstrip()
     digits = max(3, math.ceil(-math.log10(found.accuracy)) + 1)
-    lines = [f'{scene.name}: {over.name} from {over.low:g} to {over.high:g}{unit}, to {found.accuracy:g} of the value',
+    lines = [f'{scene.name}: {with_place(scene.values, over.name)} from {over.low:g} to {over.high:g}{unit}, '
+             f'to {found.accuracy:g} of the value',
              *_start_lines('from rest', found.from_rest, unit, digits, 'stick-slip', 'no stick-slip'),
              *_start_lines('from sliding', found.from_sliding, unit, digits, 'sliding is lost', 'sliding lasts')]
     lines += [f'{"bistable":14} from {low:.6g} to {high:.6g}{unit} both go on: the start decides'

@@ -1,6 +1,9 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The files of results: checked before the work begins, and written whole or not at all."""
+"""The files of results: checked before the work begins, and written whole or not at all.
+
+The folders that they are to be in are made.
+"""
 
 import os
 import shutil
@@ -10,6 +13,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from ..core.errors import InputError
+from ..core.paths import nearest_existing
 from ..core.picture_formats import check_picture_name
 
 STDOUT = '-'
@@ -60,7 +64,7 @@ def new_folder(option: str, path: str) -> Iterator[Path]:
     temporary = place.with_name(f'.{os.getpid()}.{place.name}')
     try:
         with _refusing(path):
-            temporary.mkdir()
+            temporary.mkdir(parents=True)
             yield temporary
             check_new_folder(option, path)
             temporary.rename(place)
@@ -82,6 +86,7 @@ def whole(path: str) -> Iterator[Path]:
     temporary = place.with_name(f'.{os.getpid()}.{place.name}')
     try:
         with _refusing(path):
+            temporary.parent.mkdir(parents=True, exist_ok=True)
             yield temporary
             temporary.replace(place)
     finally:
@@ -121,7 +126,9 @@ def _is_special(place: Path) -> bool:
 
 
 def _check_folder(option: str, path: str, folder: Path) -> None:
-    if not folder.is_dir():
-        raise InputError(option, path, 'in a folder that exists', f'make the folder {folder} first')
-    if not os.access(folder, os.W_OK | os.X_OK):
+    """Raise InputError unless a folder can be written in, or be made."""
+    there = nearest_existing(folder)
+    if not there.is_dir():
+        raise InputError(option, path, f'in a folder; {there} is none', 'choose another place')
+    if not os.access(there, os.W_OK | os.X_OK):
         raise InputError(option, path, 'in a folder that can be written', 'choose another place')

@@ -25,7 +25,7 @@ _SHOWN = 'amplitude'
 
 @click.command('map', short_help='Draw a sweep: a map, or a bifurcation diagram.')
 @click.argument('folder', metavar='FOLDER')
-@click.option('--out', 'pictures', multiple=True, required=True, metavar='FILE.png|FILE.svg',
+@click.option('--out', 'pictures', multiple=True, required=True, metavar='FILE.png|pdf|svg',
               help='Write the picture; may be given again.')
 @click.option('--show', default=_SHOWN, metavar='FIGURE', help=f'What a map has in colours [default: {_SHOWN}].')
 @click.option('--pick', 'picks', multiple=True, metavar='A,B',
@@ -53,6 +53,7 @@ def map_(folder: str, pictures: tuple[str, ...], show: str, picks: tuple[str, ..
         else:
             work.draw_map(study, columns, show, motions, paths)
     print_failed(study, columns)
+    print(f'written: {", ".join(pictures)}')
 
 
 def _check_pictures(pictures: tuple[str, ...]) -> None:

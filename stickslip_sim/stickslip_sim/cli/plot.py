@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 @click.argument('source', metavar='RUN_OR_SCENE')
 @click.option('--window', metavar='A:B', help='Show this part beside the whole, s [default: the last cycles of a run '
                                               'that is long].')
-@click.option('--out', metavar='FILE.png|FILE.pdf|FILE.svg', help='Write the picture there; the ending decides the '
+@click.option('--out', metavar='FILE.png|pdf|svg', help='Write the picture there; the ending decides the '
                                                                   'format [default: NAME.png].')
 @click.option('--duration', type=float, metavar='S', help='Time to simulate a scene, s.')
 @scene_changes('Change a parameter of a scene.')

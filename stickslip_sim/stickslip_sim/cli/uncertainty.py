@@ -3,6 +3,7 @@
 """`stickslip uncertainty`: the spread of the motion of a scene with parameters that are known only roughly."""
 
 import json
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -12,10 +13,11 @@ from .scene_changes import SceneChanges
 from .sweeping import carry_out, print_failed, study_options, workers_of
 
 if TYPE_CHECKING:
-    from ..study import Saltelli
+    from ..study import Saltelli, Study
     from ..study.table import Columns
     from ..study.uncertainty import Index, Uncertainty
 
+Labels = Mapping[str, str]   # how parameters are printed, by name
 _RESULT = 'uncertainty.json'
 
 
@@ -24,7 +26,7 @@ _RESULT = 'uncertainty.json'
 @click.option('--with', 'file', required=True, metavar='FILE.yaml', help='The distributions of its parameters.')
 @click.option('--samples', type=int, default=1024, show_default=True, metavar='N',
               help='A power of two; N (parameters + 2) points are run.')
-@click.option('--plot', metavar='FILE.png', help='Draw the spread of the figures and the indices (.png or .svg).')
+@click.option('--plot', metavar='FILE.png', help='Draw the spread of the figures and the indices (.png, .pdf or .svg).')
 @study_options
 def uncertainty(scene: str, file: str, samples: int, plot: str | None, out: str, duration: float | None,
                 workers: str | None, scheduler: str | None, resume: bool, changes: SceneChanges) -> None:
@@ -38,6 +40,7 @@ def uncertainty(scene: str, file: str, samples: int, plot: str | None, out: str,
     from ..study import Saltelli, Study
     from ..study.uncertain_file import load_uncertain
     from ..study.uncertainty import uncertainty_of
+    from ..study.variation import with_place
 
     known = load_uncertain(file)
     sample = Saltelli(known.distributions, samples, known.seed)
@@ -48,18 +51,20 @@ def uncertainty(scene: str, file: str, samples: int, plot: str | None, out: str,
     result = folder.path / _RESULT
     write_text(str(result), [json.dumps(_plain(sample, found), indent=1, allow_nan=False), '\n'])
     if plot is not None:
-        _draw(sample, swept.columns, found, plot)
+        _draw(study, sample, swept.columns, found, plot)
     print(f'{loaded.name}: {samples} samples of {len(study.names)} parameters, {study.count} points, '
           f'{swept.ran} run now')
     print_failed(study, swept.columns)
-    print('\n'.join((*_laws(sample), '', *_percentiles(found), '', *_indices(sample, found), '', str(result))))
+    labels = {name: with_place(loaded.values, name) for name in study.names}
+    print('\n'.join((*_laws(sample, labels), '', *_percentiles(found), '', *_indices(sample, labels, found), '',
+                     str(result))))
 
 
-def _draw(sample: 'Saltelli', columns: 'Columns', found: 'Uncertainty', path: str) -> None:
+def _draw(study: 'Study', sample: 'Saltelli', columns: 'Columns', found: 'Uncertainty', path: str) -> None:
     from ..study.pictures import draw_uncertainty
 
     with whole(path) as temporary:
-        draw_uncertainty(sample, columns, found, str(temporary))
+        draw_uncertainty(study, sample, columns, found, str(temporary))
 
 
 def _plain(sample: 'Saltelli', found: 'Uncertainty') -> dict[str, Any]:
@@ -78,7 +83,7 @@ def _plain(sample: 'Saltelli', found: 'Uncertainty') -> dict[str, Any]:
     }
 
 
-def _laws(sample: 'Saltelli') -> list[str]:
+def _laws(sample: 'Saltelli', labels: Labels) -> list[str]:
     """Return a line for each parameter: its distribution, and the share that was cut off."""
     from ..study.distribution import LAWS
 
@@ -87,12 +92,12 @@ def _laws(sample: 'Saltelli') -> list[str]:
         numbers = ', '.join(f'{name} {number:g}' for name, number in zip(LAWS[one.law].numbers, one.numbers))
         cut = f', cut to {one.low:g} .. {one.high:g} ({1.0 - one.kept:.2g} off)' if LAWS[one.law].ends else ''
         unit = f' ({one.unit})' if one.unit else ''
-        lines.append(f'  {one.name}{unit}: {one.law}, {numbers}{cut}')
+        lines.append(f'  {labels[one.name]}{unit}: {one.law}, {numbers}{cut}')
     return lines
 
 
 def _percentiles(found: 'Uncertainty') -> list[str]:
-    from ..runs.wording import quantity
+    from ..runs.wording import quantities
     from ..study.uncertainty import PERCENTS, SPREAD
 
     doubts = ((found.failed, 'failed'), (found.undecided, 'undecided'),
@@ -103,21 +108,22 @@ def _percentiles(found: 'Uncertainty') -> list[str]:
     points = f'{found.points} independent points'
     known = points if found.known == found.points else f'those {found.known} of {points} where it is known'
     return [f'stick-slip in {share} of {known}{doubt}', head,
-            *(f'{name:22}' + ''.join(f'{quantity(value, SPREAD[name], 4):>13}' for value in values)
+            *(f'{name:22}' + ''.join(f'{text:>13}' for text in quantities(values, SPREAD[name], 4))
               if values else f'{name:22}{"none":>13}' for name, values in found.percentiles.items())]
 
 
-def _indices(sample: 'Saltelli', found: 'Uncertainty') -> list[str]:
+def _indices(sample: 'Saltelli', labels: Labels, found: 'Uncertainty') -> list[str]:
     """Return a table of the first-order indices, a line for each figure that has them."""
     names = [one.name for one in sample.variations]
-    width = max(22, *(len(name) for name in names)) + 2
+    width = max(22, *map(len, labels.values())) + 2
     lines = ['share of the variance that one parameter explains by itself (and with its interactions)']
     for figure, of in found.indices.items():
         if of is None:
             lines.append(f'{figure:22} none: not every point has it, or all have the same')
             continue
         lines.append(figure)
-        lines += [f'  {name:{width}}{_cell(of[name])}' for name in sorted(names, key=lambda n: -of[n].first_order)]
+        lines += [f'  {labels[name]:{width}}{_cell(of[name])}'
+                  for name in sorted(names, key=lambda n: -of[n].first_order)]
     return lines
 
 

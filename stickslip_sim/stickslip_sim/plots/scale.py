@@ -8,7 +8,7 @@ import numpy as np
 
 from .style import MILLI, Numbers
 
-_SHOWN = {'m': (MILLI, 'mm'), 'm/s': (MILLI, 'mm/s'), 'N/m': (1e-6, 'N/µm')}
+_SHOWN = {'m': (MILLI, 'mm'), 'ms': (MILLI, 'ms'), 'm/s': (MILLI, 'mm/s'), 'N/m': (1e-6, 'N/µm')}
 
 
 def in_words(name: str) -> str:
@@ -17,12 +17,22 @@ def in_words(name: str) -> str:
     return words.replace('break away', 'break-away').replace('stick slip', 'stick-slip')
 
 
+def unit_read(unit: str, values: Numbers) -> str:
+    """Return the unit that values (SI) are read in: ms for times most of which are below a second."""
+    known = values[np.isfinite(values)]
+    return 'ms' if unit == 's' and len(known) and float(np.median(known)) < 1.0 else unit
+
+
 class Scale(NamedTuple):
-    """A parameter or a figure: its name, its SI unit, whether its axis is logarithmic."""
+    """A parameter or a figure: its name, its SI unit, whether its axis is logarithmic.
+
+    The unit `ms` means seconds that are read in ms.  `place` says where an element of a list is.
+    """
 
     name: str
     unit: str
     log: bool = False
+    place: str = ''
 
     def shown(self, values: Numbers | float) -> Numbers:
         """Return SI values in the unit of the picture."""
@@ -41,7 +51,7 @@ class Scale(NamedTuple):
     def label(self) -> str:
         """The text at the axis."""
         unit = _SHOWN.get(self.unit, (1.0, self.unit))[1]
-        words = in_words(self.name.removeprefix('axis.'))
+        words = in_words(self.name.removeprefix('axis.')) + (f' at {self.place}' if self.place else '')
         return f'{words} / ({unit})' if '/' in unit or ' ' in unit else f'{words} / {unit}' if unit else words
 
     @property

@@ -105,7 +105,7 @@ def _shares(part: SubFigure, parameters: Sequence[str], shares: Sequence[Shares]
             panel.barh(places + side * _THICK, values, _THICK, xerr=errors, facecolor=face, edgecolor=BLUE,
                        linewidth=0.7, label=label, error_kw={'elinewidth': 0.8, 'capsize': 1.5, 'ecolor': BLACK})
         panel.set_title(fill(in_words(one.figure), _TITLE), loc='left', fontsize=7.5)
-        panel.set(yticks=places, yticklabels=[Scale(name, '').label for name in parameters])
+        panel.set(yticks=places, yticklabels=parameters)
         panel.grid(visible=False, axis='y')
         panel.axvline(0.0, color=BLACK, linewidth=0.6)
         panel.set(xticks=[0.0, 0.5, 1.0], ylim=(len(parameters) - 0.45, -0.55))

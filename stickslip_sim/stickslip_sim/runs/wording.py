@@ -3,6 +3,7 @@
 """Figures of a run in words: numbers with their units, and a run in one line."""
 
 import math
+from collections.abc import Sequence
 
 from ..simulation.cycles import Summary
 
@@ -23,6 +24,15 @@ def quantity(value: float, unit: str, digits: int = 5) -> str:
     if unit == 's' and scale > 1.0:
         scale, prefix = 1.0, ''
     return f'{value / scale:.{digits}g} {prefix}{unit}'
+
+
+def quantities(values: Sequence[float], unit: str, digits: int = 5) -> list[str]:
+    """Return numbers that are read beside each other: all with the prefix that suits the one in the middle."""
+    first = quantity(sorted(values)[len(values) // 2], unit, digits).rpartition(' ')[2]
+    scale = next((s for s, p in _PREFIXES if unit and first == f'{p}{unit}'), 1.0)
+    if any(abs(value) >= scale * 10.0 ** digits for value in values):   # it would be written as a power of ten
+        return [quantity(value, unit, digits) for value in values]
+    return [f'{value / scale:.{digits}g} {first if unit else ""}'.rstrip() for value in values]
 
 
 def headline(figures: Summary) -> str:

@@ -2,20 +2,25 @@
 # SPDX-License-Identifier: Apache-2.0
 """Where the cycles of a scene go as one of its parameters changes: a bifurcation diagram, in numbers."""
 
+import math
 from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
+from ..core.types import Event, Instant
 from ..runs import simulate_events
+from ..scene import Scene
 from ..simulation.cycles import Cycle, cycle_figures
+from ..simulation.simulator import Simulator
 from .point_figures import Figures, Motion
-from .points import scene_at
+from .points import scene_at, works_in_batches
 from .steady import sliding_slope
 from .study import Study
 from .variation import Numbers
 
-_LAST = 40   # cycles of each point that are shown, or half of all
+_LAST = 40     # cycles of each point that are shown, or half of all
+_REACH = 1.5   # times as long as they take on average: where that was not enough all of the run is looked at
 
 
 class Bifurcation(NamedTuple):
@@ -33,15 +38,15 @@ def bifurcation(study: Study, figures: Figures, progress: Callable[[float], None
     """Return the last cycles of each point of a study of one parameter that sticks and slips.
 
     Such a point is run again, for the duration of its `figures`: the table has one round alone, without the arrest.
+    Only its last cycles are looked at.
     """
     cycles, sliding = [], []
     values = study.points(0, study.count)[:, 0].tolist()
     for k, value in enumerate(values):
         scene = scene_at(study.values, study.names, np.array([value]))
         if figures.motion[k] == Motion.STICK_SLIP:
-            events = simulate_events(scene, float(figures.duration[k])).events
-            found = cycle_figures(events)
-            cycles += [_row(value, cycle) for cycle in found[len(found) // 2:][-_LAST:]]
+            cycles += [_row(value, cycle) for cycle in _last_cycles(
+                scene, float(figures.duration[k]), int(figures.cycles[k]))]
         feed = scene.drive.values[0]
         if study.works_in_batches:
             friction = scene.axis.normal_force * scene.axis.friction.kinetic.coefficient(abs(feed))
@@ -51,6 +56,24 @@ def bifurcation(study: Study, figures: Figures, progress: Callable[[float], None
         if progress:
             progress((k + 1) / len(values))
     return Bifurcation(np.array(cycles).reshape(-1, 4), np.array(sliding).reshape(-1, 3))
+
+
+def _last_cycles(scene: Scene, duration: float, count: int) -> list[Cycle]:
+    """Return the last cycles of a scene that has so many in its duration (s)."""
+    wanted = min(count - count // 2, _LAST)
+    if works_in_batches(scene):
+        begin = duration * (1.0 - _REACH * (wanted + 2) / count)
+        found = cycle_figures(_events_from(scene, begin, duration)) if begin > 0.0 else []
+        if len(found) >= wanted:
+            return found[-wanted:]
+    return cycle_figures(simulate_events(scene, duration).events)[-wanted:]
+
+
+def _events_from(scene: Scene, begin: float, end: float) -> list[Event]:
+    """Return the events of a scene from a time on (s); those before are not looked at, which takes most of the time."""
+    simulator = Simulator(scene.axis, scene.initial, scene.drive, scene.force, scene.solver.make)
+    simulator.skip(Instant(math.floor(begin), begin % 1.0))
+    return simulator.advance(Instant(math.floor(end), end % 1.0))
 
 
 def _row(value: float, cycle: Cycle) -> tuple[float, float, float, float]:

@@ -10,7 +10,7 @@ import json
 import os
 import shutil
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -48,20 +48,13 @@ class Folder:
         if os.path.lexists(self.path):
             raise InputError('--out', str(self.path), 'a folder that does not exist',
                              'choose another name, or add --resume to go on with it')
-        parent = self.path.absolute().parent
-        if not parent.is_dir():
-            raise InputError('--out', str(self.path), 'in a folder that exists', f'make the folder {parent} first')
-        temporary = parent / f'.{os.getpid()}.{self.path.name}'
-        with _refusing(self.path, 'nothing is left behind'):
-            try:
-                temporary.mkdir()
-                check_resources(study, temporary)
-                (temporary / SIDECAR).write_text(json.dumps(description(study, command), indent=1) + '\n',
-                                                 encoding='utf-8')
-                (temporary / PARTIAL).write_bytes(title_line(study))
-                temporary.rename(self.path)
-            finally:
-                shutil.rmtree(temporary, ignore_errors=True)
+        temporary = self.path.absolute().with_name(f'.{os.getpid()}.{self.path.name}')
+        with _refusing(self.path, 'nothing is left behind'), _made(temporary):
+            check_resources(study, temporary)
+            (temporary / SIDECAR).write_text(json.dumps(description(study, command), indent=1) + '\n',
+                                             encoding='utf-8')
+            (temporary / PARTIAL).write_bytes(title_line(study))
+            temporary.rename(self.path)
 
     @contextmanager
     def taken(self) -> Iterator[None]:
@@ -134,6 +127,20 @@ class Folder:
         with _refusing(self.path):
             write_parquet(columns | {'motion': words(columns['motion'])}, self.path / PARQUET)
             (self.path / PARTIAL).replace(self.table)
+
+
+@contextmanager
+def _made(folder: Path) -> Iterator[None]:
+    """Make a folder and those around it; on an error it goes again, with all in it, and those that are empty then."""
+    new = [place for place in (folder, *folder.parents) if not os.path.lexists(place)]
+    try:
+        folder.mkdir(parents=True)
+        yield
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+        for place in new[1:]:
+            with suppress(OSError):
+                place.rmdir()
 
 
 @contextmanager

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..core.errors import InputError
 from ..plots.bifurcation import plot_bifurcation
-from ..plots.scale import Scale
+from ..plots.scale import Scale, unit_read
 from ..plots.stability_map import Field, Lines, Pick, plot_stability
 from ..plots.uncertainty import Shares, Spread, plot_uncertainty
 from .bifurcation import bifurcation
@@ -19,7 +19,7 @@ from .sample import Grid, Saltelli
 from .study import Study
 from .table import Columns, figures_among
 from .uncertainty import SPREAD, Index, Uncertainty, spread_of
-from .variation import Numbers, Variation
+from .variation import Numbers, Variation, place_of
 
 UNITS = {'amplitude': 'm', 'period': 's', 'stick_share': '', 'peak_speed': 'm/s', 'break_away_force': 'N',
          'settling_time': 's', 'cycles': '', 'duration': 's'}
@@ -42,7 +42,7 @@ def draw_bifurcation(study: Study, columns: Columns, paths: Sequence[str],
     found = bifurcation(study, figures_among(columns), progress)
     (over,) = study.ranges
     for path in paths:
-        plot_bifurcation(_scale(over), found.cycles, found.sliding, path)
+        plot_bifurcation(_scale(study, over), found.cycles, found.sliding, path)
 
 
 def draw_map(study: Study, columns: Columns, shown: str, picks: Sequence[Pick], paths: Sequence[str]) -> None:
@@ -60,27 +60,29 @@ def draw_map(study: Study, columns: Columns, shown: str, picks: Sequence[Pick], 
     field = Field(x.grid(), y.grid(), values, _plain(motion, table(columns['settled'])))
     known = borders(study)
     lines = Lines(known.others, known.critical_feed, known.feeds, known.is_lost) if known else None
+    scales = _scale(study, x), _scale(study, y), Scale(shown, unit_read(UNITS[shown], values))
     for path in paths:
-        plot_stability((_scale(x), _scale(y), Scale(shown, UNITS[shown])), field, lines, picks, path)
+        plot_stability(scales, field, lines, picks, path)
 
 
-def draw_uncertainty(sample: Saltelli, columns: Columns, found: Uncertainty, path: str) -> None:
+def draw_uncertainty(study: Study, sample: Saltelli, columns: Columns, found: Uncertainty, path: str) -> None:
     """Draw how the figures of a sample spread, and the indices of those that have them."""
-    spreads = [Spread(Scale(name, SPREAD[name]), values, found.percentiles[name] or ())
+    spreads = [Spread(Scale(name, unit_read(SPREAD[name], values)), values, found.percentiles[name] or ())
                for name, values in spread_of(sample, columns).items()]
     heading = ('of no point it is known' if found.stick_slip is None else
                f'{100.0 * found.stick_slip:.3g} % of {found.known} points stick and slip')
     names = [one.name for one in sample.variations]
     shares = [_shares(figure, [of[name] for name in names]) for figure, of in found.indices.items() if of]
-    plot_uncertainty(spreads, heading, names, shares, path)
+    labels = [Scale(name, '', place=place_of(study.values, name)).label for name in names]
+    plot_uncertainty(spreads, heading, labels, shares, path)
 
 
 def _shares(figure: str, indices: Sequence[Index]) -> Shares:
     return Shares(figure, *np.array(indices).T)
 
 
-def _scale(one: Variation) -> Scale:
-    return Scale(one.name, one.unit, one.log)
+def _scale(study: Study, one: Variation) -> Scale:
+    return Scale(one.name, one.unit, one.log, place_of(study.values, one.name))
 
 
 def _plain(motion: Numbers, settled: Numbers) -> NDArray[np.int64]:

@@ -13,11 +13,18 @@ from numpy.typing import NDArray
 
 from ..config.parameter import Parameter
 from ..core.errors import InputError
+from ..runs.wording import quantity
 from ..scene.schema import BY_NAME
 
 Numbers = NDArray[np.float64]
 
 _OF_THE_MOTION = ('axis', 'contact', 'friction', 'drive', 'force', 'initial', 'solver')
+_ALONG = {   # where an element of a list is
+    'friction.kinetic.coefficients': 'friction.kinetic.velocities',
+    'friction.excess.fractions': 'friction.excess.velocities',
+    'drive.velocities': 'drive.times', 'drive.amplitudes': 'drive.frequencies',
+    'force.forces': 'force.times', 'force.amplitudes': 'force.frequencies',
+}
 _FORM = 'a.b=LOW:HIGH:N or a.b=LOW:HIGH:N:log'
 _DRAWN_FORM = 'a.b=LOW:HIGH or a.b=LOW:HIGH:log'
 
@@ -106,6 +113,22 @@ def parameter_of(name: str) -> tuple[Parameter, int | None]:
     what = 'a list of numbers' if entry.type == 'double_array' else 'no list' if found[2] else f'a {entry.type}'
     raise InputError('parameter', name, f'a number; this is {what}',
                      f'vary an element of it: {entry.name}[0]' if entry.type == 'double_array' else 'use --set for it')
+
+
+def place_of(values: Mapping[str, object], name: str) -> str:
+    """Return where the element of a list that a variation names is in a scene (`values`): '35 mm/s'; else nothing."""
+    entry, index = parameter_of(name)
+    along = _ALONG.get(entry.name, '')
+    places = values.get(along)
+    if index is None or not isinstance(places, tuple) or index >= len(places):
+        return ''
+    return quantity(places[index], BY_NAME[along].unit, 4)
+
+
+def with_place(values: Mapping[str, object], name: str) -> str:
+    """Return the name of a variation, with where it is: friction.kinetic.coefficients[1] (at 35 mm/s)."""
+    place = place_of(values, name)
+    return f'{name} (at {place})' if place else name
 
 
 def changes_at(base: Mapping[str, object], names: Sequence[str], point: Numbers) -> dict[str, object]:
