@@ -13,6 +13,10 @@ from hot_unit.build import BuildUnit, extensions
 
 NAME = 'stickslip_sim'
 SHARE = f'share/{NAME}'
+# pip makes a wheel: the offline part, with the tool alone in `bin`.  colcon and the build farm of ROS install, with
+# the programs of the nodes in lib/stickslip_sim, where `ros2 run` looks (setup.cfg), and the files of a ROS package.
+FOR_ROS = not {'bdist_wheel', 'dist_info', 'editable_wheel'} & set(sys.argv)
+NODES = ['cascade_controller', 'compensating_controller', 'health', 'replay_node', 'sim_node'] if FOR_ROS else []
 
 setup(
     name=NAME,
@@ -24,7 +28,7 @@ setup(
     maintainer_email='stickslip@example.org',
     license='Apache-2.0',
     packages=find_packages(include=[NAME, f'{NAME}.*']),
-    package_data={NAME: ['py.typed', 'scenes/*.yaml']},
+    package_data={NAME: ['py.typed', 'scenes/*.yaml', 'recording/stickslip_msgs/*.msg']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         (SHARE, ['package.xml']),
@@ -34,7 +38,7 @@ setup(
         (f'{SHARE}/layouts', sorted(glob('layouts/*'))),
         (f'{SHARE}/ros2_control', sorted(glob('ros2_control/*'))),
         (f'{SHARE}/security', sorted(glob('security/*'))),
-    ],
+    ] if FOR_ROS else [],
     zip_safe=False,
     python_requires='>=3.10',
     install_requires=[
@@ -47,11 +51,7 @@ setup(
     },
     entry_points={
         'console_scripts': [
-            'cascade_controller = stickslip_sim.ros.cascade_controller:main',
-            'compensating_controller = stickslip_sim.ros.compensating_controller:main',
-            'health = stickslip_sim.ros.health:main',
-            'replay_node = stickslip_sim.ros.replay_node:main',
-            'sim_node = stickslip_sim.ros.sim_node:main',
+            *(f'{node} = stickslip_sim.ros.{node}:main' for node in NODES),
             'stickslip = stickslip_sim.__main__:main',
         ],
     },

@@ -119,6 +119,13 @@ class TestMessages:
         assert first == (ROOT / 'stickslip_msgs/msg/RunInfo.msg').read_text()
         assert [part.split('\n')[0] for part in rest] == ['builtin_interfaces/Time', 'std_msgs/Header']
 
+    @pytest.mark.parametrize('topic', RECORDED, ids=lambda t: t.name)
+    def test_without_ros_types_are_the_same(self, topic: topics.Topic, monkeypatch: pytest.MonkeyPatch) -> None:
+        installed = schema(topic.type)
+        monkeypatch.delenv('AMENT_PREFIX_PATH')
+        alone = schema.__wrapped__(topic.type)
+        assert (alone.type, alone.hash) == (installed.type, installed.hash)
+
     def test_unknown_type(self) -> None:
         with pytest.raises(RecordingError, match='no definition of stickslip_msgs/msg/Nothing in AMENT_PREFIX_PATH; '):
             schema('stickslip_msgs/msg/Nothing')

@@ -1,16 +1,11 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Message definitions as bags carry them, their type hashes, and CDR encoding; no ROS needed beyond its .msg files.
+"""Message definitions as bags carry them, their type hashes, and CDR encoding; no ROS needed."""
 
-The files are those of the sourced workspace (AMENT_PREFIX_PATH), so a bag describes exactly what was built.
-"""
-
-import os
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import cache
-from pathlib import Path
 from typing import Any, NamedTuple
 
 from rosbags.interfaces import Nodetype
@@ -18,6 +13,7 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from rosbags.typesys.store import Typestore
 
 from ..core.errors import RecordingError
+from .definitions import definition
 from .layout import Layout, number_fields
 
 LONGEST = 128 * 1024    # letters of a definition: a second or two of reading
@@ -120,7 +116,7 @@ def _is_number(element: tuple[Nodetype, Any]) -> bool:
 def _full_text(type_name: str, seen: set[str]) -> str:
     """Put the definitions one after the other as rosbag2_storage_mcap does: depth first, each once."""
     package = type_name.split('/')[0]
-    text = _definition(type_name)
+    text = definition(type_name)
     names = {name for name in _TYPE_OF_FIELD.findall(text) if name not in _PRIMITIVE}
     for name in sorted(name if '/' in name else f'{package}/{name}' for name in names):
         if name not in seen:
@@ -128,12 +124,3 @@ def _full_text(type_name: str, seen: set[str]) -> str:
             owner, short = name.split('/')[0], name.split('/')[-1]
             text += f'\n{_RULE}\nMSG: {name}\n' + _full_text(f'{owner}/msg/{short}', seen)
     return text
-
-
-def _definition(type_name: str) -> str:
-    package, kind, name = type_name.split('/')
-    for prefix in os.environ.get('AMENT_PREFIX_PATH', '').split(os.pathsep):
-        file = Path(prefix, 'share', package, kind, f'{name}.msg')
-        if prefix and file.is_file():
-            return file.read_text(encoding='utf-8')
-    raise RecordingError(f'no definition of {type_name} in AMENT_PREFIX_PATH; source the setup.bash of the workspace')
