@@ -13,6 +13,8 @@ from launch.launch_description_sources import PythonLaunchDescriptionSource
 from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
 from launch_ros.substitutions import FindPackageShare
 
+from stickslip_sim.ros.process.launch_arguments import check_arguments
+
 # Those of sim.launch.py that are not of one axis alone: it declares them too, but --show-args cannot see that.
 ARGUMENTS = {
     'axes': ('x:positioning y:positioning', 'NAMESPACE:SCENE of each axis; a scene is a shipped one or a file'),
@@ -26,6 +28,7 @@ ARGUMENTS = {
 def generate_launch_description() -> LaunchDescription:
     """Return the axes that are asked for."""
     return LaunchDescription([
+        OpaqueFunction(function=lambda _: check_arguments(__file__, ARGUMENTS)),
         *(DeclareLaunchArgument(name, default_value=value, description=text)
           for name, (value, text) in ARGUMENTS.items()),
         OpaqueFunction(function=axes),

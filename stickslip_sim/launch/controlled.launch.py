@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Starts an axis, a controller and a recording.
+"""Starts an axis, a controller and a recording; ends with the first of both nodes that ends.
 
 ros2 launch stickslip_sim controlled.launch.py controller:=compensating_controller feed:=0.0005
 
@@ -8,11 +8,20 @@ The arguments of sim.launch.py are there too.
 """
 
 from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
+from launch.actions import (
+    DeclareLaunchArgument,
+    IncludeLaunchDescription,
+    OpaqueFunction,
+    RegisterEventHandler,
+    Shutdown,
+)
+from launch.event_handlers import OnProcessExit
 from launch.launch_description_sources import PythonLaunchDescriptionSource
 from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
 from launch_ros.actions import Node
 from launch_ros.substitutions import FindPackageShare
+
+from stickslip_sim.ros.process.launch_arguments import check_arguments
 
 ARGUMENTS = {
     'scene': ('positioning', 'shipped scene of the axis, or a parameter file'),
@@ -29,12 +38,14 @@ OF_THE_AXIS = 'joint_interface.enabled:=true drive.course:=constant drive.veloci
 
 
 def generate_launch_description() -> LaunchDescription:
-    """Return both nodes with their arguments."""
+    """Return both nodes with their arguments; when one ends, the other does."""
     given = {name: LaunchConfiguration(name) for name in ARGUMENTS}
     sim = PathJoinSubstitution([FindPackageShare('stickslip_sim'), 'launch', 'sim.launch.py'])
     return LaunchDescription([
+        OpaqueFunction(function=lambda _: check_arguments(__file__, ARGUMENTS, 'sim.launch.py')),
         *(DeclareLaunchArgument(name, default_value=value, description=text, choices=CHOICES.get(name))
           for name, (value, text) in ARGUMENTS.items()),
+        RegisterEventHandler(OnProcessExit(on_exit=[Shutdown()])),
         IncludeLaunchDescription(PythonLaunchDescriptionSource(sim), launch_arguments={
             'parameters': [OF_THE_AXIS, given['parameters']]}.items()),
         Node(

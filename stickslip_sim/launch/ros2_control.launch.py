@@ -9,13 +9,22 @@ joint_state_topic_hardware_interface and the controllers of ros2_control/control
 """
 
 from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
+from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription, OpaqueFunction
 from launch.launch_description_sources import PythonLaunchDescriptionSource
 from launch.substitutions import Command, LaunchConfiguration, PathJoinSubstitution
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackageShare
 
+from stickslip_sim.ros.process.launch_arguments import check_arguments
+
+ARGUMENTS = {
+    'scene': ('positioning', 'shipped scene, or a parameter file'),
+    'namespace': ('machine', 'namespace of the axis and its topics'),
+    'controller': ('velocity_controller', 'controller of the axis'),
+    'parameters': ('', "further parameters of the axis, like 'seed:=3'"),
+}
+CHOICES = {'controller': ['velocity_controller', 'position_controller']}
 FOLDER = [FindPackageShare('stickslip_sim'), 'ros2_control']
 
 
@@ -23,12 +32,9 @@ def generate_launch_description() -> LaunchDescription:
     """Return the axis in a namespace of its own, so that its joint_states are not those of the broadcaster."""
     controllers = PathJoinSubstitution([*FOLDER, 'controllers.yaml'])
     return LaunchDescription([
-        DeclareLaunchArgument('scene', default_value='positioning', description='shipped scene, or a parameter file'),
-        DeclareLaunchArgument('namespace', default_value='machine', description='namespace of the axis and its topics'),
-        DeclareLaunchArgument('controller', default_value='velocity_controller', description='controller of the axis',
-                              choices=['velocity_controller', 'position_controller']),
-        DeclareLaunchArgument('parameters', default_value='',
-                              description="further parameters of the axis, like 'seed:=3'"),
+        OpaqueFunction(function=lambda _: check_arguments(__file__, ARGUMENTS, 'sim.launch.py')),
+        *(DeclareLaunchArgument(name, default_value=value, description=text, choices=CHOICES.get(name))
+          for name, (value, text) in ARGUMENTS.items()),
         Node(package='robot_state_publisher', executable='robot_state_publisher', output='screen',
              parameters=[{'robot_description': ParameterValue(description(), value_type=str)}]),
         Node(package='controller_manager', executable='ros2_control_node', output='screen', parameters=[controllers],

@@ -15,6 +15,8 @@ from launch.actions import DeclareLaunchArgument, OpaqueFunction
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 
+from stickslip_sim.ros.process.launch_arguments import check_arguments
+
 ARGUMENTS = {
     'scene': ('paper_fig8', 'shipped scene, or a parameter file'),
     'namespace': ('', 'namespace of the node and its topics'),
@@ -32,6 +34,7 @@ PARAMETERS = {'scene': 'scene', 'mode': 'time.mode', 'rate': 'time.rate', 'recor
 def generate_launch_description() -> LaunchDescription:
     """Return the node with its arguments."""
     return LaunchDescription([
+        OpaqueFunction(function=lambda _: check_arguments(__file__, ARGUMENTS)),
         *(DeclareLaunchArgument(name, default_value=value, description=text)
           for name, (value, text) in ARGUMENTS.items()),
         OpaqueFunction(function=axis),

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from stickslip_sim.core.errors import InputError
 from stickslip_sim.recording import open_bag
 from stickslip_sim.scene.schema import BY_NAME
 from tests.support.launch_files import FILES, LAUNCH, Started, launched
@@ -102,6 +103,9 @@ class TestControlled:
                                        'drive.course', 'drive.velocity', 'seed']
         assert parameters_of(controller) == ['moves.feed', 'moves.travel']
 
+    def test_it_ends_with_the_first_that_ends(self) -> None:
+        assert launched('controlled').ends == ['shutdown']
+
     def test_the_controller_moves_the_axis(self, tmp_path: Path) -> None:
         axis, controller = launched('controlled', namespace='mill', folder=str(tmp_path / 'run'),
                                     feed='0.01').processes
@@ -159,6 +163,30 @@ def test_a_choice_that_is_none_is_refused(name: str, argument: str, value: str) 
         launched(name, **{**NEEDED.get(name, {}), argument: value})
 
 
-def test_replay_needs_a_bag() -> None:
-    with pytest.raises(RuntimeError, match='"bag" was not provided'):
-        launched('replay')
+class TestReplay:
+    def test_needs_a_bag(self) -> None:
+        with pytest.raises(RuntimeError, match='"bag" was not provided'):
+            launched('replay')
+
+    def test_what_is_empty_is_left_out(self) -> None:
+        every, some = (launched('replay', bag='runs/a', **given).processes[0] for given in (
+            {}, {'topics': '[slider_state, mode_event]', 'mode': 'commands', 'axis': '/mill/feed_axis'}))
+        assert {'topics', 'axis'} & set(parameters_of(every)) == set()
+        assert {'topics:=[slider_state, mode_event]', 'axis:=/mill/feed_axis'} <= set(some.words)
+
+
+@pytest.mark.parametrize(('name', 'word', 'advice'), [
+    ('sim', 'scen:=paper_fig7', 'did you mean scene'), ('controlled', 'fed:=0.01', 'did you mean feed'),
+    ('controlled', 'flder:=a', 'did you mean folder'), ('axes', 'scene:=paper_fig7', 'drop it'),
+    ('replay', 'topic:=a', 'did you mean topics'), ('ros2_control', 'namspace:=a', 'did you mean namespace')])
+def test_an_argument_that_is_none_is_refused(monkeypatch: pytest.MonkeyPatch, name: str, word: str,
+                                             advice: str) -> None:
+    """Launch itself passes over it."""
+    monkeypatch.setattr('sys.argv', ['ros2', 'launch', 'stickslip_sim', f'{name}.launch.py', 'launch-prefix:=a', word])
+    with pytest.raises(InputError, match=f"^{word.partition(':=')[0]} = .* is refused: .*{advice}"):
+        launched(name, **NEEDED.get(name, {}))
+
+
+def test_a_file_that_includes_one_has_arguments_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr('sys.argv', ['ros2', 'launch', 'cell', 'cell.launch.py', 'robot:=arm'])
+    assert launched('controlled').ours

@@ -36,6 +36,7 @@ LAUNCHED = [
     ('axes', {}),
     ('axes', {'axes': 'x:positioning y:/a/scene.yaml', 'rate': '500', 'record': 'true'}),
     ('replay', {'bag': 'runs/a', 'loop': 'true'}),
+    ('replay', {'bag': 'runs/a', 'mode': 'commands', 'topics': '[drive_velocity]', 'axis': '/mill/feed_axis'}),
 ]
 
 # What `ros2 launch` does with a file and name:=value; without a terminal, so that launch passes the signal on.
@@ -93,6 +94,14 @@ def test_two_axes_record_until_interrupted(tmp_path: Path) -> None:
     assert scenes == ['positioning', 'cutting_force']
 
 
+def test_an_axis_ends_with_its_controller(tmp_path: Path) -> None:
+    with launching('controlled', 'feed:=-1.0', 'record:=false', folder=tmp_path) as process:
+        output, _ = process.communicate(timeout=DEADLINE)
+    assert 'moves.feed = -1.0 is refused' in output
+    assert 'process[cascade_controller-2] was required: shutting down launched system' in output
+    assert '[sim_node-1]: process has finished cleanly' in output
+
+
 @pytest.mark.parametrize(('name', 'given'), LAUNCHED)
 def test_the_double_starts_what_launch_starts(name: str, given: dict[str, str], tmp_path: Path) -> None:
     """Launch puts a program in front of each command, which writes its words and does not run it."""
@@ -122,6 +131,8 @@ def test_the_double_knows_the_arguments_that_launch_knows(name: str) -> None:
     ('sim', 'parameters:=seed', 'NAME:=VALUE'),
     ('controlled', 'controller:=cascade', 'Valid options are'),
     ('axes', 'axes:=x', 'NAMESPACE:SCENE'),
+    ('sim', 'scen:=paper_fig7', 'did you mean scene?'),
+    ('controlled', 'flder:=a', 'did you mean folder?'),
 ])
 def test_wrong_words_start_nothing(name: str, word: str, reported: str, tmp_path: Path) -> None:
     with launching(name, word, folder=tmp_path) as process:

@@ -53,6 +53,7 @@ class Launched(NamedTuple):
 
     arguments: list[Argument]
     processes: list[Started]
+    ends: list[str]    # what happens when the first of them has ended
 
     @property
     def ours(self) -> list[Started]:
@@ -61,14 +62,14 @@ class Launched(NamedTuple):
 
 def launched(name: str, **given: str) -> Launched:
     """Run a launch file of the package with arguments."""
-    result = Launched([], [])
+    result = Launched([], [], [])
     with _double(Context(given)) as context:
         _visit(_entities(FILES[name]), context, result)
     return result
 
 
 def _entities(file: Path) -> list[Any]:
-    names: dict[str, Any] = {}
+    names: dict[str, Any] = {'__file__': str(file)}
     exec(compile(file.read_text(encoding='utf-8'), str(file), 'exec'), names)
     description: list[Any] = names['generate_launch_description']()
     return description
@@ -139,10 +140,21 @@ class _Include(NamedTuple):
 
 
 class _OpaqueFunction(NamedTuple):
-    function: Callable[[Context], Iterable[Any]]
+    function: Callable[[Context], Iterable[Any] | None]
 
     def __call__(self, context: Context, result: Launched) -> None:
-        _visit(self.function(context), context, result)
+        _visit(self.function(context) or [], context, result)
+
+
+class _OnProcessExit(NamedTuple):
+    on_exit: list[str]
+
+
+class _RegisterEventHandler(NamedTuple):
+    handler: _OnProcessExit
+
+    def __call__(self, _: Context, result: Launched) -> None:
+        result.ends.extend(self.handler.on_exit)
 
 
 class _Node(NamedTuple):
@@ -176,7 +188,9 @@ class _Node(NamedTuple):
 _DOUBLE: dict[str, dict[str, Any]] = {
     'launch': {'LaunchDescription': list, 'LaunchContext': dict},
     'launch.actions': {'DeclareLaunchArgument': Argument, 'IncludeLaunchDescription': _Include,
-                       'OpaqueFunction': _OpaqueFunction},
+                       'OpaqueFunction': _OpaqueFunction, 'RegisterEventHandler': _RegisterEventHandler,
+                       'Shutdown': lambda: 'shutdown'},
+    'launch.event_handlers': {'OnProcessExit': _OnProcessExit},
     'launch.launch_description_sources': {'PythonLaunchDescriptionSource': lambda location: location},
     'launch.substitutions': {'Command': _Command, 'LaunchConfiguration': _LaunchConfiguration,
                              'PathJoinSubstitution': _PathJoin},
