@@ -49,6 +49,11 @@ class Recording:
             raise RecordingError(f'{self.path}: no message can be read of it; give a recording that holds some')
         self.begin, self.end = span
 
+    @property
+    def length(self) -> float:
+        """From the first message to the last, s; log times of other recorders are since 1970."""
+        return (self.end - self.begin) * 1e-9
+
     def messages(self, topics: Collection[str], since: int, until: int) -> Iterator[RecordedMessage]:
         """Yield the messages of some topics from one log time to another (ns), both included, in this order.
 
@@ -81,7 +86,7 @@ class Recording:
                 return [record for record in chunk_at(self.path, file, chunk.chunk_start_offset)
                         if isinstance(record, Message)]
         except (*CUT_OFF, OSError) as error:
-            begin = chunk.message_start_time * 1e-9
+            begin = (chunk.message_start_time - self.begin) * 1e-9
             raise RecordingError(f'{self.path}: damaged behind {begin:g} s: {error}') from None
 
     def _written(self) -> Iterator[Message]:

@@ -248,6 +248,15 @@ class TestOtherRecorders:
         recording = Recording(foreign(tmp_path, {}, compression=compression))
         assert [message.data for message in recording.messages(['/chatter'], 0, 9)] == [b'\0\1\0\0\0'] * 3
 
+    def test_a_length_counts_from_the_first_message_on(self, tmp_path: Path) -> None:
+        """Log times are since 1970."""
+        recording = Recording(foreign(tmp_path, {}, since=1_700_000_000 * SECOND))
+        assert recording.begin > 1_700_000_000 * SECOND
+        assert recording.length == 2e-9
+        damage(recording.path)
+        with pytest.raises(RecordingError, match=r'damaged behind 0 s'):
+            list(recording.messages(['/chatter'], recording.begin, recording.end))
+
     def test_without_figures_at_its_end(self, tmp_path: Path) -> None:
         """It is played as it was written."""
         recording = Recording(foreign(tmp_path, {}, use_statistics=False))
@@ -256,8 +265,9 @@ class TestOtherRecorders:
 
 
 def foreign(folder: Path, metadata: dict[str, str], name: str = 'foreign.mcap', messages: int = 3,
-            compression: CompressionType = CompressionType.ZSTD, use_statistics: bool = True) -> Path:
-    """Write a bag as another program might: messages at 1, 2, ... ns, the later ones first."""
+            compression: CompressionType = CompressionType.ZSTD, use_statistics: bool = True,
+            since: int = 0) -> Path:
+    """Write a bag as another program might: messages at 1, 2, ... ns after `since`, the later ones first."""
     path = folder / name
     with path.open('wb') as stream:
         writer = Writer(stream, compression=compression, use_statistics=use_statistics)
@@ -265,6 +275,6 @@ def foreign(folder: Path, metadata: dict[str, str], name: str = 'foreign.mcap', 
         schema = writer.register_schema('std_msgs/msg/Empty', 'ros2msg', b'')
         channel = writer.register_channel('/chatter', 'cdr', schema, metadata)
         for at in reversed(range(1, messages + 1)):
-            writer.add_message(channel, at, b'\0\1\0\0\0', at, 0)
+            writer.add_message(channel, since + at, b'\0\1\0\0\0', since + at, 0)
         writer.finish()  # type: ignore[no-untyped-call]
     return path

@@ -209,6 +209,16 @@ def test_a_recorded_run_that_has_not_begun_can_be_reset(tmp_path: Path) -> None:
     assert steps.tolist() == list(range(11))
 
 
+def test_the_zeros_of_the_type_are_reported_in_place_of_an_input_profile(tmp_path: Path) -> None:
+    """`ros2 service call /feed_axis/step ... '{steps: 10}'` stops the drive, and says so."""
+    with node_and_client(tmp_path, 'lockstep') as (_, axis):
+        assert 'in place' not in axis.call(Step, 'step', steps=10, velocity=math.nan, force=math.nan).message
+        answer = axis.call(Step, 'step', steps=10)
+        assert answer.message.endswith('; velocity = 0 in place of the input profile of the scene: NaN leaves it')
+        assert (answer.success, answer.state.drive_velocity) == (True, 0.0)
+        assert 'in place' not in axis.call(Step, 'step', steps=10).message
+
+
 def test_what_was_cleared_is_reported(tmp_path: Path) -> None:
     with node_and_client(tmp_path, 'lockstep', '-p', 'command.timeout:=0.05', '-p', 'command.on_timeout:=fault'
                          ) as (_, axis):

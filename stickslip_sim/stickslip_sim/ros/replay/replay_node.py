@@ -49,8 +49,8 @@ class Replay(ListedNode):
         settings, log = self._settings, self.get_logger()
         if not self._recording.is_complete:
             log.warning(f'{self._recording.path} was cut off: it is played as far as it goes,'
-                        f' {self._recording.end / NANOSECONDS:g} s')
-        begin, end = (time / NANOSECONDS for time in self._span)
+                        f' {self._recording.length:g} s')
+        begin, end = ((time - self._recording.begin) / NANOSECONDS for time in self._span)
         log.info(f'{settings.mode} of {self._recording.path} from {begin:g} s to {end:g} s, at rate {settings.rate:g}')
         self.player.start()
 

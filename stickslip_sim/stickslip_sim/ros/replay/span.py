@@ -22,9 +22,8 @@ def span_of(recording: Recording, settings: Settings) -> PlayedSpan:
     """Return the span that the settings ask for; raises InputError when there is nothing in it."""
     begin = recording.begin + round(settings.start_offset * NANOSECONDS)
     if begin > recording.end:
-        length = (recording.end - recording.begin) / NANOSECONDS
-        raise InputError('start_offset', settings.start_offset, f'at most {length:g} s, the length of the recording',
-                         'begin earlier')
+        raise InputError('start_offset', settings.start_offset,
+                         f'at most {recording.length:g} s, the length of the recording', 'begin earlier')
     if settings.playback_duration < 0.0:
         return PlayedSpan(begin, recording.end)
     return PlayedSpan(begin, min(recording.end, begin + round(settings.playback_duration * NANOSECONDS)))

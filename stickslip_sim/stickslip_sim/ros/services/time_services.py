@@ -10,6 +10,7 @@ from std_srvs.srv import SetBool, Trigger
 
 from stickslip_msgs.srv import Step
 
+from ...core.input_profile import constant
 from ...realtime.step_loop import StepLoop
 from ...rig import StepResult
 from ..node.parameters import SceneNode
@@ -26,6 +27,7 @@ class TimeServices:
                  is_recording: Callable[[], bool], is_stopping: Callable[[], bool]) -> None:
         self._loop, self._publishers, self._restart = loop, publishers, restart
         self._is_recording, self._is_stopping = is_recording, is_stopping
+        self._profiles, self._log = (node.scene.drive, node.scene.force), node.get_logger()
         node.create_service(Trigger, '~/reset', self.reset)
         node.create_service(SetBool, '~/set_paused', self.set_paused)
         node.create_service(Step, '~/step', self.step)
@@ -59,6 +61,7 @@ class TimeServices:
         if refusal:
             return answer(response, False, refusal)
         results: list[StepResult] = []
+        replaced = self._replaced(request)
         velocity, force = (None if math.isnan(value) else value for value in (request.velocity, request.force))
 
         def run() -> None:
@@ -70,7 +73,10 @@ class TimeServices:
             response.state, response.friction = self._publishers.state_messages(last.step, last.sample)
             response.events = [message for result in results for event in result.events
                                if (message := self._publishers.event_message(result.step, event))]
-        return answer(response, done and len(results) == request.steps, self._report(done, request.steps, len(results)))
+        if replaced and results:
+            self._log.warning(f'~/step: {replaced}')
+        return answer(response, done and len(results) == request.steps,
+                      self._report(done, request.steps, len(results)) + (f'; {replaced}' if replaced else ''))
 
     @property
     def _is_before_start(self) -> bool:
@@ -92,6 +98,14 @@ class TimeServices:
         if not (loop.by_request or loop.paused):
             return 'refused while time runs by itself: use time.mode: lockstep, or ~/set_paused first'
         return ''
+
+    def _replaced(self, request: Any) -> str:
+        """Return what to report of a request with the zeros of its type, which may not have been meant as commands."""
+        if (request.velocity, request.force) != (0.0, 0.0):
+            return ''
+        names = [slot.name for slot, held, profile in zip(self._loop.slots, self._loop.held, self._profiles)
+                 if held is None and profile != constant(0.0)]
+        return f'{" and ".join(names)} = 0 in place of the input profile of the scene: NaN leaves it' if names else ''
 
     def _report(self, done: bool, wanted: int, made: int) -> str:
         time = f'at simulation time {self._loop.time_ns * 1e-9:g} s'
