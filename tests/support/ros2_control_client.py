@@ -36,9 +36,9 @@ Update = Callable[[States], float | None]   # states in, a velocity for the driv
 class Rule(Enum):
     """Which differences of state and command, summed, must exceed the threshold for a command to be sent."""
 
-    ALL_POSITIONS = 'topic_based_ros2_control 0.3.0, joint_state_topic_hardware_interface 0.2.0'
-    COMMANDED_POSITIONS = 'joint_state_topic_hardware_interface after 0.2.0'
-    ALL_COMMANDED = 'joint_state_topic_hardware_interface since pull request 118'
+    ALL_POSITIONS = 'topic_based_ros2_control 0.3.0, joint_state_topic_hardware_interface 0.2.1'
+    COMMANDED_POSITIONS = 'joint_state_topic_hardware_interface 1.0.0'
+    ALL_COMMANDED = 'joint_state_topic_hardware_interface 1.1.0'
 
 
 class Joint(NamedTuple):
@@ -54,6 +54,7 @@ class Description:
         options, file = xacro.process_args([str(SHIPPED / 'feed_axis.ros2_control.xacro'), *words])
         self.robot = ET.fromstring(xacro.process_file(file, **vars(options)).toxml())
         (control,) = self.robot.findall('ros2_control')
+        self.hardware = control.get('name', '')
         self.plugin = control.findtext('hardware/plugin', '')
         self.parameters = {str(tag.get('name')): str(tag.text) for tag in control.findall('hardware/param')}
         self.joints = [Joint(str(joint.get('name')), self._names(joint, 'command'), self._names(joint, 'state'))

@@ -15,6 +15,7 @@ from sensor_msgs.msg import JointState
 from stickslip_msgs.msg import RigEvent
 from stickslip_msgs.srv import InjectFault
 from stickslip_sim.recording import open_bag
+from stickslip_sim.scene.sections import NODE
 from tests.support.ros2_control_client import (
     SHIPPED,
     THRESHOLD,
@@ -49,6 +50,7 @@ def missing_steps(axis: Client, stamps: list[int]) -> list[int]:
 class TestShippedFiles:
     def test_description(self) -> None:
         description = Description('joint_states_topic:=/a', 'joint_commands_topic:=/b')
+        assert description.hardware != NODE, 'two nodes of one name in the namespace /'
         assert description.plugin == 'joint_state_topic_hardware_interface/JointStateTopicSystem'
         assert description.parameters == {'joint_states_topic': '/a', 'joint_commands_topic': '/b', THRESHOLD: '-1'}
         assert [(joint.name, joint.commands) for joint in description.joints] == [
@@ -63,6 +65,7 @@ class TestShippedFiles:
         known = [joint.name for joint in Description().joints]
         assert parameters['velocity_controller']['joints'] == ['axis_drive']
         position = parameters['position_controller']
+        assert position['gains']['axis_drive']['antiwindup_strategy'] == 'none'
         assert set(position['gains']) == set(position['dof_names']) == {'axis_drive'}
         assert set(position['reference_and_state_dof_names']) <= set(known)
         assert set(parameters) - {'controller_manager'} < set(parameters['controller_manager'])
