@@ -123,7 +123,7 @@ def measure(case: str, rate: int, seconds: float, with_commands: bool) -> NoRetu
     if case == 'node':
         finish(watch_node(rate, seconds))
     form, executor_name = case.split('-')
-    sys.setswitchinterval(2e-4)
+    sys.setswitchinterval(5e-5)
     rclpy.init()
     node = Node('loop')
     executor = EventsExecutor() if executor_name == 'events' else SingleThreadedExecutor()
@@ -257,7 +257,7 @@ _CHOICE = (
     '  hold the steps that waited behind a stall of the machine);',
     '* callbacks of commands cost least with the EventsExecutor, and disturb the steps least;',
     '* a timer slack of 1 ns instead of the default 50 µs (`prctl`) starts the steps nearer to their due time;',
-    '* a callback may keep the interpreter 0.2 ms (`sys.setswitchinterval`) instead of 5 ms before a step gets it.',
+    '* a callback may keep the interpreter 0.05 ms (`sys.setswitchinterval`) instead of 5 ms before a step gets it.',
 )
 
 

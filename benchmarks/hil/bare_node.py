@@ -33,7 +33,7 @@ from stickslip_sim.ros.node.topics import publisher, subscription
 from stickslip_sim.ros.process.program import make_executor
 
 POLL = 0.1                # s
-SWITCH_INTERVAL = 2e-4    # s, as in sim_node
+SWITCH_INTERVAL = 5e-5    # s, as in sim_node
 
 
 class BareNode(Node):  # type: ignore[misc]

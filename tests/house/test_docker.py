@@ -160,6 +160,16 @@ class TestCompose:
         assert set(on_host) == set(services)
         assert all(service == {'network_mode': 'host', 'ipc': 'host'} for service in on_host.values())
 
+    def test_real_time_adds_rights_and_parameters_to_the_axis(self) -> None:
+        """A second file replaces the command as a whole."""
+        axis = compose('compose.yaml')['services']['axis']
+        (name, wanted), = compose('compose.realtime.yaml')['services'].items()
+        assert name == 'axis'
+        assert wanted['command'][:len(axis['command'])] == axis['command']
+        added = [word.split(':=')[0] for word in wanted['command'][len(axis['command']):] if word != '-p']
+        assert added == ['thread_priority', 'lock_memory', 'cpu_affinity', 'require_real_time']
+        assert wanted['ulimits'] == {'rtprio': 99, 'memlock': -1}
+
 
 @pytest.mark.ros
 def test_the_entrypoint_runs_the_programs_and_hands_signals_on() -> None:

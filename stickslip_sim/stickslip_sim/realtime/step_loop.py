@@ -17,12 +17,16 @@ from ..core.errors import SolverError
 from ..rig import Rig, StepResult
 from .command_inputs import CommandInputs, CommandTotals
 from .command_slot import CommandSlot
+from .core_share import CoreShare
 from .pacing import StepClock, wake_precisely
+from .scheduling import Scheduling, StepThread
 from .timing_statistics import TimingStatistics
 from .watchdog import Watchdog
 
 _IDLE = 0.05            # s between two looks at whether to stop while time stands still
 _PATIENCE = 5.0         # s that a request waits for its boundary
+
+_AS_IT_IS = Scheduling()
 
 Sink = Callable[[StepResult], None]
 
@@ -31,11 +35,13 @@ class StepLoop:
     """Runs the steps in a thread of its own; everything else asks for changes `at_boundary`.
 
     `sinks` get each step result, in the loop's thread.  With `by_request` time moves with `run_steps` only.
-    `hear` puts what has arrived into the slots; where others do that, it does nothing.
+    `hear` puts what has arrived into the slots; where others do that, it does nothing.  Raises InputError when the
+    `scheduling` cannot be had and must.
     """
 
     def __init__(self, rig: Rig, clock: StepClock, slots: tuple[CommandSlot, CommandSlot], sinks: Sequence[Sink],
-                 watchdog: Watchdog, by_request: bool = False, hear: Callable[[], None] = lambda: None) -> None:
+                 watchdog: Watchdog, by_request: bool = False, hear: Callable[[], None] = lambda: None,
+                 scheduling: Scheduling = _AS_IT_IS) -> None:
         self.rig = rig
         self.paused = False
         self.by_request = by_request
@@ -44,6 +50,7 @@ class StepLoop:
         self.timing_statistics, self.pacing_counters = TimingStatistics(), clock.counters
         self._clock, self._sinks, self._watchdog = clock, sinks, watchdog
         self._inputs, self._hear = CommandInputs(slots), hear
+        self.step_thread, self._core_share = StepThread(scheduling), CoreShare()
         self._requests: deque[Callable[[], None]] = deque()
         self._is_over, self._wake = threading.Event(), threading.Event()
         self._thread = threading.Thread(target=self._run, name='steps', daemon=True)
@@ -142,6 +149,7 @@ class StepLoop:
 
     def _run(self) -> None:
         wake_precisely()
+        self.step_thread.enter()
         try:
             while not self._is_over.is_set():
                 self._turn()
@@ -157,11 +165,19 @@ class StepLoop:
                 self._hear()
                 self._wake.wait(_IDLE)
             elif self._clock.wait(self.step + 1):
-                self._make_step(*self._clock.begin(self.step + 1))
+                self._make_due_step()
             elif self.step >= 0:    # a long period: what comes meanwhile is counted, and the latest will hold
                 self._hear()
         except SolverError as error:
             self.failure = str(error)
+
+    def _make_due_step(self) -> None:
+        counters = self.pacing_counters
+        caught_up = counters.caught_up
+        begin, lateness = self._clock.begin(self.step + 1)
+        if counters.caught_up == caught_up:
+            self._core_share.waited(begin)
+        self._make_step(begin, lateness)
 
     @property
     def _stands_still(self) -> bool:
@@ -178,6 +194,8 @@ class StepLoop:
         end = self._clock.now()
         self.timing_statistics.add(self.rig.time_ns, end - begin, lateness, new.age,
                                    end - new.arrival if new.arrival else None)
+        if self.step_thread.is_fifo:
+            self._core_share.worked(end)
         return result
 
     def _watch(self) -> None:

@@ -19,7 +19,7 @@ class TimingVerdict(NamedTuple):
 
 def verdict(scene: Scene, loop: StepLoop) -> TimingVerdict:
     """Return the verdict on the run so far, against the limits in the section `timing` of the scene."""
-    commands = _commands(loop)
+    commands = _commands(loop) + _scheduling(loop)
     if scene.time.mode != 'realtime':
         return TimingVerdict(None, f'not in real time (time.mode {scene.time.mode}); {commands}')
     reasons = _reasons(scene.timing, loop.timing_statistics, loop.pacing_counters)
@@ -42,6 +42,15 @@ def _reasons(limits: TimingSettings, timing_statistics: TimingStatistics, counte
     if share > limits.max_overruns:
         reasons.append(f'{share:.2%} of the steps more than a period late, over {limits.max_overruns:.2%}')
     return reasons
+
+
+def _scheduling(loop: StepLoop) -> str:
+    """Return what the kernel grants the step thread, and whether anything is missing; nothing of what is not wanted."""
+    thread = loop.step_thread
+    if not (thread.granted or thread.missing):
+        return ''
+    granted = thread.granted or 'as any thread'
+    return f'; scheduling: {granted}{" (not all that is wanted)" if thread.missing else ""}'
 
 
 def _commands(loop: StepLoop) -> str:

@@ -12,7 +12,7 @@ from ..config.ros_yaml import SIZE_LIMIT, read_yaml
 from ..core.errors import InputError
 from .build import build_scene
 from .model import Scene
-from .sections import describes_an_axis, parameters_of, without_those_of_ros
+from .sections import describes_an_axis, of_a_scene, parameters_of
 from .values import overridden, stated
 
 _SHIPPED = pathlib.Path(__file__).parent.parent / 'scenes'
@@ -51,7 +51,7 @@ def scene_of_parameters(values: Mapping[str, object], overrides: Mapping[str, ob
     A file that says nothing of an axis but bears the name of a shipped scene means that one, with what it says: so a
     launch file names one.  Any other name is for people, and what is left out is not modelled.
     """
-    values, overrides = stated(without_those_of_ros(values)), stated(overrides)
+    values, overrides = stated(of_a_scene(values)), stated(overrides)
     if not values:
         raise InputError('parameters', None, 'of a scene', 'see the shipped scenes')
     name = values.get('scene')

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A scene: everything that decides a run, checked and ready for the simulator."""
 
+import math
 from dataclasses import dataclass, field
 from fractions import Fraction
 
@@ -29,6 +30,11 @@ class TimeSettings:
     def makes_clock(self) -> bool:
         """Whether simulation time is the time of the ROS graph."""
         return self.mode != 'realtime'
+
+    @property
+    def is_paced(self) -> bool:
+        """Whether a step waits until it is due."""
+        return self.mode != 'lockstep' and self.factor != math.inf
 
     @property
     def step(self) -> Fraction:

@@ -99,7 +99,8 @@ def loop_status(loop: StepLoop, second: Second, verdict: TimingVerdict) -> Diagn
              for name in ('cost', 'lateness',
                           'latency') if not math.isnan((case := loop.timing_statistics.worst(name)).value)}
     return _status('step loop', level, text, {
-        'verdict': verdict.text,
+        'verdict': verdict.text, 'scheduling': loop.step_thread.granted or 'as any thread',
+        'not granted': '; '.join(loop.step_thread.missing) or 'none',
         'step': loop.step, 'simulation time / s': loop.time_ns * 1e-9, 'real-time factor': second.real_time_factor,
         'cost p50 / s': window.cost.p50, 'cost p99 / s': window.cost.p99,
         'lateness p50 / s': window.lateness.p50, 'lateness p99 / s': window.lateness.p99,

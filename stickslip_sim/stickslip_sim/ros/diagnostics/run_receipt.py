@@ -32,7 +32,7 @@ def _timing(scene: Scene, loop: StepLoop) -> dict[str, Any]:
     judged, counters = verdict(scene, loop), loop.pacing_counters
     worst = {f'worst_{name}': _plain(loop.timing_statistics.worst(name)) for name in ('cost', 'lateness', 'latency')}
     return {**asdict(counters), 'skipped': counters.skipped * 1e-9, **worst, 'valid': judged.valid,
-            'verdict': judged.text}
+            'verdict': judged.text, 'scheduling': loop.step_thread.granted, 'not_granted': loop.step_thread.missing}
 
 
 def _plain(worst: Worst) -> dict[str, float] | None:

@@ -34,6 +34,7 @@ from .deferred_log import DeferredLog
 from .joints import JointStates
 from .parameters import FileParameters, SceneNode
 from .publishers import Publishers
+from .scheduling_parameters import scheduling_of
 from .subscribers import Subscribers
 from .topics import publisher
 
@@ -67,7 +68,8 @@ class FeedAxis(SceneNode):
         self._subscribers = Subscribers(self, *self._slots, self._step_clock.now, self.log, scene.rig.measures)
         self._hidden = self._subscribers.hidden
         self.loop = StepLoop(scene.make_rig(), self._step_clock, self._slots, sinks, Watchdog(scene.command.timeout),
-                             by_request=scene.time.mode == 'lockstep', hear=self._subscribers.hear)
+                             by_request=scene.time.mode == 'lockstep', hear=self._subscribers.hear,
+                             scheduling=scheduling_of(self, scene.time))
         self._cost = CostMeter()
         self._open_endpoints(is_stopping)
 
@@ -79,6 +81,9 @@ class FeedAxis(SceneNode):
     def begin(self) -> None:
         """Start recording if the scene wants it, and the steps; raises RecordingError when it cannot be recorded."""
         self._record_service.recordings.prepare()
+        for missing in self.loop.step_thread.missing:
+            self.get_logger().warning(missing)
+        self.loop.step_thread.watch(self.log.warning)
         gc.collect()
         gc.freeze()      # a full collection would take tens of ms out of the loop
         self._cost.begin()

@@ -17,7 +17,7 @@ from ...core.errors import InputError
 from ...scene.load import load_scene, named, read_parameters, scene_from_values, scene_names, scene_of_parameters
 from ...scene.model import Scene
 from ...scene.schema import BY_NAME, PARAMETERS
-from ...scene.sections import describes_an_axis, without_those_of_ros
+from ...scene.sections import describes_an_axis, of_a_scene
 from ...scene.values import stated
 from ..process.environment import refusing, variables
 from .bounded_node import BoundedNode
@@ -43,7 +43,7 @@ class FileParameters(NamedTuple):
         """Return what files give, read as the tool does; a later one wins.  Raises InputError."""
         values: dict[str, object] = {}
         for path in paths:
-            values |= without_those_of_ros(read_parameters(path))
+            values |= of_a_scene(read_parameters(path))
         return cls(' + '.join(paths), stated(values))
 
 
@@ -59,7 +59,7 @@ class SceneNode(BoundedNode):
         with refusing('ROS parameters or environment', variables(), ParameterException):
             super().__init__(name)
         # rclpy has no public way to see what was given but never declared
-        given = without_those_of_ros({name: parameter.value for name, parameter in self._parameter_overrides.items()})
+        given = of_a_scene({name: parameter.value for name, parameter in self._parameter_overrides.items()})
         with named(files.source) if files.source else nullcontext():
             self._check_addressed(files, given)
             self.scene = scene_at_start(given, files.values)

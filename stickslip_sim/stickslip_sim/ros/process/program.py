@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from .stop_signals import Signals
 
 _POLL = 0.1                # s: how soon a signal is acted on
-_SWITCH_INTERVAL = 2e-4    # s that a callback may keep the interpreter from a step loop (the default is 5 ms)
+_SWITCH_INTERVAL = 5e-5    # s that another thread may keep the interpreter from a step loop (the default is 5 ms)
 
 
 class Program(NamedTuple):
