@@ -50,7 +50,8 @@ def axis(connected: Client) -> Client:
 class TestParameters:
     def test_all_of_the_schema_and_no_other(self, connected: Client) -> None:
         of_ros = {'use_sim_time', 'start_type_description_service'}
-        assert set(connected.parameter_names()) - of_ros == {entry.name for entry in PARAMETERS}
+        of_the_machine = {'thread_priority', 'lock_memory', 'cpu_affinity', 'require_real_time'}
+        assert set(connected.parameter_names()) - of_ros - of_the_machine == {entry.name for entry in PARAMETERS}
 
     def test_descriptions(self, connected: Client) -> None:
         for entry, described in zip(PARAMETERS, connected.describe(*[entry.name for entry in PARAMETERS]), strict=True):

@@ -10,6 +10,8 @@ import pytest
 
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.recording import open_bag
+from stickslip_sim.scene import load_scene
+from stickslip_sim.scene.load import parse_scene
 from tests.support.rights import name_of, needs_fifo, policies, start_without_rights
 from tests.support.ros_nodes import client, recording_into, running
 from tests.support.waiting import wait_for
@@ -69,6 +71,12 @@ def test_refused_starts(tmp_path: Path, arguments: list[str], refusal: str) -> N
         code, errors = process.wait()
     assert (code, len(errors.splitlines())) == (2, 1)
     assert errors.startswith(f'sim_node: {refusal}')
+
+
+def test_scheduling_is_no_part_of_a_scene() -> None:
+    scene = load_scene('paper_fig8')
+    added = '    thread_priority: 50\n    lock_memory: true\n    cpu_affinity: [0, 1]\n    require_real_time: false\n'
+    assert parse_scene(scene.text.replace('ros__parameters:\n', f'ros__parameters:\n{added}')).hash == scene.hash
 
 
 @pytest.mark.parametrize(('value', 'cores'), [(-1, ()), (1, (1,)), ([1, 0, 1], (0, 1)), ((2,), (2,))])
