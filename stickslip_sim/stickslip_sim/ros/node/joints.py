@@ -30,13 +30,14 @@ class JointStates:
     """Publishes what the encoders say at the end of a step; nothing when that measurement was lost."""
 
     def __init__(self, node: Node, publishers: Publishers) -> None:
-        self._publish = publisher(node, JOINT_STATES).publish
+        out = publisher(node, JOINT_STATES)
+        self._publish, self._is_heard = out.publish, out.get_subscription_count
         self._publishers = publishers
         self._pack = JointStatePacker().pack
 
     def take(self, result: StepResult) -> None:
-        """Publish, stamped as the state of this step."""
-        if result.measured is not None:
+        """Publish, stamped as the state of this step, if anybody hears it."""
+        if result.measured is not None and self._is_heard():
             stamp_ns = self._publishers.start_ns + result.sample.instant.nanoseconds
             self._publish(self._pack(stamp_ns, result.measured, result.sample.drive_force))
 

@@ -1,6 +1,9 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Where the results of the steps go: each message is packed once, and its bytes are published and recorded."""
+"""Where the results of the steps go: each message is packed once, and its bytes are published and recorded.
+
+A message that nobody hears and no bag records is not made.
+"""
 
 from typing import Any, Protocol
 
@@ -103,8 +106,12 @@ class Publishers:
         self.record(RECORDED.index(topic), serialize_message(message), time_ns, step)
 
     def _send(self, port: '_Port', time_ns: int, step: int, word: Sample | Event) -> None:
+        is_heard = port.is_heard()
+        if not is_heard and self.recorder is None:
+            return
         data = port.pack(self.start_ns + time_ns, step, word)
-        port.publish(data)
+        if is_heard:
+            port.publish(data)
         self.record(port.index, data, time_ns, step)
 
 
@@ -114,4 +121,5 @@ class _Port:
     def __init__(self, node: Node, topic: Topic) -> None:
         self.index = RECORDED.index(topic)
         self.pack = Packer(topic).pack
-        self.publish = publisher(node, topic).publish
+        out = publisher(node, topic)
+        self.publish, self.is_heard = out.publish, out.get_subscription_count
