@@ -13,6 +13,7 @@ import pytest
 from stickslip_sim.check.kinds import KINDS
 from stickslip_sim.cli.main import run
 from stickslip_sim.recording import OfflineBag, RunFacts, open_bag
+from stickslip_sim.recording.offline_bag import StepMessages
 from stickslip_sim.runs import simulate
 from stickslip_sim.scene import load_scene
 from tests.support.check_files import DURATION, LIMITS, checked, cut, limits_file, node_bag, refused
@@ -165,7 +166,7 @@ class TestRuns:
         bag = OfflineBag(tmp_path / 'bag', RunFacts.of(scene))
         samples = simulate(scene, 0.2, scene.time.step).samples
         for first, last in ((0, 50), (53, 201)):
-            bag.steps(first, {name: column[first:last] for name, column in samples.items()}, [])
+            bag.write(StepMessages().block(first, {name: column[first:last] for name, column in samples.items()}, []))
         bag.close({})
         code, out, _ = checked(capsys, tmp_path / 'bag', '--limits', limits_file(tmp_path, LIMITS))
         assert (code, out.splitlines()[1]) == (0, 'note: 3 of 201 steps are missing in the recording')

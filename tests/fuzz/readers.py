@@ -92,7 +92,7 @@ def bag(path: Path) -> None:
             for look in (lambda run: run.scene, lambda run: run.receipt, lambda run: run.events):
                 accepts_or_refuses(look, run)
             for topic in run.topics:
-                accepts_or_refuses(lambda run, topic: list(csv_lines(run.columns(topic))), run, topic)
+                accepts_or_refuses(lambda run, topic: list(csv_lines(run.column_blocks(topic))), run, topic)
         recorded = accepts_or_refuses(read_run, path)
         if isinstance(recorded, RecordedRun):
             for use in (observed_motion, timing_of, lambda run: list(gaps_in(run)), doubts_about, verify,

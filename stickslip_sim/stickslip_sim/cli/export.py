@@ -6,7 +6,7 @@ import csv
 import io
 import sys
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
@@ -40,18 +40,20 @@ def export(run: str, csv_file: str | None, parquet: str | None, topic: str) -> N
         with whole(parquet) as temporary:
             bag.frame(topic).to_parquet(temporary, index=False)
     if csv_file is not None:
-        write_text(csv_file, csv_lines(bag.columns(topic)))
+        write_text(csv_file, csv_lines(bag.column_blocks(topic)))
 
 
-def csv_lines(columns: 'dict[str, NDArray[Any]]') -> Iterator[str]:
-    """Yield a line of names, then a line for each row; 17 digits give the same floats back."""
+def csv_lines(blocks: 'Iterable[dict[str, NDArray[Any]]]') -> Iterator[str]:
+    """Yield a line of names, then a line for each row of the blocks; 17 digits give the same floats back."""
     from .csv_numbers import are_numbers, rows_text
     from .csv_tables import parts
 
-    yield ','.join(columns) + '\n'
-    count = min(map(len, columns.values()))
-    for block in parts([column[:count] for column in columns.values()]):
-        yield rows_text(block) if are_numbers(block) else _text(block)
+    names = ''
+    for block in blocks:
+        if not names:
+            yield (names := ','.join(block) + '\n')
+        for part in parts([*block.values()]):
+            yield rows_text(part) if are_numbers(part) else _text(part)
 
 
 def _check(csv_file: str | None, parquet: str | None) -> None:

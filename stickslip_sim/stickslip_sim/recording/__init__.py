@@ -5,11 +5,12 @@
 from .bag import BagWriter
 from .offline_bag import OfflineBag, samples_of, write_bag
 from .opening import open_bag
-from .reader import Bag, RecordedMessage
+from .reader import Bag
 from .recorded_run import RecordedRun, read_run
 from .run import RunFacts, checkpoint_file, open_run, receipt_file
 from .schemas import MessageCodec, Schema, flat_layout, schema
 from .thread import RecorderThread
+from .topic_columns import RecordedMessage
 from .topics import DIAGNOSTICS, RECORDED, QosProfile, Topic, recorded_topics
 
 __all__ = [

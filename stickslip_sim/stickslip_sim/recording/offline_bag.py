@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes the bag of an offline run: topics, fields and conventions of the node's, stamps are simulation time."""
 
+from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 from pathlib import Path
@@ -23,6 +24,7 @@ from .run import RunFacts, open_run, receipt_file
 from .schemas import MessageCodec, flat_layout
 from .topics import Topic
 
+CHANNELS = {topic: number for number, topic in enumerate(topics.RECORDED, 1)}
 _BLOCK = 10_000   # samples
 
 
@@ -42,17 +44,24 @@ def write_blocks(folder: Path | str, facts: RunFacts, blocks: Iterable[Columns],
     """Write a run as `write_bag` does, with samples that come as columns, block by block."""
     bag = OfflineBag(folder, facts)
     try:
-        waiting = [event for event in events if event.kind != EventKind.KNOT]   # as the node does
-        first = done = 0
-        for block in blocks:
-            end = Sample(*(block[name][-1] for name in Sample._fields)).instant
-            count = next((k for k, event in enumerate(waiting[done:]) if event.instant > end), len(waiting) - done)
-            bag.steps(first, block, waiting[done:done + count])
-            first, done = first + len(block['time']), done + count
+        for block in message_blocks(blocks, events):
+            bag.write(block)
         return bag.close(receipt)
     except BaseException:
         bag.abandon()
         raise
+
+
+def message_blocks(blocks: Iterable[Columns], events: Iterable[Event]) -> Iterator[MessageBlock]:
+    """Yield the messages of a run that was sampled at each step: all that its bag holds behind the first."""
+    steps = StepMessages()
+    waiting = [event for event in events if event.kind != EventKind.KNOT]   # as the node does
+    first = done = 0
+    for block in blocks:
+        end = Sample(*(block[name][-1] for name in Sample._fields)).instant
+        count = bisect_right(waiting, end, done, key=lambda event: event.instant) - done
+        yield steps.block(first, block, waiting[done:done + count])
+        first, done = first + len(block['second']), done + count
 
 
 def samples_of(columns: Mapping[str, NDArray[Any]]) -> Iterator[Sample]:
@@ -71,31 +80,17 @@ class _Other(NamedTuple):
 
 
 class OfflineBag:
-    """A bag to which an offline run gives its samples and events, block by block."""
+    """A bag to which an offline run gives its messages."""
 
     def __init__(self, folder: Path | str, facts: RunFacts) -> None:
         self._writer = open_run(folder, facts)
-        self._channels = {topic.name: place for place, topic in enumerate(topics.RECORDED, 1)}
-        self._rows = [MessageRows(self._channels[topic.name], flat_layout(topic.type))
-                      for topic in (topics.SLIDER_STATE, topics.FRICTION_FORCE)]
-        self._event = Packer(topics.MODE_EVENT)
-        self._latest: dict[Topic, float] = {}            # the commands in force
         info = messages.run_info(facts, 0, 0, str(self._writer.folder))
         data = MessageCodec([topics.RUN_INFO.type]).encode(topics.RUN_INFO.type, info)
-        self._writer.write(self._channels[topics.RUN_INFO.name] - 1, data, 0, 0, 0)
+        self._writer.write(CHANNELS[topics.RUN_INFO] - 1, data, 0, 0, 0)
 
-    def steps(self, first: int, samples: Columns, events: Sequence[Event]) -> None:
-        """Add the states at the ends of steps from `first` on, the transitions up to the last, and the commands.
-
-        A command is that of the next step.
-        """
-        at = Instants(samples['second'], samples['fraction'])
-        times = at.nanoseconds()
-        steps = np.arange(first, first + len(times))
-        rows = [of.packed(times, times, steps, numbers_of_steps(of.names, steps, samples)) for of in self._rows]
-        others = [*self._commands(first, samples, times), *self._events(first, at, events)]
-        others.sort(key=lambda other: other.place)
-        self._writer.write_block(_interleaved(rows, times, others))
+    def write(self, block: MessageBlock) -> None:
+        """Add messages of steps."""
+        self._writer.write_block(block)
 
     def close(self, receipt: Mapping[str, object]) -> dict[str, int]:
         """Finish the bag; return the number of messages by topic."""
@@ -105,6 +100,29 @@ class OfflineBag:
     def abandon(self) -> None:
         """Leave the bag as it is, readable but without an index."""
         self._writer.abandon()
+
+
+class StepMessages:
+    """Makes the messages of steps, block by block."""
+
+    def __init__(self) -> None:
+        self._rows = [MessageRows(CHANNELS[topic], flat_layout(topic.type))
+                      for topic in (topics.SLIDER_STATE, topics.FRICTION_FORCE)]
+        self._event = Packer(topics.MODE_EVENT)
+        self._latest: dict[Topic, float] = {}            # the commands in force
+
+    def block(self, first: int, samples: Columns, events: Sequence[Event]) -> MessageBlock:
+        """Return the states at the ends of steps from `first` on, the transitions up to the last, and the commands.
+
+        A command is that of the next step.
+        """
+        at = Instants(samples['second'], samples['fraction'])
+        times = at.nanoseconds()
+        steps = np.arange(first, first + len(times))
+        rows = [of.packed(times, times, steps, numbers_of_steps(of.names, steps, samples)) for of in self._rows]
+        others = [*self._commands(first, samples, times), *self._events(first, at, events)]
+        others.sort(key=lambda other: other.place)
+        return _interleaved(rows, times, others)
 
     def _events(self, first: int, at: Instants, events: Sequence[Event]) -> Iterator[_Other]:
         """Yield the transitions; each belongs to the step that it fell into, counted from 1."""
@@ -125,7 +143,7 @@ class OfflineBag:
                     yield self._other(topic, k + 1, time, first + k + 1, data)
 
     def _other(self, topic: Topic, place: int, time: int, step: int, data: bytes) -> _Other:
-        channel = self._channels[topic.name]
+        channel = CHANNELS[topic]
         return _Other(place, channel, time, bytes_of(Message(channel, time, data, time, step & 0xFFFFFFFF)))
 
 

@@ -5,11 +5,13 @@
 import warnings
 from pathlib import Path
 
-from mcap.records import Attachment, Channel, Footer, McapRecord, Message, Metadata, Schema
+import numpy as np
+from mcap.records import Attachment, Channel, Footer, McapRecord, Metadata, Schema
 
 from ..core.errors import RecordingError, RecordingWarning
+from .message_places import Messages
 from .reader import OVERHEAD, Bag
-from .records import records
+from .records import contents
 
 MOST_BESIDE = 64 << 20   # bytes of all that a file holds beside messages
 
@@ -30,19 +32,24 @@ def bag_in(path: Path | str) -> Bag:
     """Return what `open_bag` does, without a warning."""
     bag = Bag(file_of(Path(path)))
     names: dict[int, str] = {}
-    channels: dict[int, str] = {}
     beside = 0
-    for record in records(bag.path):
-        if isinstance(record, Message):
-            if record.channel_id not in channels:
-                raise RecordingError(f'{bag.path}: damaged: a message on channel {record.channel_id}, which is nowhere')
-            bag.counts[channels[record.channel_id]] += 1
+    for record in contents(bag.path):
+        if isinstance(record, Messages):
+            _count(bag, record)
             continue
         beside += _size(record)
         if beside > MOST_BESIDE:
             raise RecordingError(f'{bag.path}: more than {MOST_BESIDE >> 20} MiB beside its messages; no run has that')
-        _note(bag, record, names, channels)
+        _note(bag, record, names)
     return bag
+
+
+def _count(bag: Bag, messages: Messages) -> None:
+    for channel, count in enumerate(np.bincount(messages.channels).tolist()):
+        if count and channel not in bag.channels:
+            raise RecordingError(f'{bag.path}: damaged: a message on channel {channel}, which is nowhere')
+        if count:
+            bag.counts[bag.channels[channel]] += count
 
 
 def shortfalls(bag: Bag) -> tuple[str, ...]:
@@ -53,14 +60,14 @@ def shortfalls(bag: Bag) -> tuple[str, ...]:
             ' whole, and metadata.yaml does not count them',)
 
 
-def _note(bag: Bag, record: McapRecord, names: dict[int, str], channels: dict[int, str]) -> None:
-    """Take what a record says of the bag; `names` of schemas and topics of `channels` by their numbers."""
+def _note(bag: Bag, record: McapRecord, names: dict[int, str]) -> None:
+    """Take what a record says of the bag; `names` of schemas by their numbers."""
     if isinstance(record, Schema) and record.id not in names:    # the index repeats them
         names[record.id] = record.name
         if record.encoding == 'ros2msg':
             bag.schemas[record.name] = record.data.decode(errors='replace')
-    elif isinstance(record, Channel) and record.id not in channels:
-        channels[record.id] = record.topic
+    elif isinstance(record, Channel) and record.id not in bag.channels:
+        bag.channels[record.id] = record.topic
         bag.topics[record.topic] = names.get(record.schema_id, '')    # other programs may give none
         bag.channel_metadata[record.topic] = record.metadata
         bag.counts.setdefault(record.topic, 0)

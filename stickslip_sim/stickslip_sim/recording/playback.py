@@ -14,8 +14,8 @@ from rosbags.rosbag2.metadata import parse_qos
 
 from ..core.errors import RecordingError
 from .opening import file_of
-from .reader import RecordedMessage
 from .records import CUT_OFF, chunk_at, records, summary_of
+from .topic_columns import RecordedMessage
 from .topics import QosProfile
 
 _DEFAULT_QOS = QosProfile(10)    # as rosbag2 plays what has none, or several

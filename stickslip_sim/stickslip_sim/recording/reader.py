@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from mcap.records import Channel, Message
@@ -19,10 +19,11 @@ from rosbags.typesys.store import Typestore
 from ..core.errors import InputError, RecordingError
 from ..core.types import Event, EventKind, Mode
 from ..scene import Scene, parse_scene
-from .layout import Layout, layout_of, number_fields, text_fields
+from .layout import Layout, layout_of
 from .records import records
 from .run import RECEIPT_FILE, SCENE_FILE
 from .schemas import store_of, understood
+from .topic_columns import RecordedMessage, TopicColumns
 from .topics import MODE_EVENT, Topic
 
 MOST_HELD = 4 << 30    # bytes of a topic in memory at once
@@ -30,17 +31,6 @@ OVERHEAD = 300         # bytes of a message there beside its own
 
 _EVENT_FIELDS = ('time', 'kind', 'mode', 'direction', 'position', 'velocity', 'drive_force', 'friction_force',
                  'static_coefficient', 'rest_time')
-
-
-class RecordedMessage(NamedTuple):
-    """One message as it stands in the file; times in ns."""
-
-    topic: str
-    type: str
-    sequence: int
-    log_time: int
-    publish_time: int
-    data: bytes  # CDR
 
 
 @dataclass
@@ -55,6 +45,7 @@ class Bag:
     topics: dict[str, str] = field(default_factory=dict)    # type names by topic
     channel_metadata: dict[str, dict[str, str]] = field(default_factory=dict)
     counts: dict[str, int] = field(default_factory=dict)
+    channels: dict[int, str] = field(default_factory=dict)   # the topic of each, by its number in the file
     _stores: dict[str, Typestore] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @property
@@ -114,12 +105,23 @@ class Bag:
         its begin is that of the one topic that ends so.  Raises RecordingError when there is none, or too much of it.
         """
         topic = self._resolved(topic)
-        messages = self._held(topic)
-        columns = self._fields(self.topics[topic], messages)
-        with self._named(topic), understood('a time beyond the year 2262'):
-            for name in ('log_time', 'publish_time', 'sequence'):
-                columns[name] = np.array([getattr(message, name) for message in messages], dtype=np.int64)
-        return columns
+        blocks, size = [], 0
+        for block in self.column_blocks(topic):
+            blocks.append(block)
+            size += sum(column.nbytes for column in block.values())
+            if size > MOST_HELD:
+                count = sum(len(block['log_time']) for block in blocks)
+                raise RecordingError(f'{self.path}: {topic} has more than {count} messages of {size >> 20} MiB in all, '
+                                     'which do not fit: take messages() one by one, or a part of the recording')
+        return {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
+
+    def column_blocks(self, topic: str) -> Iterator[dict[str, NDArray[Any]]]:
+        """Yield the columns of a topic block by block, the first of them empty, as far as it goes."""
+        topic = self._resolved(topic)
+        type_name = self.topics[topic]
+        blocks = TopicColumns(self.path, topic, type_name, self._store(type_name), self.decode).blocks()
+        with self._named(topic), understood('a time beyond the year 2262', OverflowError):
+            yield from blocks
 
     def name_of(self, topic: Topic) -> str:
         """Return the name of the one topic of this type; raises RecordingError when there is none, or more than one."""
@@ -167,28 +169,6 @@ class Bag:
             return topic if topic in names else names[0]
         found = f'{len(names)} topics' if names else 'no topic'
         raise RecordingError(f'{self.path}: {found} {topic}; there are {", ".join(self.topics) or "none"}')
-
-    def _held(self, topic: str) -> list[RecordedMessage]:
-        """Return all messages of a topic; raises RecordingError when they are more than fit into memory."""
-        held, size = [], 0
-        for message in self.messages([topic]):
-            held.append(message)
-            size += len(message.data) + OVERHEAD
-            if size > MOST_HELD:
-                raise RecordingError(f'{self.path}: {topic} has more than {len(held)} messages of {size >> 20} MiB in '
-                                     'all, which do not fit: take messages() one by one, or a part of the recording')
-        return held
-
-    def _fields(self, type_name: str, messages: list[RecordedMessage]) -> dict[str, NDArray[Any]]:
-        store = self._store(type_name)
-        layout = layout_of(store, type_name)
-        if layout and all(len(message.data) == layout.size for message in messages):
-            rows = layout.unpack([message.data for message in messages])
-            return {name: rows[name].copy() for name in rows.dtype.names or ()}
-        decoded = [self.decode(message) for message in messages]
-        kinds = {**number_fields(store, type_name), **dict.fromkeys(text_fields(store, type_name), 'object')}
-        return {name: np.array([getattr(message, name) for message in decoded], dtype=kind)
-                for name, kind in kinds.items()}
 
     def _store(self, type_name: str) -> Typestore:
         """Return what reads messages of a type; raises RecordingError without a definition of it that can be read."""

@@ -4,24 +4,29 @@
 
 import os
 import struct
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
+from functools import partial
 from io import BytesIO
 from pathlib import Path
-from typing import BinaryIO
+from typing import BinaryIO, TypeVar
 from zlib import crc32
 
 import lz4.frame
 import zstandard
 from mcap.exceptions import McapError
+from mcap.opcode import Opcode
 from mcap.reader import SeekingReader
-from mcap.records import Chunk, McapRecord
+from mcap.records import Chunk, McapRecord, Message
 from mcap.stream_reader import CRCValidationError, StreamReader, breakup_chunk
 from mcap.summary import Summary
 from mcap.writer import MCAP0_MAGIC
 
 from ..core.errors import RecordingError
+from .mcap_chunk import bytes_of
+from .message_places import Messages, messages_in
 
+_Part = TypeVar('_Part')
 SIZE_LIMIT = 32 << 20   # bytes of a record, and of what a chunk unpacks to; rosbag2 makes chunks of 1 to 4 MiB
 COMPRESSIONS = ('', 'zstd', 'lz4')
 _FOOTER = struct.Struct('<QQI')   # where the summary begins, and its part of offsets; checksum of all that but itself
@@ -38,14 +43,24 @@ def records(path: Path) -> Iterator[McapRecord]:
 
     Raises RecordingError when it is no MCAP file, cannot be read, or was finished and is damaged.
     """
+    return _understood(path, partial(_unpacked, path))
+
+
+def contents(path: Path) -> Iterator[McapRecord | Messages]:
+    """Yield what `records` does, but the messages of each chunk at once, behind its other records."""
+    return _understood(path, partial(_opened, path))
+
+
+def _understood(path: Path, understand: Callable[[McapRecord], Iterable[_Part]]) -> Iterator[_Part]:
+    """Yield what is made of one record after the other, as far as the file goes."""
     try:
         with path.open('rb') as file:
             begin = True
             try:
-                for record in StreamReader(_Careful(file), validate_crcs=True,  # type: ignore[arg-type]
-                                           emit_chunks=True).records:
+                for record in _Records(_Careful(file), validate_crcs=True,  # type: ignore[arg-type]
+                                       emit_chunks=True).records:
                     begin = False
-                    yield from _unpacked(path, record)
+                    yield from understand(record)
             except CUT_OFF as error:
                 if begin:
                     raise RecordingError(f'{path} is not an MCAP file: {error}') from None
@@ -70,6 +85,16 @@ def chunk_at(path: Path, file: BinaryIO, offset: int) -> Iterable[McapRecord]:
     file.seek(offset)
     chunk = next(StreamReader(_Careful(file), skip_magic=True, emit_chunks=True).records)  # type: ignore[arg-type]
     return _unpacked(path, chunk)
+
+
+class _Records(StreamReader):
+    """The records of a file without the indexes of its messages, which take longer to read than the messages."""
+
+    def _read_record(self, opcode: int, length: int) -> McapRecord | None:
+        if opcode == Opcode.MESSAGE_INDEX and length <= SIZE_LIMIT:
+            self._stream.read(length)
+            return None
+        return super()._read_record(opcode, length)
 
 
 class _Careful:
@@ -108,6 +133,25 @@ def _unpacked(path: Path, record: McapRecord) -> Iterable[McapRecord]:
     """Return the records of a chunk, or any other record by itself."""
     if not isinstance(record, Chunk):
         return [record]
+    return breakup_chunk(replace(record, compression='', data=_content(path, record)), validate_crc=True)
+
+
+def _opened(path: Path, record: McapRecord) -> Iterator[McapRecord | Messages]:
+    """Yield the records of a chunk, and its messages as they stand there; any other record by itself."""
+    if not isinstance(record, Chunk):
+        yield messages_in(bytes_of(record)) if isinstance(record, Message) else record
+        return
+    data = _content(path, record)
+    if record.uncompressed_crc and (found := crc32(data)) != record.uncompressed_crc:
+        raise CRCValidationError(record.uncompressed_crc, found, record)
+    messages = messages_in(data)
+    for begin, end in messages.others:
+        yield from breakup_chunk(replace(record, compression='', data=data[begin:end]))
+    yield messages
+
+
+def _content(path: Path, record: Chunk) -> bytes:
+    """Return the records in a chunk, as they were written."""
     if record.compression not in COMPRESSIONS:
         raise RecordingError(f'{path}: its chunks are compressed with {record.compression!r}; zstd, lz4 and none are '
                              'read: convert it first (mcap compress)')
@@ -117,7 +161,7 @@ def _unpacked(path: Path, record: McapRecord) -> Iterable[McapRecord]:
     data = _decompressed(record)
     if len(data) != record.uncompressed_size:
         raise McapError('a chunk of another size than it says')
-    return breakup_chunk(replace(record, compression='', data=data), validate_crc=True)
+    return data
 
 
 def _decompressed(chunk: Chunk) -> bytes:

@@ -11,31 +11,35 @@ from numpy.typing import NDArray
 
 from .layout import Layout
 from .mcap_chunk import bytes_of
+from .message_places import FRAME
 
-_PLACES = {'opcode': ('u1', 0), 'length': ('<u8', 1), 'channel': ('<u2', 9), 'sequence': ('<u4', 11),
+FRAME_FIELDS = {'opcode': ('u1', 0), 'length': ('<u8', 1), 'channel': ('<u2', 9), 'sequence': ('<u4', 11),
            'log_time': ('<u8', 15), 'publish_time': ('<u8', 23)}   # in the record of a message
-_DATA = 31                                                         # where its bytes begin
 
 
 class MessageRows:
     """The rows of a channel whose messages have a layout."""
 
     def __init__(self, channel: int, layout: Layout) -> None:
-        fields = {**_PLACES, **{name: (kind, place + _DATA) for name, (kind, place) in layout.places.items()}}
         record = bytes_of(Message(channel_id=channel, log_time=0, data=layout.pack(0, *[0] * len(layout.names)),
                                   publish_time=0, sequence=0))
         self.names = layout.names
-        self.dtype = np.dtype({'names': list(fields), 'formats': [kind for kind, _ in fields.values()],
-                               'offsets': [place for _, place in fields.values()], 'itemsize': len(record)})
-        self._empty = np.frombuffer(record, np.uint8)
+        self._kind, self._empty = row_kind(layout), np.frombuffer(record, np.uint8)
 
     def packed(self, log_times: NDArray[np.int64], publish_times: NDArray[np.int64], sequences: NDArray[np.int64],
                numbers: Mapping[str, NDArray[Any]]) -> NDArray[Any]:
         """Return rows of messages that are stamped with their times of publication, ns."""
-        rows = np.tile(self._empty, len(log_times)).view(self.dtype)
+        rows = np.tile(self._empty, len(log_times)).view(self._kind)
         rows['sequence'] = sequences & 0xFFFFFFFF   # the file has 32 bits for it
         rows['log_time'], rows['publish_time'] = log_times, publish_times
         rows['stamp.sec'], rows['stamp.nanosec'] = np.divmod(publish_times, 1_000_000_000)
         for name in self.names:
             rows[name] = numbers[name]
         return rows
+
+
+def row_kind(layout: Layout) -> np.dtype[Any]:
+    """Return the type of a row: the record of a message with such a layout."""
+    places = {**FRAME_FIELDS, **{name: (kind, place + FRAME) for name, (kind, place) in layout.places.items()}}
+    return np.dtype({'names': list(places), 'formats': [kind for kind, _ in places.values()],
+                     'offsets': [place for _, place in places.values()], 'itemsize': FRAME + layout.size})

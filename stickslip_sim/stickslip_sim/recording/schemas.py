@@ -57,11 +57,11 @@ def store_of(definitions: Mapping[str, str]) -> Typestore:
 
 
 @contextmanager
-def understood(what: str) -> Iterator[None]:
-    """Turn an error of rosbags into a RecordingError: it makes Python code of definitions, and runs that."""
+def understood(what: str, kind: type[Exception] = Exception) -> Iterator[None]:
+    """Turn an error into a RecordingError; rosbags raises any, for it makes Python code of definitions, and runs it."""
     try:
         yield
-    except Exception as error:
+    except kind as error:
         reason, *_ = str(error).splitlines() or [type(error).__name__]
         raise RecordingError(f'{what} cannot be read: {reason.rstrip(":")}') from None
 
