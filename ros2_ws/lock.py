@@ -18,16 +18,27 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 OLDEST = (3, 10)
+NEWER = '3.11'   # that some of the benchmark's peers need
 
 
-def resolve(requirements: pathlib.Path, beside: pathlib.Path | None = None) -> set[str]:
-    """Return the pins `name==version` of everything that the file needs, where the lock `beside` allows it."""
-    files = ['-r', str(requirements), *(('-c', str(beside)) if beside else ())]
+def resolve(*wanted: str) -> set[str]:
+    """Return the pins `name==version` of everything that arguments of pip install need."""
     command = [sys.executable, '-m', 'pip', 'install', '--quiet', '--dry-run',
-               '--ignore-installed', '--report', '-', *files]
+               '--ignore-installed', '--report', '-', *wanted]
     report = json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout)
     metadata = [item['metadata'] for item in report['install']]
     return {f"{item['name'].lower()}=={item['version']}" for item in metadata}
+
+
+def resolve_for_newer(requirements: pathlib.Path, beside: pathlib.Path, known: set[str]) -> set[str]:
+    """Return the pins of what has a marker for NEWER, for it alone; pip takes markers for the Python that runs it."""
+    lines = requirements.read_text(encoding='utf-8').splitlines()
+    marker = f'python_version >= "{NEWER}"'
+    wanted = [line.partition(';')[0] for line in lines if line.endswith(f'; {marker}')]
+    found = resolve('-c', str(beside), '--python-version', NEWER, '--only-binary', ':all:', '--target', 'unused',
+                    *wanted) if wanted else set()
+    names = {pin.partition('==')[0] for pin in known}
+    return {f'{pin}; {marker}' for pin in found if pin.partition('==')[0] not in names}
 
 
 def write(path: pathlib.Path, pins: set[str]) -> None:
@@ -43,12 +54,13 @@ def main() -> None:
         sys.exit('run lock.py with Python {}.{}, the oldest supported'.format(*OLDEST))
     distro = sys.argv[1] if len(sys.argv) > 1 else 'jazzy'
     product = HERE / f'requirements-{distro}.in'
-    pins = resolve(product)
+    pins = resolve('-r', str(product))
     lock = product.with_suffix('.txt')
     write(lock, pins)
     for name in ('test', 'bench'):
         more = HERE / f'requirements-{name}.in'
-        write(more.with_suffix('.txt'), resolve(more, lock) - pins)
+        found = resolve('-r', str(more), '-c', str(lock))
+        write(more.with_suffix('.txt'), (found | resolve_for_newer(more, lock, found | pins)) - pins)
 
 
 if __name__ == '__main__':

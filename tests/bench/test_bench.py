@@ -135,13 +135,14 @@ def test_peers_say_what_is_missing_and_have_names_of_their_own() -> None:
 def test_peers_whose_packages_are_blocked_are_reported_and_do_not_race(in_a_process: Program) -> None:
     program = '''
 import sys
-for name in ('scipy', 'sksundae', 'mujoco'):
+for name in ('heyoka', 'scipy', 'sksundae', 'mujoco'):
     sys.modules[name] = None
 from stickslip_sim.bench.contestants import PEERS
 print(*sorted(peer.missing for peer in PEERS if peer.missing), sep='|')
 '''
     missing = in_a_process(program, compiled=True).strip().split('|')
-    assert missing == ['pip install mujoco', *['pip install scikit-sundae'] * 2, *['pip install scipy'] * 4]
+    assert missing == ['pip install heyoka', 'pip install mujoco', *['pip install scikit-sundae'] * 2,
+                       *['pip install scipy'] * 4]
 
 
 def test_a_start_is_timed_until_the_axis_slips(in_a_process: Program) -> None:

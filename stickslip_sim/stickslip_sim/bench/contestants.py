@@ -3,10 +3,11 @@
 """The contestants of the race: the solvers of stickslip, and the peers."""
 
 from .own_solvers import own_solvers
-from .peers import dop853, euler, mujoco, scipy_ivp, sksundae, sundials
+from .peers import dop853, euler, heyoka, mujoco, scipy_ivp, sksundae, sundials
 from .peers.peer import Peer
 
-PEERS: tuple[Peer, ...] = (dop853.PEER, sundials.PEER, sksundae.PEER, *scipy_ivp.PEERS, euler.PEER, mujoco.PEER)
+PEERS: tuple[Peer, ...] = (heyoka.PEER, dop853.PEER, sundials.PEER, sksundae.PEER, *scipy_ivp.PEERS, euler.PEER,
+                           mujoco.PEER)
 
 
 def contestants(*, quick: bool = False) -> list[Peer]:
