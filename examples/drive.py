@@ -12,9 +12,10 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.utilities import remove_ros_args
 
-from stickslip_msgs.msg import DriveVelocity, ExternalForce, RigEvent
+from stickslip_msgs.msg import DriveVelocity, ExternalForce, RigEvent, StepTiming
 
-_INSISTENCE = 1.5    # s; the axis repeats a refusal after 1 s
+_REPORTS = 2         # of the axis, one a second: what was refused comes before them
+_PATIENCE = 10.0     # s to wait for these
 
 
 def parse() -> dict[str, DriveVelocity | ExternalForce]:
@@ -34,22 +35,36 @@ def parse() -> dict[str, DriveVelocity | ExternalForce]:
 
 
 def send(node: Node, messages: dict[str, DriveVelocity | ExternalForce]) -> None:
-    """Send the messages as soon as the axis listens, and say what it has against them."""
+    """Send the messages as soon as the axis listens, until it has reported on them; exits with what it refuses."""
     log = node.get_logger()
-    node.create_subscription(RigEvent, 'rig_event', lambda event: log.warning(event.text), 10)
+    refused: list[str] = []
+    reports: list[StepTiming] = []
+
+    def hear(event: RigEvent) -> None:
+        if event.kind == RigEvent.KIND_COMMAND_REFUSED:
+            refused.append(event.text)
+        else:
+            log.warning(event.text)
+
+    node.create_subscription(RigEvent, 'rig_event', hear, 10)
     latest_only = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE)
     out = {topic: node.create_publisher(type(message), topic, latest_only) for topic, message in messages.items()}
     while not (all(each.get_subscription_count() for each in out.values()) and node.count_publishers('rig_event')):
         log.info(f'waiting for an axis that listens on {", ".join(out)}', throttle_duration_sec=5.0)
         rclpy.spin_once(node, timeout_sec=0.1)
     log.info(f'sending {" and ".join(messages)}')
+    node.create_subscription(StepTiming, 'timing', reports.append, 10)
     # Best effort: an axis that has not quite found its sender yet loses the first ones.
-    end = time.monotonic() + _INSISTENCE
-    while time.monotonic() < end:
+    end = time.monotonic() + _PATIENCE
+    while len(reports) < _REPORTS and not refused and time.monotonic() < end:
         for topic, message in messages.items():
             message.header.stamp = node.get_clock().now().to_msg()
             out[topic].publish(message)
         rclpy.spin_once(node, timeout_sec=0.1)
+    if refused:
+        raise SystemExit(refused[0])
+    if len(reports) < _REPORTS:
+        raise SystemExit(f'the axis has not reported within {_PATIENCE:g} s: whether it took the command is not known')
 
 
 messages = parse()

@@ -47,9 +47,12 @@ def test_what_is_sent_holds(axis: Client) -> None:
     wait_for(lambda: axis.latest('slider_state').drive_velocity == 0.005, 'its effect')
 
 
-def test_a_wrong_unit_is_reported_to_the_sender(axis: Client) -> None:
+@pytest.mark.parametrize('value', ['5.0', 'nan'])
+def test_a_refused_value_is_an_error_of_the_sender(axis: Client, value: str) -> None:
     before = axis.latest('slider_state').drive_velocity
-    wait_for(lambda: 'velocity = 5.0 is refused' in python(DRIVE, '5').stderr, 'a refusal that is heard in its second')
+    done = python(DRIVE, value)
+    assert done.returncode == 1
+    assert f'velocity = {value} is refused' in done.stderr
     assert axis.latest('slider_state').drive_velocity == before
 
 

@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The command `stickslip`: its verbs, and the exit code of each error.
 
-Exit codes: 0 done; 1 internal error; 2 wrong use, scene, parameter or file; 3 the verdict is "failed" or "differs";
-4 the solver gave up; 130 interrupted.  One line on standard error says why; STICKSLIP_DEBUG=1 shows the traceback.
+Exit codes: 0 done; 1 internal error, or no node answers; 2 wrong use, scene, parameter or file, or a node refuses;
+3 the verdict is "failed" or "differs"; 4 the solver gave up; 130 interrupted.  One line on standard error says why;
+STICKSLIP_DEBUG=1 shows the traceback.
 """
 
 import errno
@@ -21,6 +22,7 @@ from ..core.errors import StickslipError, internal_error
 from ..core.version import __version__
 from .advise import advise
 from .bench import bench
+from .call import call
 from .check import check
 from .compare import compare
 from .critical import critical
@@ -37,7 +39,7 @@ from .uncertainty import uncertainty
 from .verify import verify
 
 _SECTIONS: dict[str, tuple[click.Command, ...]] = {   # each verb by what a reader wants, as in the help
-    'Run': (scenes, simulate),
+    'Run': (scenes, simulate, call),
     'Look': (plot, compare, export),
     'Judge': (check, verify),
     'Study': (critical, sweep, map_, uncertainty),

@@ -7,6 +7,7 @@
     ├── RecordingError   a run cannot be written or read
     ├── SolverError      the solver gave up
     │   └── UnsoundError what it found contradicts itself
+    ├── RefusedError     a running node does not do what it is asked for
     └── VerdictError     what was judged did not pass
 
 Each carries one line of text for people and the exit code of the tool.
@@ -58,6 +59,12 @@ class SolverError(StickslipError):
 
 class UnsoundError(SolverError):
     """A run contradicts its own motion or its balance of energy: the solver is at fault, and it has no figures."""
+
+
+class RefusedError(StickslipError):
+    """A running node does not do what it is asked for, and says why."""
+
+    exit_code = 2
 
 
 class VerdictError(StickslipError):

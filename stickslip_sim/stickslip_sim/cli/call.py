@@ -1,0 +1,123 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""`stickslip call`: the services of a running node, for those who have no `ros2`."""
+
+import math
+import os
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import click
+
+_Command = Callable[..., None]
+
+
+@click.group(short_help='Call a service of a running node.', invoke_without_command=True)
+@click.pass_context
+def call(context: click.Context) -> None:
+    """Call a service of a running node, and print its answer.
+
+    Exit codes: 0 done; 1 nobody answers; 2 wrong use, or the node refuses.  ROS_DOMAIN_ID must be that of the node.
+    """
+    if context.invoked_subcommand is None:
+        click.echo(context.get_help(), err=True)
+        context.exit(2)
+
+
+def _of_node(command: _Command) -> _Command:
+    """Add the options that every call has."""
+    timeout = click.option('--timeout', type=click.FloatRange(0.1, 3600.0), default=10.0, show_default=True,
+                           metavar='S', help='Time to wait for the node, and for its answer, s.')
+    return click.option('--node', default='feed_axis', show_default=True, metavar='NAME',
+                        help='Name of the node, with its namespace: /cell/feed_axis.')(timeout(command))
+
+
+@call.command('record')
+@click.argument('switch', type=click.Choice(['on', 'off']), default='on', metavar='[on|off]')
+@_of_node
+def _record(switch: str, node: str, timeout: float) -> None:
+    """Begin a recording (on, if left out), or end it (off)."""
+    print(_answered('record', {'data': switch == 'on'}, node, timeout).message)
+
+
+@call.command('reset')
+@_of_node
+def _reset(node: str, timeout: float) -> None:
+    """Begin a new run: time, counters, faults and commands anew."""
+    print(_answered('reset', {}, node, timeout).message)
+
+
+@call.command('pause')
+@_of_node
+def _pause(node: str, timeout: float) -> None:
+    """Let simulation time stand still."""
+    print(_answered('set_paused', {'data': True}, node, timeout).message)
+
+
+@call.command('resume')
+@_of_node
+def _resume(node: str, timeout: float) -> None:
+    """Let simulation time go on."""
+    print(_answered('set_paused', {'data': False}, node, timeout).message)
+
+
+@call.command('step', short_help='Make steps, in lock-step or paused.')
+@click.argument('steps', type=int, default=1)
+@click.option('--velocity', type=float, default=math.nan, metavar='V',
+              help='Velocity of the drive from these steps on, m/s [default: the one in force].')
+@click.option('--force', type=float, default=math.nan, metavar='F',
+              help='Force on the slider from these steps on, N [default: the one in force].')
+@_of_node
+def _step(steps: int, velocity: float, force: float, node: str, timeout: float) -> None:
+    """Make STEPS steps (1 if left out) of an axis in lock-step, or paused; print the events and the state."""
+    from .step_lines import step_lines
+
+    request = {'steps': steps, 'velocity': velocity, 'force': force}
+    print('\n'.join(step_lines(_answered('step', request, node, timeout, max(steps, 0) * 1e-3))))
+
+
+@call.command('inject-fault', short_help='Let something go wrong.')
+@click.argument('kind')
+@click.option('--value', type=float, default=0.0, show_default=True, metavar='X', help='In the unit of the kind.')
+@click.option('--start', type=float, default=0.0, show_default=True, metavar='S', help='From now until it begins, s.')
+@click.option('--duration', type=float, default=math.inf, show_default=True, metavar='S',
+              help='How long it lasts, s; inf: until it is cleared.')
+@click.option('--id', 'fault', default='', metavar='ID', help='Name of the fault [default: one is chosen].')
+@_of_node
+def _inject_fault(kind: str, value: float, start: float, duration: float, fault: str, node: str, timeout: float
+                  ) -> None:
+    """Let something go wrong, of a KIND in the list, with its --value.
+
+    friction_scale (factor), force_pulse (N), encoder_freeze, encoder_step (m), encoder_dropout (share), command_loss
+    (share), command_delay (s), drive_freeze
+    """
+    request = {'id': fault, 'kind': kind, 'start': start, 'duration': duration, 'value': value}
+    print(_answered('inject_fault', request, node, timeout).message)
+
+
+@call.command('clear-faults', short_help='End faults.')
+@click.argument('ids', metavar='[ID]...', nargs=-1)
+@_of_node
+def _clear_faults(ids: tuple[str, ...], node: str, timeout: float) -> None:
+    """End the faults of these ids, or all: then the drive takes commands again after a time-out, too."""
+    if not ids:
+        print(_answered('clear_faults', {}, node, timeout).message)
+    for fault in ids:
+        print(_answered('inject_fault', {'id': fault, 'kind': 'clear'}, node, timeout).message)
+
+
+def _answered(service: str, request: Mapping[str, object], node: str, timeout: float, duration: float = 0.0) -> Any:
+    """Return the answer of a node; raises RefusedError when it refuses, StickslipError when nobody answers."""
+    from ..core.errors import InputError, RefusedError
+    from ..ros.process.environment import check_environment
+
+    check_environment()
+    try:
+        from ..ros.client.service_call import answer_of
+    except ImportError as error:
+        raise InputError('AMENT_PREFIX_PATH', os.environ.get('AMENT_PREFIX_PATH', ''),
+                         f'that of a workspace with {error.name}', 'source its setup.bash') from None
+    answer = answer_of(service, request, node, timeout, duration)
+    if not answer.success:
+        raise RefusedError(answer.message)
+    return answer

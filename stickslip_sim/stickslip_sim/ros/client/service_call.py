@@ -1,0 +1,116 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""One call of a service of a running node: find the node, be known to it, ask once."""
+
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from typing import Any
+
+import rclpy
+from rcl_interfaces.srv import GetParameters
+from rclpy.client import Client
+from rclpy.context import Context
+from rclpy.exceptions import InvalidServiceNameException
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.logging import LoggingSeverity, set_logger_level
+from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
+from std_srvs.srv import SetBool, Trigger
+
+from stickslip_msgs.srv import InjectFault, Step
+
+from ...core.errors import InputError, StickslipError
+from ..process.environment import refusing, variables
+
+_TYPES = {'record': SetBool, 'set_paused': SetBool, 'reset': Trigger, 'clear_faults': Trigger, 'step': Step,
+          'inject_fault': InjectFault}
+_GREETING = 1.0    # s until a node is greeted again
+_POLL = 0.05       # s
+
+
+def answer_of(service: str, request: Mapping[str, object], node: str, patience: float, duration: float = 0.0) -> Any:
+    """Return the answer of a node to a request; `patience` and `duration` (s): to find it, and what it works on it.
+
+    Raises InputError on a name that is none, StickslipError when nobody answers.
+    """
+    name = f'/{node.strip("/")}'
+    with _session() as session:
+        client = session.client(_TYPES[service], f'{name}/{service}', node)
+        session.meet(client, name, service, patience)
+        answer = client.call_async(_TYPES[service].Request(**request))
+        session.spin_until(lambda: answer.done() or not client.service_is_ready(), patience + duration)
+        if not answer.done():
+            raise StickslipError(f'{name} has not answered to {service} within {patience + duration:g} s: is it busy,'
+                                 ' or has it ended? --timeout waits longer')
+        return answer.result()
+
+
+class _Session:
+    """A node of this process that asks others."""
+
+    def __init__(self, context: Context) -> None:
+        self._node = Node('stickslip_call', context=context, enable_rosout=False, start_parameter_services=False)
+        self._executor = SingleThreadedExecutor(context=context)
+        self._executor.add_node(self._node)
+
+    def client(self, kind: Any, name: str, given: str) -> Client:
+        """Return a client of a service; raises InputError when that can be no name."""
+        try:
+            return self._node.create_client(kind, name)
+        except InvalidServiceNameException as error:
+            raise InputError('--node', given, 'the name of a node, as in /cell/feed_axis',
+                             ' '.join(str(error).split())) from None
+
+    def meet(self, client: Client, name: str, service: str, patience: float) -> None:
+        """Wait until a node knows all clients made so far; raises StickslipError when it does not answer.
+
+        An answer to a client that a server does not know yet is lost, and not every request may be made twice.  So a
+        harmless question is put until it is answered, by a client that was made later: endpoints are heard of in order.
+        """
+        end = time.monotonic() + patience
+        greeter = self.client(GetParameters, f'{name}/get_parameters', name)
+        if not self.spin_until(lambda: client.service_is_ready() and greeter.service_is_ready(), patience):
+            raise StickslipError(self._missing(name, service, patience))
+        while time.monotonic() < end:
+            greeting = greeter.call_async(GetParameters.Request())
+            if self.spin_until(greeting.done, min(_GREETING, end - time.monotonic())):
+                return
+        raise StickslipError(f'{name} is there, but does not answer within {patience:g} s; --timeout waits longer')
+
+    def spin_until(self, condition: Callable[[], bool], patience: float) -> bool:
+        """Let messages come in until a condition holds, for so many seconds at most; return whether it does."""
+        end = time.monotonic() + patience
+        while not condition() and time.monotonic() < end:
+            self._executor.spin_once(timeout_sec=_POLL)
+        return condition()
+
+    def close(self) -> None:
+        """End the node."""
+        self._executor.shutdown()
+        self._node.destroy_node()
+
+    def _missing(self, name: str, service: str, patience: float) -> str:
+        """Return that nobody offers a service, and who else does."""
+        text = f'no node {name} offers {service} (looked for {patience:g} s)'
+        offers = (offer for offer, _ in self._node.get_service_names_and_types() if offer.endswith(f'/{service}'))
+        others = sorted(offer.removesuffix(f'/{service}') for offer in offers if self._node.count_services(offer))
+        if others:
+            return f'{text}; there is {", ".join(others)}: name it with --node'
+        return f'{text}; does it run, with this ROS_DOMAIN_ID? --node has other names, --timeout waits longer'
+
+
+@contextmanager
+def _session() -> Iterator[_Session]:
+    """Make a session in a ROS of its own, which hears no signals; raises InputError when ROS cannot start."""
+    context = Context()
+    set_logger_level('rcl', LoggingSeverity.FATAL)    # it would say half of what is refused in a line of its own
+    with refusing('ROS environment', variables()):
+        rclpy.init(args=[], context=context, signal_handler_options=SignalHandlerOptions.NO)
+        session = _Session(context)
+    set_logger_level('rcl', LoggingSeverity.UNSET)
+    try:
+        yield session
+    finally:
+        session.close()
+        context.try_shutdown()

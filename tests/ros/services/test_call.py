@@ -1,0 +1,87 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""`stickslip call` beside a node: what the node answers, and what is said when it refuses, or nobody answers."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from stickslip_sim.recording import open_bag
+from tests.support.tool import Capture, answered, refused, tool
+
+from tests.support.ros_nodes import client, running  # isort: skip  # skips without ROS
+
+pytestmark = pytest.mark.ros
+
+AXIS = '/cell/feed_axis'
+
+
+@pytest.fixture(scope='module')
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """Return where an axis runs."""
+    folder = tmp_path_factory.mktemp('axis')
+    with running('-r', '__ns:=/cell', folder=folder), client('/cell') as axis:
+        axis.connect()
+        yield folder
+
+
+def said(capsys: Capture, *words: str) -> str:
+    """Return the one line that the tool prints of an answer."""
+    code, out, err = answered(capsys, 'call', *words, '--node', AXIS)
+    assert (code, err) == (0, '')
+    return out
+
+
+def test_a_recording_and_a_new_run(folder: Path, capsys: Capture) -> None:
+    assert said(capsys, 'record').startswith(f'recording into {folder}/runs/cell_paper_fig8_')
+    assert 'refused while recording' in refused(capsys, 'call', 'reset', '--node', AXIS)
+    begun = said(capsys, 'record', 'off').removeprefix('recorded into ').strip()
+    assert open_bag(begun).is_complete
+    assert said(capsys, 'record', 'off') == 'not recording\n'
+    assert said(capsys, 'reset') == 'simulation time and steps begin anew at 0\n'
+
+
+def test_steps_while_it_is_paused(folder: Path, capsys: Capture) -> None:
+    assert 'refused while time runs by itself' in refused(capsys, 'call', 'step', '--node', AXIS)
+    try:
+        assert said(capsys, 'pause').startswith('paused at simulation time ')
+        first, *events, state = said(capsys, 'step', '500', '--velocity', '-0.02', '--force', '10').splitlines()
+        assert first.startswith('500 steps made')
+        assert any('breakaway at ' in event for event in events)
+        assert 'drive -20 mm/s' in state
+        assert said(capsys, 'step').startswith('1 step made')
+        assert 'drive -20 mm/s' in said(capsys, 'step')          # it goes on under what is in force
+        assert 'steps = 0 is refused' in refused(capsys, 'call', 'step', '0', '--node', AXIS)
+        assert 'velocity = 5.0 is refused' in refused(capsys, 'call', 'step', '--velocity', '5', '--node', AXIS)
+    finally:
+        assert said(capsys, 'resume').startswith('running at simulation time ')
+
+
+def test_faults(folder: Path, capsys: Capture) -> None:
+    assert said(capsys, 'inject-fault', 'friction_scale', '--value', '1.5') == 'friction_scale_1 begins 0 s from now\n'
+    assert said(capsys, 'inject-fault', 'force_pulse', '--value', '-20', '--start', '60', '--duration', '2', '--id', 'a'
+                ) == 'a begins 60 s from now\n'
+    assert said(capsys, 'clear-faults', 'a') == 'a cleared\n'
+    assert said(capsys, 'clear-faults') == 'cleared: friction_scale_1\n'
+    assert "kind = 'friction' is refused" in refused(capsys, 'call', 'inject-fault', 'friction', '--node', AXIS)
+
+
+def test_nobody_answers(folder: Path, capsys: Capture) -> None:
+    line = refused(capsys, 'call', 'reset', '--timeout', '3', code=1)
+    assert line == (f'stickslip: no node /feed_axis offers reset (looked for 3 s); there is {AXIS}: name it with'
+                    ' --node\n')
+    assert '--node' in refused(capsys, 'call', 'reset', '--node', 'a b')
+
+
+def test_wrong_use(capsys: Capture) -> None:
+    assert 'call record --help' in refused(capsys, 'call', 'record', 'perhaps')
+    assert 'See stickslip call step --help' in refused(capsys, 'call', 'step', 'many')
+    assert answered(capsys, 'call')[0] == 2
+
+
+def test_without_a_workspace() -> None:
+    done = tool('call', 'reset', AMENT_PREFIX_PATH='')
+    assert (done.returncode, done.stdout) == (2, '')
+    assert done.stderr == ("stickslip: AMENT_PREFIX_PATH = '' is refused: must be that of a ROS 2 workspace; source its"
+                           ' setup.bash\n')
