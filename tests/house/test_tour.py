@@ -96,26 +96,20 @@ def test_a_controller_that_is_started_by_hand_is_judged(tmp_path: Path) -> None:
     assert (from_start.returncode, 'no controller was judged' in from_start.stderr) == (3, True)
 
 
-def stepped(folder: Path, *arguments: str) -> Path:
-    """Return the run that the example makes in lock-step, recorded."""
-    folder.mkdir()
-    with started(STEPPED_AXIS, folder) as axis:
-        made = done([*STEPPER, *arguments], folder)
-        assert made.returncode == 0, made.stderr
-        interrupt(axis)
-    (run,) = (folder / 'runs').iterdir()
-    return run
-
-
 def test_lock_step_gives_the_same_recorded_run_each_time(tmp_path: Path) -> None:
-    run = stepped(tmp_path / 'one')
-    checked = done(CHECK, tmp_path / 'one')
+    with started(STEPPED_AXIS, tmp_path) as axis:
+        made = [done(STEPPER, tmp_path)]
+        made += [done(shlex.split(f'stickslip call {words}'), tmp_path) for words in ('record off', 'reset', 'record')]
+        made.append(done([*STEPPER, '--duration', '0.2'], tmp_path))
+        assert [each.returncode for each in made] == [0] * len(made), made
+        interrupt(axis)
+    first, second = sorted((tmp_path / 'runs').iterdir())
+    whole, part = (open_bag(run).columns('/slider_state')['position'].tolist() for run in (first, second))
+    assert part == whole[1:201]    # the second one goes on from step 0
+    assert done(['stickslip', 'verify', str(first)], tmp_path).returncode == 0
+    checked = done([*CHECK[:2], str(first), *CHECK[3:]], tmp_path)
     assert checked.returncode == 3, checked.stderr
     head, verdict, *_ = checked.stdout.splitlines()
     assert '0 to 2 s, 2001 states' in head
     assert head.endswith('first command at t = 0 s')
     assert verdict.startswith('not in real time (time.mode lockstep)')
-    assert done(['stickslip', 'verify', 'runs/*'], tmp_path / 'one').returncode == 0
-    whole, part = (open_bag(each).columns('/slider_state')['position']
-                   for each in (run, stepped(tmp_path / 'other', '--duration', '0.2')))
-    assert part.tolist() == whole[:201].tolist()

@@ -40,7 +40,8 @@ class TimeServices:
         if self._is_recording():
             if self._is_before_start:
                 return answer(response, True, 'simulation time and steps are at 0; the recording goes on')
-            return answer(response, False, 'refused while recording: a bag holds one run; stop it with ~/record first')
+            return answer(response, False, 'refused while recording: a bag holds one run; end it with ~/record first'
+                          ' (stickslip call record off)')
         done = self._restart()
         return answer(response, done, 'simulation time and steps begin anew at 0' if done else BUSY)
 
@@ -96,7 +97,8 @@ class TimeServices:
         if loop.failure:
             return f'the solver gave up: {loop.failure}; call ~/reset first'
         if not (loop.by_request or loop.paused):
-            return 'refused while time runs by itself: use time.mode: lockstep, or ~/set_paused first'
+            return ('refused while time runs by itself: use time.mode: lockstep, or ~/set_paused first'
+                    ' (stickslip call pause)')
         return ''
 
     def _replaced(self, request: Any) -> str:
