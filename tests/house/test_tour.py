@@ -112,4 +112,4 @@ def test_lock_step_gives_the_same_recorded_run_each_time(tmp_path: Path) -> None
     head, verdict, *_ = checked.stdout.splitlines()
     assert '0 to 2 s, 2001 states' in head
     assert head.endswith('first command at t = 0 s')
-    assert verdict.startswith('not in real time (time.mode lockstep)')
+    assert verdict.startswith('not in real time (time.mode lockstep); commands: 400 received, 0 refused')

@@ -52,6 +52,7 @@ class CommandInputs:
         """Let these be the latest commands, arrived now; None leaves the one in force."""
         for slot, value in zip(self.slots, values):
             if value is not None:
+                slot.received += 1
                 slot.latest = Command(value, now)
 
     def take(self, now: int) -> NewCommands:
