@@ -75,6 +75,13 @@ def done(command: list[str], folder: Path) -> 'subprocess.CompletedProcess[str]'
                           check=False)
 
 
+def test_the_run_is_not_taken_for_that_of_make_run() -> None:
+    """A reader has that one in the same folder already."""
+    from stickslip_sim.ros.demo import SCENE
+    assert CHECK[2].startswith('runs/')
+    assert not CHECK[2].startswith(f'runs/{SCENE}_')
+
+
 def test_a_controller_that_is_started_by_hand_is_judged(tmp_path: Path) -> None:
     with started(AXIS, tmp_path) as axis, client() as listener:
         listener.next('slider_state', lambda state: state.time > HUMAN)

@@ -197,8 +197,13 @@ class Client:
 
     def stop_commanding(self) -> None:
         """Leave velocity and force to others."""
-        self.node.destroy_publisher(self._velocity)
-        self.node.destroy_publisher(self._force)
+        for publisher in (self._velocity, self._force):
+            self.drop(publisher)
+
+    def drop(self, publisher: Any) -> None:
+        """End a publisher, in the thread of the callbacks: rclpy does not let it end while another one waits for it."""
+        done = self._executor.create_task(self.node.destroy_publisher, publisher)
+        wait_for(done.done, 'the end of a publisher')
 
     def add(self, node: Node) -> None:
         """Let the callbacks of another node of this context run too."""

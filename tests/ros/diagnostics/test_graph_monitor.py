@@ -96,7 +96,7 @@ class TestGraphMonitor:
             axis.connect()
             out = axis.node.create_publisher(JointState, 'joint_states', 10)
             assert '/client publishes on /joint_states too' in trouble(axis, 'joint_states').message
-            axis.node.destroy_publisher(out)
+            axis.drop(out)
             no_trouble(axis)
             _, errors = process.end()
         assert errors.count('publishes on /joint_states too') == 1

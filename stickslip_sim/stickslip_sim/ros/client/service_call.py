@@ -15,6 +15,7 @@ from rclpy.exceptions import InvalidServiceNameException
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.logging import LoggingSeverity, set_logger_level
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
 from std_srvs.srv import SetBool, Trigger
 
@@ -50,7 +51,9 @@ class _Session:
     """A node of this process that asks others."""
 
     def __init__(self, context: Context) -> None:
-        self._node = Node('stickslip_call', context=context, enable_rosout=False, start_parameter_services=False)
+        without_services = [Parameter('start_type_description_service', value=False)]    # none that it would answer
+        self._node = Node('stickslip_call', context=context, enable_rosout=False, start_parameter_services=False,
+                          parameter_overrides=without_services)
         self._executor = SingleThreadedExecutor(context=context)
         self._executor.add_node(self._node)
 
