@@ -32,7 +32,7 @@ _DIFFER = 3.0     # standard errors
 @click.option('--scene', metavar='SCENE', help="The axis that gets this friction [default: the paper's].")
 @click.option('--set', 'changes', multiple=True, metavar='A.B=VALUE', help='Change a parameter of the scene.')
 @click.option('--out', metavar='SCENE.yaml', help='Write the scene.')
-@click.option('--plot', metavar='FILE.png', help='Draw points, laws and residuals (.png or .svg).')
+@click.option('--plot', metavar='FILE.png', help='Draw points, laws and residuals (.png, .pdf or .svg).')
 @click.option('--meant', multiple=True, type=click.Choice(('speed', 'friction')),
               help='Its highest value is meant, however unusual.')
 def friction(curve: str, speed_unit: str, force_unit: str | None, normal_force: float | None, direction: str, law: str,

@@ -24,7 +24,7 @@ class SolverCurve(NamedTuple):
 
 
 def plot_trade(panels: Mapping[str, Sequence[SolverCurve]], title: str, path: Path | str) -> None:
-    """Draw cost over error, a panel for each case (its name is the heading), into `path` (.png or .svg).
+    """Draw cost over error, a panel for each case (its name is the heading), into `path` (.png, .pdf or .svg).
 
     Both axes are logarithmic.  An error below LEAST_ERROR is drawn there, as the axis says.
     """

@@ -13,7 +13,7 @@ from .time_panels import dress, force_unit, head, line
 
 
 def plot_beside(recorded: Mapping[str, Numbers], other: Mapping[str, Numbers], title: str, path: Path | str) -> None:
-    """Draw position, velocity and friction force of both over time into `path` (.png or .svg).
+    """Draw position, velocity and friction force of both over time into `path` (.png, .pdf or .svg).
 
     Columns are named as in `types.Sample`, and `time`; the first line of `title` is the heading.
     """

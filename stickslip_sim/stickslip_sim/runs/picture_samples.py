@@ -11,7 +11,8 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.types import Event, EventKind, Instant, Sample
+from ..core.time_grid import Instants
+from ..core.types import Event, EventKind, Sample
 from ..scene import Scene
 from .run import Columns
 from .simulated import columns_of_rows
@@ -33,12 +34,9 @@ def sampled(scene: Scene, events: Sequence[Event], windows: Iterable[tuple[float
     fastest = max((one.frequency for one in (*scene.drive.sinusoids, *scene.force.sinusoids)), default=0.0)
     instants = np.unique(np.concatenate([part for begin, end in windows for part in (
         _evenly(fastest, begin, end), _by_events(times, breaks, begin, end))]))
-    rig = scene.make_rig()
-    rows = np.empty((len(instants), len(Sample._fields)))
     seconds = np.floor(instants)
-    for row, second, fraction in zip(rows, seconds.tolist(), (instants - seconds).tolist()):
-        rig.advance(Instant(second, fraction))
-        row[:] = rig.simulator.sample()
+    rows = np.empty((len(instants), len(Sample._fields)))
+    scene.make_rig().take_samples(Instants(seconds, instants - seconds), rows)
     return columns_of_rows(rows)
 
 
