@@ -34,7 +34,7 @@ def refused(capsys: Capture, tmp_path: Path, *arguments: str | Path) -> str:
 def test_a_folder_that_is_no_bag(tmp_path: Path, capsys: Capture) -> None:
     (tmp_path / 'empty').mkdir()
     assert 'no recorded run there' in refused(capsys, tmp_path, tmp_path / 'empty')
-    assert 'no recorded run there' in refused(capsys, tmp_path, tmp_path / 'nothing.mcap')
+    assert 'no such run' in refused(capsys, tmp_path, tmp_path / 'nothing.mcap')
     (tmp_path / 'text.mcap').write_text('what a nice day')
     assert 'is not an MCAP file' in refused(capsys, tmp_path, tmp_path / 'text.mcap')
     assert 'paper_fig8' in refused(capsys, tmp_path, 'paper_fig9')

@@ -147,7 +147,7 @@ class TestAlteredAndForeign:
     def test_no_run_of_ours(self, bag: Path, tmp_path: Path, capsys: Capture) -> None:
         (tmp_path / 'empty').mkdir()
         assert 'no recorded run there' in refused(capsys, tmp_path / 'empty')
-        assert 'no recorded run there' in refused(capsys, tmp_path / 'nothing')
+        assert 'no such run' in refused(capsys, tmp_path / 'nothing')
         rewritten(bag, tmp_path / 'bare', attachment=lambda name: None)
         assert 'no scene.yaml travels in it' in refused(capsys, tmp_path / 'bare')
 

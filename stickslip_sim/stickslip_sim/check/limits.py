@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Limits in a file: read strictly, so that a misspelt limit is refused and never passes unseen."""
 
-import difflib
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -11,6 +10,7 @@ from typing import Any
 
 from ..config.ros_yaml import read_yaml
 from ..config.strict import section
+from ..core.did_you_mean import suggestion
 from ..core.errors import InputError
 from ..scene import Parameter
 from ..scene.load import named, read_text
@@ -109,8 +109,7 @@ def _kind(name: str, entry: Mapping[str, object]) -> Kind:
     """Return what is limited: `check`, or the name itself."""
     given = entry.get('check', name)
     if not isinstance(given, str) or given not in KINDS:
-        close = difflib.get_close_matches(str(given), KINDS, 1)
-        fix = f'did you mean {close[0]}?' if close else f'name one: {name}: {{check: sticks, max: 3}}'
+        fix = suggestion(str(given), KINDS, f'name one: {name}: {{check: sticks, max: 3}}')
         raise InputError(f'{name}.check' if 'check' in entry else 'limit', given, 'one of ' + ', '.join(KINDS), fix)
     return KINDS[given]
 

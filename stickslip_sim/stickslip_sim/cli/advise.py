@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from . import completion
 from .files import check_distinct, check_file, write_text
 from .scene_changes import SceneChanges, scene_changes
 
@@ -18,7 +19,7 @@ _ROUNDS = 5
 
 
 @click.command(short_help='Show which parts and which solver a tolerance needs.')
-@click.argument('scene', metavar='SCENE')
+@click.argument('scene', metavar='SCENE', shell_complete=completion.complete_scenes)
 @click.option('--tolerance', type=float, required=True, metavar='T', help='Relative error that is allowed, as 1e-3.')
 @click.option('--duration', type=float, metavar='S', help='Simulated time, s [default: 10 s, or more for 20 cycles].')
 @click.option('--out', metavar='FILE.json', help='Write everything that was measured.')

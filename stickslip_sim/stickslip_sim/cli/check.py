@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from . import completion
 from .files import STDOUT, check_distinct, check_file, write_text
 from .run_or_scene import is_recorded, recorded_run
 from .scene_changes import SceneChanges, scene_changes
@@ -17,7 +18,8 @@ if TYPE_CHECKING:
 
 
 @click.command(short_help='Check runs against limits: pass or fail.')
-@click.argument('sources', nargs=-1, required=True, metavar='RUN_OR_SCENE...')
+@click.argument('sources', nargs=-1, required=True, metavar='RUN_OR_SCENE...',
+                shell_complete=completion.complete_scenes)
 @click.option('--limits', 'limits_file', required=True, metavar='FILE.yaml', help='The limits (docs/check.md).')
 @click.option('--duration', type=float, metavar='S', help='Time to simulate a scene, s.')
 @click.option('--junit', metavar='FILE.xml', help='Write JUnit XML for a CI server ("-": to standard output).')
@@ -34,6 +36,7 @@ def check(sources: tuple[str, ...], limits_file: str, duration: float | None, ch
     from ..check.limits import load_limits
     from ..core.errors import VerdictError
     from .check_table import table_lines
+    from .progress import progress_bar
 
     limits = load_limits(limits_file)
     is_printed = STDOUT not in (junit, json_file)
@@ -41,7 +44,8 @@ def check(sources: tuple[str, ...], limits_file: str, duration: float | None, ch
     for source in sources:
         run = _run(source, limits, duration, changes)
         name = run.name if len(sources) == 1 else source   # two folders may have one name
-        found.append(Checked(name, run, outcomes_of(limits, run)))
+        with progress_bar('checking'):
+            found.append(Checked(name, run, outcomes_of(limits, run)))
         if is_printed:
             print('\n'.join([*table_lines(found[-1]), verdict_line(found[-1])]), flush=True)
     failed = list(filter(None, (complaint(checked, limits_file) for checked in found)))

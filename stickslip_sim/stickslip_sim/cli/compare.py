@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from . import completion
 from .files import check_new_folder, new_folder
 from .run_or_scene import is_recorded, recorded_run
 from .scene_changes import SceneChanges, scene_changes
@@ -15,11 +16,12 @@ if TYPE_CHECKING:
     from ..compare.report_folder import Judged
     from ..runs import Run
 
-_MOST = 8   # runs, rows of a picture
+_MOST = 8        # runs, rows of a picture
+_OF_RUNS = 0.2   # of the time, about
 
 
 @click.command(short_help="Draw the paper's figures for a run, and judge its statements.")
-@click.argument('runs', nargs=-1, required=True, metavar='RUN_OR_SCENE...')
+@click.argument('runs', nargs=-1, required=True, metavar='RUN_OR_SCENE...', shell_complete=completion.complete_scenes)
 @click.option('--out', required=True, metavar='FOLDER', help='New folder for the report and the pictures.')
 @click.option('--duration', type=float, metavar='S',
               help='Simulated time of a scene, s [default: 10 s, or more for 20 cycles].')
@@ -40,9 +42,10 @@ def compare(runs: tuple[str, ...], out: str, duration: float | None, changes: Sc
         for k, run in enumerate(runs):
             sources.append(_run(run, duration, changes))
             if progress:
-                progress((k + 1) / (2 * len(runs)))
+                progress(_OF_RUNS * (k + 1) / len(runs))
         with new_folder('--out', out) as folder:
-            judged = write_report(named_apart(sources), folder)
+            judged = write_report(named_apart(sources), folder, progress and (
+                lambda share: progress(_OF_RUNS + (1.0 - _OF_RUNS) * share)))
     for each in judged:
         _print_judged(each)
     print(f'written: {Path(out) / "report.html"}')

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from . import completion
 from .scene_changes import SceneChanges, scene_changes
 
 if TYPE_CHECKING:
@@ -20,8 +21,9 @@ _DIGITS = 12   # of ends that are too small or large to be written out
 
 
 @click.command(short_help='Find the value at which stick-slip begins or ends.')
-@click.argument('scene', metavar='SCENE')
-@click.option('--of', 'name', required=True, metavar='A.B', help='The parameter, or an element of a list: A.B[1].')
+@click.argument('scene', metavar='SCENE', shell_complete=completion.complete_scenes)
+@click.option('--of', 'name', required=True, metavar='A.B', shell_complete=completion.complete_parameters,
+              help='The parameter, or an element of a list: A.B[1].')
 @click.option('--between', metavar='LOW:HIGH', help='Where to look [default: 1/100 to 100 times its value].')
 @click.option('--accuracy', type=float, default=_ACCURACY, metavar='REL',
               help=f'Relative width of what is left open [default: {_ACCURACY:g}].')

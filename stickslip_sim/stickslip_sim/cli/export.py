@@ -12,14 +12,16 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from . import completion
 from .files import STDOUT, check_distinct, check_file, whole, write_text
+from .run_or_scene import check_run
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
 @click.command(short_help='Write a recorded run as a table, CSV or Parquet.')
-@click.argument('run', metavar='RUN')
+@click.argument('run', metavar='RUN', shell_complete=completion.complete_folders)
 @click.option('--csv', 'csv_file', metavar='FILE.csv', help='Write numbers with 17 digits ("-": to standard output).')
 @click.option('--parquet', metavar='FILE.parquet', help='Write a typed, compressed table.')
 @click.option('--topic', default='slider_state', metavar='T', help='What to export [default: slider_state].')
@@ -29,6 +31,7 @@ def export(run: str, csv_file: str | None, parquet: str | None, topic: str) -> N
     log_time is simulation time, publish_time is that of the message's stamp, both in ns; sequence is the step.
     """
     _check(csv_file, parquet)
+    check_run(run)
     from ..recording import open_bag
 
     with warnings.catch_warnings(record=True) as caught:

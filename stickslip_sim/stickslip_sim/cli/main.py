@@ -25,6 +25,7 @@ from .bench import bench
 from .call import call
 from .check import check
 from .compare import compare
+from .completion import complete_for_shell
 from .critical import critical
 from .export import export
 from .extremes import extremes
@@ -70,6 +71,9 @@ for title, verbs in _SECTIONS.items():
 def main(arguments: Sequence[str] | None = None) -> NoReturn:
     """Run the tool and exit with its code."""
     signal.signal(signal.SIGTERM, _leave)
+    code = complete_for_shell(stickslip)
+    if code is not None:
+        sys.exit(code)
     sys.exit(run(sys.argv[1:] if arguments is None else arguments))
 
 

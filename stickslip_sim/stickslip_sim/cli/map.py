@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from . import completion
 from .files import check_distinct, check_picture, whole
 from .sweeping import print_failed
 
@@ -24,7 +25,7 @@ _SHOWN = 'amplitude'
 
 
 @click.command('map', short_help='Draw a sweep: a map, or a bifurcation diagram.')
-@click.argument('folder', metavar='FOLDER')
+@click.argument('folder', metavar='FOLDER', shell_complete=completion.complete_folders)
 @click.option('--out', 'pictures', multiple=True, required=True, metavar='FILE.png|pdf|svg',
               help='Write the picture; may be given again.')
 @click.option('--show', default=_SHOWN, metavar='FIGURE', help=f'What a map has in colours [default: {_SHOWN}].')

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from . import completion
 from .files import check_picture, whole
 from .run_or_scene import is_recorded, recorded_run
 from .scene_changes import SceneChanges, scene_changes
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 
 
 @click.command(short_help='Draw any run: motion, error, forces, modes, faults.')
-@click.argument('source', metavar='RUN_OR_SCENE')
+@click.argument('source', metavar='RUN_OR_SCENE', shell_complete=completion.complete_scenes)
 @click.option('--window', metavar='A:B', help='Show this part beside the whole, s [default: the last cycles of a run '
                                               'that is long].')
 @click.option('--out', metavar='FILE.png|pdf|svg', help='Write the picture there; the ending decides the '
@@ -35,7 +36,9 @@ def plot(source: str, window: str | None, out: str | None, duration: float | Non
     run = _run(source, duration, changes)
     out = _picture_of(run) if out is None else out
     check_picture('--out', out)
-    with whole(out) as temporary:
+    from .progress import progress_bar
+
+    with progress_bar('drawing'), whole(out) as temporary:
         run.plot(temporary, shown)
     print(f'written: {out}')
 

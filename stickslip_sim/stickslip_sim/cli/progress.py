@@ -1,36 +1,74 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""A progress bar on a terminal, for work that takes long."""
+"""A progress bar on a terminal, for work that takes long: the share that is done where it is known, and the time."""
 
 import sys
+import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import Any
 
 import click
 
 _PATIENCE = 1.0   # s before a bar appears
+_EVERY = 0.5      # s
 _STEPS = 1000
+_WITHOUT_SHARE = '%(label)s  %(info)s'
+_WITH_SHARE = '%(label)s  [%(bar)s]  %(info)s'
 
 
 @contextmanager
 def progress_bar(label: str) -> Iterator[Callable[[float], None] | None]:
-    """Yield a function that takes the share that is done; None when nobody looks."""
-    if not sys.stderr.isatty():
+    """Yield a function that takes the share that is done; None when nobody looks.
+
+    A thread draws, so that one sees how long it takes also where the work does not come round to say how far it is.
+    Within a bar there is no other.
+    """
+    if _Bar.is_up or not sys.stderr.isatty():
         yield None
         return
-    bar = click.progressbar(length=_STEPS, label=label, file=sys.stderr)
-    begin = time.monotonic()
-    visible = False
-
-    def show(share: float) -> None:
-        nonlocal visible
-        if visible or (share < 1.0 and time.monotonic() - begin > _PATIENCE):
-            visible = True
-            bar.update(round(share * _STEPS) - bar.pos)
-
+    bar = _Bar(label)
     try:
-        yield show
+        yield bar.take
     finally:
-        if visible:
-            bar.render_finish()
+        bar.end()
+
+
+class _Bar:
+    is_up = False
+
+    def __init__(self, label: str) -> None:
+        _Bar.is_up = True
+        self._label = label
+        self._begin = time.monotonic()
+        self._share: float | None = None
+        self._ended = threading.Event()
+        self._thread = threading.Thread(target=self._draw, daemon=True)
+        self._thread.start()
+
+    def take(self, share: float) -> None:
+        self._share = share
+
+    def end(self) -> None:
+        self._ended.set()
+        self._thread.join()
+        _Bar.is_up = False
+
+    def _draw(self) -> None:
+        if self._ended.wait(_PATIENCE):
+            return
+        without_share, with_share = self._drawn(_WITHOUT_SHARE, False), self._drawn(_WITH_SHARE, True)
+        while True:
+            share = self._share
+            bar = without_share if share is None else with_share
+            bar.update(round((share or 0.0) * _STEPS) - bar.pos)
+            bar.render_progress()
+            if self._ended.wait(_EVERY):
+                break
+        bar.render_finish()
+
+    def _drawn(self, template: str, show_percent: bool) -> Any:
+        return click.progressbar(length=_STEPS, label=self._label, file=sys.stderr, show_eta=False, width=30,
+                                 show_percent=show_percent, bar_template=template,
+                                 item_show_func=lambda _: f'{time.monotonic() - self._begin:.0f} s')

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
+from . import completion
+
 if TYPE_CHECKING:
     from ..scene import Scene
     from ..study.variation import Variation
@@ -59,7 +61,9 @@ def scene_changes(help_of_set: str) -> Callable[[Command], Command]:
         def with_changes(*, changes: tuple[str, ...], meant: tuple[str, ...], **arguments: Any) -> Any:
             return command(changes=SceneChanges(changes, meant), **arguments)
 
-        asked = click.option('--meant', multiple=True, metavar='A.B', help='Its value is meant, however unusual.')
-        return click.option('--set', 'changes', multiple=True, metavar='A.B=VALUE', help=help_of_set)(
+        asked = click.option('--meant', multiple=True, metavar='A.B', shell_complete=completion.complete_parameters,
+                             help='Its value is meant, however unusual.')
+        return click.option('--set', 'changes', multiple=True, metavar='A.B=VALUE', help=help_of_set,
+                            shell_complete=completion.complete_parameters)(
             asked(with_changes))
     return decorated

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
+from . import completion
 from .files import STDOUT, check_distinct, check_file, check_new_folder, check_picture, whole, write_text
 from .scene_changes import SceneChanges, scene_changes
 
@@ -33,7 +34,7 @@ class _Wishes(NamedTuple):
 
 
 @click.command(short_help='Simulate a scene: figures, tables, picture, bag.')
-@click.argument('scene', metavar='SCENE')
+@click.argument('scene', metavar='SCENE', shell_complete=completion.complete_scenes)
 @click.option('--duration', type=float, required=True, metavar='S', help='Simulated time, s.')
 @click.option('--events', metavar='FILE.csv', help='Write the events ("-": to standard output).')
 @click.option('--knots', is_flag=True, help='List the crossings of breakpoints of friction tables among the events.')

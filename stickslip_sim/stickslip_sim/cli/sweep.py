@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from . import completion
 from .scene_changes import SceneChanges
 from .sweeping import carry_out, print_failed, study_options, workers_of
 
@@ -15,8 +16,9 @@ if TYPE_CHECKING:
 
 
 @click.command(short_help='Run a scene at many values of its parameters.')
-@click.argument('scene', metavar='SCENE')
+@click.argument('scene', metavar='SCENE', shell_complete=completion.complete_scenes)
 @click.option('--over', 'ranges', multiple=True, required=True, metavar='A.B=LOW:HIGH:N[:log]',
+              shell_complete=completion.complete_parameters,
               help='Vary a parameter, or an element of a list: A.B[1]. Given again: every combination.')
 @click.option('--sobol', type=int, metavar='N', help='Draw N points (Sobol) instead; then --over A.B=LOW:HIGH[:log].')
 @study_options

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from . import completion
 from .files import check_picture, whole, write_text
 from .scene_changes import SceneChanges
 from .sweeping import carry_out, print_failed, study_options, workers_of
@@ -22,7 +23,7 @@ _RESULT = 'uncertainty.json'
 
 
 @click.command(short_help='Run a scene with parameters that are known only roughly.')
-@click.argument('scene', metavar='SCENE')
+@click.argument('scene', metavar='SCENE', shell_complete=completion.complete_scenes)
 @click.option('--with', 'file', required=True, metavar='FILE.yaml', help='The distributions of its parameters.')
 @click.option('--samples', type=int, default=1024, show_default=True, metavar='N',
               help='A power of two; N (parameters + 2) points are run.')

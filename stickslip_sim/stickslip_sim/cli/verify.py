@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from . import completion
 from .files import check_new_folder, new_folder
 from .run_or_scene import recorded_run
 from .scene_changes import SceneChanges, scene_changes
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
 
 @click.command(short_help='Run a recorded run again; with --set, what would have been.')
-@click.argument('run', metavar='RUN')
+@click.argument('run', metavar='RUN', shell_complete=completion.complete_folders)
 @click.option('--out', metavar='FOLDER', help='With --set: new folder for figures, picture and scene of what if.')
 @scene_changes('What if this parameter had been another?')
 def verify(run: str, changes: SceneChanges, out: str | None) -> None:

@@ -36,11 +36,14 @@ class Picture(NamedTuple):
     caption: str
 
 
-def draw(runs: Mapping[str, Run], folder: Path) -> list[Picture]:
+def draw(runs: Mapping[str, Run], folder: Path, progress: Callable[[float], None] | None = None) -> list[Picture]:
     """Draw all pictures of runs by their names into a folder, each as PNG and SVG."""
-    pictures = []
-    for name, run in runs.items():
-        pictures += [_motion(name, run, folder), _friction(name, run, folder)]
+    pictures: list[Picture] = []
+    for k, (name, run) in enumerate(runs.items()):
+        for k_drawn, draw_one in enumerate((_motion, _friction)):
+            if progress:
+                progress((2 * k + k_drawn) / (2 * len(runs) + 1))
+            pictures.append(draw_one(name, run, folder))
     rows = runs
     caption = f'The runs beside each other: {_OF_ROWS}'
     if len(runs) == 1:

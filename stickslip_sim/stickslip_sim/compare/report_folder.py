@@ -3,7 +3,7 @@
 """A comparison as a folder: pictures, `report.json` with all figures, `report.html` with everything."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -14,6 +14,8 @@ from .page import page
 from .pictures import draw
 from .statement import Finding, Statement, StatementOutcome
 from .statements import judged
+
+_OF_JUDGING = 0.3   # of the time, about
 
 
 class Judged(NamedTuple):
@@ -29,11 +31,16 @@ class Judged(NamedTuple):
         return [statement.name for statement, finding in self.findings if finding.outcome == StatementOutcome.FAILS]
 
 
-def write_report(runs: Mapping[str, Run], folder: Path) -> list[Judged]:
+def write_report(runs: Mapping[str, Run], folder: Path, progress: Callable[[float], None] | None = None
+                 ) -> list[Judged]:
     """Draw and judge runs by their names into a folder that exists.  Raises OSError when the disk refuses."""
-    found = [Judged(name, run, judged(run)) for name, run in runs.items()]
+    found = []
+    for k, (name, run) in enumerate(runs.items()):
+        found.append(Judged(name, run, judged(run)))
+        if progress:
+            progress(_OF_JUDGING * (k + 1) / len(runs))
     report: dict[str, Any] = {'versions': versions(), 'runs': [figures_of(*each) for each in found]}
-    pictures = draw(runs, folder)
+    pictures = draw(runs, folder, progress and (lambda share: progress(_OF_JUDGING + (1.0 - _OF_JUDGING) * share)))
     report['pictures'] = [picture._asdict() for picture in pictures]
     (folder / 'report.json').write_text(json.dumps(report, indent=1, allow_nan=False) + '\n', encoding='utf-8')
     (folder / 'report.html').write_text(page(report, pictures, folder), encoding='utf-8')

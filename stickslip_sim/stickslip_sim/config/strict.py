@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Sections of the files beside a scene, read strictly: a key that nobody knows is an error."""
 
-import difflib
 from collections.abc import Iterable, Mapping
 
+from ..core.did_you_mean import suggestion
 from ..core.errors import InputError
 
 
@@ -18,7 +18,6 @@ def section(name: str, given: object, known: Iterable[str], page: str) -> Mappin
         raise InputError(name, given, 'a section of ' + ', '.join(names), f'see {page}')
     for key, value in given.items():
         if key not in names:
-            close = difflib.get_close_matches(key, names, 1)
             raise InputError(key if name == 'file' else f'{name}.{key}', value, 'one of ' + ', '.join(names),
-                             f'did you mean {close[0]}?' if close else 'drop it')
+                             suggestion(str(key), names, 'drop it'))
     return given

@@ -87,7 +87,8 @@ class Recording:
                         if isinstance(record, Message)]
         except (*CUT_OFF, OSError) as error:
             begin = (chunk.message_start_time - self.begin) * 1e-9
-            raise RecordingError(f'{self.path}: damaged behind {begin:g} s: {error}') from None
+            reason = str(error) or type(error).__name__   # some errors of mcap have no words
+            raise RecordingError(f'{self.path}: damaged behind {begin:g} s: {reason}') from None
 
     def _written(self) -> Iterator[Message]:
         return (record for record in records(self.path) if isinstance(record, Message))

@@ -61,9 +61,9 @@ def _understood(path: Path, understand: Callable[[McapRecord], Iterable[_Part]])
                                        emit_chunks=True).records:
                     begin = False
                     yield from understand(record)
-            except CUT_OFF as error:
+            except CUT_OFF:
                 if begin:
-                    raise RecordingError(f'{path} is not an MCAP file: {error}') from None
+                    raise RecordingError(f'{path} is not an MCAP file: it is empty, or begins as none does') from None
                 if _is_finished(file):
                     raise RecordingError(f'{path}: damaged: it was finished, but is no longer what was written; fetch '
                                          'the file again') from None

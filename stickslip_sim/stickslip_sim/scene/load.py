@@ -2,13 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Scenes by name, from a file, or from values."""
 
-import difflib
 import os
 import pathlib
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 
 from ..config.ros_yaml import SIZE_LIMIT, read_yaml
+from ..core.did_you_mean import paths_beside, suggestion
 from ..core.errors import InputError
 from .build import build_scene
 from .model import Scene
@@ -97,9 +97,8 @@ def _find(name: str) -> pathlib.Path:
     if name.endswith(_ENDINGS) or os.sep in name or path.is_file():
         return path
     names = scene_names()
-    close = difflib.get_close_matches(name, names, 1)
     raise InputError('scene', name, 'a file or one of ' + ', '.join(names),
-                     f'did you mean {close[0]}?' if close else 'check the name')
+                     suggestion(name, [*names, *paths_beside(path, _ENDINGS)], 'check the name'))
 
 
 def read_text(path: pathlib.Path, what: str = 'scene') -> str:
@@ -112,7 +111,10 @@ def read_text(path: pathlib.Path, what: str = 'scene') -> str:
         raise InputError(what, path.name, 'text in UTF-8', f'byte {error.start} is none; is it a {what}?') from None
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-        raise InputError(what, path.name, 'a readable file', f'{reason}; check path and permissions') from None
+        beside = [place.rpartition(os.sep)[2] for place in paths_beside(path, [path.suffix or _ENDINGS[0]])]
+        raise InputError(what, path.name, 'a readable file', f'{reason}; ' + (
+            'check path and permissions' if path.exists() else
+            suggestion(path.name, beside, 'check path and permissions'))) from None
     if len(data) > SIZE_LIMIT:
         raise InputError(what, path.name, f'a file of at most {SIZE_LIMIT} bytes', f'is this a {what}?')
     return text

@@ -56,8 +56,9 @@ def critical(scene: Scene, over: Variation, accuracy: float,
     for end in (over.low, over.high):
         scene_at(scene.values, [over.name], np.array([end]))
     judge = _Judge(scene.values, over.name)
-    return Critical(over, accuracy, *(find_transitions(one, over.low, over.high, over.log, accuracy, progress)
-                                      for one in (judge.sticks, judge.loses_sliding)))
+    limits = over.low, over.high, over.log, accuracy
+    return Critical(over, accuracy, find_transitions(judge.sticks, *limits, progress),    # it takes nearly all the time
+                    find_transitions(judge.loses_sliding, *limits))
 
 
 def default_range(scene: Scene, name: str) -> Variation:

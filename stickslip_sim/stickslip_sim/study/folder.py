@@ -14,6 +14,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
+from ..core.did_you_mean import paths_beside, suggestion
 from ..core.errors import InputError
 from .description import FORM, description
 from .parquet import write_parquet
@@ -83,7 +84,9 @@ class Folder:
                     return dict(found)
         except (OSError, ValueError, KeyError, TypeError, RecursionError):
             pass
-        raise InputError('folder', str(self.path), f'that of a sweep, with {SIDECAR} in it', 'sweep into a new one')
+        beside = paths_beside(self.path, (), folders=True)
+        raise InputError('folder', str(self.path), f'that of a sweep, with {SIDECAR} in it', 'sweep into a new one'
+                         if self.path.exists() else suggestion(str(self.path), beside, 'no such folder: sweep into it'))
 
     def check_same(self, study: Study) -> None:
         """Raise InputError unless the folder is of this study, by the same versions."""

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """One parameter of a scene that a study varies: its name, from where to where, and how."""
 
-import difflib
 import math
 import re
 from collections.abc import Mapping, Sequence
@@ -12,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..config.parameter import Parameter
+from ..core.did_you_mean import suggestion
 from ..core.errors import InputError
 from ..runs.wording import quantity
 from ..scene.schema import BY_NAME
@@ -102,7 +102,8 @@ def parameter_of(name: str) -> tuple[Parameter, int | None]:
     found = re.fullmatch(r'([^\[\]]+)(?:\[(0|[1-9][0-9]{0,8})\])?', name)
     entry = BY_NAME.get(found[1]) if found else None
     if found is None or entry is None:
-        raise InputError('parameter', name, 'a parameter of a scene (docs/scene.md)', _advice(name))
+        raise InputError('parameter', name, 'a parameter of a scene (docs/scene.md)',
+                         suggestion(name, BY_NAME, 'check the name'))
     if entry.name.partition('.')[0] not in _OF_THE_MOTION:
         raise InputError('parameter', name, 'one that decides the motion: in ' + ', '.join(_OF_THE_MOTION),
                          'the others change no run')
@@ -166,8 +167,3 @@ def _count(name: str, word: str) -> int:
     if not word.strip().isascii() or not word.strip().isdigit() or int(word[:40]) < 2:
         raise InputError(name, word.strip(), 'a whole number N >= 2 of values', 'use --set for a single value')
     return int(word[:40])
-
-
-def _advice(name: str) -> str:
-    close = difflib.get_close_matches(name, BY_NAME, 1)
-    return f'did you mean {close[0]}?' if close else 'check the name'

@@ -113,9 +113,12 @@ def find_transitions(judge: Judge, low: float, high: float, log: bool, accuracy:
         return Findings(FAILED if failed else OPEN, (), (Doubt(low, high, failed),))
     found: list[Transition] = []
     for k, (a, b) in enumerate(changes):
-        found += _narrowed(judge, _part(scan, a, b), accuracy, _SPLITS)
-        if progress:
-            progress((k + 1) / len(changes))
+        def narrowing(share: float, before: int = k) -> None:
+            if progress:
+                progress((before + share) / len(changes))
+
+        narrowing(0.0)
+        found += _narrowed(judge, _part(scan, a, b), accuracy, _SPLITS, narrowing)
     return Findings(int(scan.verdicts[known[0]]), tuple(found), tuple(_doubts(scan)))
 
 
@@ -131,12 +134,15 @@ def _doubts(scan: _Scan) -> list[Doubt]:
     return found
 
 
-def _narrowed(judge: Judge, scan: _Scan, accuracy: float, splits: int) -> list[Transition]:
+def _narrowed(judge: Judge, scan: _Scan, accuracy: float, splits: int,
+              progress: Callable[[float], None] = lambda _: None) -> list[Transition]:
     """Return the transitions in a scan at whose ends the verdicts differ: one, or more where each of them is clear."""
     rises, whole = bool(scan.verdicts[-1]), scan
+    first = float(scan.values[-1] - scan.values[0])
     while True:
         low, high = float(scan.values[0]), float(scan.values[-1])
         size = max(abs(low), abs(high))
+        progress(_share_of_digits(first, high - low, accuracy * size))
         if high - low <= max(accuracy * size, 2.0 * math.ulp(size)):
             return [Transition(low, high, rises, True)]
         inner = np.unique(np.linspace(low, high, _SECTIONS + 1)[1:-1])
@@ -149,6 +155,11 @@ def _narrowed(judge: Judge, scan: _Scan, accuracy: float, splits: int) -> list[T
         if scan.values[b] - scan.values[a] > _GAIN * (high - low):
             return [_widened(judge, scan, a, b, whole)]
         scan = _part(scan, a, b)
+
+
+def _share_of_digits(first: float, now: float, last: float) -> float:
+    """Return how far a stretch has shrunk from its first length to its last one, by orders of magnitude."""
+    return min(math.log(first / now) / math.log(first / last), 1.0) if last < first else 1.0
 
 
 def _each(judge: Judge, scan: _Scan, changes: Sequence[tuple[int, int]], accuracy: float,
