@@ -45,6 +45,7 @@ bench: build  ## measure every solver beside its peers, and the loop of the node
 	@$(HERE) --own-domain python3 benchmarks/tick.py --json runs/bench/bench.json
 	@$(HERE) python3 -m benchmarks.accuracy runs/bench
 	@$(HERE) --own-domain python3 benchmarks/loop.py
+	@$(HERE) --own-domain python3 -m benchmarks.budget
 	@$(HERE) python3 -m benchmarks.paper
 	@$(HERE) python3 -m benchmarks.controllers
 

@@ -13,6 +13,7 @@ from pathlib import Path
 from stickslip_sim.scene import load_scene
 
 from ..loop import machine
+from . import yardstick
 from .measure import measure, summary
 from .page import RATE, page
 from .process import COMMANDS, SCENE, SIMULATING
@@ -32,6 +33,8 @@ def main() -> None:
     rates = search(options.seconds)
     found = {'machine': machine(), 'seconds': options.seconds, 'repeats': options.repeats, 'runs': runs,
              'cases': {case: summary(figures) for case, figures in runs.items()}, 'rates': rates,
+             'yardsticks': yardstick.compare(options.seconds, options.repeats, print_lateness),
+             'no_priority': yardstick.missing(),
              'troubles': {rate: (loss(float(rate), figures), lag(figures)) for rate, figures in rates.items()}}
     for file, text in ((options.json, json.dumps(found, indent=1) + '\n'), (options.out, page(found))):
         file.parent.mkdir(parents=True, exist_ok=True)
@@ -66,6 +69,11 @@ def print_figures(name: str, figures: Figures) -> Figures:
     """Show that a run is over."""
     sys.stderr.write(f'{name}: {figures["cpu"] * 1e6:.0f} µs a step, {figures["rate"]:.1f} steps a second\n')
     return figures
+
+
+def print_lateness(name: str, figures: Figures) -> None:
+    """Show that a run is over."""
+    sys.stderr.write(f'{name}: {figures["overruns"]:.3%} late, worst {figures["lateness_max"] * 1e3:.2f} ms\n')
 
 
 def parse() -> argparse.Namespace:

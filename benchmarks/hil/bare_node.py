@@ -25,6 +25,7 @@ from rclpy.signals import SignalHandlerOptions
 from stickslip_msgs.msg import DriveVelocity, ExternalForce, FrictionForce, SliderState
 from stickslip_sim.core.time_grid import Grid
 from stickslip_sim.realtime.pacing import Pacer, wake_precisely
+from stickslip_sim.realtime.scheduling import Scheduling, StepThread
 from stickslip_sim.realtime.timing_statistics import TimingStatistics
 from stickslip_sim.recording import RECORDED, RecorderThread, RunFacts, open_run
 from stickslip_sim.recording import topics as names
@@ -39,8 +40,9 @@ SWITCH_INTERVAL = 5e-5    # s, as in sim_node
 class BareNode(Node):  # type: ignore[misc]
     """Steps in a thread with absolute deadlines; in a step, two messages are filled and published."""
 
-    def __init__(self, rate: float, recorder: RecorderThread | None) -> None:
+    def __init__(self, rate: float, priority: int, recorder: RecorderThread | None) -> None:
         super().__init__('bare')
+        self._step_thread = StepThread(Scheduling(thread_priority=priority, lock_memory=priority > 0))
         self.timing_statistics, self.pacer = TimingStatistics(), Pacer(Grid(rate))
         self._grid, self._recorder = Grid(rate), recorder
         self._velocity = self._force = 0.0
@@ -61,6 +63,7 @@ class BareNode(Node):  # type: ignore[misc]
 
     def _run(self) -> None:
         wake_precisely()
+        self._step_thread.enter()
         self.pacer.restart(0)
         for step in itertools.count():
             while not self.pacer.wait(step):
@@ -99,6 +102,7 @@ def main() -> None:
     """Run until a signal comes."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('--rate', type=float, default=1000.0, help='1/s')
+    parser.add_argument('--priority', type=int, default=0, help='SCHED_FIFO; 0: none')
     parser.add_argument('--bag', type=Path, help='record into this folder')
     options = parser.parse_args()
     sys.setswitchinterval(SWITCH_INTERVAL)
@@ -108,7 +112,7 @@ def main() -> None:
     rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
     facts = RunFacts('bare', '', '', 'none', 0, options.rate)
     recorder = RecorderThread(open_run(options.bag, facts)) if options.bag else None
-    node = BareNode(options.rate, recorder)
+    node = BareNode(options.rate, options.priority, recorder)
     spin(node, stop)
     if recorder:
         recorder.close()

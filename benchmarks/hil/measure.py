@@ -18,11 +18,11 @@ ANSWERS = 1000    # per second at most: what a servo drive takes
 COUNTS = ('unheard', 'unrecorded', 'dropped')
 
 
-def measure(case: str, rate: float, seconds: float) -> dict[str, float]:
-    """Return the figures of a run of a case of COMMANDS; durations in s."""
+def measure(case: str, rate: float, seconds: float, priority: int = 0) -> dict[str, float]:
+    """Return the figures of a run of a case of COMMANDS; durations in s, `priority` of SCHED_FIFO, 0: none."""
     with tempfile.TemporaryDirectory() as parent:
         folder = Path(parent, 'run')
-        with running(COMMANDS[case](rate, folder)) as process:
+        with running(COMMANDS[case](rate, folder, priority)) as process:
             figures = control(process.pid, seconds, max(round(rate / ANSWERS), 1))
         out = process.stdout.read() if process.stdout else ''
         of_node = json.loads(out) if out else node_figures(folder)

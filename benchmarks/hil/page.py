@@ -7,10 +7,11 @@ from itertools import takewhile
 from typing import Any, NamedTuple
 
 from .process import BARE, RECORDING_BARE, SCENE, SIMULATING
+from .yardstick import section
 
 Figures = Mapping[str, float]
 RATE = 1000.0           # 1/s, of the comparison
-MARK = 1.3              # processor time of sim_node / of a bare node
+MARK = 0.75             # processor time of sim_node / of a bare node that records
 LATENCY_MARK = 1.5      # steps
 
 
@@ -72,7 +73,8 @@ def page(found: Mapping[str, Any]) -> str:
         '## The highest rate', '',
         f'`sim_node` alone, {seconds} s at each rate, up to the first rate at which steps are lost or lag behind the',
         'clock.  The controller answers 1000 states a second.', '',
-        *table('rate, 1/s', found['rates']), '', *highest(found['troubles']), ''])
+        *table('rate, 1/s', found['rates']), '', *highest(found['troubles']), '',
+        *section(found['yardsticks'], found['seconds'], repeats, found['no_priority']), ''])
 
 
 def table(first: str, rows: Mapping[str, Figures]) -> list[str]:

@@ -15,26 +15,29 @@ from ..loop import executable
 
 SCENE = 'paper_fig8'
 PATIENCE = 60.0    # s for a process to end
+CONTROLLED = 'in a process of its own answers 1000 states a second'
 
 
-def node_command(rate: float, folder: Path) -> list[str]:
+def node_command(rate: float, folder: Path, priority: int = 0) -> list[str]:
     """Return how to start the installed node on the paper's scene, recording into a folder."""
+    real_time = ['-p', f'thread_priority:={priority}', '-p', 'lock_memory:=true'] if priority else []
     return [executable('sim_node'), '--ros-args', '--log-level', 'error', '-p', f'scene:={SCENE}',
-            '-p', f'time.rate:={rate}', '-p', 'record.enabled:=true', '-p', f'record.folder:={folder}']
+            '-p', f'time.rate:={rate}', '-p', 'record.enabled:=true', '-p', f'record.folder:={folder}',
+            *real_time]
 
 
-def bare_command(rate: float, _: Path) -> list[str]:
+def bare_command(rate: float, _: Path, priority: int = 0) -> list[str]:
     """Return how to start the bare node."""
-    return [sys.executable, '-m', 'benchmarks.hil.bare_node', '--rate', str(rate)]
+    return [sys.executable, '-m', 'benchmarks.hil.bare_node', '--rate', str(rate), '--priority', str(priority)]
 
 
-def recording_bare_command(rate: float, folder: Path) -> list[str]:
+def recording_bare_command(rate: float, folder: Path, priority: int = 0) -> list[str]:
     """Return how to start the bare node with a recording."""
-    return [*bare_command(rate, folder), '--bag', str(folder)]
+    return [*bare_command(rate, folder, priority), '--bag', str(folder)]
 
 
-# The nodes to measure, by what they are called, with how to start them at a rate (1/s).
-COMMANDS: dict[str, Callable[[float, Path], list[str]]] = {
+# The nodes to measure, by what they are called, with how to start them at a rate (1/s) and with SCHED_FIFO.
+COMMANDS: dict[str, Callable[[float, Path, int], list[str]]] = {
     'bare node': bare_command,
     'bare node, recording': recording_bare_command,
     '`sim_node`, recording': node_command,

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from .stop_signals import Signals
 
 _POLL = 0.1                # s: how soon a signal is acted on
-_SWITCH_INTERVAL = 5e-5    # s that another thread may keep the interpreter from a step loop (the default is 5 ms)
+SWITCH_INTERVAL = 5e-5    # s that another thread may keep the interpreter from a step loop (the default is 5 ms)
 
 
 class Program(NamedTuple):
@@ -27,7 +27,7 @@ def live(args: Sequence[str], signals: 'Signals', program: Program) -> int:
     from ...core.errors import StickslipError, internal_error
     from .environment import check_environment
 
-    sys.setswitchinterval(_SWITCH_INTERVAL)
+    sys.setswitchinterval(SWITCH_INTERVAL)
     try:
         check_environment()
         _with_ros(args, signals, program)
