@@ -42,7 +42,7 @@ class BareNode(Node):  # type: ignore[misc]
 
     def __init__(self, rate: float, priority: int, recorder: RecorderThread | None) -> None:
         super().__init__('bare')
-        self._step_thread = StepThread(Scheduling(thread_priority=priority, lock_memory=priority > 0))
+        self.step_thread = StepThread(Scheduling(thread_priority=priority, lock_memory=priority > 0))
         self.timing_statistics, self.pacer = TimingStatistics(), Pacer(Grid(rate))
         self._grid, self._recorder = Grid(rate), recorder
         self._velocity = self._force = 0.0
@@ -63,7 +63,7 @@ class BareNode(Node):  # type: ignore[misc]
 
     def _run(self) -> None:
         wake_precisely()
-        self._step_thread.enter()
+        self.step_thread.enter()
         self.pacer.restart(0)
         for step in itertools.count():
             while not self.pacer.wait(step):
@@ -128,6 +128,7 @@ def spin(node: BareNode, stop: threading.Event) -> None:
     executor.add_node(node)
     gc.collect()
     gc.freeze()
+    node.step_thread.lead(sys.stderr.write)
     node.thread.start()
     try:
         while not stop.is_set():

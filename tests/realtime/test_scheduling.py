@@ -37,7 +37,7 @@ def test_nothing_wanted_leaves_all_as_it_is() -> None:
 
 
 @needs_fifo
-def test_the_step_thread_alone_gets_the_priority() -> None:
+def test_the_step_thread_gets_the_priority_and_what_it_starts_gets_none() -> None:
     core = min(os.sched_getaffinity(0))
     step_thread = StepThread(Scheduling(thread_priority=7, cpu_affinity=(core,)))
     seen: list[tuple[int, int, set[int]]] = []

@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """How the kernel treats the step thread: its priority, its cores, and its memory; in the words of ros2_control.
 
-What is not granted is said in one line, and the loop goes on without it.  Only the step thread gets the priority: a
-thread that it might start gets none (SCHED_RESET_ON_FORK), and those of the middleware keep theirs.
+What is not granted is said in one line, and the loop goes on without it.  The other threads of the process get the
+priority below: each of them (recorder, executor, middleware) at times holds what the steps need, the interpreter or a
+lock of the middleware, and without a priority it could wait for a core meanwhile, and the steps for it.
 """
 
 import ctypes
@@ -41,7 +42,7 @@ class StepThread:
         self.missing: list[str] = []
         self.granted = ''
         self.is_fifo = False
-        self._wanted, self._id = wanted, 0
+        self._wanted = wanted
         self._give_notice: Callable[[str], None] = lambda text: None
         self._check_cores(wanted.cpu_affinity)
         if wanted.lock_memory:
@@ -55,14 +56,17 @@ class StepThread:
 
     def enter(self) -> None:
         """Take what was granted; for the step thread itself, at its start."""
-        self._id = threading.get_native_id()
         self._take()
 
-    def watch(self, give_notice: Callable[[str], None]) -> None:
-        """Give the priority up, with a notice, when the kernel says that it has been used for too long; main thread."""
+    def lead(self, give_notice: Callable[[str], None]) -> None:
+        """Put the threads that there are, and those that they start, next to the step thread; for the main thread.
+
+        When the kernel says that real-time CPU time has been used for too long, all give it up, with a notice.
+        """
         self._give_notice = give_notice
         if self.is_fifo:
             signal.signal(signal.SIGXCPU, lambda *_: self._give_up())
+            _schedule_all(os.SCHED_FIFO, max(self._wanted.thread_priority - 1, 1))
 
     def _check_cores(self, cores: Sequence[int]) -> None:
         there = _cores_of_the_machine()
@@ -90,13 +94,19 @@ class StepThread:
         return [text for text in missing if text]
 
     def _give_up(self) -> None:
-        with suppress(OSError):    # it has ended
-            os.sched_setscheduler(self._id, os.SCHED_OTHER, os.sched_param(0))
+        _schedule_all(os.SCHED_OTHER, 0)
         self.is_fifo = False
         text = 'SCHED_FIFO is given up: the kernel sent SIGXCPU, its limit on real-time CPU time (RLIMIT_RTTIME)'
         self.granted = ', '.join(['SCHED_FIFO lost', *self.granted.split(', ')[1:]])
         self.missing.append(text)
         self._give_notice(text)
+
+
+def _schedule_all(policy: int, priority: int) -> None:
+    """Let the kernel schedule all threads of this process so."""
+    for thread in os.listdir('/proc/self/task'):
+        with suppress(OSError):    # it has ended
+            os.sched_setscheduler(int(thread), policy, os.sched_param(priority))
 
 
 def _take_priority(priority: int) -> str:

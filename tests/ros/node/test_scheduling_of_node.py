@@ -21,22 +21,24 @@ _WANTED = ('-p', 'thread_priority:=50', '-p', 'lock_memory:=true', '-p', 'cpu_af
 
 
 @needs_fifo
-def test_the_steps_alone_have_the_priority_and_a_node_outlives_the_limit_on_it(tmp_path: Path) -> None:
+def test_the_steps_go_before_the_others_and_a_node_outlives_the_limit_on_it(tmp_path: Path) -> None:
     """SIGXCPU is what the kernel sends a process that has used real-time CPU time for too long; it kills by default."""
     folder = tmp_path / 'run'
     with running(*_WANTED, *recording_into(folder), folder=tmp_path) as process:
         with client() as axis:
             axis.connect()
             threads = policies(process.pid)
-            fifo = {thread for thread, (policy, _) in threads.items() if policy == os.SCHED_FIFO}
-            assert [threads[thread] for thread in fifo] == [(os.SCHED_FIFO, 50)]
-            assert os.sched_getaffinity(fifo.copy().pop()) == {0}
-            names = {name_of(process.pid, thread) for thread in set(threads) - fifo}
-            assert any(name.startswith('dds.') for name in names)    # those of the middleware are as they were
+            steps, = (thread for thread, scheduled in threads.items() if scheduled == (os.SCHED_FIFO, 50))
+            assert os.sched_getaffinity(steps) == {0}
+            others = set(threads) - {steps}
+            assert {threads[thread] for thread in others} == {(os.SCHED_FIFO, 49)}
+            names = {name_of(process.pid, thread) for thread in others}
+            assert any(name.startswith('dds.') for name in names)    # none of the middleware starves
+            assert all(os.sched_getaffinity(thread) == os.sched_getaffinity(0) for thread in others)
             assert axis.status('step loop')[1]['scheduling'] == 'SCHED_FIFO 50, memory locked, core 0'
             process.send(signal.SIGXCPU)
             wait_for(lambda: all(policy == os.SCHED_OTHER for policy, _ in policies(process.pid).values()),
-                     'a step thread without its priority')
+                     'threads without a priority')
             assert axis.status('step loop', lambda values: values['not granted'] != 'none')
         code, errors = process.end()
     assert code == 0

@@ -83,7 +83,7 @@ class FeedAxis(SceneNode):
         self._record_service.recordings.prepare()
         for missing in self.loop.step_thread.missing:
             self.get_logger().warning(missing)
-        self.loop.step_thread.watch(self.log.warning)
+        self.loop.step_thread.lead(self.log.warning)
         gc.collect()
         gc.freeze()      # a full collection would take tens of ms out of the loop
         self._cost.begin()
