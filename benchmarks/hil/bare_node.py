@@ -128,7 +128,7 @@ def spin(node: BareNode, stop: threading.Event) -> None:
     executor.add_node(node)
     gc.collect()
     gc.freeze()
-    node.step_thread.lead(sys.stderr.write)
+    node.step_thread.lead(print)
     node.thread.start()
     try:
         while not stop.is_set():

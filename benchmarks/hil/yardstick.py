@@ -76,8 +76,8 @@ def section(found: Mapping[str, Mapping[str, Mapping[str, float]]], seconds: flo
     """Return the lines of the page."""
     lines = ['## Beside busy processes, at real-time priority', '',
              f'In turns, {seconds:g} s each, {repeats} times, beside {BUSY} processes that are always busy; the thread'
-             ' that keeps', f'the time has SCHED_FIFO {PRIORITY}, the others of its process the priority below.  The node'
-             ' and the', f'bare node record, and a controller {CONTROLLED}.', '']
+             ' that keeps', f'the time has SCHED_FIFO {PRIORITY}, the others of its process the priority below.  The'
+             ' node and the', f'bare node record, and a controller {CONTROLLED}.', '']
     if why_not:
         lines += [f'**Without the priority**, which this machine did not grant: {why_not}.', '']
     if not kernel.is_there():
