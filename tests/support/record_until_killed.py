@@ -5,12 +5,12 @@
 import sys
 import time
 
-from stickslip_sim.recording import RecorderThread, open_run
+from stickslip_sim.recording import RecorderThread, Split, open_run
 from tests.support.recorded_runs import FACTS
 
 
-def main(folder: str) -> None:
-    recorder = RecorderThread(open_run(folder, FACTS))
+def main(folder: str, max_duration: str = '0') -> None:
+    recorder = RecorderThread(open_run(folder, FACTS, split=Split(max_duration=int(max_duration) or None)))
     start = time.monotonic()
     step = 0
     while True:
@@ -23,4 +23,4 @@ def main(folder: str) -> None:
         time.sleep(0.001)
 
 
-main(sys.argv[1])
+main(*sys.argv[1:])

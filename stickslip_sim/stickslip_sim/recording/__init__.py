@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs on disk as ROS bags: written by the node and by the offline tool, read back whole or cut off."""
 
-from .bag import BagWriter
+from .bag import BagWriter, Split
 from .offline_bag import OfflineBag, samples_of, write_bag
 from .opening import open_bag
 from .reader import Bag
@@ -26,6 +26,7 @@ __all__ = [
     'RecorderThread',
     'RunFacts',
     'Schema',
+    'Split',
     'Topic',
     'checkpoint_file',
     'flat_layout',

@@ -5,7 +5,7 @@
 import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import NoReturn
+from typing import NamedTuple, NoReturn
 
 from mcap.records import Message
 
@@ -14,60 +14,72 @@ from ..core.version import __version__
 from .blocks import to_yaml
 from .mcap_chunk import MessageBlock
 from .mcap_file import McapFile
-from .metadata import MessageTally, information, write_metadata
+from .metadata import MessageTally, Part, information, write_metadata
 from .schemas import schema
 from .topics import Topic
 
 CHUNK_SIZE = 64 * 1024  # a larger chunk takes longer to close than a step may wait
 METADATA = 'stickslip'  # the record that says what simulated the run
+NEXT_FILE = 'stickslip_next'   # at the end of a file that was split: the one in which the bag goes on
 _MEDIA = {'.yaml': 'application/yaml', '.json': 'application/json'}
 _SEQUENCE_MASK = 0xFFFFFFFF  # MCAP has 32 bits for it; the message itself has the whole step
+
+
+class Split(NamedTuple):
+    """When a bag goes on in another file: at so many bytes, or after so long (ns); None: never."""
+
+    max_size: int | None = None
+    max_duration: int | None = None
+
+
+ONE_FILE = Split()
 
 
 class BagWriter:
     """Writes the messages of a run into a new folder; not safe to be used from two threads at once.
 
     `attachments` (by file name) and `metadata` are there from the start, so that a run that is cut off can still be
-    run again.  Every method raises RecordingError when the disk refuses.
+    run again.  Each file of a bag that is split is whole by itself; metadata.yaml lists the whole ones, and the first.
+    Every method raises RecordingError when the disk refuses.
     """
 
     def __init__(
         self, folder: Path | str, topics: Sequence[Topic], attachments: Mapping[str, bytes],
-        metadata: Mapping[str, str],
+        metadata: Mapping[str, str], split: Split = ONE_FILE,
     ) -> None:
         self.folder = Path(os.path.abspath(folder))
-        self.path = self.folder / f'{self.folder.name}_0.mcap'
         self._topics = list(topics)
         self._schemas = {topic.type: schema(topic.type) for topic in topics}
-        self._metadata = dict(metadata)
-        self._tally = MessageTally([0] * len(topics))
+        self._channel_facts = [{'offered_qos_profiles': to_yaml([topic.qos.as_yaml()]),
+                                'topic_type_hash': self._schemas[topic.type].hash} for topic in topics]
+        self._attachments, self._metadata = dict(attachments), dict(metadata)
+        self._split = split
+        self._parts: list[Part] = []       # the last of them is under way
+        self._of_others = 0                # messages in the other files
         _make(self.folder)
-        try:
-            self._file = _File(self.path)
-        except OSError as error:
-            self.folder.rmdir()
-            _refuse(self.path, error)
-        try:
-            self._mcap = McapFile(self._file, CHUNK_SIZE, f'stickslip_sim {__version__}')
-            self._begin(attachments)
-        except OSError as error:
-            self.abandon()
-            _remove(self.folder)
-            _refuse(self.path, error)
+        self._file, self._mcap = self._begun()
+
+    @property
+    def path(self) -> Path:
+        """The file under way."""
+        return self.folder / self._parts[-1].file
 
     @property
     def counts(self) -> dict[str, int]:
         """Messages written so far, by topic."""
-        return {topic.name: count for topic, count in zip(self._topics, self._tally.counts, strict=True)}
+        return {topic.name: sum(part.tally.counts[place] for part in self._parts)
+                for place, topic in enumerate(self._topics)}
 
     @property
     def on_disk(self) -> int:
         """How many of them the operating system has; the others wait for their chunk to fill."""
-        return self._mcap.on_disk
+        return self._of_others + self._mcap.on_disk
 
     def write(self, topic_index: int, data: bytes, log_time_ns: int, publish_time_ns: int, sequence: int) -> None:
         """Add a message (CDR) to the topic at that place in the list of topics."""
         try:
+            if self._is_full(log_time_ns):
+                self._go_on()
             self._mcap.add_message(Message(topic_index + 1, log_time_ns, data, publish_time_ns,
                                            sequence & _SEQUENCE_MASK))
         except OSError as error:
@@ -75,7 +87,7 @@ class BagWriter:
         self._tally.add(topic_index, log_time_ns)
 
     def write_block(self, block: MessageBlock) -> None:
-        """Add messages whose channels are the places of their topics in the list, from 1 on."""
+        """Add messages whose channels are the places of their topics in the list, from 1 on; never splits the bag."""
         try:
             self._mcap.add_block(block)
         except OSError as error:
@@ -85,7 +97,7 @@ class BagWriter:
     def attach(self, attachments: Mapping[str, bytes]) -> None:
         """Add attachments by file name while the run goes on."""
         try:
-            self._attach(attachments, self._tally.last)
+            self._attach(self._mcap, attachments, self._tally.last)
         except OSError as error:
             _refuse(self.path, error)
 
@@ -99,11 +111,9 @@ class BagWriter:
     def close(self, attachments: Mapping[str, bytes] | None = None) -> None:
         """Finish the bag: attachments, index, counts in metadata.yaml."""
         try:
-            self._attach(attachments or {}, self._tally.last)
-            self._add_information()
-            self._mcap.finish()
-            self._file.close()
-            write_metadata(self.folder, self._information())
+            self._attach(self._mcap, attachments or {}, self._tally.last)
+            self._finish()
+            write_metadata(self.folder, self._information(self._parts))
         except OSError as error:
             self.abandon()
             _refuse(self.path, error)
@@ -112,31 +122,75 @@ class BagWriter:
         """Close the file as it is, without an index; it can be read like that of a process that was killed."""
         self._file.close()
 
-    def _begin(self, attachments: Mapping[str, bytes]) -> None:
-        self._mcap.add_metadata(METADATA, self._metadata)
-        self._attach(attachments, 0)
-        ids = {name: self._mcap.add_schema(name, 'ros2msg', known.text.encode())
-               for name, known in self._schemas.items()}
-        for topic in self._topics:
-            self._mcap.add_channel(topic.name, 'cdr', ids[topic.type], {
-                'offered_qos_profiles': to_yaml([topic.qos.as_yaml()]),
-                'topic_type_hash': self._schemas[topic.type].hash,
-            })
-        self._add_information()
-        write_metadata(self.folder, self._information())
+    @property
+    def _tally(self) -> MessageTally:
+        return self._parts[-1].tally
 
-    def _add_information(self) -> None:
-        """Put what metadata.yaml says into the file too, at both ends as rosbag2 does: one end may be lost."""
-        self._mcap.add_metadata('rosbag2', {'serialized_metadata': to_yaml(self._information())})
+    def _is_full(self, time_ns: int) -> bool:
+        size, duration = self._split
+        return self._tally.total > 0 and ((size is not None and self._file.size >= size)
+                                          or (duration is not None and time_ns - self._tally.first >= duration))
 
-    def _attach(self, attachments: Mapping[str, bytes], log_time_ns: int) -> None:
+    def _go_on(self) -> None:
+        """Finish the file and go on in the next one."""
+        self._mcap.add_metadata(NEXT_FILE, {'file': self._file_name(len(self._parts))})
+        self._finish()
+        written = self._mcap.on_disk
+        self._file, self._mcap = self._begun()
+        self._of_others += written
+
+    def _finish(self) -> None:
+        self._add_information(self._mcap, self._parts[-1:])
+        self._mcap.finish()
+        self._file.close()
+
+    def _begun(self) -> tuple['_File', McapFile]:
+        """Begin a file with all that it needs to be read by itself."""
+        whole = list(self._parts)
+        part = Part(self._file_name(len(whole)), MessageTally([0] * len(self._topics)))
+        path = self.folder / part.file
+        try:
+            file = _File(path)
+        except OSError as error:
+            if not whole:
+                self.folder.rmdir()
+            _refuse(path, error)
+        try:
+            mcap = McapFile(file, CHUNK_SIZE, f'stickslip_sim {__version__}')
+            self._begin(mcap, part, len(whole))
+            write_metadata(self.folder, self._information(whole or [part]))
+        except OSError as error:
+            file.close()
+            path.unlink()    # nothing of a file that could not be begun
+            if not whole:
+                _remove(self.folder)
+            _refuse(path, error)
+        self._parts.append(part)
+        return file, mcap
+
+    def _begin(self, mcap: McapFile, part: Part, number: int) -> None:
+        mcap.add_metadata(METADATA, {**self._metadata, **({'part': str(number)} if number else {})})
+        self._attach(mcap, self._attachments, 0)
+        ids = {name: mcap.add_schema(name, 'ros2msg', known.text.encode()) for name, known in self._schemas.items()}
+        for topic, facts in zip(self._topics, self._channel_facts, strict=True):
+            mcap.add_channel(topic.name, 'cdr', ids[topic.type], facts)
+        self._add_information(mcap, [part])
+
+    def _add_information(self, mcap: McapFile, parts: Sequence[Part]) -> None:
+        """Put what metadata.yaml says of a file into it, at both ends as rosbag2 does: one end may be lost."""
+        mcap.add_metadata('rosbag2', {'serialized_metadata': to_yaml(self._information(parts))})
+
+    def _attach(self, mcap: McapFile, attachments: Mapping[str, bytes], log_time_ns: int) -> None:
         for name, data in attachments.items():
             media = _MEDIA.get(Path(name).suffix, 'application/octet-stream')
-            self._mcap.add_attachment(log_time_ns, name, media, data)
+            mcap.add_attachment(log_time_ns, name, media, data)
 
-    def _information(self) -> dict[str, object]:
+    def _information(self, parts: Sequence[Part]) -> dict[str, object]:
         hashes = {name: known.hash for name, known in self._schemas.items()}
-        return information(self.path.name, self._topics, hashes, self._tally, self._metadata)
+        return information(parts, self._topics, hashes, self._metadata)
+
+    def _file_name(self, number: int) -> str:
+        return f'{self.folder.name}_{number}.mcap'
 
 
 class _File:

@@ -6,6 +6,7 @@ import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,30 +41,41 @@ class MessageTally:
         self.total += len(times_ns)
 
 
+class Part(NamedTuple):
+    """One file of a bag, and what is in it."""
+
+    file: str
+    tally: MessageTally
+
+
 def ros_distro() -> str:
     """Return the ROS distro of the sourced workspace, empty without one."""
     return os.environ.get('ROS_DISTRO', '')
 
 
 def information(
-    file: str, topics: Sequence[Topic], hashes: Mapping[str, str], tally: MessageTally, custom: Mapping[str, str],
+    parts: Sequence[Part], topics: Sequence[Topic], hashes: Mapping[str, str], custom: Mapping[str, str],
 ) -> Yaml:
-    """Return the body of metadata.yaml; `hashes` by type name."""
-    duration = {'nanoseconds': tally.last - tally.first}
-    start = {'nanoseconds_since_epoch': tally.first}
+    """Return the body of metadata.yaml of a bag of one or more files; `hashes` by type name."""
+    tallies = [part.tally for part in parts]
+    filled = [tally for tally in tallies if tally.total] or tallies[:1]
+    first, last = min(tally.first for tally in filled), max(tally.last for tally in filled)
+    counts = [sum(of_topic) for of_topic in zip(*(tally.counts for tally in tallies))]
     return {
         'version': 9,
         'storage_identifier': 'mcap',
-        'duration': duration,
-        'starting_time': start,
-        'message_count': tally.total,
+        'duration': {'nanoseconds': last - first},
+        'starting_time': {'nanoseconds_since_epoch': first},
+        'message_count': sum(tally.total for tally in tallies),
         'topics_with_message_count': [
-            _topic(topic, hashes[topic.type], count) for topic, count in zip(topics, tally.counts, strict=True)
+            _topic(topic, hashes[topic.type], count) for topic, count in zip(topics, counts, strict=True)
         ],
         'compression_format': '',
         'compression_mode': '',
-        'relative_file_paths': [file],
-        'files': [{'path': file, 'starting_time': start, 'duration': duration, 'message_count': tally.total}],
+        'relative_file_paths': [part.file for part in parts],
+        'files': [{'path': part.file, 'starting_time': {'nanoseconds_since_epoch': part.tally.first},
+                   'duration': {'nanoseconds': part.tally.last - part.tally.first},
+                   'message_count': part.tally.total} for part in parts],
         'custom_data': dict(custom),
         'ros_distro': ros_distro(),
     }

@@ -2,18 +2,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """Opens bags, also those of a process that was killed or of a disk that was full, and takes in what they hold."""
 
+import re
 import warnings
 from pathlib import Path
 
 import numpy as np
 from mcap.records import Attachment, Channel, Footer, McapRecord, Metadata, Schema
 
-from ..core.errors import RecordingError, RecordingWarning
+from ..core.errors import RecordingError, RecordingWarning, one_line
+from .bag import METADATA, NEXT_FILE
 from .message_places import Messages
 from .reader import OVERHEAD, Bag
 from .records import contents
 
 MOST_BESIDE = 64 << 20   # bytes of all that a file holds beside messages
+_PART = re.compile(r'(?P<name>.*)_(?P<number>0|[1-9]\d{0,8})\.mcap')
 
 
 def open_bag(path: Path | str) -> Bag:
@@ -30,53 +33,67 @@ def open_bag(path: Path | str) -> Bag:
 
 def bag_in(path: Path | str) -> Bag:
     """Return what `open_bag` does, without a warning."""
-    bag = Bag(file_of(Path(path)))
-    names: dict[int, str] = {}
-    beside = 0
-    for record in contents(bag.path):
-        if isinstance(record, Messages):
-            _count(bag, record)
-            continue
-        beside += _size(record)
-        if beside > MOST_BESIDE:
-            raise RecordingError(f'{bag.path}: more than {MOST_BESIDE >> 20} MiB beside its messages; no run has that')
-        _note(bag, record, names)
+    files = files_of(Path(path))
+    bag = Bag(files[0] if len(files) == 1 else Path(path), files)
+    ends = [_take(bag, file) for file in files]
+    bag.next_file = ends[-1] or ''
+    bag.is_complete = None not in ends and not bag.next_file
     return bag
 
 
-def _count(bag: Bag, messages: Messages) -> None:
+def _take(bag: Bag, file: Path) -> str | None:
+    """Take what a file says of the bag; return in which file the bag goes on, None when this one has no end."""
+    names: dict[int, str] = {}
+    channels: dict[int, str] = {}
+    next_file: str | None = None
+    beside = 0
+    for record in contents(file):
+        if isinstance(record, Messages):
+            _count(bag, file, record, channels)
+            continue
+        beside += _size(record)
+        if beside > MOST_BESIDE:
+            raise RecordingError(f'{file}: more than {MOST_BESIDE >> 20} MiB beside its messages; no run has that')
+        _note(bag, record, names, channels)
+        if isinstance(record, Footer):
+            next_file = bag.metadata.pop(NEXT_FILE, {}).get('file', '')
+    bag.channels.update(channels.items())
+    return next_file
+
+
+def _count(bag: Bag, file: Path, messages: Messages, channels: dict[int, str]) -> None:
     for channel, count in enumerate(np.bincount(messages.channels).tolist()):
-        if count and channel not in bag.channels:
-            raise RecordingError(f'{bag.path}: damaged: a message on channel {channel}, which is nowhere')
+        if count and channel not in channels:
+            raise RecordingError(f'{file}: damaged: a message on channel {channel}, which is nowhere')
         if count:
-            bag.counts[bag.channels[channel]] += count
+            bag.counts[channels[channel]] += count
 
 
 def shortfalls(bag: Bag) -> tuple[str, ...]:
     """Return what is missing of a bag, for people."""
     if bag.is_complete:
         return ()
+    if bag.next_file:
+        return (f'{bag.path} goes on in {one_line(bag.next_file)}, which is not there; give the folder of the bag',)
     return (f'{bag.path} has no end: cut off, or still being written; {sum(bag.counts.values())} messages are'
             ' whole, and metadata.yaml does not count them',)
 
 
-def _note(bag: Bag, record: McapRecord, names: dict[int, str]) -> None:
-    """Take what a record says of the bag; `names` of schemas by their numbers."""
+def _note(bag: Bag, record: McapRecord, names: dict[int, str], channels: dict[int, str]) -> None:
+    """Take what a record says of the bag; `names` of schemas and topics of `channels` by their numbers in its file."""
     if isinstance(record, Schema) and record.id not in names:    # the index repeats them
         names[record.id] = record.name
         if record.encoding == 'ros2msg':
             bag.schemas[record.name] = record.data.decode(errors='replace')
-    elif isinstance(record, Channel) and record.id not in bag.channels:
-        bag.channels[record.id] = record.topic
+    elif isinstance(record, Channel) and record.id not in channels:
+        channels[record.id] = record.topic
         bag.topics[record.topic] = names.get(record.schema_id, '')    # other programs may give none
         bag.channel_metadata[record.topic] = record.metadata
         bag.counts.setdefault(record.topic, 0)
     elif isinstance(record, Attachment):
         bag.attachments[record.name] = record.data
-    elif isinstance(record, Metadata):
+    elif isinstance(record, Metadata) and not (record.name == METADATA and METADATA in bag.metadata):
         bag.metadata[record.name] = record.metadata
-    elif isinstance(record, Footer):
-        bag.is_complete = True
 
 
 def _size(record: McapRecord) -> int:
@@ -88,14 +105,29 @@ def _size(record: McapRecord) -> int:
     return 0
 
 
-def file_of(path: Path) -> Path:
-    """Return the MCAP file of a bag, given by its folder or by itself; raises RecordingError when there is no one."""
+def files_of(path: Path) -> list[Path]:
+    """Return the MCAP files of a bag in their order, given by its folder, or one of them by itself.
+
+    Raises RecordingError when there is none, or one in between is missing, or they are not of one bag.
+    """
     files = sorted(path.glob('*.mcap')) if path.is_dir() else [path]
     for foreign in [*path.glob('*.mcap.*'), *path.glob('*.db3*')] if not files else []:
         raise RecordingError(f'{path}: {foreign.name} is not read, only .mcap is; decompress or convert it first '
                              '(zstd -d, ros2 bag convert)')
     if not files or not files[0].is_file():
         raise RecordingError(f'{path}: no recorded run there; give the folder of a run or an .mcap file')
-    if len(files) > 1:
+    return files if len(files) == 1 else _parts(path, files)
+
+
+def _parts(path: Path, files: list[Path]) -> list[Path]:
+    """Return the files of a bag that was split in the order of their numbers; raises RecordingError."""
+    found = [_PART.fullmatch(file.name) for file in files]
+    numbered = {int(match['number']): file for match, file in zip(found, files) if match}
+    if len(numbered) < len(files) or len({match['name'] for match in found if match}) > 1:
         raise RecordingError(f'{path}: {len(files)} .mcap files; give the one to read')
-    return files[0]
+    first, last = min(numbered), max(numbered)
+    for number in range(first, last):
+        if number not in numbered:
+            name = numbered[first].name.rpartition('_')[0]
+            raise RecordingError(f'{path}: {name}_{number}.mcap is missing; give a part of the bag by itself')
+    return [numbered[number] for number in range(first, last + 1)]

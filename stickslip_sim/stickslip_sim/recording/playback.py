@@ -13,7 +13,7 @@ from rosbags.rosbag2 import ReaderError
 from rosbags.rosbag2.metadata import parse_qos
 
 from ..core.errors import RecordingError
-from .opening import file_of
+from .opening import files_of
 from .records import CUT_OFF, chunk_at, records, summary_of
 from .topic_columns import RecordedMessage
 from .topics import QosProfile
@@ -39,15 +39,19 @@ class Recording:
     """
 
     def __init__(self, path: Path | str) -> None:
-        self.path = file_of(Path(path))
+        files = files_of(Path(path))
+        self.path = files[0] if len(files) == 1 else Path(path)
+        self._files = list(map(_RecordedFile, files))
+        self.is_complete = all(file.is_complete for file in self._files)
         self.topics: dict[str, RecordedTopic] = {}
-        self.is_complete = True
-        self._names: dict[int, str] = {}           # of topics by channel
-        self._chunks: list[ChunkIndex] = []        # by time; empty without an index
-        span = self._look_at_summary() or self._look_at_all()
-        if span is None:
+        for file in self._files:
+            self.topics = {**file.topics, **self.topics}
+        spans = [file.span for file in self._files if file.span is not None]
+        if not spans:
             raise RecordingError(f'{self.path}: no message can be read of it; give a recording that holds some')
-        self.begin, self.end = span
+        self.begin, self.end = min(begin for begin, _ in spans), max(end for _, end in spans)
+        for file in self._files:
+            file.begin = self.begin
 
     @property
     def length(self) -> float:
@@ -60,6 +64,28 @@ class Recording:
         A bag without an index, such as one that was cut off, has them in the order in which they were written.  Raises
         RecordingError where the bag is damaged.
         """
+        for file in self._files:
+            if file.span is not None and file.span[0] <= until and file.span[1] >= since:
+                yield from file.messages(topics, since, until)
+
+
+class _RecordedFile:
+    """A file of a bag that begins at `begin`.
+
+    `span` are the log times (ns) of its first and last message, None without a message.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.topics: dict[str, RecordedTopic] = {}
+        self.is_complete = True
+        self._names: dict[int, str] = {}           # of topics by channel
+        self._chunks: list[ChunkIndex] = []        # by time; empty without an index
+        self.span = self._look_at_summary() or self._look_at_all()
+        self.begin = self.span[0] if self.span else 0
+
+    def messages(self, topics: Collection[str], since: int, until: int) -> Iterator[RecordedMessage]:
+        """Yield what `Recording.messages` does."""
         for message in self._indexed(since, until) if self._chunks else self._written():
             name = self._names.get(message.channel_id, '')
             if name in topics and since <= message.log_time <= until:

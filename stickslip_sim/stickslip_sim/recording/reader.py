@@ -20,7 +20,8 @@ from ..core.errors import InputError, RecordingError
 from ..core.types import Event, EventKind, Mode
 from ..scene import Scene, parse_scene
 from .layout import Layout, layout_of
-from .records import records
+from .message_places import Messages
+from .records import contents, records
 from .run import RECEIPT_FILE, SCENE_FILE
 from .schemas import store_of, understood
 from .topic_columns import RecordedMessage, TopicColumns
@@ -35,17 +36,19 @@ _EVENT_FIELDS = ('time', 'kind', 'mode', 'direction', 'position', 'velocity', 'd
 
 @dataclass
 class Bag:
-    """A bag; messages are read from the file each time, in the order in which they were written."""
+    """A bag of one or more files; messages are read from there each time, in the order in which they were written."""
 
-    path: Path
+    path: Path                  # for people: its file, or the folder of several
+    files: list[Path]
     is_complete: bool = False
+    next_file: str = ''         # in which it goes on, where that is not there
     attachments: dict[str, bytes] = field(default_factory=dict)
     metadata: dict[str, dict[str, str]] = field(default_factory=dict)
     schemas: dict[str, str] = field(default_factory=dict)   # definitions by type name
     topics: dict[str, str] = field(default_factory=dict)    # type names by topic
     channel_metadata: dict[str, dict[str, str]] = field(default_factory=dict)
     counts: dict[str, int] = field(default_factory=dict)
-    channels: dict[int, str] = field(default_factory=dict)   # the topic of each, by its number in the file
+    channels: set[tuple[int, str]] = field(default_factory=set)   # number and topic
     _stores: dict[str, Typestore] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @property
@@ -84,13 +87,18 @@ class Bag:
     def messages(self, topics: Iterable[str] | None = None) -> Iterator[RecordedMessage]:
         """Yield the messages of some topics (None: all)."""
         wanted = set(self.topics if topics is None else topics)
-        channels: dict[int, str] = {}
-        for record in records(self.path):
-            if isinstance(record, Channel):
-                channels.setdefault(record.id, record.topic)
-            elif isinstance(record, Message) and (topic := channels[record.channel_id]) in wanted:
-                yield RecordedMessage(topic, self.topics[topic], record.sequence, record.log_time,
-                                      record.publish_time, record.data)
+        for file in self.files:
+            channels: dict[int, str] = {}
+            for record in records(file):
+                if isinstance(record, Channel):
+                    channels.setdefault(record.id, record.topic)
+                elif isinstance(record, Message) and (topic := channels[record.channel_id]) in wanted:
+                    yield RecordedMessage(topic, self.topics[topic], record.sequence, record.log_time,
+                                          record.publish_time, record.data)
+
+    def blocks(self) -> Iterator[Messages]:
+        """Yield all messages as they stand in the chunks of the files."""
+        return (record for file in self.files for record in contents(file) if isinstance(record, Messages))
 
     def decode(self, message: RecordedMessage) -> Any:
         """Return the message as an object with its fields as attributes; raises RecordingError when it is damaged."""
@@ -119,7 +127,7 @@ class Bag:
         """Yield the columns of a topic block by block, the first of them empty, as far as it goes."""
         topic = self._resolved(topic)
         type_name = self.topics[topic]
-        blocks = TopicColumns(self.path, topic, type_name, self._store(type_name), self.decode).blocks()
+        blocks = TopicColumns(self.files, topic, type_name, self._store(type_name), self.decode).blocks()
         with self._named(topic), understood('a time beyond the year 2262', OverflowError):
             yield from blocks
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from ..core.hot_path import hot_path
 from ..core.version import __version__
 from ..runs.receipt import plain
-from .bag import BagWriter
+from .bag import ONE_FILE, BagWriter, Split
 from .metadata import ros_distro
 from .topics import Topic, recorded_topics
 
@@ -73,12 +73,13 @@ class RunFacts:
         return {'origin': 'offline', 'duration': repr(self.duration), 'sample_period': str(self.sample_period)}
 
 
-def open_run(folder: Path | str, facts: RunFacts, topics: Sequence[Topic] = ()) -> BagWriter:
+def open_run(folder: Path | str, facts: RunFacts, topics: Sequence[Topic] = (), split: Split = ONE_FILE) -> BagWriter:
     """Make a run folder with the recorded topics by these names (none: those of RECORDED in the namespace /).
 
     Raises RecordingError if it exists.
     """
-    return BagWriter(folder, topics or recorded_topics(), {SCENE_FILE: facts.scene_text.encode()}, facts.as_metadata())
+    return BagWriter(folder, topics or recorded_topics(), {SCENE_FILE: facts.scene_text.encode()}, facts.as_metadata(),
+                     split)
 
 
 def receipt_file(receipt: Mapping[str, object]) -> dict[str, bytes]:

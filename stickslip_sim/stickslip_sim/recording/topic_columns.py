@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A topic of a bag as columns, block by block: the numbers of all its messages in a chunk at once."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -34,26 +34,27 @@ class RecordedMessage(NamedTuple):
 
 
 class TopicColumns:
-    """The columns of a topic of a type in a file: one for each field that is a number or a text, and its times.
+    """The columns of a topic of a type in files: one for each field that is a number or a text, and its times.
 
     `decode` makes an object of a message; it serves those whose numbers have no fixed places.
     """
 
-    def __init__(self, path: Path, topic: str, type_name: str, store: Typestore,
+    def __init__(self, files: Sequence[Path], topic: str, type_name: str, store: Typestore,
                  decode: Callable[[RecordedMessage], Any]) -> None:
-        self._path, self._topic, self._type, self._decode = path, topic, type_name, decode
+        self._files, self._topic, self._type, self._decode = files, topic, type_name, decode
         self._layout = layout_of(store, type_name)
         self._kinds = {**number_fields(store, type_name), **dict.fromkeys(text_fields(store, type_name), 'object')}
 
     def blocks(self) -> Iterator[Block]:
         """Yield the columns block by block, the first of them empty; raises OverflowError on times beyond 64 bits."""
         yield self._decoded([])
-        channels: list[int] = []
-        for record in contents(self._path):
-            if isinstance(record, Channel) and record.topic == self._topic:
-                channels.append(record.id)
-            elif isinstance(record, Messages) and (chosen := np.isin(record.channels, channels)).any():
-                yield self._block(record, np.flatnonzero(chosen))
+        for file in self._files:
+            channels: list[int] = []
+            for record in contents(file):
+                if isinstance(record, Channel) and record.topic == self._topic:
+                    channels.append(record.id)
+                elif isinstance(record, Messages) and (chosen := np.isin(record.channels, channels)).any():
+                    yield self._block(record, np.flatnonzero(chosen))
 
     def _block(self, messages: Messages, chosen: NDArray[np.intp]) -> Block:
         layout = self._layout

@@ -62,10 +62,15 @@ class TimingSettings:
 
 @dataclass(frozen=True, slots=True)
 class RecordSettings:
-    """Whether the node records from its start, and into which folder (empty: it chooses one)."""
+    """Whether the node records from its start, and into which folder (empty: it chooses one).
+
+    It goes on in another file at `max_size` bytes, or after `max_duration` s.
+    """
 
     enabled: bool
     folder: str
+    max_size: int | None = None
+    max_duration: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -183,6 +183,10 @@ PARAMETERS: tuple[Parameter, ...] = (
     Parameter('record.folder', 'string', '', '', 'folder of the bag, which must not exist; empty: the node chooses;'
               ' changed live, it must lie where it lay at the start (empty: runs/), or below',
               live=True),
+    Parameter('record.max_size', 'integer', None, 'bytes', 'size from which on the bag goes on in another file, as with'
+              ' ros2 bag record --max-bag-size; left out: one file', 2**20, 2**62),
+    Parameter('record.max_duration', 'double', None, 's', 'length from which on the bag goes on in another file, as'
+              ' with ros2 bag record --max-bag-duration; left out: one file', 1.0, MAX_TIME),
 
     Parameter('seed', 'integer', 0, '', 'seed of all random numbers of the run', 0, 2**63 - 1),
 )

@@ -10,9 +10,7 @@ from typing import NamedTuple
 
 from ..core.time_grid import instants
 from ..recording import RecordedRun
-from ..recording.message_places import Messages
 from ..recording.offline_bag import CHANNELS, message_blocks
-from ..recording.records import contents
 from ..recording.topics import FRICTION_FORCE, MODE_EVENT, RUN_INFO, SLIDER_STATE
 from ..runs import SimulatedRun
 
@@ -29,10 +27,10 @@ def same_bytes(run: RecordedRun, again: SimulatedRun) -> Same | None:
     """Return how much is the same when all messages of steps are, None otherwise."""
     expected = _Expected(block.data for block in message_blocks(again.sample_blocks(), again.events))
     channels, counts = {topic.type: number for topic, number in CHANNELS.items()}, dict.fromkeys(CHANNELS.values(), 0)
-    if any(channels.get(run.bag.topics[topic]) != number for number, topic in run.bag.channels.items()):
+    if any(channels.get(run.bag.topics[topic]) != number for number, topic in run.bag.channels):
         return None
-    for record in contents(run.bag.path):
-        if not isinstance(record, Messages) or not len(record.starts):
+    for record in run.bag.blocks():
+        if not len(record.starts):
             continue
         first = int(record.channels[0] == CHANNELS[RUN_INFO])
         begin, end = int(record.starts[first:].min(initial=len(record.data))), len(record.data)

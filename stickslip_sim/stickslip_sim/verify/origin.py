@@ -29,6 +29,9 @@ def doubts_about(run: RecordedRun) -> tuple[str, ...]:
     if not bag.is_complete and not bag.topics:
         raise RecordingError(f'{bag.path}: cut off before its first message was written')
     facts = _facts_of(run)
+    if part := facts.get('part'):
+        raise RecordingError(f'{bag.path}: part {part} of a recording that was split, which begins with another file; '
+                             'give the folder of the whole bag')
     _ = run.scene, checkpoint_of(run), offline_of(run)
     return tuple(map(one_line, _doubts(run, facts)))
 
@@ -72,7 +75,9 @@ def _doubts(run: RecordedRun, facts: Mapping[str, str]) -> Iterator[str]:
         yield f'{SCENE_FILE} was changed after the recording'
     elif run.scene.hash != facts.get('scene_hash'):
         yield f'{SCENE_FILE} means something else in this version'
-    if not run.is_complete:
+    if next_file := run.bag.next_file:
+        yield f'the recording goes on in {next_file}, which is not there'
+    elif not run.is_complete:
         yield 'the recording has no end: cut off, or still being written'
     if dropped := run.receipt.get('dropped_messages'):
         yield f'{dropped} messages were dropped while recording'

@@ -14,6 +14,7 @@ from ...recording import (
     MessageCodec,
     RecorderThread,
     RunFacts,
+    Split,
     Topic,
     checkpoint_file,
     open_run,
@@ -57,7 +58,7 @@ class Recordings:
     def begin(self, scene: Scene) -> None:
         """Open a new run folder; raises RecordingError."""
         try:
-            writer = open_run(self._folder_of(scene), RunFacts.of(scene), self._topics)
+            writer = open_run(self._folder_of(scene), RunFacts.of(scene), self._topics, split_of(scene))
         except InputError as error:
             self.failure = str(error)
             raise RecordingError(self.failure) from None
@@ -118,6 +119,12 @@ class Recordings:
             raise InputError('record.folder', folder, f'below {self._root}, as at the start of the node',
                              'give one there, or leave it empty')
         return path
+
+
+def split_of(scene: Scene) -> Split:
+    """Return when the scene lets a bag go on in another file."""
+    duration = scene.record.max_duration
+    return Split(scene.record.max_size, None if duration is None else round(duration * 1e9))
 
 
 def first_free(name: Callable[[int], Path]) -> Path:
