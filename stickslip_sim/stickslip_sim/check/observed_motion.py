@@ -60,11 +60,13 @@ class ObservedMotion:
     @cached_property
     def points(self) -> Points:
         """The slider at samples and transitions; between two of them its motion is smooth."""
-        time, position, velocity = (
-            np.concatenate([samples, [getattr(event, name) for event in self.events]])
-            for name, samples in (('time', self.time), ('position', self.position), ('velocity', self.velocity)))
-        time, chosen = np.unique(time, return_index=True)
-        return Points(time, position[chosen], velocity[chosen])
+        times, first = np.unique([event.time for event in self.events], return_index=True)
+        places = np.searchsorted(self.time, times)
+        new = self.time[np.minimum(places, len(self.time) - 1)] != times    # a sample at that time comes first
+        between = [self.events[k] for k in first[new]]
+        return Points(*(np.insert(samples, places[new], [getattr(event, name) for event in between])
+                        for name, samples in (('time', self.time), ('position', self.position),
+                                              ('velocity', self.velocity))))
 
     def following(self, reference: Reference) -> 'ObservedMotion':
         """Return the same motion as an answer to a reference instead of the drive."""

@@ -13,7 +13,7 @@ from ..core.types import EventKind, Mode
 from ..recording import RecordedRun
 from ..recording.bag import METADATA
 from ..recording.topics import DRIVE_VELOCITY
-from ..runs import Run
+from ..runs import Columns, Run
 from ..runs.kept import kept
 from .observed_motion import ObservedMotion
 
@@ -38,9 +38,7 @@ class KnownCommands(NamedTuple):
 @kept
 def observed_motion(run: Run) -> ObservedMotion:
     """Return the motion of a run with samples, of a recorded one as far as its states go; raises RecordingError."""
-    if isinstance(run, RecordedRun):
-        _check_states(run)
-    states = run.states
+    states = _checked_states(run) if isinstance(run, RecordedRun) else run.states
     time = states['time']
     begin, end = (float(time[0]), float(time[-1])) if run.is_recorded else (run.begin, run.end)
     return ObservedMotion(begin, end, Mode(int(states['mode'][0])), time, states['position'], states['velocity'],
@@ -68,7 +66,7 @@ def commands_of(run: Run) -> KnownCommands | None:
         return None
     topic = run.bag.name_of(DRIVE_VELOCITY)
     first = next(run.bag.messages([topic]), None) if run.bag.counts[topic] else None
-    time = run.states['time']
+    time = run.state_columns(['time'])['time']
     if first is None or not len(time):
         return KnownCommands(None)
     at = np.searchsorted(time, first.log_time * _NANOSECOND - _NANOSECOND)   # the state that it found
@@ -80,15 +78,16 @@ def gaps_in(run: Run) -> Iterator[str]:
     if not run.is_complete:
         yield f'the recording has no end: checked up to t = {observed_motion(run).end:.6g} s'
     if lost := run.missing_steps:
-        yield f'{lost} of {lost + len(run.states["time"])} steps are missing in the recording'
+        yield f'{lost} of {lost + len(observed_motion(run).time)} steps are missing in the recording'
 
 
-def _check_states(run: RecordedRun) -> None:
-    """Raise RecordingError unless the states are those of one run."""
-    states = run.states
+def _checked_states(run: RecordedRun) -> Columns:
+    """Return what is looked at of the states; raises RecordingError unless they are those of one run."""
+    states = run.state_columns([*_STATE_FIELDS, 'step'])    # the steps are for `missing_steps`
     if not len(states['time']):
         raise RecordingError(f'{run.bag.path}: no state of the axis in it; nothing can be checked')
     if not all(np.isfinite(states[name]).all() for name in _STATE_FIELDS):
         raise RecordingError(f'{run.bag.path}: states that are no finite numbers; nothing can be checked')
     if not (np.diff(states['time']) > 0.0).all():
         raise RecordingError(f'{run.bag.path}: time goes back in it; give a recording of one run')
+    return states

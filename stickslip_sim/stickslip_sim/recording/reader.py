@@ -112,16 +112,7 @@ class Bag:
         `log_time` (simulation time) and `publish_time` are in ns; `sequence` is the step.  A name without a slash at
         its begin is that of the one topic that ends so.  Raises RecordingError when there is none, or too much of it.
         """
-        topic = self._resolved(topic)
-        blocks, size = [], 0
-        for block in self.column_blocks(topic):
-            blocks.append(block)
-            size += sum(column.nbytes for column in block.values())
-            if size > MOST_HELD:
-                count = sum(len(block['log_time']) for block in blocks)
-                raise RecordingError(f'{self.path}: {topic} has more than {count} messages of {size >> 20} MiB in all, '
-                                     'which do not fit: take messages() one by one, or a part of the recording')
-        return {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
+        return self._held(self._resolved(topic), None)
 
     def column_blocks(self, topic: str) -> Iterator[dict[str, NDArray[Any]]]:
         """Yield the columns of a topic block by block, the first of them empty, as far as it goes."""
@@ -149,12 +140,7 @@ class Bag:
 
         Raises RecordingError when topic or fields are not there.
         """
-        name = self.name_of(topic)
-        columns = self.columns(name)
-        missing = [field for field in fields if field not in columns]
-        if missing:
-            raise RecordingError(f'{self.path}: {name} has no {", ".join(missing)}; recorded by another version?')
-        return {field: columns[field] for field in fields}
+        return self._held(self.name_of(topic), fields)
 
     def layout(self, topic: str) -> Layout:
         """Return where a topic has its numbers; raises RecordingError when they have no fixed places."""
@@ -177,6 +163,25 @@ class Bag:
             return topic if topic in names else names[0]
         found = f'{len(names)} topics' if names else 'no topic'
         raise RecordingError(f'{self.path}: {found} {topic}; there are {", ".join(self.topics) or "none"}')
+
+    def _held(self, topic: str, fields: Sequence[str] | None) -> dict[str, NDArray[Any]]:
+        """Return fields of a topic (None: all), each as one array; raises RecordingError on more than fits."""
+        count, done = self.counts[topic], 0
+        blocks = self.column_blocks(topic)
+        first = next(blocks)
+        names = [*first] if fields is None else fields
+        if missing := [name for name in names if name not in first]:
+            raise RecordingError(f'{self.path}: {topic} has no {", ".join(missing)}; recorded by another version?')
+        if (size := count * sum(first[name].itemsize for name in names)) > MOST_HELD:
+            raise RecordingError(f'{self.path}: {topic} has {count} messages of {size >> 20} MiB in all, which do not '
+                                 'fit: take messages() one by one, or a part of the recording')
+        columns = {name: np.empty(count, first[name].dtype) for name in names}
+        for block in blocks:
+            end = min(done + len(block[names[0]]), count)   # more have come meanwhile to one that is being written
+            for name in names:
+                columns[name][done:end] = block[name][:end - done]
+            done = end
+        return {name: column[:done] for name, column in columns.items()}
 
     def _store(self, type_name: str) -> Typestore:
         """Return what reads messages of a type; raises RecordingError without a definition of it that can be read."""

@@ -60,6 +60,7 @@ class RecordedRun(Views):
         self.is_changed = any(bag.counts.get(name) for name, kind in bag.topics.items()
                               if kind == PARAMETER_EVENTS.type)
         self._given = path
+        self._states: Columns = {}
 
     @property
     def name(self) -> str:
@@ -91,15 +92,21 @@ class RecordedRun(Views):
         """Time of the last sample, s."""
         return float(self.samples['time'][-1])
 
-    @cached_property
+    @property
     def states(self) -> Columns:
         """The recorded states, with their `step`."""
-        return self.bag.columns_of(SLIDER_STATE, _STATE)
+        return self.state_columns(_STATE)
+
+    def state_columns(self, fields: Sequence[str]) -> Columns:
+        """Return columns of `states`; those that were asked for are held, and no others."""
+        if missing := [name for name in fields if name not in self._states]:
+            self._states |= self.bag.columns_of(SLIDER_STATE, missing)
+        return {name: self._states[name] for name in fields}
 
     @cached_property
     def missing_steps(self) -> int:
         """How many steps have no recorded state between the first and the last that has."""
-        steps = self.states['step']
+        steps = self.state_columns(['step'])['step']
         return int(steps[-1]) - int(steps[0]) + 1 - len(steps) if len(steps) else 0
 
     @cached_property
@@ -107,11 +114,12 @@ class RecordedRun(Views):
         """The steps of which state and friction were recorded; raises RecordingError on fewer than 2."""
         states = self.states
         friction = self.bag.columns_of(FRICTION_FORCE, ('step', *_FRICTION))
-        _, rows, others = np.intersect1d(states['step'], friction['step'], return_indices=True)
-        if len(rows) < 2:
-            raise RecordingError(f'{self.bag.path}: {len(rows)} states with their friction force; a run has at least 2')
-        columns = {name: states[name][rows].astype(np.float64) for name in _STATE if name in COLUMNS}
-        columns |= {name: friction[field][others].astype(np.float64) for field, name in _FRICTION.items()}
+        states, friction = _of_the_same_steps(states, friction)
+        if len(states['step']) < 2:
+            raise RecordingError(f'{self.bag.path}: {len(states["step"])} states with their friction force; a run has '
+                                 'at least 2')
+        columns = {name: states[name].astype(np.float64, copy=False) for name in _STATE if name in COLUMNS}
+        columns |= {name: friction[field].astype(np.float64, copy=False) for field, name in _FRICTION.items()}
         if np.any(np.diff(columns['time']) <= 0.0) or not np.all(np.isin(columns['mode'], list(Mode))):
             raise RecordingError(f'{self.bag.path}: its steps do not follow each other in time, or are in unknown '
                                  'modes')
@@ -125,10 +133,11 @@ class RecordedRun(Views):
     @cached_property
     def events(self) -> list[Event]:
         """The transitions up to the last state; the drive's position then is between those at the steps."""
-        events, time = self.bag.events, self.states['time']
+        states = self.state_columns(['time', 'drive_position'])
+        events, time = self.bag.events, states['time']
         events = [event for event in events if len(time) and time[0] <= event.time <= time[-1]]
         times = [event.time for event in events]
-        drive = np.interp(times, time, self.states['drive_position']).tolist() if events else []
+        drive = np.interp(times, time, states['drive_position']).tolist() if events else []
         return [event._replace(drive_position=position) for event, position in zip(events, drive)]
 
     @cached_property
@@ -164,6 +173,16 @@ class RecordedRun(Views):
         """What the run amounts to, from its first sample to its last."""
         events = [event for event in self.events if self.begin <= event.time <= self.end]
         return summary(events, self.duration, Mode(int(self.samples['mode'][0])), self.begin)
+
+
+def _of_the_same_steps(states: Columns, friction: Columns) -> tuple[Columns, Columns]:
+    """Return the rows of both whose steps are in both, in the order of the steps, each once."""
+    if len(states['step']) == len(friction['step']) and (np.diff(states['step'].astype(np.int64)) > 0).all() \
+            and (states['step'] == friction['step']).all():
+        return states, friction
+    _, rows, others = np.intersect1d(states['step'], friction['step'], return_indices=True)
+    return ({name: column[rows] for name, column in states.items()},
+            {name: column[others] for name, column in friction.items()})
 
 
 def _external_force(columns: Columns, mass: float) -> NDArray[np.float64]:
