@@ -97,6 +97,16 @@ def test_a_good_run_passes_every_judge() -> None:
     assert judge_again(CASE, 'good') == []
 
 
+def test_a_contact_that_holds_little_beside_the_drive_breaks_away_in_time() -> None:
+    # its limit is 2e-9 N, and the drive pulls with 1e10 N; the time is that of the reference
+    values = (draw.axis(0.00022014883903248228, 1721685.3950933928, 26069555372686.043, 9.851792463275056e-08)
+              | draw.contact(0.00028203416586925975, 0.029887747675971698) | draw.static(0.020383594601269636)
+              | draw.kinetic([0.0, 0.03], [0.020383594601269636, 0.02])
+              | draw.constant(-0.0004349433786457962, 36232.958778810345))
+    first = run(Case(values, 4e-17).parts).events[0]
+    assert first.fraction == pytest.approx(1.3046313973565834e-21, rel=1e-14, abs=0.0)
+
+
 def test_the_same_seed_makes_the_same_scenes() -> None:
     for make in GENERATORS.values():
         assert make(random.Random('again')).values == make(random.Random('again')).values

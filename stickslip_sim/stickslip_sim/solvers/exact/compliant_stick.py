@@ -31,7 +31,15 @@ from ...linear.oscillator import Oscillator, amplitude, bound
 from ...linear.polynomials import first_crossing, safe_step
 from ...linear.root_steps import EPSILON
 from .compliant_root import bracketed_root, direct_root
-from .contact_force import ContactForce, contact_at, contact_motion, force_at, moves, rings_within
+from .contact_force import (
+    ContactForce,
+    contact_at,
+    contact_motion,
+    contact_rounding,
+    force_at,
+    moves,
+    rings_within,
+)
 from .static_guards import GAVE_UP, STEPS, concave_root, is_concave, law, steep_start
 
 _WORTH = 0.5   # radian of the free motion: shorter leaps are left to the safe steps
@@ -51,6 +59,7 @@ def compliant_stick(p: Parameters, s: State, horizon: float) -> float:
     if motion.rate == 0.0 and motion.second == 0.0 and rings_within(p, s, osc, motion, rounding):
         s.next.searched = math.inf
         return math.inf
+    rounding = min(rounding, contact_rounding(p, s, motion))
     may_leap = leaps_far = motion.second == 0.0 and is_concave(p)
     pace = math.sqrt(osc.omega2)
     t = 0.0

@@ -6,8 +6,9 @@ from typing import NamedTuple
 
 from ...axis.layout import Parameters, State
 from ...axis.motion import static_limit, travel
-from ...core.hot_path import compiled
+from ...core.hot_path import compiled, inlined
 from ...linear.oscillator import Oscillator, amplitude, impulse
+from ...linear.root_steps import EPSILON
 
 
 class ContactMotion(NamedTuple):
@@ -80,6 +81,15 @@ def force_at(p: Parameters, s: State, t: float) -> tuple[float, float]:
     y, u, a = (0.0, s.velocity, s.acceleration) if t == 0.0 else travel(p, s, t)
     stiffness, damping = p.contact_stiffness, p.contact_damping
     return stiffness * (s.deflection + y) + damping * u, stiffness * u + damping * a
+
+
+@inlined
+def contact_rounding(p: Parameters, s: State, motion: ContactMotion) -> float:
+    """Return the rounding of the contact force: the mass and the drive's damper take all that is beyond it."""
+    stiffness, damping = p.contact_stiffness, p.contact_damping
+    return 4.0 * EPSILON * (abs(motion.steady) + stiffness * (abs(s.deflection) + abs(motion.y0))
+                            + damping * (abs(s.velocity) + abs(motion.free_u))
+                            + p.normal_force * static_limit(p, s.rest))
 
 
 @compiled
