@@ -30,6 +30,7 @@ def assert_same(a: SimulatedRun, b: SimulatedRun) -> None:
     {'drive.amplitudes': [0.0, 0.0], 'drive.frequencies': [3.0, 700.0]},
     {'force.amplitudes': [0.0], 'force.frequencies': [20.0]},
     {'friction.kinetic.end_slope': 0.0},
+    {'friction.scale': 1.0},
     {'encoder.resolution': 0.0},
     {'command.timeout': 0.0},
     {'record.enabled': False},

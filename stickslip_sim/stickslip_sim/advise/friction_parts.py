@@ -5,6 +5,7 @@
 from collections.abc import Iterator
 
 from ..scene import Scene
+from ..scene.load import unscaled
 from .part import Change, Changes, Part, Values, Variant, number_part, switch
 
 _KINETIC = 'friction.kinetic'
@@ -77,7 +78,7 @@ def _speed_dependence(scene: Scene) -> Part:
 
     The limit velocity stays, because the default psi ends there.
     """
-    table = scene.axis.friction.kinetic
+    table = unscaled(scene).axis.friction.kinetic
     values_at = {'mu_k as at rest': table.coefficients[0], 'mu_k as at high speed': table.coefficients[-1]}
 
     def constant(value: float) -> Change:

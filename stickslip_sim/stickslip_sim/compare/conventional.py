@@ -7,6 +7,7 @@ from contextlib import suppress
 from ..core.errors import InputError
 from ..runs import Run
 from ..scene import Scene, changed
+from ..scene.load import unscaled
 from .drawn import steady_inputs
 
 _KINETIC = 'friction.kinetic'
@@ -29,7 +30,7 @@ def characteristics_beside(scene: Scene) -> dict[str, Scene]:
     What the scene cannot have is left out: one without a falling branch has no limit velocity for the others.
     """
     conventional = {'friction.acceleration_dependence': False}
-    kinetic = scene.axis.friction.kinetic
+    kinetic = unscaled(scene).axis.friction.kinetic
     constant = {f'{_KINETIC}.law': 'table', f'{_KINETIC}.velocities': (0.0,),
                 f'{_KINETIC}.coefficients': (kinetic.coefficients[0],), f'{_KINETIC}.end_slope': 0.0}
     found = {'constant kinetic friction': changed(scene, {**conventional, **constant})}

@@ -47,4 +47,5 @@ TIME_CONSTANT = Range(1e-12, 1e15)       # s
 PHASE = Range(-1e6, 1e6)                 # rad
 KATO_EXPONENT = Range(1e-2, 1e2)
 TOLERANCE = Range(1e-12, 1.0)            # of a table
+FACTOR = Range(0.0, 100.0)                # on all of friction
 SHARE = Range(0.0, 1.0)

@@ -23,6 +23,7 @@ from ..friction import (
     smooth,
 )
 from ..friction.kinetic import default_excess
+from ..rig.friction import with_friction_scaled
 from .model import CommandSettings, RecordSettings, Scene, TimingSettings
 from .rig_settings import rig_settings, time_settings
 from .scaled_friction import check_scaled_friction
@@ -78,8 +79,9 @@ def _section(values: Mapping[str, Any], section: str) -> dict[str, Any]:
 def _axis(values: Mapping[str, Any]) -> Axis:
     contact = _section(values, 'contact')
     model = contact.pop('model')
-    return Axis(**_section(values, 'axis'), friction=_friction(values),
+    axis = Axis(**_section(values, 'axis'), friction=_friction(values),
                 contact=CompliantContact(**contact) if model == 'compliant' else RigidContact())
+    return with_friction_scaled(axis, values.get('friction.scale', 1.0))
 
 
 def _friction(values: Mapping[str, Any]) -> Friction:

@@ -76,6 +76,11 @@ def changed(scene: Scene, changes: Mapping[str, object]) -> Scene:
     return scene_from_values(overridden(scene.values, changes)) if changes else scene
 
 
+def unscaled(scene: Scene) -> Scene:
+    """Return a scene without its factor `friction.scale`: the coefficients of its axis are those of its parameters."""
+    return changed(scene, {'friction.scale': 1.0}) if 'friction.scale' in scene.values else scene
+
+
 def parse_override(text: str) -> tuple[str, object]:
     """Return name and value of `a.b=value`, the value as in a scene file; raises InputError."""
     name, equals, word = text.partition('=')

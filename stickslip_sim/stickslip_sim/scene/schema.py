@@ -84,6 +84,9 @@ PARAMETERS: tuple[Parameter, ...] = (
            live=True, when=_SMOOTH),
     number('friction.kinetic.tolerance', 1e-4, '', 'largest difference, in mu, between the smooth law and its'
            ' table', within=ranges.TOLERANCE, live=True, when=_SMOOTH),
+    Parameter('friction.scale', 'double', None, '', 'factor on all coefficients of friction, static and kinetic, as of'
+              ' the fault friction_scale: a whole measured curve that is known to some percent; left out: 1',
+              *ranges.FACTOR, live=True),
     Parameter('friction.acceleration_dependence', 'bool', False, '', 'whether the accelerating branch of mu_k lies'
               ' above the decelerating one (Fig. 6) instead of one curve for both (Fig. 3)'),
     choice('friction.excess.law', 'table', 'psi over the speed, the shape of the excess of the accelerating branch: a'

@@ -90,6 +90,8 @@ def _inputs(scene: Scene, names: Sequence[str], points: Numbers) -> dict[str, Nu
     """Return the arrays for `batch.run_batch`, all of one length."""
     columns: dict[str, Any] = {'drive_velocity': scene.drive.values[0], 'external_force': scene.force.values[0]}
     columns |= {_OF_THE_BATCH[name]: points[:, k] for k, name in enumerate(names) if name in _OF_THE_BATCH}
+    for name in {'static_initial', 'static_limit'} & set(columns):
+        columns[name] = scene.values.get('friction.scale', 1.0) * columns[name]   # the axis of the scene has it already
     if scene.axis.friction.static.kind == StaticLawKind.CONSTANT and 'static_initial' in columns:
         columns['static_limit'] = columns['static_initial']   # as a scene has it
     return {name: np.array(np.broadcast_to(values, len(points)), dtype=float) for name, values in columns.items()}
