@@ -17,6 +17,7 @@ from stickslip_sim.scene import Scene, load_scene
 from stickslip_sim.study import Variation
 from stickslip_sim.study.critical import Critical, critical, default_range
 from stickslip_sim.study.points import scene_at
+from stickslip_sim.study.table_facts import table_fact
 from stickslip_sim.study.theory import critical_drop, critical_feed, feed_of_theory, healing_critical_feed
 from stickslip_sim.study.variation import Numbers
 from stickslip_sim.study.verdict_changes import FAILED, NO, OPEN, YES, Doubt, Findings, Verdicts, find_transitions
@@ -218,6 +219,34 @@ def test_the_tool_prints_both_values(capsys: Capture) -> None:
     assert 'from rest' in out
     assert 'bistable' in out
     assert 'to 2000 N both go on' in out
+
+
+def test_a_feed_on_a_breakpoint_and_a_load_decided_by_a_segment_say_so() -> None:
+    scene = load_scene('paper_fig8')
+    feed = critical(scene, Variation('drive.velocity', 0.034, 0.036), 1e-4).by_table
+    assert [(fact.from_sliding, fact.breakpoint, fact.low) for fact in feed] == [(True, 1, 0.035)]
+    load = critical(scene, Variation('axis.normal_force', 1990.0, 2010.0), 1e-4).by_table
+    assert [(fact.from_sliding, fact.breakpoint, fact.low, fact.high) for fact in load] == [(True, None, 0.0, 0.035)]
+
+
+def test_a_smooth_law_decides_by_its_own_slope() -> None:
+    found = critical(load_scene('stribeck'), Variation('drive.velocity', 0.02, 0.025), 1e-3)
+    assert found.from_sliding.transitions
+    assert found.by_table == ()
+
+
+def test_beyond_the_last_breakpoint_the_segment_has_no_end() -> None:
+    changes = {'friction.kinetic.end_slope': 0.5, 'drive.velocity': 0.05, 'axis.drive_damping': 0.0}
+    [fact] = [table_fact(load_scene('paper_fig7', changes).values, 'axis.normal_force', 1e3, 1e-9, from_sliding=True)]
+    assert fact == (True, 1e3, None, 0.035, math.inf)
+
+
+def test_the_tool_names_breakpoint_and_segment(capsys: Capture) -> None:
+    given = ('critical', 'paper_fig7', '--accuracy', '1e-4')
+    assert run([*given, '--of', 'drive.velocity', '--between', '0.034:0.036']) == 0
+    assert 'the feed is a breakpoint, friction.kinetic.velocities[1]' in capsys.readouterr().out
+    assert run([*given, '--of', 'axis.normal_force', '--between', '1990:2010']) == 0
+    assert 'the straight segment of mu_k from 0 to 0.035 m/s decides' in capsys.readouterr().out
 
 
 def test_the_tool_says_that_there_is_no_transition(capsys: Capture) -> None:

@@ -64,7 +64,27 @@ def _lines(scene: 'Scene', found: 'Critical') -> list[str]:
     lines += [f'{"bistable":14} from {low:.6g} to {high:.6g}{unit} both go on: the start decides'
               for low, high in found.both]
     theory = feed_of_theory(scene.axis) if over.name == 'drive.velocity' else None
+    lines += _table_lines(scene, found, unit, digits)
     return lines if theory is None else [*lines, f'{"closed form":14} {theory:.{digits + 2}g}{unit}, from rest']
+
+
+def _table_lines(scene: 'Scene', found: 'Critical', unit: str, digits: int) -> list[str]:
+    """Return a line for each value that a table of friction decides, and one on what else would."""
+    from ..study.table_facts import breakpoints_between
+
+    lines = []
+    for fact in found.by_table:
+        start = 'sliding' if fact.from_sliding else 'rest'
+        which = f'{"by the table":14} {fact.value:.{digits}g}{unit} from {start}: '
+        if fact.breakpoint is not None:
+            lines.append(f'{which}the feed is a breakpoint, friction.kinetic.velocities[{fact.breakpoint}]; '
+                         'there the slope of mu_k jumps')
+        else:
+            end = 'm/s on' if math.isinf(fact.high) else f'to {fact.high:g} m/s'
+            lines.append(f'{which}the straight segment of mu_k from {fact.low:g} {end} decides')
+    if lines and breakpoints_between(scene):
+        lines.append(f'{"":14} a smooth law may have another value; stickslip friction fits one to points')
+    return lines
 
 
 def _start_lines(start: str, findings: 'Findings', unit: str, digits: int, yes: str, no: str) -> list[str]:

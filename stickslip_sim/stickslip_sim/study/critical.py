@@ -18,6 +18,7 @@ from ..scene import Scene
 from .point_figures import Motion, Numbers, figures_of_runs
 from .points import runs_in_batches, scene_at, works_in_batches
 from .steady import sliding_slope
+from .table_facts import TableFact, table_fact
 from .variation import Variation, checked, parameter_of
 from .verdict_changes import FAILED, NO, OPEN, YES, Findings, Verdicts, find_transitions
 
@@ -29,12 +30,16 @@ FINEST = 1e-15
 
 @dataclass(frozen=True)
 class Critical:
-    """Where the motion changes over a parameter: YES is stick-slip `from_rest`, and lost sliding `from_sliding`."""
+    """Where the motion changes over a parameter: YES is stick-slip `from_rest`, and lost sliding `from_sliding`.
+
+    `by_table` says which of the values a table of friction decides by its breakpoints and straight segments.
+    """
 
     over: Variation
     accuracy: float
     from_rest: Findings
     from_sliding: Findings
+    by_table: tuple[TableFact, ...] = ()
 
     @property
     def both(self) -> list[tuple[float, float]]:
@@ -57,8 +62,11 @@ def critical(scene: Scene, over: Variation, accuracy: float,
         scene_at(scene.values, [over.name], np.array([end]))
     judge = _Judge(scene.values, over.name)
     limits = over.low, over.high, over.log, accuracy
-    return Critical(over, accuracy, find_transitions(judge.sticks, *limits, progress),    # it takes nearly all the time
-                    find_transitions(judge.loses_sliding, *limits))
+    rest = find_transitions(judge.sticks, *limits, progress)    # it takes nearly all the time
+    sliding = find_transitions(judge.loses_sliding, *limits)
+    facts = [table_fact(scene.values, over.name, one.value, accuracy, found is sliding)
+             for found in (rest, sliding) for one in found.transitions if one.resolved]
+    return Critical(over, accuracy, rest, sliding, tuple(fact for fact in facts if fact is not None))
 
 
 def default_range(scene: Scene, name: str) -> Variation:
