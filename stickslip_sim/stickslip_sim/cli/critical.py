@@ -34,20 +34,23 @@ def critical(scene: str, name: str, between: str | None, accuracy: float, change
     from .progress import progress_bar
 
     loaded = changes.load(scene)
-    over = _range(loaded, name, between)
-    if between is not None:
-        changes.check_ranges([over])
+    over = range_given(loaded, name, between, changes)
     with progress_bar('narrowing') as progress:
         found = work.critical(loaded, over, accuracy, progress)
     print('\n'.join(_lines(loaded, found)))
 
 
-def _range(scene: 'Scene', name: str, between: str | None) -> 'Variation':
+def range_given(scene: 'Scene', name: str, between: str | None, changes: SceneChanges) -> 'Variation':
+    """Return where to look for critical values of a parameter; raises InputError."""
     from ..study.critical import default_range
     from ..study.variation import parameter_of, range_of
 
     parameter_of(name)
-    return default_range(scene, name) if between is None else range_of('--between', name, between)
+    if between is None:
+        return default_range(scene, name)
+    over = range_of('--between', name, between)
+    changes.check_ranges([over])
+    return over
 
 
 def _lines(scene: 'Scene', found: 'Critical') -> list[str]:

@@ -3,7 +3,6 @@
 """`stickslip uncertainty`: the spread of the motion of a scene with parameters that are known only roughly."""
 
 import json
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -12,41 +11,54 @@ from . import completion
 from .files import check_picture, whole, write_text
 from .scene_changes import SceneChanges
 from .sweeping import carry_out, print_failed, study_options, workers_of
+from .uncertainty_lines import index_lines, law_lines, percent_head
 
 if TYPE_CHECKING:
     from ..study import Saltelli, Study
     from ..study.table import Columns
-    from ..study.uncertainty import Index, Uncertainty
+    from ..study.uncertainty import Uncertainty
 
-Labels = Mapping[str, str]   # how parameters are printed, by name
 _RESULT = 'uncertainty.json'
 
 
 @click.command(short_help='Run a scene with parameters that are known only roughly.')
 @click.argument('scene', metavar='SCENE', shell_complete=completion.complete_scenes)
 @click.option('--with', 'file', required=True, metavar='FILE.yaml', help='The distributions of its parameters.')
+@click.option('--of', 'critical', metavar='A.B', help='Find how the critical value of this parameter spreads.')
+@click.option('--between', metavar='LOW:HIGH', help='With --of: where to look [default: 1/100 to 100 times its value].')
 @click.option('--samples', type=int, default=1024, show_default=True, metavar='N',
               help='A power of two; N (parameters + 2) points are run.')
 @click.option('--plot', metavar='FILE.png', help='Draw the spread of the figures and the indices (.png, .pdf or .svg).')
 @study_options
-def uncertainty(scene: str, file: str, samples: int, plot: str | None, out: str, duration: float | None,
-                workers: str | None, scheduler: str | None, resume: bool, changes: SceneChanges) -> None:
+def uncertainty(scene: str, file: str, critical: str | None, between: str | None, samples: int, plot: str | None,
+                out: str, duration: float | None, workers: str | None, scheduler: str | None, resume: bool,
+                changes: SceneChanges) -> None:
     """Run SCENE with parameters drawn from distributions: percentiles, and which parameter decides.
 
-    FOLDER gets uncertainty.json beside the table of all points.  Ctrl-C keeps the finished points.
+    FOLDER gets uncertainty.json beside the table of all points.  Ctrl-C keeps the finished points.  With --of it is the
+    critical value of a parameter that spreads, as of the feed; then it is done in one go.
     """
+    _check_options(critical, between, duration, resume)
     if plot is not None:
         check_picture('--plot', plot)
     members = workers_of(workers, scheduler)
     from ..study import Saltelli, Study
+    from ..study.critical_sample import CriticalStudy
     from ..study.uncertain_file import load_uncertain
     from ..study.uncertainty import uncertainty_of
     from ..study.variation import with_place
+    from .critical import range_given
+    from .critical_spread import spread_critical
 
     known = load_uncertain(file)
     sample = Saltelli(known.distributions, samples, known.seed)
     loaded = changes.load(scene)
     study = Study(loaded.values, sample, duration)
+    labels = {name: with_place(loaded.values, name) for name in study.names}
+    if critical is not None:
+        over = range_given(loaded, critical, between, changes)
+        spread_critical(CriticalStudy(study, over), sample, labels, out, plot, members)
+        return
     folder, swept = carry_out(study, out, members, resume)
     found = uncertainty_of(sample, swept.columns)
     result = folder.path / _RESULT
@@ -56,9 +68,16 @@ def uncertainty(scene: str, file: str, samples: int, plot: str | None, out: str,
     print(f'{loaded.name}: {samples} samples of {len(study.names)} parameters, {study.count} points, '
           f'{swept.ran} run now')
     print_failed(study, swept.columns)
-    labels = {name: with_place(loaded.values, name) for name in study.names}
-    print('\n'.join((*_laws(sample, labels), '', *_percentiles(found), '', *_indices(sample, labels, found), '',
-                     str(result))))
+    print('\n'.join((*law_lines(sample, labels), '', *_percentiles(found), '',
+                     *index_lines(sample, labels, found.indices), '', str(result))))
+
+
+def _check_options(critical: str | None, between: str | None, duration: float | None, resume: bool) -> None:
+    """Raise UsageError on options that do not go together."""
+    if critical is None and between is not None:
+        raise click.UsageError('--between is where to look for a critical value: give --of A.B too.')
+    if critical is not None and (duration is not None or resume):
+        raise click.UsageError('--of runs each point until its motion settles, in one go: no --duration, no --resume.')
 
 
 def _draw(study: 'Study', sample: 'Saltelli', columns: 'Columns', found: 'Uncertainty', path: str) -> None:
@@ -84,49 +103,17 @@ def _plain(sample: 'Saltelli', found: 'Uncertainty') -> dict[str, Any]:
     }
 
 
-def _laws(sample: 'Saltelli', labels: Labels) -> list[str]:
-    """Return a line for each parameter: its distribution, and the share that was cut off."""
-    from ..study.distribution import LAWS
-
-    lines = []
-    for one in sample.variations:
-        numbers = ', '.join(f'{name} {number:g}' for name, number in zip(LAWS[one.law].numbers, one.numbers))
-        cut = f', cut to {one.low:g} .. {one.high:g} ({1.0 - one.kept:.2g} off)' if LAWS[one.law].ends else ''
-        unit = f' ({one.unit})' if one.unit else ''
-        lines.append(f'  {labels[one.name]}{unit}: {one.law}, {numbers}{cut}')
-    return lines
-
-
 def _percentiles(found: 'Uncertainty') -> list[str]:
     from ..runs.wording import quantities
-    from ..study.uncertainty import PERCENTS, SPREAD
+    from ..study.uncertainty import SPREAD
 
     doubts = ((found.failed, 'failed'), (found.undecided, 'undecided'),
               (found.unsettled, 'had not settled'))
     doubt = ''.join(f', {count} {what}' for count, what in doubts if count)
-    head = f'{"of those":22}' + ''.join(f'{f"{percent} %":>13}' for percent in PERCENTS)
+    head = percent_head('of those')
     share = 'a share that is not known' if found.stick_slip is None else f'{found.stick_slip:.2%}'
     points = f'{found.points} independent points'
     known = points if found.known == found.points else f'those {found.known} of {points} where it is known'
     return [f'stick-slip in {share} of {known}{doubt}', head,
             *(f'{name:22}' + ''.join(f'{text:>13}' for text in quantities(values, SPREAD[name], 4))
               if values else f'{name:22}{"none":>13}' for name, values in found.percentiles.items())]
-
-
-def _indices(sample: 'Saltelli', labels: Labels, found: 'Uncertainty') -> list[str]:
-    """Return a table of the first-order indices, a line for each figure that has them."""
-    names = [one.name for one in sample.variations]
-    width = max(22, *map(len, labels.values())) + 2
-    lines = ['share of the variance that one parameter explains by itself (and with its interactions)']
-    for figure, of in found.indices.items():
-        if of is None:
-            lines.append(f'{figure:22} none: not every point has it, or all have the same')
-            continue
-        lines.append(figure)
-        lines += [f'  {labels[name]:{width}}{_cell(of[name])}'
-                  for name in sorted(names, key=lambda n: -of[n].first_order)]
-    return lines
-
-
-def _cell(index: 'Index') -> str:
-    return f'{index.first_order:6.3f} ± {index.error:.3f}  ({index.total:.3f} ± {index.total_error:.3f})'

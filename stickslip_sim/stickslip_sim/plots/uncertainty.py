@@ -49,7 +49,7 @@ class Shares(NamedTuple):
 def plot_uncertainty(spreads: Sequence[Spread], heading: str, parameters: Sequence[str], shares: Sequence[Shares],
                      path: Path | str) -> None:
     """Draw a histogram of each figure under a `heading`, and below, a column for each, the shares of `parameters`."""
-    rows = -(-len(spreads) // _COLUMNS)
+    rows = -(-len(spreads) // min(_COLUMNS, len(spreads)))
     heights = [_ROW * rows + 0.5, *([_BAR * len(parameters) + _MARGIN] if shares else [])]
     with rc_context(JOURNAL):
         figure = Figure(figsize=(DOUBLE_COLUMN, sum(heights)), layout=ConstrainedLayoutEngine(w_pad=0.05, h_pad=0.05))
@@ -61,7 +61,8 @@ def plot_uncertainty(spreads: Sequence[Spread], heading: str, parameters: Sequen
 
 
 def _spreads(part: SubFigure, spreads: Sequence[Spread], heading: str) -> None:
-    panels = part.subplots(-(-len(spreads) // _COLUMNS), _COLUMNS, squeeze=False)
+    columns = min(_COLUMNS, len(spreads))
+    panels = part.subplots(-(-len(spreads) // columns), columns, squeeze=False)
     for panel, spread in zip(panels.flat, spreads):
         _histogram(panel, spread)
     for panel in panels[:, 0]:

@@ -7,7 +7,7 @@ steady sliding at the drive's velocity, slightly disturbed; it is lost where h +
 both motions go on, and the start decides.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -16,7 +16,7 @@ import numpy as np
 from ..core.errors import InputError
 from ..scene import Scene
 from .point_figures import Motion, Numbers, figures_of_runs
-from .points import runs_in_batches, scene_at, works_in_batches
+from .points import batches, runs_in_batches, scene_at, works_in_batches
 from .steady import sliding_slope
 from .table_facts import TableFact, table_fact
 from .variation import Variation, checked, parameter_of
@@ -91,21 +91,29 @@ class _Judge:
 
     def sticks(self, numbers: Numbers) -> Verdicts:
         """Whether stick-slip goes on, from the start of the scene."""
-        runs = runs_in_batches(self.values, [self.name], numbers[:, None], None, _PATIENCE, _DOUBLINGS)
-        figures = figures_of_runs(runs)
-        verdicts = np.where(figures.motion == Motion.STICK_SLIP, YES, NO)
-        verdicts[(figures.motion == Motion.UNDECIDED) | runs.late] = OPEN   # late: a value beside it may never slide
-        verdicts[figures.motion == Motion.FAILED] = FAILED
-        return verdicts
+        return stick_verdicts(self.values, [self.name], numbers[:, None])
 
     def loses_sliding(self, numbers: Numbers) -> Verdicts:
         """Whether a disturbance of steady sliding grows."""
-        slopes = np.array([self._slope(number) for number in numbers])
-        return np.where(np.isnan(slopes), OPEN, np.where(slopes < 0.0, YES, NO))
+        return lost_verdicts(self.values, [self.name], numbers[:, None])
 
-    def _slope(self, number: float) -> float:
-        scene = scene_at(self.values, [self.name], np.array([number]))
-        return float(sliding_slope(scene.axis, {'drive_velocity': np.array([scene.drive.values[0]])})[0])
+
+def stick_verdicts(values: Mapping[str, object], names: Sequence[str], points: Numbers) -> Verdicts:
+    """Return for each point whether stick-slip goes on, from the start of the scene."""
+    runs = runs_in_batches(values, names, points, None, _PATIENCE, _DOUBLINGS)
+    figures = figures_of_runs(runs)
+    verdicts = np.where(figures.motion == Motion.STICK_SLIP, YES, NO)
+    verdicts[(figures.motion == Motion.UNDECIDED) | runs.late] = OPEN   # late: a value beside it may never slide
+    verdicts[figures.motion == Motion.FAILED] = FAILED
+    return verdicts
+
+
+def lost_verdicts(values: Mapping[str, object], names: Sequence[str], points: Numbers) -> Verdicts:
+    """Return for each point whether a disturbance of steady sliding grows."""
+    slopes = np.empty(len(points))
+    for members, scene, inputs in batches(values, names, points):
+        slopes[members] = sliding_slope(scene.axis, inputs)
+    return np.where(np.isnan(slopes), OPEN, np.where(slopes < 0.0, YES, NO))
 
 
 def _joined(stretches: list[tuple[float, float]]) -> list[tuple[float, float]]:

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The pictures of a study: a map of two parameters, a bifurcation diagram of one, or how figures spread."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,7 @@ from ..plots.stability_map import Field, Lines, Pick, plot_stability
 from ..plots.uncertainty import Shares, Spread, plot_uncertainty
 from .bifurcation import bifurcation
 from .borders import FEED, borders
+from .critical_sample import CriticalSpread, CriticalStudy
 from .point_figures import Motion
 from .sample import Grid, Saltelli
 from .study import Study
@@ -71,9 +72,22 @@ def draw_uncertainty(study: Study, sample: Saltelli, columns: Columns, found: Un
                for name, values in spread_of(sample, columns).items()]
     heading = ('of no point it is known' if found.stick_slip is None else
                f'{100.0 * found.stick_slip:.3g} % of {found.known} points stick and slip')
-    names = [one.name for one in sample.variations]
-    shares = [_shares(figure, [of[name] for name in names]) for figure, of in found.indices.items() if of]
-    labels = [Scale(name, '', place=place_of(study.values, name)).label for name in names]
+    _draw_spreads(study, spreads, heading, found.indices, path)
+
+
+def draw_critical_spread(study: CriticalStudy, found: Mapping[str, CriticalSpread], path: str) -> None:
+    """Draw how the critical values from rest and from sliding spread, and the indices of those that have them."""
+    over = study.over
+    spreads = [Spread(Scale(f'critical {over.name} {start}', unit_read(over.unit, one.values)), one.values,
+                      one.percentiles or ()) for start, one in found.items()]
+    heading = f'{next(iter(found.values())).points} independent points'
+    _draw_spreads(study.study, spreads, heading, {start: one.indices for start, one in found.items()}, path)
+
+
+def _draw_spreads(study: Study, spreads: Sequence[Spread], heading: str,
+                  indices: Mapping[str, Mapping[str, Index] | None], path: str) -> None:
+    shares = [_shares(figure, [of[name] for name in study.names]) for figure, of in indices.items() if of]
+    labels = [Scale(name, '', place=place_of(study.values, name)).label for name in study.names]
     plot_uncertainty(spreads, heading, labels, shares, path)
 
 

@@ -3,11 +3,12 @@
 """The runs behind the points of a study: thousands at once where the compiled batch can, else one after the other."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import astuple, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..axis.rows import EventRow
 from ..core.errors import InputError, SolverError
@@ -48,15 +49,21 @@ def works_in_batches(scene: Scene) -> bool:
 def runs_in_batches(values: Values, names: Sequence[str], points: Numbers, duration: float | None,
                     patience: int = PATIENCE, doublings: int = DOUBLINGS) -> Runs:
     """Run points by the compiled batch: a scene for each set of numbers that it cannot vary, and all others at once."""
-    others = [k for k, name in enumerate(names) if name not in _OF_THE_BATCH]
     runs = no_runs(len(points))
+    for members, scene, inputs in batches(values, names, points):
+        runs.put(members, run_settled(scene.axis, scene.initial, inputs, duration, patience, doublings))
+    return runs
+
+
+def batches(values: Values, names: Sequence[str], points: Numbers
+            ) -> Iterator[tuple[NDArray[np.int64], Scene, dict[str, Numbers]]]:
+    """Yield the places of points of one scene, the scene, and the arrays of `batch.run_batch` that vary it."""
+    others = [k for k, name in enumerate(names) if name not in _OF_THE_BATCH]
     sets, belongs = np.unique(points[:, others], axis=0, return_inverse=True)
     for k in range(len(sets)):
         members = np.flatnonzero(belongs.reshape(-1) == k)
         scene = scene_at(values, [names[other] for other in others], sets[k])
-        inputs = _inputs(scene, names, points[members])
-        runs.put(members, run_settled(scene.axis, scene.initial, inputs, duration, patience, doublings))
-    return runs
+        yield members, scene, _inputs(scene, names, points[members])
 
 
 def runs_alone(values: Values, names: Sequence[str], points: Numbers, duration: float) -> Runs:
