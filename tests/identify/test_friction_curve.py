@@ -75,6 +75,7 @@ def test_units_are_exact_and_found_in_headings() -> None:
     ('5,0.1\n10,-0.08\n', 'line 2 = -0.08 is refused: must be friction of one sign'),
     ('-5,-0.1\n-10,0.08\n', 'line 2 = 0.08 is refused: must be friction of one sign'),
     ('speed [m/s],mu\n5,0.1\n', '--speed-unit = .mm/s. is refused: must be m/s, as the heading says'),
+    ('5,0\n10,0\n', 'must be friction above 0'),
     ('5,0.1\n' * 20_001, 'at most 20000'),
 ])
 def test_a_wrong_file_is_refused_with_its_line(tmp_path: Path, text: str, said: str) -> None:

@@ -18,6 +18,7 @@ _BEST, _POINTS = 'best', 'points'
 _LAWS = ('table', 'gaussian', 'stribeck', 'exponential', 'hyperbolic')
 _PATTERN = 0.05   # a chance below it is called a pattern
 _DIFFER = 3.0     # standard errors
+_ENOUGH = 12      # points for a law of four parameters
 
 
 @click.command(short_help='Fit friction laws to a measured curve; write the scene.')
@@ -124,6 +125,8 @@ def _fit_lines(fits: 'Fits') -> list[str]:
                      f'{fit.criterion:10.1f}{fit.criterion - best.criterion:12.1f}')
     lines += [f'{name:12}{"":11} not fitted: it has too many parameters for these points' for name in fits.left_out]
     lines.append(f'best: {best.name}, by the lowest AICc, n ln(SSE/n) + 2k + 2k(k+1)/(n-k-1)')
+    if len(best.curve.speeds) < _ENOUGH:
+        lines.append(f'fewer than {_ENOUGH} points: the criterion then favours laws of few parameters; --law takes another')
     if fits.as_good:
         lines.append(f'as good, within 2 of it: {", ".join(fits.as_good)}; these points do not decide between them')
     return lines
@@ -142,7 +145,7 @@ def _law_lines(fit: 'Fit') -> list[str]:
     signs = sign_changes(fit)
     verdict = 'a pattern that this law misses' if signs.chance < _PATTERN else 'no pattern'
     lines.append(f'{"residuals":22} {signs.changes} changes of sign along the speed; noise has as few in '
-                 f'{100.0 * signs.chance:.2g} % of cases: {verdict}')
+                 f'{100.0 * signs.chance:.3g} % of cases: {verdict}')
     both = sides(fit)
     lines += [f'{side.name:22} {side.ratio:.4f} ± {side.error:.4f} of the curve, mean of {side.points} points'
               for side in both]

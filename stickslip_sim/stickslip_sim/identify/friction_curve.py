@@ -79,6 +79,8 @@ def load_curve(path: str, units: Units, direction: str = 'both', meant: tuple[st
             raise InputError(_WHAT, f'{len(points)} points', f'at most {MOST_POINTS}', 'average points of one speed')
         _check_headings(headings, units)
         curve = _of_direction(_curve(points, units), direction)
+        if not curve.coefficients.any():
+            raise InputError(_WHAT, '0 all over', 'friction above 0', 'there is nothing to fit; look at the columns')
         _check_plausible(curve, units, meant)
         return curve._replace(unread=columns - 2)
 
