@@ -12,6 +12,7 @@ import pytest
 from benchmarks.closed_loop import RATE, close_loop, figures
 from benchmarks.controllers import AXIS, PAGE, SLOW_FEED, by_model, controllers
 from benchmarks.linear_loop import loop_matrix, most_delay
+from stickslip_sim.axis import CompliantContact
 from stickslip_sim.controllers import (
     AT_REST,
     BranchCompensation,
@@ -24,6 +25,7 @@ from stickslip_sim.controllers import (
     Setpoint,
     Slide,
 )
+from stickslip_sim.core.types import Mode
 from stickslip_sim.rig import Measured
 from stickslip_sim.scene import load_scene
 
@@ -221,3 +223,24 @@ def test_the_same_run_twice() -> None:
 
 def test_the_page_has_what_is_measured_today() -> None:
     assert '\n'.join(by_model()) in PAGE.read_text(encoding='utf-8')
+
+
+class TestPicture:
+    """What docs/pictures.md says of docs/images/controllers.png."""
+
+    @pytest.mark.parametrize(('threshold', 'chatters'), [(1e-4, True), (3e-4, False)])
+    def test_chatter_in_stick(self, threshold: float, chatters: bool) -> None:
+        compensation = BranchCompensation(AXIS, threshold=threshold)
+        samples = close_loop(AXIS, Controller(Cascade(), compensation), SLOW_FEED, 5.3).samples[4900:]
+        assert {sample.mode for sample in samples} == {Mode.STICK}
+        changes = np.abs(np.diff([sample.drive_velocity for sample in samples]))
+        assert (np.count_nonzero(changes > 3e-3) > 50) == chatters
+
+    def test_motion_in_stick(self) -> None:
+        samples = close_loop(AXIS, controllers()['compensated'], SLOW_FEED, 5.37).samples[4870:]
+        assert {sample.mode for sample in samples} == {Mode.STICK}
+        moved = samples[0].position - samples[-1].position
+        assert isinstance(AXIS.contact, CompliantContact)
+        change = samples[0].drive_force - samples[-1].drive_force
+        assert moved == pytest.approx(change / AXIS.contact.stiffness, rel=0.02)
+        assert moved == pytest.approx(0.23e-3, rel=0.02)
