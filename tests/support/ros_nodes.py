@@ -4,6 +4,7 @@
 
 import importlib
 import os
+import resource
 import signal
 import subprocess
 import threading
@@ -75,6 +76,12 @@ def executable(name: str) -> str:
 def recording_into(folder: Path) -> list[str]:
     """Return the arguments of a node that records from the start."""
     return ['-p', 'record.enabled:=true', '-p', f'record.folder:={folder}']
+
+
+def with_small_files() -> None:
+    """Let a process write no file of more than 200 kB: for `prepare`."""
+    restore_interrupt()
+    resource.setrlimit(resource.RLIMIT_FSIZE, (200_000, 200_000))
 
 
 class NodeProcess:

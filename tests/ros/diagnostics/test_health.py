@@ -4,12 +4,13 @@
 
 import signal
 import subprocess
+from pathlib import Path
 
 import pytest
 from diagnostic_msgs.msg import DiagnosticStatus
 
 from stickslip_sim.core.errors import StickslipError
-from tests.support.ros_nodes import client, executable, running
+from tests.support.ros_nodes import client, executable, recording_into, running, with_small_files
 
 from stickslip_sim.ros.diagnostics.health_node import health_of  # isort: skip  # after ros_nodes, which skips without ROS
 
@@ -46,8 +47,10 @@ class TestAxis:
         assert code == 1
         assert 'in this namespace' in errors
 
-    def test_one_whose_recording_failed_is_not_well(self) -> None:
-        with running('-p', 'record.enabled:=true', '-p', 'record.folder:=/proc/nowhere') as process:
+    def test_one_whose_recording_failed_is_not_well(self, tmp_path: Path) -> None:
+        folder = tmp_path / 'run'
+        with running(*recording_into(folder), prepare=with_small_files) as process, client() as axis:
+            axis.status('recorder', lambda values: int(values['dropped']) > 0)
             code, out, errors = health('-p', 'patience:=20.0')
             process.end()
         assert (code, out) == (1, '')

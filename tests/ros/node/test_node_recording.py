@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Recordings of the node: where they may go, what they hold, and what a full disk does."""
 
-import resource
 import subprocess
 import sys
 from pathlib import Path
@@ -14,8 +13,7 @@ from stickslip_sim.core.errors import RecordingWarning
 from stickslip_sim.recording import Bag, open_bag, read_run
 from stickslip_sim.scene import load_scene
 from stickslip_sim.verify.verification import verify
-from tests.support.ros_nodes import assert_clean, client, recording_into, running
-from tests.support.tool import restore_interrupt
+from tests.support.ros_nodes import assert_clean, client, recording_into, running, with_small_files
 from tests.support.waiting import DEADLINE, wait_for
 
 from stickslip_sim.ros.node.recordings import (  # isort: skip  # after tests.support.ros_nodes, which skips without ROS
@@ -174,8 +172,3 @@ def assert_same(run: Bag, topic: str, heard: dict[int, Any]) -> None:
     assert list(messages) == list(range(min(messages), max(messages) + 1))
     for step in messages.keys() & heard.keys():    # what was not heard was reported as lost
         assert messages[step] == serialize_message(heard[step])
-
-
-def with_small_files() -> None:
-    restore_interrupt()
-    resource.setrlimit(resource.RLIMIT_FSIZE, (200_000, 200_000))
