@@ -142,7 +142,12 @@ class RecordedRun(Views):
 
     @cached_property
     def commands(self) -> Columns:
-        """The drive velocities as they were taken, each at the start of the first step in which it holds."""
+        """The drive velocities as they were taken, each at the start of the first step in which it holds.
+
+        A run of the tool has none: its scene decides.
+        """
+        if self._is_of_the_tool:
+            return {'time': np.empty(0), 'velocity': np.empty(0)}
         columns = self._columns_of_any(DRIVE_VELOCITY, ('sequence', 'velocity'))
         times = np.maximum(columns['sequence'].astype(np.float64) - 1.0, 0.0) / self.scene.time.rate
         return {'time': times, 'velocity': columns['velocity'].astype(np.float64)}
@@ -153,7 +158,7 @@ class RecordedRun(Views):
 
         A run of the tool has the faults of its scene, and no rig events.
         """
-        if self.bag.metadata.get('stickslip', {}).get('origin') == 'offline':
+        if self._is_of_the_tool:
             return marks_of_faults(self.scene.rig.faults, self.end)
         columns = self._columns_of_any(RIG_EVENT, _RIG_EVENT)
         if not np.isin(columns['kind'], list(RigEventKind)).all():
@@ -161,6 +166,10 @@ class RecordedRun(Views):
         rows = zip(*(columns[name].tolist() for name in _RIG_EVENT))
         return marks_of_events((TimedRigEvent(time, RigEventKind(kind), *rest) for time, kind, *rest in rows),
                                self.begin, self.end)
+
+    @property
+    def _is_of_the_tool(self) -> bool:
+        return self.bag.metadata.get('stickslip', {}).get('origin') == 'offline'
 
     def _columns_of_any(self, topic: Topic, fields: Sequence[str]) -> Columns:
         """Return fields of a topic that a recording need not have."""
