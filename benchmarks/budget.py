@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measure where the time of a step of the node goes, part by part, and write it into docs/loop.md.
 
-    python3 -m benchmarks.budget [--rate 1000] [--seconds 10] [--priority 0] [--out docs/loop.md]
+    python3 -m benchmarks.budget [--rate 1000] [--seconds 10] [--priority 50] [--out docs/loop.md]
 
 The node runs in this process, recording, beside a controller in a process of its own.  Each part of a step leaves its
 start and its end in a ring; that takes 0.2 µs a part.
@@ -155,7 +155,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog='python3 -m benchmarks.budget', description=__doc__.splitlines()[0])
     parser.add_argument('--rate', type=float, default=1000.0, help='1/s')
     parser.add_argument('--seconds', type=float, default=10.0)
-    parser.add_argument('--priority', type=int, default=0, help='thread_priority')
+    parser.add_argument('--priority', type=int, default=50, help='thread_priority; 0: none')
     parser.add_argument('--out', type=Path, default=Path('docs/loop.md'))
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as parent:
