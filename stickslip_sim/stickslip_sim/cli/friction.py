@@ -126,7 +126,8 @@ def _fit_lines(fits: 'Fits') -> list[str]:
     lines += [f'{name:12}{"":11} not fitted: it has too many parameters for these points' for name in fits.left_out]
     lines.append(f'best: {best.name}, by the lowest AICc, n ln(SSE/n) + 2k + 2k(k+1)/(n-k-1)')
     if len(best.curve.speeds) < _ENOUGH:
-        lines.append(f'fewer than {_ENOUGH} points: the criterion then favours laws of few parameters; --law takes another')
+        lines.append(f'fewer than {_ENOUGH} points: the criterion then favours laws of few parameters; --law takes '
+                     'another')
     if fits.as_good:
         lines.append(f'as good, within 2 of it: {", ".join(fits.as_good)}; these points do not decide between them')
     return lines

@@ -14,7 +14,7 @@ from ..core.version import __version__
 from .blocks import to_yaml
 from .mcap_chunk import MessageBlock
 from .mcap_file import McapFile
-from .metadata import MessageTally, Part, information, write_metadata
+from .metadata import MessageTally, BagFile, information, write_metadata
 from .schemas import schema
 from .topics import Topic
 
@@ -54,7 +54,7 @@ class BagWriter:
                                 'topic_type_hash': self._schemas[topic.type].hash} for topic in topics]
         self._attachments, self._metadata = dict(attachments), dict(metadata)
         self._split = split
-        self._parts: list[Part] = []       # the last of them is under way
+        self._parts: list[BagFile] = []       # the last of them is under way
         self._of_others = 0                # messages in the other files
         _make(self.folder)
         self._file, self._mcap = self._begun()
@@ -147,7 +147,7 @@ class BagWriter:
     def _begun(self) -> tuple['_File', McapFile]:
         """Begin a file with all that it needs to be read by itself."""
         whole = list(self._parts)
-        part = Part(self._file_name(len(whole)), MessageTally([0] * len(self._topics)))
+        part = BagFile(self._file_name(len(whole)), MessageTally([0] * len(self._topics)))
         path = self.folder / part.file
         try:
             file = _File(path)
@@ -168,7 +168,7 @@ class BagWriter:
         self._parts.append(part)
         return file, mcap
 
-    def _begin(self, mcap: McapFile, part: Part, number: int) -> None:
+    def _begin(self, mcap: McapFile, part: BagFile, number: int) -> None:
         mcap.add_metadata(METADATA, {**self._metadata, **({'part': str(number)} if number else {})})
         self._attach(mcap, self._attachments, 0)
         ids = {name: mcap.add_schema(name, 'ros2msg', known.text.encode()) for name, known in self._schemas.items()}
@@ -176,7 +176,7 @@ class BagWriter:
             mcap.add_channel(topic.name, 'cdr', ids[topic.type], facts)
         self._add_information(mcap, [part])
 
-    def _add_information(self, mcap: McapFile, parts: Sequence[Part]) -> None:
+    def _add_information(self, mcap: McapFile, parts: Sequence[BagFile]) -> None:
         """Put what metadata.yaml says of a file into it, at both ends as rosbag2 does: one end may be lost."""
         mcap.add_metadata('rosbag2', {'serialized_metadata': to_yaml(self._information(parts))})
 
@@ -185,7 +185,7 @@ class BagWriter:
             media = _MEDIA.get(Path(name).suffix, 'application/octet-stream')
             mcap.add_attachment(log_time_ns, name, media, data)
 
-    def _information(self, parts: Sequence[Part]) -> dict[str, object]:
+    def _information(self, parts: Sequence[BagFile]) -> dict[str, object]:
         hashes = {name: known.hash for name, known in self._schemas.items()}
         return information(parts, self._topics, hashes, self._metadata)
 

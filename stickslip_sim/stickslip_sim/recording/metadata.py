@@ -41,7 +41,7 @@ class MessageTally:
         self.total += len(times_ns)
 
 
-class Part(NamedTuple):
+class BagFile(NamedTuple):
     """One file of a bag, and what is in it."""
 
     file: str
@@ -54,7 +54,7 @@ def ros_distro() -> str:
 
 
 def information(
-    parts: Sequence[Part], topics: Sequence[Topic], hashes: Mapping[str, str], custom: Mapping[str, str],
+    parts: Sequence[BagFile], topics: Sequence[Topic], hashes: Mapping[str, str], custom: Mapping[str, str],
 ) -> Yaml:
     """Return the body of metadata.yaml of a bag of one or more files; `hashes` by type name."""
     tallies = [part.tally for part in parts]
