@@ -25,7 +25,7 @@ def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (['simulat', 'paper_fig8'], 'did you mean simulate?'),
     (['paper_fig8'], 'it is a scene; give a verb first, as in stickslip simulate paper_fig8 --duration 10'),
     (['my_run'], 'it is a path; give a verb first, as in stickslip plot my_run'),
-    (['frob'], 'the verbs are advise, bench, check'),
+    (['frob'], 'the verbs are advise, bench, '),
     (['simulate', 'paper_fig9', '--duration', '1'], 'did you mean paper_fig8?'),
     (['compare', 'paper_fig9', '--out', 'x'], 'no such run or scene; did you mean paper_fig8?'),
     (['simulate', 'my_axis', '--duration', '1'], 'did you mean my_axis.yaml?'),
