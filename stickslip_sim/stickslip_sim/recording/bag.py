@@ -14,7 +14,7 @@ from ..core.version import __version__
 from .blocks import to_yaml
 from .mcap_chunk import MessageBlock
 from .mcap_file import McapFile
-from .metadata import MessageTally, BagFile, information, write_metadata
+from .metadata import BagFile, MessageTally, information, write_metadata
 from .schemas import schema
 from .topics import Topic
 
