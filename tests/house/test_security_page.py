@@ -19,7 +19,8 @@ ROWS = [line for line in (ROOT / 'docs/security.md').read_text().splitlines() if
 
 
 @pytest.mark.parametrize(('what', 'limits'), [
-    ('a scene, limits or other', (ros_yaml.SIZE_LIMIT, ros_yaml.MOST_NODES, ros_yaml.MOST_LEVELS)),
+    ('a scene, limits or other', (ros_yaml.SIZE_LIMIT, ros_yaml.MOST_NODES, ros_yaml.MOST_LEVELS,
+                                  ros_yaml.LISTS_LIMIT)),
     ('a text in a scene', (parameter.TEXT_LIMIT,)),
     ('breakpoints of a friction table', (MAX_BREAKPOINTS, MAX_SINUSOIDS, MAX_FAULTS)),
     ('a record of a bag', (records.SIZE_LIMIT >> 20,)),

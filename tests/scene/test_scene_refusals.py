@@ -36,7 +36,9 @@ def test_not_a_number_is_read_as_one_and_refused_as_a_value() -> None:
     ('a: &x 1.0\nb: *x\n', 'aliases'), ('a: 1\na: 2\n', 'twice'), ('a: !!python/object:os.system 1\n', 'tags'),
     ('a: [1, 2\n', 'line 2'), ('a:\n', 'missing'), ('a: 1\n---\nb: 2\n', 'document'), ('a: b: c\n', 'line 1'),
     ('[' * 400, 'deep'), ('[' + '1,' * 100_000 + ']', 'more than 100000'), ('#' * (SIZE_LIMIT + 1), 'at most'),
-    ('a: "\\U00110000"\n', 'Unicode'), ('? [1]\n: 2\n', 'word'), ('a: \x00\n', 'printable'), ('a: !x 1\n', 'tags'),
+    ('? [' + '1.0, ' * 100 + '1.0]\n: 2\n', 'word'), ('[' + '1.0, ' * 100 + '1.0] x\n', 'line 1'),
+    ('#' * SIZE_LIMIT + '\n[' + '1.0, ' * 100 + '1.0]', 'at most'), ('a: "\\U00110000"\n', 'Unicode'),
+    ('? [1]\n: 2\n', 'word'), ('a: \x00\n', 'printable'), ('a: !x 1\n', 'tags'),
 ])
 def test_yaml_that_ros_refuses_or_passes_over(text: str, hint: str) -> None:
     assert hint in str(refusal(read_yaml, text))

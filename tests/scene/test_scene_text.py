@@ -9,12 +9,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from stickslip_sim.config.ros_yaml import read_yaml
+from stickslip_sim.config.ros_yaml import plain_value, read_yaml
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.scene import load_scene, scene_from_values, scene_names
 from stickslip_sim.scene.load import parse_scene, scene_of_parameters
-from stickslip_sim.scene.schema import PARAMETERS
+from stickslip_sim.scene.schema import BY_NAME, PARAMETERS
 from stickslip_sim.scene.sections import parameters_of
+from stickslip_sim.scene.text import yaml_value
 
 masses = st.floats(1e-9, 1e12)
 positive = st.floats(1e-300, 1e15)
@@ -81,3 +82,28 @@ def test_doubles_in_the_text_have_a_dot_for_every_yaml_reader() -> None:
 def test_equal_values_give_equal_hashes_in_any_order() -> None:
     values = load_scene('paper_fig8').values
     assert scene_from_values(dict(reversed(values.items()))).hash == load_scene('paper_fig8').hash
+
+
+@pytest.mark.parametrize('numbers', [
+    [0.1 * k - 7.0 for k in range(60_000)],                  # more letters and more values than any other document has
+    [*map(float, range(100)), -0.0, 1e-5, -1.5e-300, 1e22, math.inf, -math.inf],
+    [5e-324, *map(float, range(100))],
+])
+def test_a_long_list_is_read_as_a_short_one(numbers: list[float]) -> None:
+    entry = BY_NAME['drive.times']
+    text = yaml_value(entry, tuple(numbers))
+    expected = [plain_value(word) for word in text[1:-1].split(', ')]
+    assert repr(read_yaml(f'a: {{b: {text}, c: 1}}\nd: {text}\n')) == repr({'a': {'b': expected, 'c': 1},
+                                                                              'd': expected})
+    assert repr(read_yaml(text.replace(', ', ' ,'))) == repr(expected)
+
+
+def test_a_long_list_of_a_scene_is_checked_as_a_short_one() -> None:
+    times = [0.001 * k for k in range(50_000)]
+    values: dict[str, object] = {'drive.course': 'steps', 'drive.times': times, 'drive.velocities': [-0.0] * 50_000}
+    scene = scene_from_values(values)
+    assert math.copysign(1.0, scene.drive.values[-1]) == 1.0
+    assert parse_scene(scene.text) == scene
+    for bad in (math.nan, math.inf, 2e6, 1e-310):
+        with pytest.raises(InputError, match=r'drive\.velocities'):
+            scene_from_values({**values, 'drive.velocities': [0.1] * 49_999 + [bad]})

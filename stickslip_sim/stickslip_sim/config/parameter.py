@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from ..core.errors import InputError
 
 TEXT_LIMIT = 200   # characters
+LONG = 500         # numbers of a list that is checked as a whole
 
 _PLAIN = {
     'string': f'printable text of at most {TEXT_LIMIT} characters',
@@ -81,7 +82,7 @@ class Parameter:
     def checked(self, value: object) -> object:
         """Return a value as the type of this parameter (lists as tuples); raises InputError when it is none."""
         if self.type == 'double_array':
-            return tuple(self._double(number, value) for number in self._items(value, '[0.0, 1.0]'))
+            return self._doubles(self._items(value, '[0.0, 1.0]'))
         if self.type == 'string_array':
             return tuple(self._text(text, value) for text in self._items(value, '[one, another]'))
         if self.type == 'double':
@@ -103,6 +104,18 @@ class Parameter:
         if not isinstance(value, str) or not 0 < len(value) <= TEXT_LIMIT or not value.isprintable():
             raise InputError(self.name, given, self.allowed, 'put each in quotes')
         return value
+
+    def _doubles(self, items: Sequence[object]) -> tuple[float, ...]:
+        if len(items) < LONG or set(map(type, items)) != {float}:
+            return tuple(self._double(number, items) for number in items)
+        import numpy as np  # costs more than a short list
+
+        numbers = np.array(items, dtype=np.float64)
+        sizes = np.abs(numbers[numbers != 0.0])
+        ends = float(numbers.min()), float(numbers.max())
+        if np.isnan(numbers).any() or not all(map(self._in_range, ends)) or sizes.min(initial=1.0) < sys.float_info.min:
+            return tuple(self._double(number, items) for number in items)
+        return tuple((numbers + 0.0).tolist())
 
     def _double(self, value: object, given: object) -> float:
         if isinstance(value, bool) or not isinstance(value, (int, float)):

@@ -9,7 +9,7 @@ reader refuses mistakes that ROS would pass over in silence (a key given twice, 
 import math
 import re
 import sys
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from yaml import YAMLError
 from yaml.composer import Composer
@@ -20,10 +20,12 @@ from yaml.parser import Parser
 from yaml.reader import Reader
 from yaml.resolver import BaseResolver
 from yaml.scanner import Scanner
+from yaml.tokens import ScalarToken
 
 from ..core.errors import InputError
 
-SIZE_LIMIT = 1 << 20   # letters of a document
+SIZE_LIMIT = 1 << 20   # letters of a document, beside long lists of numbers
+LISTS_LIMIT = 12 << 20   # letters of a document with them: the 200,000 points of a profile fit
 MOST_LEVELS = 16
 MOST_NODES = 100_000   # names, values and lists of a document: four seconds of reading
 _SHOWN = 100           # letters of a document that is refused
@@ -34,13 +36,15 @@ _TRUE = {'y', 'Y', 'yes', 'Yes', 'YES', 'true', 'True', 'TRUE', 'on', 'On', 'ON'
 _FALSE = {'n', 'N', 'no', 'No', 'NO', 'false', 'False', 'FALSE', 'off', 'Off', 'OFF'}
 _INTEGER = re.compile(r'[-+]?(?:0[xX][0-9a-fA-F]+|0[0-7]*|[1-9][0-9]*)')
 _DOUBLE = re.compile(r'[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?')
+_NUMBER = r'[-+]?[0-9]+\.[0-9]*(?:[eE][-+]?[0-9]+)?'
+_NUMBERS = re.compile(rf'\[ *(?:{_NUMBER} *, *){{99,}}{_NUMBER} *\]')   # in one line
+_LIST = '['   # the style of a scalar that is a long list of numbers
 _SPECIAL = re.compile(r'[-+]?(?:\.inf|\.Inf|\.INF|(?i:inf|infinity))|\.nan|\.NaN|\.NAN|[-+]?(?i:nan)')
 
 
 def read_yaml(text: str) -> object:
     """Return a YAML document as dicts, lists, texts, bools and numbers; raises InputError that names the line."""
-    if len(text) > SIZE_LIMIT:
-        raise InputError('text', text[:_SHOWN], f'at most {SIZE_LIMIT} letters', 'is this the right file?')
+    _check_size(text)
     try:
         root = _Reader(text).get_single_node()
         return None if root is None else _value(root)
@@ -53,8 +57,19 @@ def read_yaml(text: str) -> object:
         raise InputError('text', 'an escape \\U', 'letters that Unicode has', 'none is beyond \\U0010FFFF') from None
 
 
+def _check_size(text: str) -> None:
+    if len(text) <= SIZE_LIMIT:
+        return
+    if len(text) > LISTS_LIMIT or len(_NUMBERS.sub('', text)) > SIZE_LIMIT:
+        raise InputError('text', text[:_SHOWN], f'at most {SIZE_LIMIT} letters, or {LISTS_LIMIT} with long lists of '
+                         'numbers, each in one line', 'is this the right file?')
+
+
 class _Reader(Reader, Scanner, Parser, Composer, BaseResolver):
-    """Composes a tree of nodes without aliases, of a sane depth and size."""
+    """Composes a tree of nodes without aliases, of a sane depth and size.
+
+    A list of a hundred numbers or more, in one line, is one scalar: its style is `_LIST`.
+    """
 
     def __init__(self, text: str) -> None:
         Reader.__init__(self, text)
@@ -73,6 +88,17 @@ class _Reader(Reader, Scanner, Parser, Composer, BaseResolver):
         self._depth -= 1
         return node
 
+    def fetch_flow_sequence_start(self) -> None:
+        found = _NUMBERS.match(self.buffer, self.pointer)
+        if found is None:
+            super().fetch_flow_sequence_start()
+            return
+        self.save_possible_simple_key()
+        self.allow_simple_key = False
+        start, length = self.get_mark(), found.end() - self.pointer
+        self.index, self.column, self.pointer = self.index + length, self.column + length, found.end()
+        self.tokens.append(ScalarToken(found.group(), True, start, self.get_mark(), _LIST))
+
     def _trouble(self) -> str:
         """Return why the next node is refused, or an empty text."""
         if self.check_event(AliasEvent):
@@ -90,6 +116,8 @@ def _value(node: Node) -> object:
     if isinstance(node, SequenceNode):
         return [_value(item) for item in node.value]
     assert isinstance(node, ScalarNode)
+    if node.style == _LIST:
+        return _numbers(node.value[1:-1].split(','))
     if node.style is not None:
         return node.value
     if not node.value:
@@ -97,10 +125,18 @@ def _value(node: Node) -> object:
     return plain_value(node.value)
 
 
+def _numbers(words: list[str]) -> list[Any]:
+    numbers = [*map(float, words)]
+    sizes = [*filter(None, map(abs, numbers))]
+    if sizes and (max(sizes) == math.inf or min(sizes) < sys.float_info.min):
+        return [plain_value(word.strip()) for word in words]
+    return numbers
+
+
 def _mapping(node: MappingNode) -> dict[str, object]:
     result: dict[str, object] = {}
     for key, value in node.value:
-        if not isinstance(key, ScalarNode):
+        if not isinstance(key, ScalarNode) or key.style == _LIST:
             raise MarkedYAMLError(problem='a name must be a word', problem_mark=key.start_mark)
         if key.value in result:
             raise MarkedYAMLError(problem=f'{key.value} is given twice: drop one', problem_mark=key.start_mark)

@@ -67,9 +67,10 @@ class InputProfile:
 
     def check(self, name: str) -> None:
         """Raise InputError when a number of the profile called `name` is not finite."""
-        for number in (*self.starts, *self.values, *self.rates):
-            if not math.isfinite(number):
-                raise InputError(name, number, 'a profile of finite times, values and rates', 'give numbers')
+        numbers = *self.starts, *self.values, *self.rates
+        if not all(map(math.isfinite, numbers)):
+            raise InputError(name, next(number for number in numbers if not math.isfinite(number)),
+                             'a profile of finite times, values and rates', 'give numbers')
 
     def piece_at(self, time: float) -> Piece:
         """Return the piece that holds from `time` >= 0 s on (at a border: the one that begins)."""

@@ -133,10 +133,9 @@ def _pieces(given: Mapping[str, Any], section: str, value: str, rate: str, break
     else:
         profile = _BREAKPOINTS[form](section, given['times'], given[breakpoints], given['period'])
         name = f'{section}.{breakpoints}'
-    for number in (*profile.values, *profile.rates):
-        if not math.isfinite(number):
-            raise InputError(name, given[name.rpartition('.')[2]], 'an input profile of finite values and rates',
-                             'make it smaller or the times longer')
+    if not all(map(math.isfinite, (*profile.values, *profile.rates))):
+        raise InputError(name, given[name.rpartition('.')[2]], 'an input profile of finite values and rates',
+                         'make it smaller or the times longer')
     return profile
 
 

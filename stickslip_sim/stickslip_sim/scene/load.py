@@ -7,7 +7,7 @@ import pathlib
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 
-from ..config.ros_yaml import SIZE_LIMIT, read_yaml
+from ..config.ros_yaml import LISTS_LIMIT, read_yaml
 from ..core.did_you_mean import paths_beside, suggestion
 from ..core.errors import InputError
 from .build import build_scene
@@ -110,7 +110,7 @@ def read_text(path: pathlib.Path, what: str = 'scene') -> str:
     """Return the text of a file of a scene, or of `what`; raises InputError."""
     try:
         with path.open('rb') as file:
-            data = file.read(SIZE_LIMIT + 1)
+            data = file.read(LISTS_LIMIT + 1)
         text = data.decode('utf-8-sig')
     except UnicodeDecodeError as error:
         raise InputError(what, path.name, 'text in UTF-8', f'byte {error.start} is none; is it a {what}?') from None
@@ -120,8 +120,8 @@ def read_text(path: pathlib.Path, what: str = 'scene') -> str:
         raise InputError(what, path.name, 'a readable file', f'{reason}; ' + (
             'check path and permissions' if path.exists() else
             suggestion(path.name, beside, 'check path and permissions'))) from None
-    if len(data) > SIZE_LIMIT:
-        raise InputError(what, path.name, f'a file of at most {SIZE_LIMIT} bytes', f'is this a {what}?')
+    if len(data) > LISTS_LIMIT:
+        raise InputError(what, path.name, f'a file of at most {LISTS_LIMIT} bytes', f'is this a {what}?')
     return text
 
 

@@ -10,6 +10,8 @@ from collections.abc import Mapping
 from ..config.parameter import Parameter, yaml_word
 from .schema import PARAMETERS
 
+_WHOLE = re.compile(r'(?<![.\d])(\d+)(?=e)')   # of a number without a dot
+
 
 def scene_text(values: Mapping[str, object]) -> str:
     """Return effective values as a scene file, in the order of the schema; equal values give equal text."""
@@ -38,6 +40,8 @@ def _indent(depth: int) -> str:
 
 def yaml_value(entry: Parameter, value: object) -> str:
     """Return an effective value as it is written in a scene file."""
+    if isinstance(value, tuple) and entry.type == 'double_array':
+        return _doubles(value)
     if isinstance(value, tuple):
         return '[' + ', '.join(yaml_value(entry, item) for item in value) + ']'
     if isinstance(value, float):
@@ -45,6 +49,11 @@ def yaml_value(entry: Parameter, value: object) -> str:
     if isinstance(value, str) and not entry.choices:
         return json.dumps(value, ensure_ascii=False)
     return yaml_word(value)
+
+
+def _doubles(values: tuple[float, ...]) -> str:
+    """Return a list of doubles, as `_double` writes them."""
+    return _WHOLE.sub(r'\1.0', str([*values])).replace('inf', '.inf')
 
 
 def _double(value: float) -> str:
