@@ -117,7 +117,7 @@ def measure(options: argparse.Namespace, folder: Path) -> Ring:
                      f'scene:={SCENE}', '-p', 'record.enabled:=true', '-p', f'record.folder:={folder}', '-p',
                      f'thread_priority:={options.priority}'], signal_handler_options=SignalHandlerOptions.NO)
     signals, ring = Signals(), Ring()
-    node = FeedAxis(FileParameters('', {}), lambda: signals.stop)
+    node = FeedAxis(FileParameters('', {}, {}), lambda: signals.stop)
     instrument(node, ring)
     controller = subprocess.Popen([sys.executable, '-m', 'benchmarks.hil.controller', '--pid', str(os.getpid()),
                                    '--seconds', str(options.seconds), '--stride',

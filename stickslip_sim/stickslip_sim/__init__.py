@@ -20,6 +20,7 @@ floor down; each imports only from the floors below it:
     study        sweeps, maps, critical values, uncertainty
     identify     from measurements to a scene: friction curves and the laws that fit them
     bench        this solver beside its rivals, which are in bench/peers
+    inputs       what comes from outside: profiles and measured numbers from files, in their units
     recording    runs as bags: written, read back, played
     runs         a run as one thing, simulated or recorded; its receipt and error; batches of thousands
     realtime     steps that keep the time of a clock, and how well they do
@@ -52,11 +53,12 @@ if TYPE_CHECKING:
         VerdictError,
     )
     from .core.types import Event, EventKind, Instant, Mode, Sample
+    from .inputs import load_scene
     from .recording import read_run
     from .runs import Run, simulate, simulate_events
     from .runs.batch import run_batch
     from .runs.error_estimate import error_estimate
-    from .scene import Scene, load_scene, scene_names
+    from .scene import Scene, scene_names
     from .simulation.cycles import Cycle, Summary
     from .simulation.simulator import Simulator
     from .study.in_memory import critical, sweep, uncertainty
@@ -73,11 +75,12 @@ if not TYPE_CHECKING:   # a type checker knows the names from above, and finds a
         '.core.errors': ('InputError', 'RecordingError', 'RecordingWarning', 'SolverError', 'StickslipError',
                          'UnsoundError', 'VerdictError'),
         '.core.types': ('Event', 'EventKind', 'Instant', 'Mode', 'Sample'),
+        '.inputs': ('load_scene',),
         '.recording': ('read_run',),
         '.runs': ('Run', 'simulate', 'simulate_events'),
         '.runs.batch': ('run_batch',),
         '.runs.error_estimate': ('error_estimate',),
-        '.scene': ('Scene', 'load_scene', 'scene_names'),
+        '.scene': ('Scene', 'scene_names'),
         '.simulation.cycles': ('Cycle', 'Summary'),
         '.simulation.simulator': ('Simulator',),
         '.study.in_memory': ('critical', 'sweep', 'uncertainty'),

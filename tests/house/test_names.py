@@ -28,6 +28,7 @@ SAME_NAMES = {
     'main': 'the start of an executable',
     'run': 'the run of the tool; of a rival; of the judge',
     'as_json': 'a result as values for JSON',
+    'load_scene': 'a scene from its file; with its profiles from other files',
     'Run': 'a run, simulated or recorded; the run of the judge',
     'Grid': 'even times of steps; the points of a study on an even grid',
     'Problem': 'the task of the contestants of a race; that of the judge',

@@ -8,9 +8,11 @@ import pytest
 from stickslip_sim.config import parameter, ros_yaml
 from stickslip_sim.core.input_profile import MAX_SINUSOIDS
 from stickslip_sim.friction.kinetic import MAX_BREAKPOINTS
+from stickslip_sim.inputs import csv_table
 from stickslip_sim.recording import opening, reader, records, schemas
 from stickslip_sim.rig.faults import MAX_FAULTS
 from stickslip_sim.runs import simulated
+from stickslip_sim.scene import profile_schema
 from stickslip_sim.study import folder
 from stickslip_sim.verify import steps
 from tests.support.repository import ROOT
@@ -20,7 +22,8 @@ ROWS = [line for line in (ROOT / 'docs/security.md').read_text().splitlines() if
 
 @pytest.mark.parametrize(('what', 'limits'), [
     ('a scene, limits or other', (ros_yaml.SIZE_LIMIT, ros_yaml.MOST_NODES, ros_yaml.MOST_LEVELS,
-                                  ros_yaml.LISTS_LIMIT)),
+                                  ros_yaml.MOST_NUMBERS, ros_yaml.LISTS_LIMIT)),
+    ('points of a profile', (profile_schema.MOST_POINTS, csv_table.MOST_BYTES)),
     ('a text in a scene', (parameter.TEXT_LIMIT,)),
     ('breakpoints of a friction table', (MAX_BREAKPOINTS, MAX_SINUSOIDS, MAX_FAULTS)),
     ('a record of a bag', (records.SIZE_LIMIT >> 20,)),

@@ -38,6 +38,7 @@ def test_not_a_number_is_read_as_one_and_refused_as_a_value() -> None:
     ('[' * 400, 'deep'), ('[' + '1,' * 100_000 + ']', 'more than 100000'), ('#' * (SIZE_LIMIT + 1), 'at most'),
     ('? [' + '1.0, ' * 100 + '1.0]\n: 2\n', 'word'), ('[' + '1.0, ' * 100 + '1.0] x\n', 'line 1'),
     ('#' * SIZE_LIMIT + '\n[' + '1.0, ' * 100 + '1.0]', 'at most'), ('a: "\\U00110000"\n', 'Unicode'),
+    ('[' + '1.0, ' * 200_000 + '1.0]', 'more than 200000 numbers'),
     ('? [1]\n: 2\n', 'word'), ('a: \x00\n', 'printable'), ('a: !x 1\n', 'tags'),
 ])
 def test_yaml_that_ros_refuses_or_passes_over(text: str, hint: str) -> None:

@@ -91,7 +91,8 @@ def _scene_lines(curve: str, law: str, chosen: 'Fit', scene: str | None, changes
     """Return the lines of the scene with the law; raises InputError."""
     from ..identify.curve_scene import scene_with_friction, short_text
     from ..identify.table_fit import points_table
-    from ..scene import load_scene, parse_override
+    from ..inputs import load_scene
+    from ..scene import parse_override
 
     file = Path(curve)
     kinetic = points_table(chosen.curve) if law == _POINTS else chosen.scene

@@ -31,7 +31,7 @@ class SceneChanges(NamedTuple):
 
     def load(self, name: str) -> 'Scene':
         """Return a shipped scene or a file with the changes; raises InputError, also on a value to be asked back."""
-        from ..scene import load_scene
+        from ..inputs import load_scene
         from ..scene.load import named
         from ..scene.plausible import check_plausible
 

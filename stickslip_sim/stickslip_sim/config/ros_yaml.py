@@ -25,7 +25,8 @@ from yaml.tokens import ScalarToken
 from ..core.errors import InputError
 
 SIZE_LIMIT = 1 << 20   # letters of a document, beside long lists of numbers
-LISTS_LIMIT = 12 << 20   # letters of a document with them: the 200,000 points of a profile fit
+LISTS_LIMIT = 12 << 20   # letters of a document with them
+MOST_NUMBERS = 200_000   # of a list: three seconds in the parser of ROS, and four times as long for twice as many
 MOST_LEVELS = 16
 MOST_NODES = 100_000   # names, values and lists of a document: four seconds of reading
 _SHOWN = 100           # letters of a document that is refused
@@ -117,7 +118,7 @@ def _value(node: Node) -> object:
         return [_value(item) for item in node.value]
     assert isinstance(node, ScalarNode)
     if node.style == _LIST:
-        return _numbers(node.value[1:-1].split(','))
+        return _numbers(node)
     if node.style is not None:
         return node.value
     if not node.value:
@@ -125,7 +126,10 @@ def _value(node: Node) -> object:
     return plain_value(node.value)
 
 
-def _numbers(words: list[str]) -> list[Any]:
+def _numbers(node: ScalarNode) -> list[Any]:
+    words = node.value[1:-1].split(',')
+    if len(words) > MOST_NUMBERS:
+        raise MarkedYAMLError(problem=f'more than {MOST_NUMBERS} numbers in a list', problem_mark=node.start_mark)
     numbers = [*map(float, words)]
     sizes = [*filter(None, map(abs, numbers))]
     if sizes and (max(sizes) == math.inf or min(sizes) < sys.float_info.min):

@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import InputError
+from ..inputs.units import FORCES, SPEEDS, in_si, named_unit, unit_of
 from ..scene.load import named, read_text
 from ..scene.plausible import FASTEST, MEANT, ROUGHEST
-from .units import FORCES, SPEEDS, in_si, named_unit, unit_of
 
 Numbers = NDArray[np.float64]
 

@@ -112,11 +112,11 @@ class Bag:
         `log_time` (simulation time) and `publish_time` are in ns; `sequence` is the step.  A name without a slash at
         its begin is that of the one topic that ends so.  Raises RecordingError when there is none, or too much of it.
         """
-        return self._held(self._resolved(topic), None)
+        return self._held(self.resolved(topic), None)
 
     def column_blocks(self, topic: str) -> Iterator[dict[str, NDArray[Any]]]:
         """Yield the columns of a topic block by block, the first of them empty, as far as it goes."""
-        topic = self._resolved(topic)
+        topic = self.resolved(topic)
         type_name = self.topics[topic]
         blocks = TopicColumns(self.files, topic, type_name, self._store(type_name), self.decode).blocks()
         with self._named(topic), understood('a time beyond the year 2262', OverflowError):
@@ -157,7 +157,8 @@ class Bag:
             raise RecordingError('a frame needs pandas: pip install pandas; columns() needs nothing') from None
         return pandas.DataFrame(self.columns(topic))
 
-    def _resolved(self, topic: str) -> str:
+    def resolved(self, topic: str) -> str:
+        """Return the name of the one topic that is, or ends so; raises RecordingError when there is none."""
         names = [name for name in self.topics if name == topic or name.endswith(f'/{topic}')]
         if len(names) == 1 or topic in names:
             return topic if topic in names else names[0]

@@ -48,6 +48,7 @@ def receipt_of(scene: Scene, duration: float, sample_period: float | None, figur
         'solver_settings': scene.solver.settings,
         'duration': duration,
         'sample_period': sample_period,
+        **profiles_from_files(scene),
         'versions': versions(),
         'results': {**figures._asdict(), 'root_iterations': root_iterations, 'final_state': final},
         'energy': energy and {**energy._asdict(), 'residual': energy.residual,
@@ -57,6 +58,14 @@ def receipt_of(scene: Scene, duration: float, sample_period: float | None, figur
     }
     result: dict[str, Any] = plain(receipt)
     return result
+
+
+def profiles_from_files(scene: Scene) -> dict[str, Any]:
+    """Return the profiles that were in files: their points, and where these came from; nothing without any."""
+    names = {'drive': ('course', 'times', 'velocities', 'period'), 'force': ('course', 'times', 'forces', 'period')}
+    profiles = {section: {**source._asdict(), **{name: scene.values[f'{section}.{name}'] for name in names[section]}}
+                for section, source in scene.sources.items()}
+    return {'profiles': profiles} if profiles else {}
 
 
 def versions() -> dict[str, str]:

@@ -25,6 +25,7 @@ from ..friction import (
 from ..friction.kinetic import default_excess
 from ..rig.friction import with_friction_scaled
 from .model import CommandSettings, RecordSettings, Scene, TimingSettings
+from .profile_schema import FILE_SETTINGS
 from .rig_settings import rig_settings, time_settings
 from .scaled_friction import check_scaled_friction
 from .solver import SolverSettings, method_of
@@ -40,6 +41,7 @@ _BREAKPOINTS: dict[str, Callable[..., InputProfile]] = {'steps': steps, 'table':
 
 def build_scene(given: Mapping[str, object], summary: str = '') -> Scene:
     """Return the scene of the values given by dotted name; raises InputError."""
+    _check_read(given)
     values: dict[str, Any] = effective_values(given)
     axis = _axis(values)
     initial = InitialState(**_section(values, 'initial'))
@@ -69,6 +71,15 @@ def build_scene(given: Mapping[str, object], summary: str = '') -> Scene:
         text=text,
         hash=hashlib.sha256(text.encode()).hexdigest(),
     )
+
+
+def _check_read(given: Mapping[str, object]) -> None:
+    """Raise InputError on a profile in a file: who loads a scene has put its points in place of it."""
+    for section in ('drive', 'force'):
+        for name in FILE_SETTINGS:
+            if (value := given.get(f'{section}.{name}')) is not None:
+                raise InputError(f'{section}.{name}', value, f'in a scene file with {section}.file',
+                                 'a recorded scene has the times and values themselves')
 
 
 def _section(values: Mapping[str, Any], section: str) -> dict[str, Any]:

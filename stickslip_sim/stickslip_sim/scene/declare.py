@@ -7,10 +7,10 @@ from ..core.ranges import Range
 
 
 def number(name: str, default: float | None, unit: str, description: str, *, within: Range, above: bool = False,
-           infinite: bool = False, live: bool = False, when: When | None = None) -> Parameter:
+           infinite: bool = False, live: bool = False, when: When | None = None, required: bool = True) -> Parameter:
     """Return a double within a range (with `above` not at its low end); required when it has no default."""
     return Parameter(name, 'double', default, unit, description, *within, above, infinite, (), live, when,
-                     default is None)
+                     required and default is None)
 
 
 def numbers(name: str, default: tuple[float, ...] | None, unit: str, description: str, *, within: Range,

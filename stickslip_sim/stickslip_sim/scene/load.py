@@ -6,6 +6,7 @@ import os
 import pathlib
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from typing import NamedTuple
 
 from ..config.ros_yaml import LISTS_LIMIT, read_yaml
 from ..core.did_you_mean import paths_beside, suggestion
@@ -17,6 +18,14 @@ from .values import overridden, stated
 
 _SHIPPED = pathlib.Path(__file__).parent.parent / 'scenes'
 _ENDINGS = ('.yaml', '.yml')
+
+
+class SceneFile(NamedTuple):
+    """What a scene file says: unchecked `values` by dotted name, one line for people, and the folder that it is in."""
+
+    values: dict[str, object]
+    summary: str
+    folder: pathlib.Path
 
 
 def scene_names() -> list[str]:
@@ -31,7 +40,15 @@ def load_scene(name_or_path: str, overrides: Mapping[str, object] | None = None)
     InputError, whose text begins with the file.
     """
     with named(name_or_path):
-        return parse_scene(read_text(_find(name_or_path)), overrides)
+        found = read_scene(name_or_path)
+        return scene_of_parameters(found.values, overrides or {}, found.summary)
+
+
+def read_scene(name_or_path: str) -> SceneFile:
+    """Return what the file of a shipped scene, or another one, says; raises InputError."""
+    path = _find(name_or_path)
+    text = read_text(path)
+    return SceneFile(parameters_of(read_yaml(text)), _first_comment(text), path.parent)
 
 
 def parse_scene(text: str, overrides: Mapping[str, object] | None = None) -> Scene:
@@ -46,7 +63,12 @@ def read_parameters(path: str) -> dict[str, object]:
 
 
 def scene_of_parameters(values: Mapping[str, object], overrides: Mapping[str, object], summary: str = '') -> Scene:
-    """Return the scene of the parameters of a file, with other values; raises InputError.
+    """Return the scene of the parameters of a file, with other values, as `merged_parameters`; raises InputError."""
+    return build_scene(merged_parameters(values, overrides), summary)
+
+
+def merged_parameters(values: Mapping[str, object], overrides: Mapping[str, object]) -> dict[str, object]:
+    """Return the parameters of a file with other values; raises InputError.
 
     A file that says nothing of an axis but bears the name of a shipped scene means that one, with what it says: so a
     launch file names one.  Any other name is for people, and what is left out is not modelled.
@@ -60,7 +82,7 @@ def scene_of_parameters(values: Mapping[str, object], overrides: Mapping[str, ob
             values = overridden(parameters_of(read_yaml(read_text(_find(name)))), values)
         elif name.endswith(_ENDINGS):
             raise InputError('scene', name, 'a name in a file', 'give the file of that scene itself')
-    return build_scene(overridden(values, overrides), summary)
+    return overridden(values, overrides)
 
 
 def scene_from_values(values: Mapping[str, object], name: str = 'unnamed') -> Scene:

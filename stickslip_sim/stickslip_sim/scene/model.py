@@ -3,8 +3,10 @@
 """A scene: everything that decides a run, checked and ready for the simulator."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
+from typing import NamedTuple
 
 from ..axis import Axis, InitialState
 from ..core.input_profile import InputProfile
@@ -73,11 +75,20 @@ class RecordSettings:
     max_duration: float | None = None
 
 
+class ProfileSource(NamedTuple):
+    """The file that the points of a profile were read from: where it is as stated, its column, and the unit there."""
+
+    file: str
+    column: str
+    unit: str
+
+
 @dataclass(frozen=True, slots=True)
 class Scene:
     """One scene; `values` are all effective parameters by dotted name, `text` is the same as a parameter file.
 
-    `hash` is the sha256 of the text in hexadecimal.  `summary` is one line for people and no part of the scene.
+    `hash` is the sha256 of the text in hexadecimal.  `summary` is one line for people and no part of the scene, nor are
+    the `sources` of profiles from files, by section.
     """
 
     name: str
@@ -96,6 +107,7 @@ class Scene:
     values: dict[str, object] = field(hash=False)
     text: str
     hash: str
+    sources: Mapping[str, ProfileSource] = field(default_factory=dict, compare=False)
 
     def make_rig(self) -> Rig:
         """Return the axis and its rig at the start."""

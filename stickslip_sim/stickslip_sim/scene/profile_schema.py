@@ -5,10 +5,14 @@
 import math
 
 from ..config.parameter import Parameter, When
+from ..config.ros_yaml import MOST_NUMBERS
 from ..core import ranges
 from ..core.input_profile import FREQUENCIES, MAX_SINUSOIDS
 from ..core.ranges import Range
 from .declare import choice, number, numbers
+
+MOST_POINTS = MOST_NUMBERS   # of a profile from a file
+FILE_SETTINGS = ('file', 'file_column', 'file_unit', 'file_time', 'file_time_unit', 'file_begin', 'file_resample')
 
 _SHAPES = ('constant', 'ramp', 'steps', 'sine', 'table')
 
@@ -37,6 +41,7 @@ def profile(section: str, value: str, rate: str, values: str, unit: str, what: s
         number(f'{section}.period', math.inf, 's', 'time after which steps or a table begin again (.inf: never); a'
                ' table is linear from its last breakpoint back to the first', within=Range(1e-6, ranges.TIME.high),
                infinite=True, when=breakpoints),
+        *_file(section, 'velocity' if unit == 'm/s' else 'force', unit, breakpoints),
         number(f'{section}.amplitude', None, unit, 'of a sine amplitude sin(2π frequency t + phase), t since the'
                ' start of the run', within=size, when=sine),
         number(f'{section}.frequency', None, 'Hz', 'frequency of a sine', within=Range(*FREQUENCIES), when=sine),
@@ -48,4 +53,25 @@ def profile(section: str, value: str, rate: str, values: str, unit: str, what: s
                 required=False),
         numbers(f'{section}.phases', None, 'rad', 'phases of these sinusoids; left out: 0', within=ranges.PHASE,
                 required=False),
+    )
+
+
+def _file(section: str, column: str, unit: str, when: When) -> tuple[Parameter, ...]:
+    """Return the parameters of a profile from a file."""
+    def text(name: str, description: str) -> Parameter:
+        return Parameter(f'{section}.{name}', 'string', None, '', description, when=when)
+
+    return (
+        text('file', f'in place of times and {section} values: a CSV file with a line of names (separated by commas,'
+             ' semicolons, tabs or spaces), or BAG:TOPIC; relative to the folder of the scene; its points become the'
+             ' times and values of this scene; course: table when none is given'),
+        text('file_column', f'column of the values, or field of the messages like velocity[0]; left out: {column}'),
+        text('file_unit', f'unit of the values, like {"mm/s" if unit == "m/s" else "kN"}; left out: {unit}'),
+        text('file_time', 'column of the times, or field of the messages, header.stamp or log_time; left out: time, of'
+             ' messages log_time'),
+        text('file_time_unit', 'unit of the times: s, ms, us, ns or min; left out: s'),
+        number(f'{section}.file_begin', None, 's', 'time of the file at which the run starts; left out: 0, which the'
+               ' first row must have (of messages the first)', within=Range(-1e15, 1e15), when=when, required=False),
+        number(f'{section}.file_resample', None, 's', 'take a point every so often, linear between those of the file'
+               ' (steps: held); left out: the points as they are', within=Range(1e-6, 1e6), when=when, required=False),
     )

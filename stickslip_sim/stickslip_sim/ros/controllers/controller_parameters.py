@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from ...axis import Axis
 from ...config.parameter import Parameter
 from ...controllers import BranchCompensation, Cascade, Controller, Following, Moves
-from ...scene import load_scene
+from ...inputs import load_scene
 from ...scene.load import named
 
 _LEAST = 1e-12       # of what must not be zero

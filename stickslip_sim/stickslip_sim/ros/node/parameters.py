@@ -5,6 +5,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
+from pathlib import Path
 from typing import NamedTuple
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor, SetParametersResult
@@ -14,7 +15,9 @@ from rclpy.parameter import Parameter
 
 from ...config.parameter import Parameter as Entry
 from ...core.errors import InputError
-from ...scene.load import load_scene, named, read_parameters, scene_from_values, scene_names, scene_of_parameters
+from ...inputs.profile_file import sections_with_file
+from ...inputs.scene_files import load_scene, scene_with_profiles
+from ...scene.load import named, read_parameters, scene_from_values, scene_names
 from ...scene.model import Scene
 from ...scene.schema import BY_NAME, PARAMETERS
 from ...scene.sections import describes_an_axis, of_a_scene
@@ -33,18 +36,25 @@ _TYPES = {
 
 
 class FileParameters(NamedTuple):
-    """What parameter files give of a scene, by dotted name; `source` names the files, and is empty without any."""
+    """What parameter files give of a scene, by dotted name; `source` names the files, and is empty without any.
+
+    `folders`, by section of the scene, are those of the files that name a profile in a file.
+    """
 
     source: str
     values: Mapping[str, object]
+    folders: Mapping[str, Path]
 
     @classmethod
     def read(cls, paths: Sequence[str]) -> 'FileParameters':
         """Return what files give, read as the tool does; a later one wins.  Raises InputError."""
         values: dict[str, object] = {}
+        folders: dict[str, Path] = {}
         for path in paths:
-            values |= of_a_scene(read_parameters(path))
-        return cls(' + '.join(paths), stated(values))
+            given = of_a_scene(read_parameters(path))
+            values |= given
+            folders |= dict.fromkeys(sections_with_file(given), Path(path).parent)
+        return cls(' + '.join(paths), stated(values), folders)
 
 
 class SceneNode(BoundedNode):
@@ -62,7 +72,7 @@ class SceneNode(BoundedNode):
         given = of_a_scene({name: parameter.value for name, parameter in self._parameter_overrides.items()})
         with named(files.source) if files.source else nullcontext():
             self._check_addressed(files, given)
-            self.scene = scene_at_start(given, files.values)
+            self.scene = scene_at_start(given, files)
         if files.values and not describes_an_axis(given) and self.scene.name not in scene_names():
             self.get_logger().warning('the parameters say nothing of an axis: it stands still, without friction')
         declare(self, PARAMETERS, self.scene.values)
@@ -115,15 +125,16 @@ class SceneNode(BoundedNode):
             self.get_logger().warning(text)
 
 
-def scene_at_start(given: Mapping[str, object], in_files: Mapping[str, object]) -> Scene:
+def scene_at_start(given: Mapping[str, object], files: FileParameters) -> Scene:
     """Return the scene of the parameters given at the start, of which some are in files; raises InputError.
 
     Files that describe an axis are a whole scene, as for the tool; `scene` is just its name.  Otherwise `scene` is a
     shipped one or a file, and what else is given changes it.
     """
+    in_files = files.values
     changes = {name: value for name, value in given.items() if name not in in_files or value != in_files[name]}
     if in_files and (describes_an_axis(in_files) or 'scene' not in changes):
-        return scene_of_parameters(in_files, changes)
+        return scene_with_profiles(in_files, changes, files.folders)
     rest = {name: value for name, value in given.items() if name != 'scene'}
     return load_scene(str(given.get('scene', DEFAULT_SCENE)), rest)
 

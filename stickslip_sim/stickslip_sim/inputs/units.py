@@ -5,7 +5,11 @@
 import difflib
 import re
 from collections.abc import Mapping
+from decimal import Decimal
 from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
 
 from ..core.errors import InputError
 
@@ -14,6 +18,8 @@ SPEEDS: Mapping[str, Fraction] = {
     'm/min': Fraction(1, 60), 'mm/min': Fraction(1, 60_000), 'in/s': Fraction(254, 10**4),
     'in/min': Fraction(254, 60 * 10**4),
 }
+TIMES: Mapping[str, Fraction] = {'s': Fraction(1), 'ms': Fraction(1, 1000), 'us': Fraction(1, 10**6),
+                                 'ns': Fraction(1, 10**9), 'min': Fraction(60)}
 FORCES: Mapping[str, Fraction] = {'N': Fraction(1), 'mN': Fraction(1, 1000), 'kN': Fraction(1000),
                                   'lbf': Fraction(44482216152605, 10**13)}
 
@@ -40,3 +46,13 @@ def named_unit(heading: str, units: Mapping[str, Fraction]) -> str | None:
 def in_si(value: float, unit: Fraction) -> float:
     """Return a finite number of a unit in SI: 0.5 mm/s is 0.0005 m/s to the last bit."""
     return float(Fraction(repr(value)) * unit)
+
+
+def all_in_si(values: NDArray[np.float64], unit: Fraction) -> NDArray[np.float64]:
+    """Return finite numbers of a unit in SI, each as `in_si` does."""
+    if unit == 1:
+        return values
+    digits = len(str(unit.denominator)) - 1
+    if unit == Fraction(1, 10**digits):
+        return np.array([float(Decimal(repr(value)).scaleb(-digits)) for value in values.tolist()])
+    return np.array([in_si(value, unit) for value in values.tolist()])

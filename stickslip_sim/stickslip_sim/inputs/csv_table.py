@@ -1,0 +1,153 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""A table of measured numbers from a CSV file, whose first line has the names of its columns.
+
+Separated by commas, semicolons, tabs or spaces; with all but commas a decimal comma is read too.  What follows a `#` is
+a remark.  Numbers are read by numpy; only a file that it refuses is gone through line by line, to say where.
+"""
+
+import csv
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from fractions import Fraction
+from itertools import islice
+from pathlib import Path
+from typing import NamedTuple, NoReturn
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.errors import InputError
+from .units import all_in_si, named_unit, unit_of
+
+Numbers = NDArray[np.float64]
+
+MOST_BYTES = 256 << 20
+
+
+class Wanted(NamedTuple):
+    """A column: its `name` and `unit`, the options that gave them, and the `units` that it may have."""
+
+    name_option: str
+    name: str
+    unit_option: str
+    unit: str
+    units: Mapping[str, Fraction]
+
+
+class CsvTable:
+    """The chosen columns of a file in SI; raises InputError that names the line.
+
+    `option` named the file.  All numbers are finite.  `columns` are in the order in which they were wanted.
+    """
+
+    def __init__(self, option: str, path: Path, wanted: Sequence[Wanted], most_rows: int) -> None:
+        self._option, self._path = option, path
+        self._lines = _read(option, path).splitlines()
+        headings = self._headings(wanted)
+        places = [_place(headings, column) for column in wanted]
+        rows = self._rows(places, most_rows)
+        for column, place in zip(wanted, places, strict=True):
+            _check_heading(headings[place], column)
+        self.columns = [all_in_si(rows[:, i], column.units[unit_of(column.unit_option, column.unit, column.units)])
+                        for i, column in enumerate(wanted)]
+
+    def refuse(self, row: int, value: object, allowed: str, fix: str) -> NoReturn:
+        """Raise the InputError for a row of the numbers."""
+        line = [number for number, _ in self._data()][row]
+        raise InputError(f'{self._path.name} line {line}', value, allowed, fix)
+
+    def _headings(self, wanted: Sequence[Wanted]) -> list[str]:
+        """Return the names of the columns; the numbers begin behind them."""
+        for index, line in enumerate(self._lines):
+            if text := line.partition('#')[0].strip():
+                self._mark = next((mark for mark in ';\t,' if mark in text), None)
+                self._first = index + 1
+                names = self._cells(text)
+                if all(_number(name) is not None for name in names):
+                    raise InputError(f'{self._path.name} line {index + 1}', text, 'the names of the columns',
+                                     'put a line above the numbers, like ' + ','.join(one.name for one in wanted))
+                return names
+        raise InputError(self._option, self._path.name, 'a line of names, then lines of numbers', 'the file is empty')
+
+    def _cells(self, line: str) -> list[str]:
+        if self._mark is None:
+            return line.split()
+        (cells,) = csv.reader([line], delimiter=self._mark)
+        return [cell.strip() for cell in cells]
+
+    def _rows(self, places: Sequence[int], most: int) -> Numbers:
+        lines = [text for _, text in islice(self._data(), most + 1)]
+        if not lines:
+            raise InputError(self._option, self._path.name, 'a line of names, then lines of numbers',
+                             'it has no numbers')
+        try:
+            rows: Numbers = np.loadtxt(lines, delimiter=self._mark, comments=None, quotechar='"', usecols=places,
+                                       ndmin=2)
+        except ValueError as error:
+            self._refuse_line(places, str(error))
+        if len(rows) > most:
+            raise InputError(self._option, self._path.name, f'at most {most} rows',
+                             'leave rows out: every second, or a part')
+        if not np.isfinite(rows).all():
+            self._refuse_line(places, 'not finite')
+        return rows
+
+    def _refuse_line(self, places: Sequence[int], reason: str) -> NoReturn:
+        for number, text in self._data():
+            cells = self._cells(text)
+            if len(cells) <= max(places):
+                raise InputError(f'{self._path.name} line {number}', text, f'{max(places) + 1} columns or more',
+                                 'complete it, or leave it out')
+            for place in places:
+                value = _number(cells[place])
+                if value is None or not math.isfinite(value):
+                    raise InputError(f'{self._path.name} line {number}', cells[place], 'a finite number',
+                                     'correct it, or leave the line out')
+        raise InputError(self._option, self._path.name, 'lines of numbers', reason)
+
+    def _data(self) -> Iterator[tuple[int, str]]:
+        """Yield the number of each line of numbers, from 1, and its text."""
+        for number, line in enumerate(self._lines[self._first:], self._first + 1):
+            if text := line.partition('#')[0].strip():
+                yield number, text if self._mark == ',' else text.replace(',', '.')
+
+
+def _read(option: str, path: Path) -> str:
+    try:
+        with path.open('rb') as file:
+            data = file.read(MOST_BYTES + 1)
+        text = data.decode('utf-8-sig')
+    except UnicodeDecodeError as error:
+        raise InputError(option, str(path), 'text in UTF-8', f'byte {error.start} is none; is it a CSV file?') from None
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+        raise InputError(option, str(path), 'a readable CSV file', f'{reason}; check the path') from None
+    if len(data) > MOST_BYTES:
+        raise InputError(option, str(path), f'a file of at most {MOST_BYTES} bytes', 'is this the right file?')
+    return text
+
+
+def _place(headings: Sequence[str], column: Wanted) -> int:
+    """Return where a column stands: its heading is its name, or its name and a unit in brackets."""
+    places = [i for i, heading in enumerate(headings)
+              if column.name in (heading, heading.partition('[')[0].strip(), heading.partition('(')[0].strip())]
+    if len(places) != 1:
+        found = 'there are ' + ', '.join(headings) if not places else f'{len(places)} columns have this name'
+        raise InputError(column.name_option, column.name, 'the name of one column', found)
+    return places[0]
+
+
+def _check_heading(heading: str, column: Wanted) -> None:
+    """Raise InputError when a heading names another unit than the one stated."""
+    unit = None if heading == column.unit else named_unit(heading, column.units)
+    if unit is not None and unit != unit_of(column.unit_option, column.unit, column.units):
+        raise InputError(column.unit_option, column.unit, f'{unit}, as the heading says: {heading}',
+                         f'give {column.unit_option} as {unit}, or correct the heading')
+
+
+def _number(cell: str) -> float | None:
+    try:
+        return float(cell) if '_' not in cell else None
+    except ValueError:
+        return None

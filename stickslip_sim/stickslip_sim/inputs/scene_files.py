@@ -1,0 +1,37 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Scenes whose profiles may be in files."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+from ..scene import Scene
+from ..scene.build import build_scene
+from ..scene.load import merged_parameters, named, read_scene
+from .profile_file import prepared, sections_with_file, with_profiles
+
+
+def load_scene(name_or_path: str, overrides: Mapping[str, object] | None = None) -> Scene:
+    """Return a shipped scene or one from a file, with other values by dotted name.
+
+    An override of a choice (contact.model) drops the values of the file for the old one (contact.stiffness).  A profile
+    from a file lies in the folder of the scene, one of the overrides in the working directory, or below.  Raises
+    InputError, whose text begins with the file, and RecordingError for a profile in a bag.
+    """
+    with named(name_or_path):
+        found = read_scene(name_or_path)
+        return scene_with_profiles(found.values, overrides or {}, dict.fromkeys(('drive', 'force'), found.folder),
+                                   found.summary)
+
+
+def scene_with_profiles(values: Mapping[str, object], overrides: Mapping[str, object], folders: Mapping[str, Path],
+                        summary: str = '') -> Scene:
+    """Return the scene of the parameters of files in these `folders` by section, with other values.
+
+    Raises InputError and RecordingError.
+    """
+    base, changes = prepared(values, overrides)
+    places = {**folders, **dict.fromkeys(sections_with_file(changes), Path())}
+    read, sources = with_profiles(merged_parameters(base, changes), places)
+    return replace(build_scene(read, summary), sources=sources)
