@@ -5,13 +5,13 @@
 import math
 from typing import NamedTuple
 
-from ..core.errors import InputError
+from ..core.errors import InputError, RecordingError
 from ..runs import Run
 from .kinds import TIMING
 from .limit_window import JudgedSpan
 from .limits import Limit, Limits, check_fit
 from .observed_motion import ObservedMotion
-from .observed_run import KnownCommands, commands_of, observed_motion, timing_of
+from .observed_run import KnownCommands, commands_of, observed_motion, timing_of, unmeasured
 
 
 class LimitOutcome(NamedTuple):
@@ -42,6 +42,10 @@ def outcomes_of(limits: Limits, run: Run) -> list[LimitOutcome]:
     if reference := limits.reference_at(commands.first if commands else None):
         motion = motion.following(reference)
     outcomes = [_outcome(limit, motion, commands, limits.needs_commands) for limit in limits.limits]
+    for outcome in outcomes:
+        if outcome.value is not None and math.isnan(outcome.value):
+            raise RecordingError(f'{run.name}: {outcome.name} needs {" and ".join(unmeasured(run))}, which was not '
+                                 'measured; leave this limit out, or import that column too')
     if limits.timing and timing:
         outcomes.append(LimitOutcome(TIMING, None, bool(timing.valid), None, timing.verdict))
     return outcomes

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..core.errors import RecordingError, one_line
 from ..core.types import EventKind, Mode
-from ..recording import RecordedRun
+from ..recording import MeasuredRun, RecordedRun
 from ..recording.bag import METADATA
 from ..recording.topics import DRIVE_VELOCITY
 from ..runs import Columns, Run
@@ -81,12 +81,20 @@ def gaps_in(run: Run) -> Iterator[str]:
         yield f'{lost} of {lost + len(observed_motion(run).time)} steps are missing in the recording'
 
 
+def unmeasured(run: Run) -> tuple[str, ...]:
+    """Return what of a state was not measured, in a run that was imported."""
+    if not isinstance(run, MeasuredRun):
+        return ()
+    return tuple(name for name in ('position', 'drive_position') if name not in run.measured)
+
+
 def _checked_states(run: RecordedRun) -> Columns:
     """Return what is looked at of the states; raises RecordingError unless they are those of one run."""
     states = run.state_columns([*_STATE_FIELDS, 'step'])    # the steps are for `missing_steps`
     if not len(states['time']):
         raise RecordingError(f'{run.bag.path}: no state of the axis in it; nothing can be checked')
-    if not all(np.isfinite(states[name]).all() for name in _STATE_FIELDS):
+    unknown = unmeasured(run)
+    if not all(np.isfinite(states[name]).all() for name in _STATE_FIELDS if name not in unknown):
         raise RecordingError(f'{run.bag.path}: states that are no finite numbers; nothing can be checked')
     if not (np.diff(states['time']) > 0.0).all():
         raise RecordingError(f'{run.bag.path}: time goes back in it; give a recording of one run')

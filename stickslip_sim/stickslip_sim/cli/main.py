@@ -30,6 +30,7 @@ from .critical import critical
 from .export import export
 from .extremes import extremes
 from .friction import friction
+from .import_ import import_
 from .map import map_
 from .plot import plot
 from .scenes import scenes
@@ -40,7 +41,7 @@ from .uncertainty import uncertainty
 from .verify import verify
 
 _SECTIONS: dict[str, tuple[click.Command, ...]] = {   # each verb by what a reader wants, as in the help
-    'Run': (scenes, simulate, call),
+    'Run': (scenes, simulate, import_, call),
     'Look': (plot, compare, export),
     'Judge': (check, verify),
     'Study': (critical, sweep, map_, uncertainty),

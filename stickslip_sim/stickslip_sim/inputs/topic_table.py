@@ -22,7 +22,8 @@ class TopicTable:
     """The chosen fields of a topic in SI, a row a message, times from the first message on, s.
 
     A field is named as in `ros2 topic echo`: `velocity`, `wrench.force.x`, `velocity[0]`; an element of a JointState by
-    its joint, too: `velocity[axis_drive]`.  Raises InputError and RecordingError.
+    its joint, too: `velocity[axis_drive]`.  `first` is the time of the first message, s.  Raises InputError and
+    RecordingError.
     """
 
     def __init__(self, option: str, path: Path, topic: str, time: Wanted, wanted: Sequence[Wanted], most_rows: int
@@ -56,8 +57,10 @@ class TopicTable:
             stamps = [message.header.stamp.sec * 10**9 + message.header.stamp.nanosec for message in decoded]
         else:
             numbers = self._numbers(time, decoded)
+            self.first = float(numbers[0])
             since_first: Numbers = numbers - numbers[0]
             return since_first
+        self.first = stamps[0] / 1e9
         return np.array([(stamp - stamps[0]) / 1e9 for stamp in stamps])
 
     def _numbers(self, column: Wanted, decoded: Sequence[Any]) -> Numbers:

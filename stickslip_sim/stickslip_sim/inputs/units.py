@@ -18,6 +18,10 @@ SPEEDS: Mapping[str, Fraction] = {
     'm/min': Fraction(1, 60), 'mm/min': Fraction(1, 60_000), 'in/s': Fraction(254, 10**4),
     'in/min': Fraction(254, 60 * 10**4),
 }
+LENGTHS: Mapping[str, Fraction] = {'m': Fraction(1), 'mm': Fraction(1, 1000), 'um': Fraction(1, 10**6),
+                                   'nm': Fraction(1, 10**9), 'cm': Fraction(1, 100), 'in': Fraction(254, 10**4)}
+ACCELERATIONS: Mapping[str, Fraction] = {'m/s2': Fraction(1), 'mm/s2': Fraction(1, 1000),
+                                         'g': Fraction(980665, 10**5)}
 TIMES: Mapping[str, Fraction] = {'s': Fraction(1), 'ms': Fraction(1, 1000), 'us': Fraction(1, 10**6),
                                  'ns': Fraction(1, 10**9), 'min': Fraction(60)}
 FORCES: Mapping[str, Fraction] = {'N': Fraction(1), 'mN': Fraction(1, 1000), 'kN': Fraction(1000),

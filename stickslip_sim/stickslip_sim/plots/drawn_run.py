@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a picture of a run is drawn from."""
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
@@ -43,7 +44,7 @@ def drawn_run(title: str, samples: Mapping[str, Numbers], events: Sequence[Event
               marks: Sequence[Mark]) -> DrawnRun:
     """Return a run as it is drawn, from its samples (columns named as in `types.Sample`, and `time`) and events."""
     times = np.array([event.time for event in events], dtype=np.float64)
-    breaks = [event for event in events if event.kind == EventKind.BREAKAWAY]
+    breaks = [event for event in events if event.kind == EventKind.BREAKAWAY and math.isfinite(event.friction_force)]
     modes = np.array([samples['mode'][0], *(event.mode for event in events)], dtype=np.float64)
     return DrawnRun(
         title, _with_events(samples, events, times),

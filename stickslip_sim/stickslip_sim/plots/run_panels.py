@@ -114,6 +114,8 @@ class WindowPanels:
         if not self.is_crowded:
             line(panel, {'time': time, 'values': values}, 'values', 1.0, label, color=colour, linewidth=width)
             return
+        if np.isnan(values).all():   # not measured
+            return
         middles, low, high = band(time, values, self._window)
         panel.fill_between(middles, low, high, facecolor=colour, edgecolor=colour, linewidth=0.5, alpha=0.45,
                            label=label)

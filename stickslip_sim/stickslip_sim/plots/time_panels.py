@@ -15,18 +15,23 @@ _KILO_FROM = 1e4     # N: larger forces are shown in kN
 
 def force_unit(*forces: Numbers) -> tuple[float, str]:
     """Return the scale and the unit in which forces (N) are shown."""
-    largest = max((float(np.abs(force).max()) for force in forces if len(force)), default=0.0)
+    known = (force[np.isfinite(force)] for force in forces)
+    largest = max((float(np.abs(force).max()) for force in known if len(force)), default=0.0)
     return (1e-3, 'kN') if largest >= _KILO_FROM else (1.0, 'N')
 
 
 def line(panel: Axes, samples: Mapping[str, Numbers], name: str, scale: float, label: str, **look: Any) -> None:
-    """Draw a column over time."""
+    """Draw a column over time; one of NaN was not measured."""
+    if np.isnan(samples[name]).all():
+        return
     time, values = thinned(samples['time'], samples[name])
     panel.plot(time, values * scale, label=label, **look)
 
 
 def dress(panel: Axes) -> None:
     """Give a panel over time its grid and legend."""
+    if not panel.has_data():
+        panel.text(0.5, 0.5, 'not measured', transform=panel.transAxes, ha='center', va='center', color=GREY)
     panel.spines[['top', 'right']].set_visible(False)
     panel.grid(axis='both', color='#dddddd', linewidth=0.6)
     panel.set_axisbelow(True)

@@ -3,11 +3,14 @@
 """Runs on disk as ROS bags: written by the node and by the offline tool, read back whole or cut off."""
 
 from .bag import BagWriter, Split
+from .measured_bag import write_measured
+from .measured_run import MeasuredRun
 from .offline_bag import OfflineBag, samples_of, write_bag
 from .opening import open_bag
 from .reader import Bag
-from .recorded_run import RecordedRun, read_run
+from .recorded_run import RecordedRun
 from .run import RunFacts, checkpoint_file, open_run, receipt_file
+from .run_reading import read_run
 from .schemas import MessageCodec, Schema, flat_layout, schema
 from .thread import RecorderThread
 from .topic_columns import RecordedMessage
@@ -18,6 +21,7 @@ __all__ = [
     'RECORDED',
     'Bag',
     'BagWriter',
+    'MeasuredRun',
     'MessageCodec',
     'OfflineBag',
     'QosProfile',
@@ -38,4 +42,5 @@ __all__ = [
     'samples_of',
     'schema',
     'write_bag',
+    'write_measured',
 ]

@@ -122,7 +122,7 @@ class StepMessages:
         rows = [of.packed(times, times, steps, numbers_of_steps(of.names, steps, samples)) for of in self._rows]
         others = [*self._commands(first, samples, times), *self._events(first, at, events)]
         others.sort(key=lambda other: other.place)
-        return _interleaved(rows, times, others)
+        return interleaved(rows, times, others)
 
     def _events(self, first: int, at: Instants, events: Sequence[Event]) -> Iterator[_Other]:
         """Yield the transitions; each belongs to the step that it fell into, counted from 1."""
@@ -147,7 +147,7 @@ class StepMessages:
         return _Other(place, channel, time, bytes_of(Message(channel, time, data, time, step & 0xFFFFFFFF)))
 
 
-def _interleaved(rows: Sequence[NDArray[Any]], times: NDArray[np.int64], others: Sequence[_Other]) -> MessageBlock:
+def interleaved(rows: Sequence[NDArray[Any]], times: NDArray[np.int64], others: Sequence[_Other]) -> MessageBlock:
     """Return the messages of steps, those of a step one behind the other, with others in front of their steps."""
     kinds, places = len(rows), np.array([other.place * len(rows) for other in others], np.int64)
     size = sum(of.itemsize for of in rows)

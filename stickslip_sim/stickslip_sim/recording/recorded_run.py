@@ -3,7 +3,6 @@
 """A recorded run: states at its steps, events at their exact times, the scene that travels in it."""
 
 import os
-import warnings
 from collections.abc import Iterator, Sequence
 from functools import cached_property
 from pathlib import Path
@@ -12,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.errors import RecordingError, RecordingWarning, one_line
+from ..core.errors import RecordingError, one_line
 from ..core.types import Event, Mode
 from ..rig import RigEventKind
 from ..rig.marks import Mark, TimedRigEvent, marks_of_events, marks_of_faults
@@ -20,7 +19,7 @@ from ..runs import COLUMNS, Columns
 from ..runs.views import Views
 from ..scene import Scene
 from ..simulation.cycles import Summary, summary
-from .opening import bag_in, shortfalls
+from .opening import shortfalls
 from .reader import Bag
 from .topics import DRIVE_VELOCITY, FRICTION_FORCE, PARAMETER_EVENTS, RIG_EVENT, SLIDER_STATE, Topic
 
@@ -30,18 +29,6 @@ _FRICTION = {'force': 'friction_force', 'coefficient': 'friction_coefficient',
              'contact_deflection': 'contact_deflection'}
 _RIG_EVENT = ('time', 'kind', 'id', 'fault', 'count')   # the fields of TimedRigEvent
 _NO_FORCE = 1e-9   # of the other forces: what rounding leaves where no external force acts
-
-
-def read_run(path: Path | str) -> 'RecordedRun':
-    """Return the run in a folder, or in an MCAP file by itself; raises RecordingError when there is none, or damaged.
-
-    A run without an end (its process was killed, its disk was full, or it is still being written) is read as far as it
-    goes, with a RecordingWarning; its `notes` say so too.
-    """
-    run = RecordedRun(bag_in(path), path)
-    for note in run.notes:
-        warnings.warn(note, RecordingWarning, stacklevel=2)
-    return run
 
 
 class RecordedRun(Views):
@@ -66,6 +53,11 @@ class RecordedRun(Views):
     def name(self) -> str:
         """Of the folder or file."""
         return one_line(Path(os.path.abspath(self._given)).name)
+
+    @property
+    def title(self) -> str:
+        """Of a picture; raises RecordingError."""
+        return f'{self.name} ({self.scene.name}, recorded)'
 
     @property
     def source(self) -> str:

@@ -52,7 +52,6 @@ def _samples_for(run: Run, windows: list[TimeWindow]) -> Columns:
 
 def _title(run: Run) -> str:
     """Return the heading, and the figures of the last cycle below it."""
-    heading = f'{run.name} ({run.scene.name}, recorded)' if run.is_recorded else run.name
     gaps = [] if run.is_complete else ['no end: cut off, or still being written']
     gaps += [f'{run.missing_steps} steps are missing'] if run.missing_steps else []
-    return '\n'.join([f'{heading}, {run.duration:.6g} s', ' · '.join([headline(run.summary), *gaps])])
+    return '\n'.join([f'{run.title}, {run.duration:.6g} s', ' · '.join([headline(run.summary), *gaps])])

@@ -30,6 +30,10 @@ class Run(Protocol):
         """Of the scene, or of the folder."""
 
     @property
+    def title(self) -> str:
+        """Of a picture."""
+
+    @property
     def source(self) -> str:
         """Where it comes from, for people."""
 

@@ -22,6 +22,11 @@ class Views:
         """From the start to the end, s."""
         return self.end - self.begin
 
+    @property
+    def title(self: Run) -> str:
+        """Of a picture."""
+        return self.name
+
     def cycles(self: Run) -> list[Cycle]:
         """Return the complete cycles of stick-slip, from break-away to break-away."""
         return _cycles(self)

@@ -40,5 +40,6 @@ def headline(figures: Summary) -> str:
     cycle = figures.last
     if cycle is None:
         return f'{figures.motion}; {100.0 * figures.stick_share:.3g} % of the time in stick'
-    shown = (f'{name} {quantity(getattr(cycle, field), unit, 4)}' for name, field, unit in CYCLE_FIGURES[:_IN_A_LINE])
+    shown = (f'{name} {quantity(getattr(cycle, field), unit, 4)}' for name, field, unit in CYCLE_FIGURES[:_IN_A_LINE]
+             if not math.isnan(getattr(cycle, field)))   # not measured
     return ('' if figures.settled else 'last cycle: ') + ' · '.join(shown)

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from ..core.errors import RecordingError, one_line
 from ..core.version import __version__
-from ..recording import RecordedRun
+from ..recording import MeasuredRun, RecordedRun
 from ..recording.bag import METADATA
 from ..recording.run import CHECKPOINT_FILE, SCENE_FILE, RunFacts
 
@@ -26,6 +26,8 @@ class Offline(NamedTuple):
 def doubts_about(run: RecordedRun) -> tuple[str, ...]:
     """Return what is doubtful about a run, for people; raises RecordingError when it cannot be run again."""
     bag = run.bag
+    if isinstance(run, MeasuredRun):
+        raise RecordingError(f'{bag.path}: it was measured; only what was simulated can be verified')
     if not bag.is_complete and not bag.topics:
         raise RecordingError(f'{bag.path}: cut off before its first message was written')
     facts = _facts_of(run)

@@ -1,0 +1,57 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""`stickslip import`: a measured run as a run folder."""
+
+from pathlib import Path
+
+import click
+
+from .files import check_new_folder, new_folder
+
+
+@click.command('import', short_help='Make a run folder of a measurement, from a CSV file or a bag.')
+@click.argument('data', metavar='DATA.csv|BAG')
+@click.option('--columns', multiple=True, required=True, metavar='time=T,position=X,...',
+              help='The column of each quantity; of a bag TOPIC:FIELD, as joint_states:position[0].')
+@click.option('--unit', multiple=True, metavar='position=mm,...', help='Units of the columns [default: SI].')
+@click.option('--stick-velocity', type=float, metavar='V',
+              help='A slip is faster than this, m/s, and at its peak than 5 times it [default: 5 % of the highest].')
+@click.option('--out', required=True, metavar='RUN_FOLDER', help='New folder of the run.')
+def import_(data: str, columns: tuple[str, ...], unit: tuple[str, ...], stick_velocity: float | None, out: str
+            ) -> None:
+    """Make a run folder of what was measured, and nothing else, for plot, export, check and compare.
+
+    The quantities are time, position, velocity and acceleration of the slider, drive_position, drive_velocity,
+    drive_force, friction_force, external_force.  Modes and cycles are derived from the speed (docs/runs.md).
+    """
+    check_new_folder('--out', out)
+    from ..core.errors import InputError
+    from ..inputs.measurement import COLUMNS_OPTION, UNIT_OPTION, load_measurement, pairs_of
+    from ..recording import read_run, write_measured
+    from ..runs.wording import headline
+
+    if stick_velocity is not None and not 0.0 < stick_velocity < 1e6:
+        raise InputError('--stick-velocity', stick_velocity, '> 0 and < 1e6 m/s', '0.1 mm/s is 1e-4')
+    named = pairs_of(COLUMNS_OPTION, columns)
+    units = pairs_of(UNIT_OPTION, unit) if unit else {}
+    measured = load_measurement(Path(data), named, units)
+    facts = {'file': Path(data).name, 'columns': _joined(named), 'units': _joined(units)}
+    if stick_velocity is not None:
+        facts['stick_velocity'] = repr(stick_velocity)
+    if measured.remark:
+        facts['remark'] = measured.remark
+    with new_folder('--out', out) as folder:
+        inner = folder / Path(out).name
+        write_measured(inner, measured.times, measured.columns, facts)
+        for path in inner.iterdir():
+            path.rename(folder / path.name)
+        inner.rmdir()
+    run = read_run(out)
+    print(f'{run.name}: {len(measured.times)} rows, {run.duration:.6g} s: {", ".join(measured.columns)}')
+    print(f'  {headline(run.summary)}')
+    for note in run.notes:
+        print(f'  note: {note}')
+
+
+def _joined(pairs: dict[str, str]) -> str:
+    return ','.join(f'{name}={word}' for name, word in pairs.items())

@@ -1,0 +1,176 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""A run that was measured: its modes, events and cycles are derived from the speed, and nothing is known of a scene.
+
+The slider is taken to slip from where its speed passes a threshold, `stick_velocity`, to where it falls below, if the
+peak between them is five times as high; else to be at rest.
+"""
+
+from collections.abc import Iterator, Sequence
+from functools import cached_property
+from itertools import pairwise
+from pathlib import Path
+from typing import NoReturn
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.errors import RecordingError
+from ..core.types import Event, EventKind, Mode
+from ..rig.marks import Mark
+from ..runs import COLUMNS, Columns
+from ..scene import Scene
+from .bag import METADATA
+from .measured_bag import MEASURED, OF_STATE
+from .reader import Bag
+from .recorded_run import RecordedRun
+from .topics import EXTERNAL_FORCE, FRICTION_FORCE, SLIDER_STATE
+
+Numbers = NDArray[np.float64]
+
+STICK_SHARE = 0.05   # of the largest speed: the threshold where none is stated
+SLIP_TIMES = 5.0     # the threshold, which a slip exceeds at its peak: what stays below is noise, or a ringing contact
+
+
+class MeasuredRun(RecordedRun):
+    """A run folder of `stickslip import`; columns that were not measured are NaN in its `samples`.
+
+    The velocity follows from the position where it was not measured itself.
+    """
+
+    def __init__(self, bag: Bag, path: Path | str) -> None:
+        super().__init__(bag, path)
+        self.measured = tuple(bag.metadata[METADATA].get(MEASURED, '').split(','))
+        self.notes = (*self.notes, *self._derived())
+
+    @property
+    def title(self) -> str:
+        """Of a picture."""
+        return f'{self.name} (measured)'
+
+    @property
+    def source(self) -> str:
+        """Where it comes from."""
+        return f'measured: {self.bag.metadata[METADATA].get("file", "")}, imported as {self._given}'
+
+    @property
+    def scene(self) -> Scene:
+        """None: raises RecordingError."""
+        self._lack('a scene')
+
+    @cached_property
+    def stick_velocity(self) -> float:
+        """The speed below which the slider is taken to be at rest, m/s; raises RecordingError when it is none."""
+        given = self.bag.metadata[METADATA].get('stick_velocity')
+        try:
+            stated = None if given is None else float(given)
+        except ValueError:
+            raise RecordingError(f'{self.bag.path}: its stick_velocity is no number: {given}') from None
+        return STICK_SHARE * float(np.abs(self._velocity).max()) if stated is None else stated
+
+    def state_columns(self, fields: Sequence[str]) -> Columns:
+        """Return columns of `states`, with modes and directions that are derived."""
+        return {name: self._derived_states[name] for name in fields}
+
+    @cached_property
+    def _derived_states(self) -> Columns:
+        states = {**self._recorded, 'velocity': self._velocity}
+        modes, directions = np.full(len(self._velocity), float(Mode.STICK)), np.zeros(len(self._velocity))
+        for first, last, peak, direction in self._slips():
+            modes[first:peak + 1], modes[peak + 1:last] = Mode.ACCELERATING, Mode.DECELERATING
+            directions[first:last] = direction
+        return {**states, 'mode': modes, 'direction': directions}
+
+    @cached_property
+    def samples(self) -> Columns:
+        """All of COLUMNS; NaN what was not measured."""
+        count = len(self._velocity)
+        known = {**self._derived_states, 'friction_force': self._force(FRICTION_FORCE.type, 'friction_force'),
+                 'external_force': self._force(EXTERNAL_FORCE.type, 'external_force')}
+        return {name: known.get(name, np.full(count, np.nan)) for name in COLUMNS}
+
+    @cached_property
+    def events(self) -> list[Event]:
+        """Break-away and standstill where the speed passes the threshold, and between them its peak."""
+        found: list[Event] = []
+        rested = float(self.samples['time'][0])
+        for first, last, peak, direction in self._slips():
+            if first > 0:
+                begin = self._event(first, EventKind.BREAKAWAY, Mode.ACCELERATING, direction)
+                found.append(begin._replace(rest_time=begin.time - rested))
+            found.append(self._event(peak, EventKind.DECELERATE, Mode.DECELERATING, direction, at_row=True))
+            if last < len(self._velocity):
+                found.append(self._event(last, EventKind.STICK, Mode.STICK, direction))
+                rested = found[-1].time
+        return found
+
+    @cached_property
+    def commands(self) -> Columns:
+        """None."""
+        return {'time': np.empty(0), 'velocity': np.empty(0)}
+
+    @cached_property
+    def marks(self) -> list[Mark]:
+        """None."""
+        return []
+
+    @cached_property
+    def _recorded(self) -> Columns:
+        columns = self.bag.columns_of(SLIDER_STATE, ('time', 'step', *OF_STATE, 'rest_time'))
+        if len(columns['time']) < 2 or not (np.diff(columns['time']) > 0.0).all():
+            raise RecordingError(f'{self.bag.path}: a measured run has at least 2 states, one after the other')
+        return columns
+
+    @cached_property
+    def _velocity(self) -> Numbers:
+        states = self._recorded
+        velocity = states['velocity'] if 'velocity' in self.measured else np.gradient(states['position'],
+                                                                                       states['time'])
+        if not np.isfinite(velocity).all():
+            self._lack('position or velocity')
+        return np.asarray(velocity, dtype=np.float64)
+
+    def _force(self, type_name: str, name: str) -> Numbers:
+        if name not in self.measured:
+            return np.full(len(self._velocity), np.nan)
+        topic = next((topic for topic, kind in self.bag.topics.items() if kind == type_name), None)
+        force = np.empty(0) if topic is None else self.bag.columns(topic)['force']
+        if len(force) != len(self._velocity):
+            raise RecordingError(f'{self.bag.path}: {len(force)} messages with {name}, {len(self._velocity)} states')
+        return np.asarray(force, dtype=np.float64)
+
+    def _slips(self) -> Iterator[tuple[int, int, int, int]]:
+        """Yield the first row of each slip, the first behind it, that of its peak, and its direction."""
+        speed = self._velocity
+        ways = np.where(np.abs(speed) > self.stick_velocity, np.sign(speed), 0.0)
+        edges = [0, *(np.flatnonzero(np.diff(ways) != 0.0) + 1).tolist(), len(ways)]
+        for first, last in pairwise(edges):
+            peak = first + int(np.abs(speed[first:last]).argmax())
+            if ways[first] != 0.0 and abs(speed[peak]) > SLIP_TIMES * self.stick_velocity:
+                yield first, last, peak, int(ways[first])
+
+    def _event(self, row: int, kind: EventKind, mode: Mode, direction: int, *, at_row: bool = False) -> Event:
+        """Return an event at a row, or where the speed passes the threshold between the row before and this one."""
+        samples = self.samples
+        time = float(samples['time'][row])
+        if not at_row:
+            low, high = (float(abs(speed)) for speed in self._velocity[row - 1:row + 1])
+            share = min(max((self.stick_velocity - low) / (high - low), 0.0), 1.0) if high != low else 1.0
+            before = float(samples['time'][row - 1])
+            time = before + share * (time - before)
+        state = {name: float(np.interp(time, samples['time'], samples[name]))
+                 for name in ('position', 'velocity', 'drive_position', 'drive_force', 'friction_force')}
+        second = float(np.floor(time))
+        return Event(second, time - second, kind, mode, direction, **state, static_coefficient=np.nan,
+                     rest_time=np.nan)
+
+    def _derived(self) -> Iterator[str]:
+        yield (f'modes and cycles are derived: a slip is faster than {self.stick_velocity * 1e3:.4g} mm/s, and at its'
+               f' peak than {SLIP_TIMES:g} times that')
+        if 'velocity' not in self.measured:
+            yield 'the velocity follows from the position'
+        if remark := self.bag.metadata[METADATA].get('remark'):
+            yield remark
+
+    def _lack(self, what: str) -> NoReturn:
+        raise RecordingError(f'{self.bag.path}: a measured run without {what}; it has {", ".join(self.measured)}')

@@ -1,0 +1,134 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Measured runs as run folders: what was measured and nothing else, and what each verb makes of it."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from stickslip_sim.core.errors import RecordingError
+from stickslip_sim.core.types import EventKind
+from stickslip_sim.recording import MeasuredRun, open_bag, read_run
+from stickslip_sim.runs import SimulatedRun, simulate
+from stickslip_sim.scene import load_scene
+from tests.support.tool import answered, refused
+
+Capture = pytest.CaptureFixture[str]
+COLUMNS = '--columns', 'time=t,position=x,velocity=v,drive_position=s', '--columns', 'drive_force=F'
+UNITS = '--unit', 'time=ms,position=mm,velocity=mm/s,drive_position=mm'
+
+
+@pytest.fixture(scope='module')
+def simulated() -> SimulatedRun:
+    return simulate(load_scene('paper_fig7'), 6.0, 0.001)
+
+
+@pytest.fixture(scope='module')
+def data(simulated: SimulatedRun, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return what a recorder would have written of a run of the paper's axis."""
+    path = tmp_path_factory.mktemp('measured') / 'axis.csv'
+    samples = simulated.samples
+    columns = [samples[name] for name in ('time', 'position', 'velocity', 'drive_position', 'drive_force')]
+    np.savetxt(path, np.array(columns).T * [1e3, 1e3, 1e3, 1e3, 1.0], delimiter=',', header='t [ms],x,v,s [mm],F',
+               comments='')
+    return path
+
+
+@pytest.fixture
+def run(data: Path, tmp_path: Path, capsys: Capture) -> MeasuredRun:
+    code, out, err = answered(capsys, 'import', data, *COLUMNS, *UNITS, '--out', tmp_path / 'run')
+    assert (code, err) == (0, '')
+    assert '6001 rows, 6 s: position, velocity, drive_position, drive_force' in out
+    assert 'modes and cycles are derived: a slip is faster than' in out
+    found = read_run(tmp_path / 'run')
+    assert isinstance(found, MeasuredRun)
+    return found
+
+
+def test_what_was_measured_is_there_in_si_and_nothing_else(run: MeasuredRun, simulated: SimulatedRun) -> None:
+    assert run.measured == ('position', 'velocity', 'drive_position', 'drive_force')
+    assert list(run.bag.topics) == ['/slider_state']
+    for name in ('time', *run.measured):
+        np.testing.assert_allclose(run.samples[name], simulated.samples[name], rtol=1e-12, atol=1e-15)
+    states = run.bag.columns('slider_state')
+    assert all(np.isnan(states[name]).all() for name in ('acceleration', 'drive_velocity', 'rest_time'))
+    assert set(states['mode'].tolist()) == {255}
+    with pytest.raises(RecordingError, match='a measured run without a scene; it has position, velocity'):
+        _ = run.scene
+
+
+def test_cycles_are_derived_from_the_speed(run: MeasuredRun, simulated: SimulatedRun) -> None:
+    """To a sample or two; the threshold is passed a little after break-away."""
+    found, exact = run.summary.last, simulated.summary.last
+    assert found is not None
+    assert exact is not None
+    assert run.summary.cycles == simulated.summary.cycles > 3
+    assert found.period == pytest.approx(exact.period, abs=2e-3)
+    assert found.jump == pytest.approx(exact.jump, rel=2e-3)
+    assert found.peak_speed == pytest.approx(exact.peak_speed, rel=1e-3)
+    assert math.isnan(found.break_away_force)
+    kinds = [event.kind for event in run.events]
+    assert kinds[:4] == [EventKind.BREAKAWAY, EventKind.DECELERATE, EventKind.STICK, EventKind.BREAKAWAY]
+    assert [event.time for event in run.events] == sorted(event.time for event in run.events)
+
+
+def test_verbs_take_it_as_far_as_what_they_need_was_measured(run: MeasuredRun, tmp_path: Path, capsys: Capture
+                                                             ) -> None:
+    folder = run.bag.path.parent
+    assert answered(capsys, 'plot', folder, '--out', tmp_path / 'run.png')[0] == 0
+    assert answered(capsys, 'export', folder, '--csv', '-')[1].count('\n') == 6002
+    limits = tmp_path / 'limits.yaml'
+    limits.write_text('limits: {following_error: {max: 1.0}, sticks: {max: 99}, peak_speed: {max: 1.0}}\n')
+    assert answered(capsys, 'check', folder, '--limits', limits)[0] == 0
+    assert 'it was measured; only what was simulated can be verified' in refused(capsys, 'verify', folder)
+
+
+def test_a_velocity_alone(data: Path, tmp_path: Path, capsys: Capture) -> None:
+    answered(capsys, 'import', data, '--columns', 'time=t,velocity=v', '--unit', 'time=ms,velocity=mm/s',
+             '--stick-velocity', '1e-3', '--out', tmp_path / 'run')
+    assert answered(capsys, 'plot', tmp_path / 'run', '--out', tmp_path / 'run.png')[0] == 0
+    run = read_run(tmp_path / 'run')
+    assert isinstance(run, MeasuredRun)
+    assert run.stick_velocity == 1e-3
+    assert run.summary.cycles > 3
+    limits = tmp_path / 'limits.yaml'
+    limits.write_text('limits: {following_error: {max: 1.0}}\n')
+    assert 'following_error needs position and drive_position, which was not measured' in refused(
+        capsys, 'check', tmp_path / 'run', '--limits', limits)
+
+
+def test_a_position_alone(data: Path, tmp_path: Path, capsys: Capture) -> None:
+    out = answered(capsys, 'import', data, '--columns', 'time=t,position=x', '--unit', 'time=ms,position=mm',
+                   '--out', tmp_path / 'run')[1]
+    assert 'note: the velocity follows from the position' in out
+    assert read_run(tmp_path / 'run').summary.cycles > 3
+
+
+def test_topics_of_a_bag(tmp_path: Path, capsys: Capture) -> None:
+    answered(capsys, 'simulate', 'paper_fig7', '--duration', '3', '--bag', tmp_path / 'bag')
+    out = answered(capsys, 'import', tmp_path / 'bag', '--columns', 'position=slider_state:position,'
+                   'friction_force=friction_force:force', '--out', tmp_path / 'run')[1]
+    assert 'friction_force: linear between messages, at the times of slider_state' in out
+    run, bag = read_run(tmp_path / 'run'), open_bag(tmp_path / 'bag')
+    np.testing.assert_array_equal(run.samples['friction_force'], bag.columns('friction_force')['force'])
+    assert run.notes[-1].startswith('friction_force: linear')
+
+
+@pytest.mark.parametrize(('columns', 'units', 'hint'), [
+    ('time=t,drive_force=F', '', 'with a position or a velocity of the slider'),
+    ('position=x', '', 'with the time of each row; add time=COLUMN'),
+    ('time=t,position=y', '', "--columns = 'y' is refused: must be the name of one column; there are t [ms], x, v"),
+    ('time=t,speed=v', '', "'speed=v' is refused: must be QUANTITY=NAME"),
+    ('time=t,position=x,position=v', '', 'each quantity once'),
+    ('time=t,position=x', 'velocity=mm/s', 'of a quantity in --columns'),
+    ('time=t,position=x', 'position=mm', "--unit = 's' is refused: must be ms, as the heading says: t [ms]"),
+    ('time=t,position=x', 'time=ms,position=mile', 'must be one of m, mm, um, nm, cm, in'),
+    ('time=v,position=x', '', 'axis.csv line 3 = 0.0 is refused: must be a time after the one before it'),
+])
+def test_one_line_says_what_is_wrong(columns: str, units: str, hint: str, data: Path, tmp_path: Path, capsys: Capture
+                                     ) -> None:
+    unit = ('--unit', units) if units else ()
+    assert hint in refused(capsys, 'import', data, '--columns', columns, *unit, '--out', tmp_path / 'run')
+    assert not (tmp_path / 'run').exists()
