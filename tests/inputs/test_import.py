@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measured runs as run folders: what was measured and nothing else, and what each verb makes of it."""
 
+import json
 import math
 from pathlib import Path
 
@@ -132,3 +133,39 @@ def test_one_line_says_what_is_wrong(columns: str, units: str, hint: str, data: 
     unit = ('--unit', units) if units else ()
     assert hint in refused(capsys, 'import', data, '--columns', columns, *unit, '--out', tmp_path / 'run')
     assert not (tmp_path / 'run').exists()
+
+
+def test_others_are_compared_with_it(run: MeasuredRun, tmp_path: Path, capsys: Capture) -> None:
+    """With the axis that it was taken from, and with a heavier one."""
+    folder, report = run.bag.path.parent, tmp_path / 'report'
+    answered(capsys, 'simulate', 'paper_fig7', '--duration', '6', '--set', 'axis.mass=500.0', '--bag',
+             tmp_path / 'heavy')
+    code, out, _ = answered(capsys, 'compare', folder, 'paper_fig7', tmp_path / 'heavy', '--duration', '6', '--out',
+                            report)
+    assert code == 0
+    assert 'modes and cycles are derived' in out
+    found = json.loads((report / 'report.json').read_text())
+    assert found['measured'] == 'run'
+    same, heavy = ({one['name']: one for one in beside['figures']} for beside in found['beside'])
+    assert [beside['name'] for beside in found['beside']] == ['paper_fig7', 'heavy']
+    assert list(same) == ['period', 'stick', 'slip', 'jump', 'peak speed', 'drive force at break-away',
+                          'drive force at arrest']
+    for one in same.values():
+        assert one['other'] == pytest.approx(one['measured'], rel=5e-3)
+    assert heavy['slip']['other'] > 1.1 * heavy['slip']['measured']
+    assert {path.name for path in report.iterdir()} == {'overlay.png', 'overlay.svg', 'report.html', 'report.json'}
+    page = (report / 'report.html').read_text()
+    assert 'data:image/svg+xml' in page
+    assert 'drive force at arrest' in page
+
+
+def test_nothing_to_compare_with(run: MeasuredRun, tmp_path: Path, capsys: Capture) -> None:
+    folder = run.bag.path.parent
+    assert 'two runs or more with a measured one' in refused(capsys, 'compare', folder, '--out', tmp_path / 'report')
+    rest = tmp_path / 'rest.csv'
+    rest.write_text('time,velocity\n0,1e-5\n1,0\n2,1e-5\n')
+    answered(capsys, 'import', rest, '--columns', 'time=time,velocity=velocity', '--stick-velocity', '1', '--out',
+             tmp_path / 'rest')
+    assert 'rest: at rest, no complete cycle to be compared' in refused(
+        capsys, 'compare', tmp_path / 'rest', 'paper_fig7', '--out', tmp_path / 'report')
+    assert not (tmp_path / 'report').exists()

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """`stickslip compare`: the paper's figures and statements, from recorded runs or from scenes."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -30,7 +31,8 @@ def compare(runs: tuple[str, ...], out: str, duration: float | None, changes: Sc
     """Draw runs as the paper's figures 4, 6, 7 and 8, and judge what the paper says on each.
 
     A run is the folder of a recorded one, or a scene, which is simulated.  Exit with 3 when a statement that applies
-    to a run does not hold.
+    to a run does not hold.  With a measured run (see import) the others are drawn over it, and differences of their
+    cycles listed.
     """
     _check(runs, out, duration, changes)
     from ..compare.report_folder import write_report
@@ -43,9 +45,13 @@ def compare(runs: tuple[str, ...], out: str, duration: float | None, changes: Sc
             sources.append(_run(run, duration, changes))
             if progress:
                 progress(_OF_RUNS * (k + 1) / len(runs))
-        with new_folder('--out', out) as folder:
-            judged = write_report(named_apart(sources), folder, progress and (
-                lambda share: progress(_OF_RUNS + (1.0 - _OF_RUNS) * share)))
+        if not _is_measured(sources):
+            with new_folder('--out', out) as folder:
+                judged = write_report(named_apart(sources), folder, progress and (
+                    lambda share: progress(_OF_RUNS + (1.0 - _OF_RUNS) * share)))
+    if _is_measured(sources):
+        _print_beside(sources, out)
+        return
     for each in judged:
         _print_judged(each)
     print(f'written: {Path(out) / "report.html"}')
@@ -73,7 +79,7 @@ def _run(source: str, duration: float | None, changes: SceneChanges) -> 'Run':
 
     if is_recorded(source):
         run = recorded_run(source)
-        _ = run.samples, run.scene, run.events   # what cannot be read is refused before the work begins
+        _ = run.samples, run.events, _is_measured([run]) or run.scene   # refused before the work begins
         return run
     scene = changes.load(source)
     return simulate_densely(scene, default_duration(scene) if duration is None else duration)
@@ -89,6 +95,32 @@ def named_apart(runs: list['Run']) -> dict[str, 'Run']:
         name = next(name for name in (stem, *(f'{stem}_{k}' for k in range(2, _MOST + 1))) if name not in named)
         named[name] = run
     return named
+
+
+def _is_measured(runs: 'Sequence[Run]') -> bool:
+    from ..recording import MeasuredRun
+
+    return any(isinstance(run, MeasuredRun) for run in runs)
+
+
+def _print_beside(runs: list['Run'], out: str) -> None:
+    """Compare runs with a measured one; raises InputError without any beside it."""
+    from ..compare.beside_measured import write_beside
+    from ..core.errors import InputError
+
+    if len(runs) < 2:
+        raise InputError('RUN_OR_SCENE', runs[0].name, 'two runs or more with a measured one',
+                         'add a scene, or the run of one')
+    named = named_apart(runs)
+    with new_folder('--out', out) as folder:
+        measured, beside = write_beside(named, folder)
+    for note in named[measured].notes:
+        print(f'{measured}: {note}')
+    for one in beside:
+        print(f'{one.name} beside {measured}, means of the last cycles:')
+        for each in one.differences:
+            print(f'  {each.name:25} {each.text}')
+    print(f'written: {Path(out) / "report.html"}')
 
 
 def _print_judged(judged: 'Judged') -> None:

@@ -42,6 +42,11 @@ def page(report: dict[str, Any], pictures: Sequence[Picture], folder: Path) -> s
         body += [f'<h2>{escape(run["name"])}</h2>', _origin(run), _statements(run),
                  *_figures(pictures, run['name'], folder), _cycles(run), _ring_down(run)]
     body.append(f'<p class="other">{escape(versions)}</p>')
+    return html_page(title, body)
+
+
+def html_page(title: str, body: Sequence[str]) -> str:
+    """Return a page of parts that are HTML."""
     return (f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>'
             f'<style>{_STYLE}</style></head>\n<body>\n' + '\n'.join(body) + '\n</body></html>\n')
 
@@ -51,7 +56,7 @@ def _overview(runs: Sequence[dict[str, Any]]) -> str:
     rows = [[f'{name} / {unit}', *(_cell(run['cycles'][-1][field], scale) if run['cycles'] else '–' for run in runs)]
             for name, field, unit, scale in _CYCLE[1:]]
     motion = ['motion', *(run['motion'] + (', settled' if run['settled'] else '') for run in runs)]
-    return _table('The last complete cycle', ['', *(run['name'] for run in runs)], [motion, *rows])
+    return html_table('The last complete cycle', ['', *(run['name'] for run in runs)], [motion, *rows])
 
 
 def _origin(run: dict[str, Any]) -> str:
@@ -83,7 +88,7 @@ def _cycles(run: dict[str, Any]) -> str:
     caption = 'Cycles; the change is relative, of the figure that changes most'
     if run['contraction'] is not None:
         caption += f', and becomes {run["contraction"]:.3g} times as large with each cycle'
-    return _table(caption, heads, rows)
+    return html_table(caption, heads, rows)
 
 
 def _ring_down(run: dict[str, Any]) -> str:
@@ -92,18 +97,24 @@ def _ring_down(run: dict[str, Any]) -> str:
         return ''
     rows = [[f'{name} / {unit}' if unit else name, _cell(found[field] if found else None, 1.0), _cell(form[field], 1.0)]
             for name, field, unit in _RING]
-    return _table('Ring-down after a slip', ['', 'identified from the motion', 'closed form'], rows)
+    return html_table('Ring-down after a slip', ['', 'identified from the motion', 'closed form'], rows)
 
 
 def _figures(pictures: Sequence[Picture], run: str, folder: Path) -> Iterable[str]:
     for picture in pictures:
         if picture.run == run:
-            data = base64.b64encode((folder / f'{picture.name}.svg').read_bytes()).decode()
-            yield (f'<figure><img alt="{escape(picture.name)}" src="data:image/svg+xml;base64,{data}">'
-                   f'<figcaption>{escape(picture.caption)}</figcaption></figure>')
+            yield figure(picture, folder)
 
 
-def _table(caption: str, heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+def figure(picture: Picture, folder: Path) -> str:
+    """Return a picture, taken from its SVG file in the folder, with its caption."""
+    data = base64.b64encode((folder / f'{picture.name}.svg').read_bytes()).decode()
+    return (f'<figure><img alt="{escape(picture.name)}" src="data:image/svg+xml;base64,{data}">'
+            f'<figcaption>{escape(picture.caption)}</figcaption></figure>')
+
+
+def html_table(caption: str, heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Return a table; all but its first column are numbers."""
     def line(tag: str, cells: Sequence[str]) -> str:
         first, *rest = (escape(cell) for cell in cells)
         numbers = ''.join(f'<{tag} class="number">{cell}</{tag}>' for cell in rest)

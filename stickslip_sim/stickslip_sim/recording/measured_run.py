@@ -1,14 +1,9 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""A run that was measured: its modes, events and cycles are derived from the speed, and nothing is known of a scene.
-
-The slider is taken to slip from where its speed passes a threshold, `stick_velocity`, to where it falls below, if the
-peak between them is five times as high; else to be at rest.
-"""
+"""A run that was measured: its modes, events and cycles are derived from the speed, and nothing is known of a scene."""
 
 from collections.abc import Iterator, Sequence
 from functools import cached_property
-from itertools import pairwise
 from pathlib import Path
 from typing import NoReturn
 
@@ -16,9 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import RecordingError
-from ..core.types import Event, EventKind, Mode
+from ..core.types import Event, Mode
 from ..rig.marks import Mark
 from ..runs import COLUMNS, Columns
+from ..runs.slips import SLIP_TIMES, events_of_slips, slips_of
 from ..scene import Scene
 from .bag import METADATA
 from .measured_bag import MEASURED, OF_STATE
@@ -29,7 +25,6 @@ from .topics import EXTERNAL_FORCE, FRICTION_FORCE, SLIDER_STATE
 Numbers = NDArray[np.float64]
 
 STICK_SHARE = 0.05   # of the largest speed: the threshold where none is stated
-SLIP_TIMES = 5.0     # the threshold, which a slip exceeds at its peak: what stays below is noise, or a ringing contact
 
 
 class MeasuredRun(RecordedRun):
@@ -76,7 +71,7 @@ class MeasuredRun(RecordedRun):
     def _derived_states(self) -> Columns:
         states = {**self._recorded, 'velocity': self._velocity}
         modes, directions = np.full(len(self._velocity), float(Mode.STICK)), np.zeros(len(self._velocity))
-        for first, last, peak, direction in self._slips():
+        for first, last, peak, direction in slips_of(self._velocity, self.stick_velocity):
             modes[first:peak + 1], modes[peak + 1:last] = Mode.ACCELERATING, Mode.DECELERATING
             directions[first:last] = direction
         return {**states, 'mode': modes, 'direction': directions}
@@ -92,17 +87,7 @@ class MeasuredRun(RecordedRun):
     @cached_property
     def events(self) -> list[Event]:
         """Break-away and standstill where the speed passes the threshold, and between them its peak."""
-        found: list[Event] = []
-        rested = float(self.samples['time'][0])
-        for first, last, peak, direction in self._slips():
-            if first > 0:
-                begin = self._event(first, EventKind.BREAKAWAY, Mode.ACCELERATING, direction)
-                found.append(begin._replace(rest_time=begin.time - rested))
-            found.append(self._event(peak, EventKind.DECELERATE, Mode.DECELERATING, direction, at_row=True))
-            if last < len(self._velocity):
-                found.append(self._event(last, EventKind.STICK, Mode.STICK, direction))
-                rested = found[-1].time
-        return found
+        return events_of_slips(self.samples, self.stick_velocity)
 
     @cached_property
     def commands(self) -> Columns:
@@ -138,31 +123,6 @@ class MeasuredRun(RecordedRun):
         if len(force) != len(self._velocity):
             raise RecordingError(f'{self.bag.path}: {len(force)} messages with {name}, {len(self._velocity)} states')
         return np.asarray(force, dtype=np.float64)
-
-    def _slips(self) -> Iterator[tuple[int, int, int, int]]:
-        """Yield the first row of each slip, the first behind it, that of its peak, and its direction."""
-        speed = self._velocity
-        ways = np.where(np.abs(speed) > self.stick_velocity, np.sign(speed), 0.0)
-        edges = [0, *(np.flatnonzero(np.diff(ways) != 0.0) + 1).tolist(), len(ways)]
-        for first, last in pairwise(edges):
-            peak = first + int(np.abs(speed[first:last]).argmax())
-            if ways[first] != 0.0 and abs(speed[peak]) > SLIP_TIMES * self.stick_velocity:
-                yield first, last, peak, int(ways[first])
-
-    def _event(self, row: int, kind: EventKind, mode: Mode, direction: int, *, at_row: bool = False) -> Event:
-        """Return an event at a row, or where the speed passes the threshold between the row before and this one."""
-        samples = self.samples
-        time = float(samples['time'][row])
-        if not at_row:
-            low, high = (float(abs(speed)) for speed in self._velocity[row - 1:row + 1])
-            share = min(max((self.stick_velocity - low) / (high - low), 0.0), 1.0) if high != low else 1.0
-            before = float(samples['time'][row - 1])
-            time = before + share * (time - before)
-        state = {name: float(np.interp(time, samples['time'], samples[name]))
-                 for name in ('position', 'velocity', 'drive_position', 'drive_force', 'friction_force')}
-        second = float(np.floor(time))
-        return Event(second, time - second, kind, mode, direction, **state, static_coefficient=np.nan,
-                     rest_time=np.nan)
 
     def _derived(self) -> Iterator[str]:
         yield (f'modes and cycles are derived: a slip is faster than {self.stick_velocity * 1e3:.4g} mm/s, and at its'
