@@ -6,7 +6,7 @@ import difflib
 from collections.abc import Iterable
 from pathlib import Path
 
-_ENDINGS = '.yaml', '.yml', '.mcap'
+_ENDINGS = '.yaml', '.yml', '.mcap', '.csv'
 _LISTED = 1000   # files of a folder that are looked at
 
 

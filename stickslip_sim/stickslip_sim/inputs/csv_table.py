@@ -17,6 +17,7 @@ from typing import NamedTuple, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.did_you_mean import paths_beside, suggestion
 from ..core.errors import InputError
 from .units import all_in_si, named_unit, unit_of
 
@@ -122,7 +123,9 @@ def _read(option: str, path: Path) -> str:
         raise InputError(option, str(path), 'text in UTF-8', f'byte {error.start} is none; is it a CSV file?') from None
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-        raise InputError(option, str(path), 'a readable CSV file', f'{reason}; check the path') from None
+        beside = [] if path.exists() else paths_beside(path, ['.csv'])
+        fix = suggestion(str(path), beside, 'check the path')
+        raise InputError(option, str(path), 'a readable CSV file', f'{reason}; {fix}') from None
     if len(data) > MOST_BYTES:
         raise InputError(option, str(path), f'a file of at most {MOST_BYTES} bytes', 'is this the right file?')
     return text
