@@ -74,6 +74,8 @@ def test_units_give_the_decimal_number_that_was_meant() -> None:
     (NAMED, 't,v\n0,1\n1\n', 'line 3 = .1. is refused: must be 2 columns or more'),
     (NAMED, 't,v\n0,1\n1,1_0\n', 'line 3 = .1_0. is refused'),
     (NAMED, 't,v\n0,1\n1,2e6\n', r'line 3 = 2000000\.0 is refused: must be >= -1e\+06 and <= 1e\+06 m/s'),
+    (NAMED, 'x' * 200_000 + ',t,v\n0,1,2\n', r'feed\.csv = .x+. is refused: must be a line of a CSV file'),
+    (NAMED, 't,v\n0,"1\n1,2\n', r'drive\.file = .feed\.csv. is refused: must be lines of numbers'),
     (NAMED, '', r'drive\.file = .feed\.csv. is refused: .*empty'),
     (NAMED, 't,v\n# 1,2\n', 'it has no numbers'),
     (NAMED, 't,v\n12.3,1\n12.4,1\n', r'line 2 = 12\.3 is refused: .*set drive\.file_begin .* like 12\.3'),

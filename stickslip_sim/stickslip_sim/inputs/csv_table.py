@@ -74,7 +74,10 @@ class CsvTable:
     def _cells(self, line: str) -> list[str]:
         if self._mark is None:
             return line.split()
-        (cells,) = csv.reader([line], delimiter=self._mark)
+        try:
+            (cells,) = csv.reader([line], delimiter=self._mark)
+        except csv.Error as error:
+            raise InputError(self._path.name, line, 'a line of a CSV file', str(error)) from None
         return [cell.strip() for cell in cells]
 
     def _rows(self, places: Sequence[int], most: int) -> Numbers:
