@@ -111,7 +111,8 @@ class TestRecording:
             for place in ('elsewhere', f'{tmp_path}/runs/../up', f'{tmp_path}/runs/away/x', '/dev/shm/x', '~/x'):
                 answer = axis.set_parameters(record__folder=place)
                 assert not answer.successful
-                assert f"record.folder = '{place}' is refused: must be below {tmp_path}/runs" in answer.reason
+                assert answer.reason.startswith(f"record.folder = '{place[:20]}")   # a long path is shortened
+                assert f'is refused: must be below {tmp_path}/runs' in answer.reason
             assert axis.values('record.folder')[0].string_value == f'{tmp_path}/runs/first'
             assert axis.set_parameters(record__folder=f'{tmp_path}/runs/later/x').successful
             (tmp_path / 'runs' / 'later').symlink_to('/dev/shm', target_is_directory=True)
