@@ -13,6 +13,7 @@ from stickslip_sim.cli.main import run
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.types import EventKind
 from stickslip_sim.extremes.shared_axes import make, of_kind
+from stickslip_sim.runs import simulate_events
 from stickslip_sim.scene import Scene, load_scene
 from stickslip_sim.study import Variation
 from stickslip_sim.study.critical import Critical, critical, default_range
@@ -22,6 +23,7 @@ from stickslip_sim.study.theory import critical_drop, critical_feed, feed_of_the
 from stickslip_sim.study.variation import Numbers
 from stickslip_sim.study.verdict_changes import FAILED, NO, OPEN, YES, Doubt, Findings, Verdicts, find_transitions
 from tests.support.axes import instant
+from tests.support.repository import ROOT
 from tests.support.tool import Capture
 
 CONSTANT = {'friction.static.law': 'constant', 'friction.static.initial': 0.24,
@@ -300,3 +302,17 @@ def test_the_closed_form_of_the_feed_is_the_one_of_the_drop() -> None:
 
     axis = load_scene('paper_fig4_constant', CONSTANT).axis
     assert feed_of_theory(axis) == critical_feed(SliderOnDrive(350.0, 6e5, 4000.0), 0.12 * 3432.3275)
+
+
+@pytest.mark.parametrize(('damping', 'grows'), [(7300.0, True), (7450.0, True), (7510.0, False), (7700.0, False)])
+def test_sliding_at_a_breakpoint_is_lost_by_the_mean_of_both_slopes(damping: float, grows: bool) -> None:
+    """Each swing is half on either side: the damper must hold the mean of 1.04e4 and 4.56e3 N s/m, 7480."""
+    scene = load_scene(str(ROOT / 'examples' / 'my_axis.yaml'), {'axis.drive_damping': damping})
+    feed, axis = scene.drive.values[0], scene.axis
+    assert feed in axis.friction.kinetic.velocities
+    stretch = axis.normal_force * axis.friction.kinetic.coefficient(feed) / axis.drive_stiffness
+    disturbed = {'initial.velocity': feed * (1.0 + 1e-4), 'initial.stretch': stretch,
+                 'axis.drive_damping': damping}
+    run = simulate_events(load_scene(str(ROOT / 'examples' / 'my_axis.yaml'), disturbed), 20.0)
+    peaks = [abs(event.velocity - feed) for event in run.events if event.kind == EventKind.DECELERATE]
+    assert (len(peaks) > 3 and peaks[-1] > 1.2 * peaks[0]) == grows

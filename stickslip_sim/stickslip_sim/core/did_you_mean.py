@@ -23,7 +23,8 @@ def suggestion(word: str, known: Iterable[str], otherwise: str) -> str:
 
 def paths_beside(path: Path, endings: Iterable[str], *, folders: bool = False) -> list[str]:
     """Return what lies in the folder of a path, as it would be written: files with these endings, and folders."""
-    known, wanted = [], tuple(endings)
+    wanted = tuple(endings)
+    known: list[str] = []
     if not path.name:   # of no word, nothing is near
         return known
     try:

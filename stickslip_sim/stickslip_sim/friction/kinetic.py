@@ -50,11 +50,15 @@ class KineticTable:
         """Return mu_k at a speed >= 0 m/s."""
         return _interpolate(self.velocities, self.coefficients, speed, self.end_slope)
 
-    def slope(self, speed: float) -> float:
-        """Return dmu_k/dw in s/m at a speed >= 0 m/s, at a breakpoint the one above it; of the smooth law if any."""
+    def slopes(self, speed: float) -> tuple[float, float]:
+        """Return dmu_k/dw in s/m just below and just above a speed >= 0 m/s; of the smooth law if any."""
         if self.law is not None:
-            return self.law.slope(speed)
-        return _slope_above(self.velocities, self.coefficients, speed, self.end_slope)
+            return self.law.slope(speed), self.law.slope(speed)
+        above = _slope_above(self.velocities, self.coefficients, speed, self.end_slope)
+        if speed not in self.velocities[1:]:
+            return above, above
+        upper = self.velocities.index(speed)
+        return _slope_above(self.velocities, self.coefficients, self.velocities[upper - 1], self.end_slope), above
 
 
 @dataclass(frozen=True, slots=True)

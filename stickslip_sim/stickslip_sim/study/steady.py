@@ -4,6 +4,10 @@
 
 m ẍ = c (s − x) + h (v − ẋ) + F_e − N mu_k(ẋ): disturbances of ẋ = v die out where h + N mu_k′(v) > 0 and grow where it
 is negative, at any mass and stiffness.
+
+At a breakpoint each swing is half on either side.  With γ = (h + N mu_k′)/2m below and above it, a turn multiplies the
+swing by exp(−π γ/√(ω² − γ²)) of both halves: it grows exactly where the two γ have a negative sum, so that their mean
+counts.  A side without half swings, |γ| ≥ ω, decides alone.
 """
 
 from collections.abc import Mapping
@@ -16,8 +20,14 @@ from .point_figures import Numbers
 
 def sliding_slope(axis: Axis, inputs: Mapping[str, Numbers]) -> Numbers:
     """Return h + N mu_k′(|v|), N s/m, for each of `inputs` as of `batch.run_batch`; NaN where the drive rests."""
-    damping = inputs.get('drive_damping', np.array(axis.drive_damping))
-    normal = inputs.get('normal_force', np.array(axis.normal_force))
-    slopes = np.array([*map(axis.friction.kinetic.slope, np.abs(inputs['drive_velocity']).tolist())])
-    found: Numbers = np.where(inputs['drive_velocity'] == 0.0, np.nan, damping + normal * slopes)
-    return found
+    def given(name: str) -> Numbers:
+        return inputs.get(name, np.array(getattr(axis, name)))
+
+    below, above = np.array([*map(axis.friction.kinetic.slopes, np.abs(inputs['drive_velocity']).tolist())]).reshape(
+        -1, 2).T
+    low, high = (given('drive_damping') + given('normal_force') * side
+                 for side in (np.minimum(below, above), np.maximum(below, above)))
+    swings = 2.0 * np.sqrt(given('drive_stiffness') * given('mass'))
+    found = np.where(low <= -swings, low, np.where(high >= swings, high, 0.5 * (low + high)))
+    result: Numbers = np.where(inputs['drive_velocity'] == 0.0, np.nan, found)
+    return result
