@@ -98,6 +98,9 @@ def test_a_velocity_alone(data: Path, tmp_path: Path, capsys: Capture) -> None:
     limits.write_text('limits: {following_error: {max: 1.0}}\n')
     assert 'following_error needs position and drive_position, which was not measured' in refused(
         capsys, 'check', tmp_path / 'run', '--limits', limits)
+    for limit in ('overshoot: {target: 1.0, max: 1.0}', 'settling_time: {target: 1.0, band: 1.0, max: 9.0}'):
+        limits.write_text(f'limits: {{{limit}}}', encoding='utf-8')
+        assert 'needs position' in refused(capsys, 'check', tmp_path / 'run', '--limits', limits)
 
 
 def test_a_position_alone(data: Path, tmp_path: Path, capsys: Capture) -> None:

@@ -36,7 +36,7 @@ def checked_line(checked: Checked) -> str:
     """Return what was checked: from when to when, how much is known of it, and when its first command came."""
     name, run, _ = checked
     motion, commands = observed_motion(run), commands_of(run)
-    text = (f'{name}: {motion.begin:g} to {motion.end:g} s, {len(motion.time)} states, '
+    text = (f'{name}: {motion.begin:g} to {motion.end:g} s, {motion.states} states, '
             f'{len(motion.events)} transitions')
     if commands is None:
         return text
@@ -86,7 +86,7 @@ def _found(checked: Checked) -> dict[str, Any]:
     name, run, outcomes = checked
     motion, commands, timing = observed_motion(run), commands_of(run), timing_of(run)
     return {
-        'run': {'name': name, 'begin': motion.begin, 'end': motion.end, 'states': len(motion.time),
+        'run': {'name': name, 'begin': motion.begin, 'end': motion.end, 'states': motion.states,
                 'events': len(motion.events), 'is_complete': run.is_complete, 'notes': list(gaps_in(run)),
                 'first_command': commands.first if commands else None,
                 'timing': asdict(timing) if timing else None},

@@ -10,8 +10,9 @@ from ..runs import Run
 from .kinds import TIMING
 from .limit_window import JudgedSpan
 from .limits import Limit, Limits, check_fit
-from .observed_motion import ObservedMotion
-from .observed_run import KnownCommands, commands_of, observed_motion, timing_of, unmeasured
+from .measures import no_sample_in
+from .observed_motion import MotionBlock, MotionSpan, ObservedMotion, motion_blocks
+from .observed_run import KnownCommands, commands_of, observed_motion, states_of, timing_of, unmeasured
 
 
 class LimitOutcome(NamedTuple):
@@ -39,9 +40,13 @@ def outcomes_of(limits: Limits, run: Run) -> list[LimitOutcome]:
     motion, timing, commands = observed_motion(run), timing_of(run), commands_of(run)
     has_timing = timing is not None and timing.valid is not None
     check_fit(limits, motion.begin, motion.end if run.is_complete else math.inf, has_timing, commands)
-    if reference := limits.reference_at(commands.first if commands else None):
-        motion = motion.following(reference)
-    outcomes = [_outcome(limit, motion, commands, limits.needs_commands) for limit in limits.limits]
+    found = [_begun(limit, motion, commands, limits.needs_commands) for limit in limits.limits]
+    open_ones = [one for one in found if isinstance(one, _Open)]
+    reference = limits.reference_at(commands.first if commands else None)
+    for block in motion_blocks(states_of(run), motion.events, reference):
+        for one in open_ones:
+            one.take(block)
+    outcomes = [one.outcome() if isinstance(one, _Open) else one for one in found]
     for outcome in outcomes:
         if outcome.value is not None and math.isnan(outcome.value):
             raise RecordingError(f'{run.name}: {outcome.name} needs {" and ".join(unmeasured(run))}, which was not '
@@ -51,8 +56,34 @@ def outcomes_of(limits: Limits, run: Run) -> list[LimitOutcome]:
     return outcomes
 
 
-def _outcome(limit: Limit, motion: ObservedMotion, commands: KnownCommands | None,
-             needs_commands: bool) -> LimitOutcome:
+class _Open:
+    """A limit that is being judged, while the motion comes block by block."""
+
+    def __init__(self, limit: Limit, judged: JudgedSpan, span: MotionSpan) -> None:
+        self._limit, self._judged, self._span = limit, judged, span
+        self._measurement = limit.kind.measure(span, **limit.settings)
+        self._has_samples = False
+
+    def take(self, block: MotionBlock) -> None:
+        part = block.cut(self._span.begin, self._span.end)
+        self._has_samples |= len(part.time) > 0
+        self._measurement.take(part)
+
+    def outcome(self) -> LimitOutcome:
+        """Return what came of it; raises InputError when it does not fit what was measured."""
+        limit = self._limit
+        if not self._has_samples:
+            raise no_sample_in(self._span.begin, self._span.end)
+        try:
+            value, remark = self._measurement.figure()
+        except InputError as error:
+            raise InputError(f'{limit.name}.{error.name}', error.value, error.allowed, error.fix) from None
+        return LimitOutcome(limit.name, limit, value <= limit.maximum, value, remark, self._judged)
+
+
+def _begun(limit: Limit, motion: ObservedMotion, commands: KnownCommands | None, needs_commands: bool
+           ) -> LimitOutcome | _Open:
+    """Return a limit with its part of the run; its outcome where there is nothing to measure."""
     first = commands.first if commands else None
     span = limit.window.at(first)
     if span is None:
@@ -63,12 +94,7 @@ def _outcome(limit: Limit, motion: ObservedMotion, commands: KnownCommands | Non
         return LimitOutcome(limit.name, limit, False, None, f'the run has nothing from t = {begin:g} s on', span)
     if commands and needs_commands and (first is None or first > end):
         return _unjudged(limit, span, end)
-    part = motion.cut(begin, end)
-    try:
-        value, remark = limit.kind.measure(part, **limit.settings)
-    except InputError as error:
-        raise InputError(f'{limit.name}.{error.name}', error.value, error.allowed, error.fix) from None
-    return LimitOutcome(limit.name, limit, value <= limit.maximum, value, remark, span)
+    return _Open(limit, span, motion.cut(begin, end))
 
 
 def _unjudged(limit: Limit, span: JudgedSpan, end: float) -> LimitOutcome:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from ..scene import Parameter
 from . import measures
-from .measures import MeasuredFigure
+from .measures import Measurement
 
 FARTHEST = 1e12   # m, like the positions of a scene
 TIMING = 'timing'
@@ -19,11 +19,11 @@ _CYCLES = Parameter('cycles', 'integer', 1, '', 'at the end of the window', low=
 
 @dataclass(frozen=True)
 class Kind:
-    """A figure; `measure` takes the motion and the values of `settings` by name."""
+    """A figure; `measure` makes what measures it of a part of a run and the values of `settings` by name."""
 
     name: str
     unit: str
-    measure: Callable[..., MeasuredFigure]
+    measure: Callable[..., Measurement]
     settings: tuple[Parameter, ...] = ()
 
     @property
@@ -35,12 +35,12 @@ class Kind:
 
 
 KINDS = {kind.name: kind for kind in (
-    Kind('following_error', 'm', measures.following_error),
-    Kind('end_position_error', 'm', measures.end_position_error, (TARGET,)),
-    Kind('overshoot', 'm', measures.overshoot, (TARGET,)),
-    Kind('settling_time', 's', measures.settling_time, (TARGET, _BAND)),
-    Kind('sticks', '', measures.sticks),
-    Kind('longest_stick', 's', measures.longest_stick),
-    Kind('limit_cycle_amplitude', 'm', measures.limit_cycle_amplitude, (_CYCLES,)),
-    Kind('peak_speed', 'm/s', measures.peak_speed),
+    Kind('following_error', 'm', measures.FollowingError),
+    Kind('end_position_error', 'm', measures.EndPositionError, (TARGET,)),
+    Kind('overshoot', 'm', measures.Overshoot, (TARGET,)),
+    Kind('settling_time', 's', measures.SettlingTime, (TARGET, _BAND)),
+    Kind('sticks', '', measures.Sticks),
+    Kind('longest_stick', 's', measures.LongestStick),
+    Kind('limit_cycle_amplitude', 'm', measures.LimitCycleAmplitude, (_CYCLES,)),
+    Kind('peak_speed', 'm/s', measures.PeakSpeed),
 )}

@@ -15,7 +15,7 @@ from scipy.interpolate import CubicHermiteSpline
 from ..core.errors import InputError
 from ..core.types import EventKind, Mode
 from ..simulation.cycles import cycle_figures, mode_spans
-from .observed_motion import ObservedMotion, Points
+from .observed_motion import MotionBlock, MotionSpan, Numbers, Points
 
 
 class MeasuredFigure(NamedTuple):
@@ -25,79 +25,206 @@ class MeasuredFigure(NamedTuple):
     remark: str = ''
 
 
-def following_error(motion: ObservedMotion) -> MeasuredFigure:
-    """Return the largest |commanded − actual position|, m."""
-    errors = np.abs(motion.following_error)
-    return MeasuredFigure(float(errors.max()), f'at t = {motion.time[errors.argmax()]:.6g} s')
+class Measurement:
+    """Measures a figure in a part of a run; takes the motion there block by block."""
+
+    def __init__(self, span: MotionSpan) -> None:
+        self.span = span
+
+    def take(self, block: MotionBlock) -> None:
+        """Take the next block; a figure of transitions needs none."""
+
+    def figure(self) -> MeasuredFigure:
+        """Return what all blocks came to."""
+        raise NotImplementedError
 
 
-def end_position_error(motion: ObservedMotion, target: float) -> MeasuredFigure:
-    """Return |actual position − target| at the end, m: the positional deviation of ISO 230-2."""
-    return MeasuredFigure(abs(float(motion.points.position[-1]) - target))
+class _Largest:
+    """The largest of values, and when it came first; NaN once one of them is unknown."""
+
+    def __init__(self) -> None:
+        self.value, self.time = -math.inf, math.nan
+
+    def take(self, values: Numbers, times: Numbers) -> None:
+        """Take the next values, at their times (s)."""
+        if not len(values) or math.isnan(self.value):
+            return
+        if not (largest := float(values.max())) <= self.value:
+            self.value, self.time = largest, float(times[values.argmax()])
+
+    @property
+    def figure(self) -> MeasuredFigure:
+        """With the time."""
+        return MeasuredFigure(self.value, f'at t = {self.time:.6g} s')
 
 
-def overshoot(motion: ObservedMotion, target: float) -> MeasuredFigure:
-    """Return how far the slider goes beyond the target in the sense of its motion, m; 0 when it does not.
+class FollowingError(Measurement):
+    """The largest |commanded − actual position|, m."""
 
-    Raises InputError when it begins on the target: there is no sense then.
-    """
-    move = target - motion.position[0]
-    if move == 0.0:
-        raise InputError('target', target, f'another place than that of the slider at t = {motion.begin:g} s',
-                         'let the window begin before the move')
-    beyond = math.copysign(1.0, move) * (motion.points.position - target)
-    return MeasuredFigure(max(0.0, float(beyond.max())), f'at t = {motion.points.time[beyond.argmax()]:.6g} s'
-                          if beyond.max() > 0.0 else 'the target is not passed')
+    def __init__(self, span: MotionSpan) -> None:
+        super().__init__(span)
+        self._largest = _Largest()
 
+    def take(self, block: MotionBlock) -> None:
+        """Take the next block."""
+        self._largest.take(np.abs(block.following_error), block.time)
 
-def settling_time(motion: ObservedMotion, target: float, band: float) -> MeasuredFigure:
-    """Return how long after the start the slider comes within ± `band` of the target to stay, s; inf if it does not."""
-    points = motion.points
-    outside = np.flatnonzero(np.abs(points.position - target) > band)
-    if not outside.size:
-        return MeasuredFigure(0.0, 'never outside the band')
-    last = int(outside[-1])
-    if last + 1 == len(points.time):
-        return MeasuredFigure(math.inf, 'outside the band at the end')
-    edge = target + math.copysign(band, points.position[last] - target)
-    return MeasuredFigure(_crossing(points, last, edge) - motion.begin)
+    def figure(self) -> MeasuredFigure:
+        """Return what all blocks came to."""
+        return self._largest.figure
 
 
-def sticks(motion: ObservedMotion) -> MeasuredFigure:
-    """Return how often the slider came to stick."""
-    return MeasuredFigure(sum(event.kind == EventKind.STICK for event in motion.events))
+class EndPositionError(Measurement):
+    """|Actual position − target| at the end, m: the positional deviation of ISO 230-2."""
+
+    def __init__(self, span: MotionSpan, target: float) -> None:
+        super().__init__(span)
+        self._target, self._last = target, math.nan
+
+    def take(self, block: MotionBlock) -> None:
+        """Take the next block."""
+        if len(block.points.position):
+            self._last = float(block.points.position[-1])
+
+    def figure(self) -> MeasuredFigure:
+        """Return what all blocks came to."""
+        return MeasuredFigure(abs(self._last - self._target))
 
 
-def longest_stick(motion: ObservedMotion) -> MeasuredFigure:
-    """Return the longest time without slip, s; only what lies within the window counts."""
-    spans = [span for span in mode_spans(motion.events, motion.begin, motion.end, motion.mode)
-             if span.mode == Mode.STICK]
-    if not spans:
-        return MeasuredFigure(0.0, 'no stick')
-    longest = max(spans, key=lambda span: span.end - span.begin)
-    return MeasuredFigure(longest.end - longest.begin, f'from t = {longest.begin:.6g} s')
+class Overshoot(Measurement):
+    """How far the slider goes beyond the target in the sense of its motion, m; 0 when it does not."""
+
+    def __init__(self, span: MotionSpan, target: float) -> None:
+        super().__init__(span)
+        self._target, self._move = target, math.nan
+        self._both = {sense: _Largest() for sense in (-1.0, 1.0)}   # an event may come before the first sample
+
+    def take(self, block: MotionBlock) -> None:
+        """Take the next block."""
+        if math.isnan(self._move) and len(block.position):
+            self._move = self._target - float(block.position[0])
+        for sense, largest in self._both.items():
+            largest.take(sense * (block.points.position - self._target), block.points.time)
+
+    def figure(self) -> MeasuredFigure:
+        """Return what all blocks came to; raises InputError without a move: there is no sense then."""
+        if self._move == 0.0:
+            raise InputError('target', self._target,
+                             f'another place than that of the slider at t = {self.span.begin:g} s',
+                             'let the window begin before the move')
+        beyond = self._both[math.copysign(1.0, self._move)]
+        return beyond.figure if not beyond.value <= 0.0 else MeasuredFigure(0.0, 'the target is not passed')
 
 
-def limit_cycle_amplitude(motion: ObservedMotion, cycles: int) -> MeasuredFigure:
-    """Return the peak-to-peak following error over the last cycles (break-away to break-away), m; 0 without a cycle."""
-    last = cycle_figures(motion.events)[-cycles:]
-    if not last:
-        return MeasuredFigure(0.0, 'no complete cycle')
-    part = motion.cut(last[0].begin, last[-1].begin + last[-1].period)
-    return MeasuredFigure(float(np.ptp(part.following_error)), f'over {len(last)} cycle{"s" if len(last) > 1 else ""}')
+class SettlingTime(Measurement):
+    """How long after the start the slider comes within ± `band` of the target to stay, s; inf if it does not."""
+
+    def __init__(self, span: MotionSpan, target: float, band: float) -> None:
+        super().__init__(span)
+        self._target, self._band, self._is_unknown = target, band, False
+        self._outside: Points | None = None   # the last point there, and the one after it once it came
+
+    def take(self, block: MotionBlock) -> None:
+        """Take the next block."""
+        points = block.points
+        if not len(points.time):
+            return
+        if self._outside and len(self._outside.time) == 1:
+            self._outside = Points(*(np.append(one, column[0]) for one, column in zip(self._outside, points)))
+        distances = np.abs(points.position - self._target)
+        self._is_unknown |= bool(np.isnan(distances).any())
+        outside = np.flatnonzero(distances > self._band)
+        if outside.size:
+            last = int(outside[-1])
+            self._outside = Points(*(column[last:last + 2].copy() for column in points))
+
+    def figure(self) -> MeasuredFigure:
+        """Return what all blocks came to."""
+        if self._is_unknown:
+            return MeasuredFigure(math.nan)
+        if self._outside is None:
+            return MeasuredFigure(0.0, 'never outside the band')
+        if len(self._outside.time) == 1:
+            return MeasuredFigure(math.inf, 'outside the band at the end')
+        edge = self._target + math.copysign(self._band, self._outside.position[0] - self._target)
+        return MeasuredFigure(_crossing(self._outside, edge) - self.span.begin)
 
 
-def peak_speed(motion: ObservedMotion) -> MeasuredFigure:
-    """Return the largest |velocity| of the slider, m/s."""
-    speeds = np.abs(motion.points.velocity)
-    return MeasuredFigure(float(speeds.max()), f'at t = {motion.points.time[speeds.argmax()]:.6g} s')
+class Sticks(Measurement):
+    """How often the slider came to stick."""
+
+    def figure(self) -> MeasuredFigure:
+        """Count them."""
+        return MeasuredFigure(sum(event.kind == EventKind.STICK for event in self.span.events))
 
 
-def _crossing(points: Points, k: int, level: float) -> float:
-    """Return when the slider crosses a level for the last time between point k and the next.
+class LongestStick(Measurement):
+    """The longest time without slip, s; only what lies within the window counts."""
+
+    def figure(self) -> MeasuredFigure:
+        """Find it."""
+        spans = [span for span in mode_spans(self.span.events, self.span.begin, self.span.end, self.span.mode)
+                 if span.mode == Mode.STICK]
+        if not spans:
+            return MeasuredFigure(0.0, 'no stick')
+        longest = max(spans, key=lambda span: span.end - span.begin)
+        return MeasuredFigure(longest.end - longest.begin, f'from t = {longest.begin:.6g} s')
+
+
+class LimitCycleAmplitude(Measurement):
+    """The peak-to-peak following error over the last cycles (break-away to break-away), m; 0 without a cycle."""
+
+    def __init__(self, span: MotionSpan, cycles: int) -> None:
+        super().__init__(span)
+        self._cycles = cycle_figures(span.events)[-cycles:]
+        self._both = _Largest(), _Largest()   # of the error, and of its opposite
+        if self._cycles:
+            last = self._cycles[-1]
+            self._window = self._cycles[0].begin, last.begin + last.period
+
+    def take(self, block: MotionBlock) -> None:
+        """Take the next block."""
+        if self._cycles:
+            part = block.cut(*self._window)
+            for largest, sense in zip(self._both, (1.0, -1.0)):
+                largest.take(sense * part.following_error, part.time)
+
+    def figure(self) -> MeasuredFigure:
+        """Return what all blocks came to; raises InputError when no sample fell into the cycles."""
+        if not self._cycles:
+            return MeasuredFigure(0.0, 'no complete cycle')
+        highest, lowest = (largest.value for largest in self._both)
+        if math.isinf(highest):
+            raise no_sample_in(*self._window)
+        count = len(self._cycles)
+        return MeasuredFigure(highest + lowest, f'over {count} cycle{"s" if count > 1 else ""}')
+
+
+class PeakSpeed(Measurement):
+    """The largest |velocity| of the slider, m/s."""
+
+    def __init__(self, span: MotionSpan) -> None:
+        super().__init__(span)
+        self._largest = _Largest()
+
+    def take(self, block: MotionBlock) -> None:
+        """Take the next block."""
+        self._largest.take(np.abs(block.points.velocity), block.points.time)
+
+    def figure(self) -> MeasuredFigure:
+        """Return what all blocks came to."""
+        return self._largest.figure
+
+
+def no_sample_in(begin: float, end: float) -> InputError:
+    """Return what is said of a part of a run (s) in which there is no sample."""
+    return InputError('window', [begin, end], 'long enough for one sample', 'make it longer')
+
+
+def _crossing(points: Points, level: float) -> float:
+    """Return when the slider crosses a level for the last time between two points.
 
     In between it moves on the cubic with the positions and velocities at both.
     """
-    time = points.time[k:k + 2]
-    cubic = CubicHermiteSpline(time, points.position[k:k + 2], points.velocity[k:k + 2])
-    return float(max(cubic.solve(level, extrapolate=False), default=time[1]))
+    cubic = CubicHermiteSpline(*points)
+    return float(max(cubic.solve(level, extrapolate=False), default=points.time[1]))

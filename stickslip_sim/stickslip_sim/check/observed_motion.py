@@ -1,17 +1,17 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""What was seen of an axis: its state at the samples, its transitions at their exact times."""
+"""What was seen of an axis: its state at the samples, block by block, its transitions at their exact times."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.errors import InputError
 from ..core.types import Event, Mode
+from ..runs import Columns
+from ..runs.samples import gathered
 
 Numbers = NDArray[np.float64]
 
@@ -39,45 +39,78 @@ class Points(NamedTuple):
     velocity: Numbers   # m/s
 
 
-@dataclass(frozen=True)
-class ObservedMotion:
-    """The axis from `begin` to `end` (s); `mode` holds from `begin` until the first event."""
+class MotionBlock(NamedTuple):
+    """Some of the samples, one after the other; `points` are those and the transitions among them and before."""
 
-    begin: float
-    end: float
-    mode: Mode
-    time: Numbers            # s, of the samples, rising
-    position: Numbers        # m, slider
-    velocity: Numbers        # m/s, slider
-    commanded: Numbers       # m, the drive or a reference
-    events: Sequence[Event]  # without those of kind knot
+    time: Numbers        # s, rising
+    position: Numbers    # m, slider
+    commanded: Numbers   # m, the drive or a reference
+    points: Points
 
     @property
     def following_error(self) -> Numbers:
         """Commanded less actual position at the samples, m."""
         return self.commanded - self.position
 
-    @cached_property
-    def points(self) -> Points:
-        """The slider at samples and transitions; between two of them its motion is smooth."""
-        times, first = np.unique([event.time for event in self.events], return_index=True)
-        places = np.searchsorted(self.time, times)
-        new = self.time[np.minimum(places, len(self.time) - 1)] != times    # a sample at that time comes first
-        between = [self.events[k] for k in first[new]]
-        return Points(*(np.insert(samples, places[new], [getattr(event, name) for event in between])
-                        for name, samples in (('time', self.time), ('position', self.position),
-                                              ('velocity', self.velocity))))
+    def cut(self, begin: float, end: float) -> 'MotionBlock':
+        """Return the part from `begin` to `end` (s), both included."""
+        of_samples, of_points = _rows(self.time, begin, end), _rows(self.points.time, begin, end)
+        return MotionBlock(self.time[of_samples], self.position[of_samples], self.commanded[of_samples],
+                           Points(*(column[of_points] for column in self.points)))
 
-    def following(self, reference: Reference) -> 'ObservedMotion':
-        """Return the same motion as an answer to a reference instead of the drive."""
-        return replace(self, commanded=reference.at(self.time))
 
-    def cut(self, begin: float, end: float) -> 'ObservedMotion':
-        """Return the part from `begin` to `end` (s), both included; raises InputError when no sample falls in it."""
-        kept = slice(np.searchsorted(self.time, begin, 'left'), np.searchsorted(self.time, end, 'right'))
-        if not self.time[kept].size:
-            raise InputError('window', [begin, end], 'long enough for one sample', 'make it longer')
+@dataclass(frozen=True)
+class MotionSpan:
+    """The transitions of the axis from `begin` to `end` (s); `mode` holds from `begin` until the first of them."""
+
+    begin: float
+    end: float
+    mode: Mode
+    events: Sequence[Event]  # without those of kind knot
+
+    def cut(self, begin: float, end: float) -> 'MotionSpan':
+        """Return the part from `begin` to `end` (s), both included."""
         before = [event for event in self.events if event.time < begin]
-        return ObservedMotion(begin, end, before[-1].mode if before else self.mode, self.time[kept],
-                              self.position[kept], self.velocity[kept], self.commanded[kept],
-                              [event for event in self.events if begin <= event.time <= end])
+        return MotionSpan(begin, end, before[-1].mode if before else self.mode,
+                          [event for event in self.events if begin <= event.time <= end])
+
+
+@dataclass(frozen=True)
+class ObservedMotion(MotionSpan):
+    """The same of all of a run, and how many samples it has."""
+
+    states: int
+    missing_steps: int   # between the first and the last of them
+
+
+def motion_blocks(states: Iterable[Columns], events: Sequence[Event], reference: Reference | None
+                  ) -> Iterator[MotionBlock]:
+    """Yield a motion block by block; `commanded` is the drive without a reference.
+
+    Between two points next to each other the motion is smooth.  What comes after the last sample has a block itself.
+    """
+    times, first = np.unique([event.time for event in events], return_index=True)
+    done = 0
+    for block in gathered(states):
+        time = block['time']
+        upto = int(np.searchsorted(times, time[-1], 'right'))
+        points = _points(block, times[done:upto], [events[k] for k in first[done:upto]])
+        yield MotionBlock(time, block['position'], block['drive_position'] if reference is None else reference.at(time),
+                          points)
+        done = upto
+    none = np.empty(0)
+    late = [events[k] for k in first[done:]]
+    yield MotionBlock(none, none, none, _points(dict.fromkeys(Points._fields, none), times[done:], late))
+
+
+def _points(block: Columns, times: Numbers, events: Sequence[Event]) -> Points:
+    """Return samples, and the transitions at these times, no two of them at one."""
+    places = np.searchsorted(block['time'], times)
+    is_new = ~np.isin(times, block['time'])    # a sample at that time comes first
+    between = [event for event, new in zip(events, is_new) if new]
+    return Points(*(np.insert(block[name], places[is_new], [getattr(event, name) for event in between])
+                    for name in Points._fields))
+
+
+def _rows(time: Numbers, begin: float, end: float) -> slice:
+    return slice(int(np.searchsorted(time, begin, 'left')), int(np.searchsorted(time, end, 'right')))

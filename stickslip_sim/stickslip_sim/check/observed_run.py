@@ -2,22 +2,26 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a check takes from a run: its motion, its first command, the verdict on its timing, what is missing of it."""
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from ..core.errors import RecordingError, one_line
-from ..core.types import EventKind, Mode
+from ..core.types import Event, EventKind, Mode
 from ..recording import MeasuredRun, RecordedRun
 from ..recording.bag import METADATA
-from ..recording.topics import DRIVE_VELOCITY
+from ..recording.reader import EVENT_FIELDS
+from ..recording.topics import DRIVE_VELOCITY, MODE_EVENT, SLIDER_STATE
 from ..runs import Columns, Run
 from ..runs.kept import kept
+from ..runs.samples import joined
 from .observed_motion import ObservedMotion
 
 _STATE_FIELDS = ('time', 'position', 'velocity', 'drive_position', 'mode')
+_SEEN_FIELDS = (*_STATE_FIELDS, 'step')   # the steps are for `missing_steps`
 _NANOSECOND = 1e-9
 
 
@@ -38,11 +42,18 @@ class KnownCommands(NamedTuple):
 @kept
 def observed_motion(run: Run) -> ObservedMotion:
     """Return the motion of a run with samples, of a recorded one as far as its states go; raises RecordingError."""
-    states = _checked_states(run) if isinstance(run, RecordedRun) else run.states
-    time = states['time']
-    begin, end = (float(time[0]), float(time[-1])) if run.is_recorded else (run.begin, run.end)
-    return ObservedMotion(begin, end, Mode(int(states['mode'][0])), time, states['position'], states['velocity'],
-                          states['drive_position'], [event for event in run.events if event.kind != EventKind.KNOT])
+    if isinstance(run, RecordedRun):
+        return _recorded_motion(run)
+    states, start = 0, Mode.STICK
+    for block in run.sample_blocks():
+        start = start if states else Mode(int(block['mode'][0]))
+        states += len(block['time'])
+    return ObservedMotion(run.begin, run.end, start, _seen(run.events), states, 0)
+
+
+def states_of(run: Run) -> Iterator[Columns]:
+    """Yield what is looked at of the states of a run block by block."""
+    return run.state_blocks(_STATE_FIELDS) if isinstance(run, RecordedRun) else run.sample_blocks()
 
 
 def timing_of(run: Run) -> Timing | None:
@@ -64,21 +75,23 @@ def commands_of(run: Run) -> KnownCommands | None:
     """Return what is known of the commands of a run that a node recorded; None of any other run."""
     if not isinstance(run, RecordedRun) or run.bag.metadata.get(METADATA, {}).get('origin') != 'node':
         return None
-    topic = run.bag.name_of(DRIVE_VELOCITY)
-    first = next(run.bag.messages([topic]), None) if run.bag.counts[topic] else None
-    time = run.state_columns(['time'])['time']
-    if first is None or not len(time):
+    stamps = (block['log_time'] for _, block in run.bag.blocks_of({DRIVE_VELOCITY: ['log_time']}))
+    first = next((int(stamp[0]) for stamp in stamps if len(stamp)), None)
+    if first is None:
         return KnownCommands(None)
-    at = np.searchsorted(time, first.log_time * _NANOSECOND - _NANOSECOND)   # the state that it found
-    return KnownCommands(float(time[at]) if at < len(time) else None)
+    found = first * _NANOSECOND - _NANOSECOND   # s, about when the state was that it found
+    times = (block['time'] for block in run.state_blocks(['time']))
+    return KnownCommands(next((float(time[np.searchsorted(time, found)]) for time in times
+                               if len(time) and time[-1] >= found), None))
 
 
 def gaps_in(run: Run) -> Iterator[str]:
     """Yield what is missing of a run, for people."""
     if not run.is_complete:
         yield f'the recording has no end: checked up to t = {observed_motion(run).end:.6g} s'
-    if lost := run.missing_steps:
-        yield f'{lost} of {lost + len(observed_motion(run).time)} steps are missing in the recording'
+    motion = observed_motion(run)
+    if lost := motion.missing_steps:
+        yield f'{lost} of {lost + motion.states} steps are missing in the recording'
 
 
 def unmeasured(run: Run) -> tuple[str, ...]:
@@ -88,14 +101,63 @@ def unmeasured(run: Run) -> tuple[str, ...]:
     return tuple(name for name in ('position', 'drive_position') if name not in run.measured)
 
 
-def _checked_states(run: RecordedRun) -> Columns:
-    """Return what is looked at of the states; raises RecordingError unless they are those of one run."""
-    states = run.state_columns([*_STATE_FIELDS, 'step'])    # the steps are for `missing_steps`
-    if not len(states['time']):
-        raise RecordingError(f'{run.bag.path}: no state of the axis in it; nothing can be checked')
+def _recorded_motion(run: RecordedRun) -> ObservedMotion:
+    """Look once through what was recorded; raises RecordingError unless it is that of one run."""
     unknown = unmeasured(run)
-    if not all(np.isfinite(states[name]).all() for name in _STATE_FIELDS if name not in unknown):
+    states = _StatesSeen([name for name in _STATE_FIELDS if name not in unknown])
+    events = _taken(run, states)
+    if not states.count:
+        raise RecordingError(f'{run.bag.path}: no state of the axis in it; nothing can be checked')
+    if not states.are_finite:
         raise RecordingError(f'{run.bag.path}: states that are no finite numbers; nothing can be checked')
-    if not (np.diff(states['time']) > 0.0).all():
+    if not states.rise:
         raise RecordingError(f'{run.bag.path}: time goes back in it; give a recording of one run')
-    return states
+    begin, end = states.begin, states.end
+    seen = _seen([event for event in events if begin <= event.time <= end])
+    return ObservedMotion(begin, end, Mode(states.mode), seen, states.count, states.missing_steps)
+
+
+def _taken(run: RecordedRun, states: '_StatesSeen') -> list[Event]:
+    """Take the states block by block; return the transitions."""
+    if isinstance(run, MeasuredRun):
+        states.take(run.state_columns(_SEEN_FIELDS))
+        return run.events
+    transitions = []
+    for topic, block in run.bag.blocks_of({SLIDER_STATE: _SEEN_FIELDS, MODE_EVENT: EVENT_FIELDS}):
+        if topic is MODE_EVENT:
+            transitions.append(block)
+        elif len(block['time']):
+            states.take(block)
+    return run.bag.events_in(joined(transitions))
+
+
+class _StatesSeen:
+    """What the states of a run come to, block by block; some fields of them must be finite."""
+
+    def __init__(self, finite: Sequence[str]) -> None:
+        self._finite = finite
+        self.count = 0
+        self.are_finite = self.rise = True
+        self.begin = self.end = math.nan    # s, of the first and of the last
+        self.mode = 0                       # of the first
+        self._steps = 0, 0                  # of the first and of the last
+
+    def take(self, block: Columns) -> None:
+        time, steps = block['time'], block['step']
+        self.are_finite &= all(bool(np.isfinite(block[name]).all()) for name in self._finite)
+        if not self.count:
+            self.begin, self.mode, self._steps = float(time[0]), int(block['mode'][0]), (int(steps[0]), 0)
+        elif not time[0] > self.end:
+            self.rise = False
+        self.rise &= bool((np.diff(time) > 0.0).all())
+        self.end, self._steps = float(time[-1]), (self._steps[0], int(steps[-1]))
+        self.count += len(time)
+
+    @property
+    def missing_steps(self) -> int:
+        return self._steps[1] - self._steps[0] + 1 - self.count
+
+
+def _seen(events: Sequence[Event]) -> list[Event]:
+    """Return the transitions that are ones of the motion."""
+    return [event for event in events if event.kind != EventKind.KNOT]

@@ -67,6 +67,10 @@ class MeasuredRun(RecordedRun):
         """Return columns of `states`, with modes and directions that are derived."""
         return {name: self._derived_states[name] for name in fields}
 
+    def state_blocks(self, fields: Sequence[str]) -> Iterator[Columns]:
+        """Yield columns of `states` as one block."""
+        yield self.state_columns(fields)
+
     @cached_property
     def _derived_states(self) -> Columns:
         states = {**self._recorded, 'velocity': self._velocity}

@@ -4,7 +4,7 @@
 
 import json
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -24,14 +24,14 @@ from .message_places import Messages
 from .records import contents, records
 from .run import RECEIPT_FILE, SCENE_FILE
 from .schemas import store_of, understood
-from .topic_columns import RecordedMessage, TopicColumns
+from .topic_columns import Block, RecordedMessage, TopicColumns, column_blocks
 from .topics import MODE_EVENT, Topic
 
 MOST_HELD = 4 << 30    # bytes of a topic in memory at once
 OVERHEAD = 300         # bytes of a message there beside its own
 
-_EVENT_FIELDS = ('time', 'kind', 'mode', 'direction', 'position', 'velocity', 'drive_force', 'friction_force',
-                 'static_coefficient', 'rest_time')
+EVENT_FIELDS = ('time', 'kind', 'mode', 'direction', 'position', 'velocity', 'drive_force', 'friction_force',
+                'static_coefficient', 'rest_time')
 
 
 @dataclass
@@ -72,10 +72,13 @@ class Bag:
 
         Raises RecordingError.
         """
-        columns = self.columns_of(MODE_EVENT, _EVENT_FIELDS)
+        return self.events_in(self.columns_of(MODE_EVENT, EVENT_FIELDS))
+
+    def events_in(self, columns: Mapping[str, NDArray[Any]]) -> list[Event]:
+        """Return the transitions in columns of EVENT_FIELDS; raises RecordingError."""
         if not (np.isin(columns['kind'], list(EventKind)).all() and np.isin(columns['mode'], list(Mode)).all()):
             raise RecordingError(f'{self.path}: transitions of unknown kinds; recorded by another version?')
-        return [_event(*row) for row in zip(*(column.tolist() for column in columns.values()))]
+        return [_event(*row) for row in zip(*(columns[name].tolist() for name in EVENT_FIELDS))]
 
     def values(self, attachment: str) -> dict[str, Any]:
         """Return what a JSON file in the run says by name, nothing without the file; raises RecordingError."""
@@ -116,11 +119,16 @@ class Bag:
 
     def column_blocks(self, topic: str) -> Iterator[dict[str, NDArray[Any]]]:
         """Yield the columns of a topic block by block, the first of them empty, as far as it goes."""
-        topic = self.resolved(topic)
-        type_name = self.topics[topic]
-        blocks = TopicColumns(self.files, topic, type_name, self._store(type_name), self.decode).blocks()
-        with self._named(topic), understood('a time beyond the year 2262', OverflowError):
-            yield from blocks
+        return (block for _, block in self._blocks({self.resolved(topic): None}))
+
+    def blocks_of(self, fields: Mapping[Topic, Sequence[str]]) -> Iterator[tuple[Topic, Block]]:
+        """Yield fields of the one topic of each type block by block, the first of each empty, in one pass.
+
+        Raises RecordingError when topics or fields are not there.
+        """
+        topics = {self.name_of(topic): topic for topic in fields}
+        wanted = {name: fields[topic] for name, topic in topics.items()}
+        return ((topics[name], block) for name, block in self._blocks(wanted))
 
     def name_of(self, topic: Topic) -> str:
         """Return the name of the one topic of this type; raises RecordingError when there is none, or more than one."""
@@ -165,22 +173,34 @@ class Bag:
         found = f'{len(names)} topics' if names else 'no topic'
         raise RecordingError(f'{self.path}: {found} {topic}; there are {", ".join(self.topics) or "none"}')
 
+    def _blocks(self, wanted: Mapping[str, Sequence[str] | None]) -> Iterator[tuple[str, Block]]:
+        """Yield fields of topics (None: all) block by block, the first of each empty, in one pass."""
+        topics = []
+        for name, fields in wanted.items():
+            type_name = self.topics[name]
+            topic = TopicColumns(name, type_name, self._store(type_name), self.decode)
+            if missing := [field for field in fields or () if field not in topic.fields]:
+                raise RecordingError(f'{self.path}: {name} has no {", ".join(missing)}; recorded by another version?')
+            topic.fields = topic.fields if fields is None else [*fields]
+            topics.append(topic)
+            yield name, topic.empty
+        with self._named(', '.join(wanted)), understood('a time beyond the year 2262', OverflowError):
+            yield from ((topic.topic, block) for topic, block in column_blocks(self.files, topics))
+
     def _held(self, topic: str, fields: Sequence[str] | None) -> dict[str, NDArray[Any]]:
         """Return fields of a topic (None: all), each as one array; raises RecordingError on more than fits."""
         count, done = self.counts[topic], 0
-        blocks = self.column_blocks(topic)
+        blocks = (block for _, block in self._blocks({topic: fields}))
         first = next(blocks)
-        names = [*first] if fields is None else fields
-        if missing := [name for name in names if name not in first]:
-            raise RecordingError(f'{self.path}: {topic} has no {", ".join(missing)}; recorded by another version?')
-        if (size := count * sum(first[name].itemsize for name in names)) > MOST_HELD:
+        if (size := count * sum(column.itemsize for column in first.values())) > MOST_HELD:
             raise RecordingError(f'{self.path}: {topic} has {count} messages of {size >> 20} MiB in all, which do not '
                                  'fit: take messages() one by one, or a part of the recording')
-        columns = {name: np.empty(count, first[name].dtype) for name in names}
+        columns = {name: np.empty(count, column.dtype) for name, column in first.items()}
         for block in blocks:
-            end = min(done + len(block[names[0]]), count)   # more have come meanwhile to one that is being written
-            for name in names:
-                columns[name][done:end] = block[name][:end - done]
+            # more have come meanwhile to one that is being written
+            end = min(done + len(next(iter(block.values()))), count)
+            for name, column in block.items():
+                columns[name][done:end] = column[:end - done]
             done = end
         return {name: column[:done] for name, column in columns.items()}
 

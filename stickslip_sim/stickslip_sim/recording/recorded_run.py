@@ -95,6 +95,10 @@ class RecordedRun(Views):
             self._states |= self.bag.columns_of(SLIDER_STATE, missing)
         return {name: self._states[name] for name in fields}
 
+    def state_blocks(self, fields: Sequence[str]) -> Iterator[Columns]:
+        """Yield columns of `states` block by block, the first of them empty, in memory that does not grow."""
+        return (block for _, block in self.bag.blocks_of({SLIDER_STATE: fields}))
+
     @cached_property
     def missing_steps(self) -> int:
         """How many steps have no recorded state between the first and the last that has."""

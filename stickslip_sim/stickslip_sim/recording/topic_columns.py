@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """A topic of a bag as columns, block by block: the numbers of all its messages in a chunk at once."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import reduce
+from operator import or_
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -34,29 +36,24 @@ class RecordedMessage(NamedTuple):
 
 
 class TopicColumns:
-    """The columns of a topic of a type in files: one for each field that is a number or a text, and its times.
+    """The columns of a topic of a type: one for each field that is a number or a text, and its times.
 
     `decode` makes an object of a message; it serves those whose numbers have no fixed places.
     """
 
-    def __init__(self, files: Sequence[Path], topic: str, type_name: str, store: Typestore,
-                 decode: Callable[[RecordedMessage], Any]) -> None:
-        self._files, self._topic, self._type, self._decode = files, topic, type_name, decode
+    def __init__(self, topic: str, type_name: str, store: Typestore, decode: Callable[[RecordedMessage], Any]) -> None:
+        self.topic, self._type, self._decode = topic, type_name, decode
         self._layout = layout_of(store, type_name)
         self._kinds = {**number_fields(store, type_name), **dict.fromkeys(text_fields(store, type_name), 'object')}
+        self.fields = list(dict.fromkeys((*self._kinds, *_TIMES)))   # that are made; fewer may be wanted
 
-    def blocks(self) -> Iterator[Block]:
-        """Yield the columns block by block, the first of them empty; raises OverflowError on times beyond 64 bits."""
-        yield self._decoded([])
-        for file in self._files:
-            channels: list[int] = []
-            for record in contents(file):
-                if isinstance(record, Channel) and record.topic == self._topic:
-                    channels.append(record.id)
-                elif isinstance(record, Messages) and (chosen := np.isin(record.channels, channels)).any():
-                    yield self._block(record, np.flatnonzero(chosen))
+    @property
+    def empty(self) -> Block:
+        """A block without a message."""
+        return self._decoded([])
 
-    def _block(self, messages: Messages, chosen: NDArray[np.intp]) -> Block:
+    def block(self, messages: Messages, chosen: NDArray[np.intp]) -> Block:
+        """Return the columns of chosen messages; raises OverflowError on times beyond 64 bits."""
         layout = self._layout
         if layout is None or (messages.sizes[chosen] != FRAME + layout.size).any():
             return self._decoded([self._message(messages, int(k)) for k in chosen])
@@ -64,21 +61,35 @@ class TopicColumns:
         for name in _TIMES:
             if rows[name].max() > _LATEST:
                 raise OverflowError(name)
-        return {**{name: rows[name].copy() for name in layout.names},
-                **{name: rows[name].astype(np.int64) for name in _TIMES}}
+        return {name: rows[name].astype(np.int64) if name in _TIMES else rows[name].copy() for name in self.fields}
 
     def _decoded(self, messages: list[RecordedMessage]) -> Block:
         decoded = list(map(self._decode, messages))
-        columns = {name: np.array([getattr(message, name) for message in decoded], dtype=kind)
-                   for name, kind in self._kinds.items()}
-        return {**columns, **{name: np.array([getattr(message, name) for message in messages], dtype=np.int64)
-                              for name in _TIMES}}
+        return {name: np.array([getattr(message, name) for message in messages], dtype=np.int64) if name in _TIMES
+                else np.array([getattr(message, name) for message in decoded], dtype=self._kinds[name])
+                for name in self.fields}
 
     def _message(self, messages: Messages, k: int) -> RecordedMessage:
         begin, size = int(messages.starts[k]), int(messages.sizes[k])
         frame = np.frombuffer(messages.data, _FRAME, 1, begin)[0]
-        return RecordedMessage(self._topic, self._type, int(frame['sequence']), int(frame['log_time']),
+        return RecordedMessage(self.topic, self._type, int(frame['sequence']), int(frame['log_time']),
                                int(frame['publish_time']), messages.data[begin + FRAME:begin + size])
+
+
+def column_blocks(files: Iterable[Path], topics: Sequence[TopicColumns]) -> Iterator[tuple[TopicColumns, Block]]:
+    """Yield the columns of topics block by block as they stand in files, in one pass; raises OverflowError."""
+    for file in files:
+        channels: list[list[int]] = [[] for _ in topics]
+        for record in contents(file):
+            if isinstance(record, Channel):
+                for topic, known in zip(topics, channels):
+                    if record.topic == topic.topic:
+                        known.append(record.id)
+            elif isinstance(record, Messages):
+                for topic, known in zip(topics, channels):
+                    chosen = np.flatnonzero(reduce(or_, (record.channels == one for one in known), False))
+                    if len(chosen):
+                        yield topic, topic.block(record, chosen)
 
 
 _FRAME = np.dtype({'names': list(FRAME_FIELDS), 'formats': [kind for kind, _ in FRAME_FIELDS.values()],

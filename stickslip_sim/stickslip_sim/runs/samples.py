@@ -2,13 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """The samples of a simulated run: held in memory, or made again whenever they are asked for."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from functools import cached_property
 from typing import Protocol
 
 import numpy as np
 
 from .run import Columns
+
+_GATHERED = 16_384   # rows at a time
 
 
 class Samples(Protocol):
@@ -45,7 +47,24 @@ class RemadeSamples:
         return joined(self.blocks())
 
 
-def joined(blocks: Iterator[Columns]) -> Columns:
+def gathered(blocks: Iterable[Columns]) -> Iterator[Columns]:
+    """Yield columns that come in small blocks, some of them empty, in larger ones."""
+    held: list[Columns] = []
+    count = 0
+    for block in blocks:
+        if rows := len(next(iter(block.values()))):
+            held.append(block)
+            count += rows
+        if count >= _GATHERED:
+            yield joined(held)
+            held, count = [], 0
+    if held:
+        yield joined(held)
+
+
+def joined(blocks: Iterable[Columns]) -> Columns:
     """Return the columns of blocks, at least one, as columns."""
     held = list(blocks)
+    if len(held) == 1:
+        return held[0]
     return {name: np.concatenate([block[name] for block in held]) for name in held[0]}
