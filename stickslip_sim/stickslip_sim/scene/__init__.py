@@ -3,12 +3,22 @@
 """Scenes: everything that decides a run, as a ROS 2 parameter file that is read without ROS."""
 
 from ..config.parameter import Parameter, When
-from .load import changed, load_scene, parse_override, parse_scene, scene_from_values, scene_names
+from .load import (
+    SceneOrName,
+    changed,
+    load_scene,
+    parse_override,
+    parse_scene,
+    scene_from_values,
+    scene_names,
+    scene_of,
+)
 from .model import CommandSettings, RecordSettings, Scene, TimeSettings
 from .schema import PARAMETERS
 from .solver import SolverSettings
 
 __all__ = [
-    'PARAMETERS', 'CommandSettings', 'Parameter', 'RecordSettings', 'Scene', 'SolverSettings', 'TimeSettings', 'When',
-    'changed', 'load_scene', 'parse_override', 'parse_scene', 'scene_from_values', 'scene_names',
+    'PARAMETERS', 'CommandSettings', 'Parameter', 'RecordSettings', 'Scene', 'SceneOrName', 'SolverSettings',
+    'TimeSettings', 'When',
+    'changed', 'load_scene', 'parse_override', 'parse_scene', 'scene_from_values', 'scene_names', 'scene_of',
 ]

@@ -17,6 +17,7 @@ from .sections import describes_an_axis, of_a_scene, parameters_of
 from .values import overridden, stated
 
 _SHIPPED = pathlib.Path(__file__).parent.parent / 'scenes'
+SceneOrName = Scene | str | os.PathLike[str]
 _ENDINGS = ('.yaml', '.yml')
 
 
@@ -33,15 +34,21 @@ def scene_names() -> list[str]:
     return sorted(path.stem for path in _SHIPPED.glob('*.yaml'))
 
 
-def load_scene(name_or_path: str, overrides: Mapping[str, object] | None = None) -> Scene:
+def load_scene(name_or_path: str | os.PathLike[str], overrides: Mapping[str, object] | None = None) -> Scene:
     """Return a shipped scene or one from a file, with other values by dotted name.
 
     An override of a choice (contact.model) drops the values of the file for the old one (contact.stiffness).  Raises
     InputError, whose text begins with the file.
     """
-    with named(name_or_path):
-        found = read_scene(name_or_path)
+    name = os.fspath(name_or_path)
+    with named(name):
+        found = read_scene(name)
         return scene_of_parameters(found.values, overrides or {}, found.summary)
+
+
+def scene_of(given: SceneOrName) -> Scene:
+    """Return a scene, or the one of that name or path; raises InputError."""
+    return given if isinstance(given, Scene) else load_scene(given)
 
 
 def read_scene(name_or_path: str) -> SceneFile:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..runs.frame import data_frame
-from ..scene import Scene
+from ..scene import SceneOrName, scene_of
 from . import critical as search
 from .point_figures import FIGURES, MOTIONS, Motion
 from .sample import Grid, Saltelli, Sobol
@@ -38,7 +38,7 @@ class SweptPoints:
         return data_frame({**self.columns, 'motion': self.motions}, 'columns')
 
 
-def sweep(scene: Scene, *over: str, sobol: int | None = None, duration: float | None = None,
+def sweep(scene: SceneOrName, *over: str, sobol: int | None = None, duration: float | None = None,
           progress: Progress = None) -> SweptPoints:
     """Run a scene at many values of its parameters; return what becomes of each point.
 
@@ -46,18 +46,20 @@ def sweep(scene: Scene, *over: str, sobol: int | None = None, duration: float | 
     their values, or with `sobol` so many points between their ends (without N then).  A point runs for `duration` s, or
     until its motion settles.  Raises InputError.
     """
+    scene = scene_of(scene)
     variations = tuple(variation(text, drawn=sobol is not None) for text in over)
     sample = Grid(variations) if sobol is None else Sobol(variations, sobol, scene.seed)
     return SweptPoints(_columns(Study(scene.values, sample, duration), progress))
 
 
-def critical(scene: Scene, name: str, between: tuple[float, float] | None = None, accuracy: float = 1e-9,
+def critical(scene: SceneOrName, name: str, between: tuple[float, float] | None = None, accuracy: float = 1e-9,
              progress: Progress = None) -> search.Critical:
     """Return the values of a parameter at which stick-slip begins or ends, from rest and from sliding.
 
     They are sought `between` two values (None: 1/100 to 100 times that of the scene) to a relative `accuracy`.
     Raises InputError.
     """
+    scene = scene_of(scene)
     if between is None:
         over = search.default_range(scene, name)
     else:
@@ -65,13 +67,14 @@ def critical(scene: Scene, name: str, between: tuple[float, float] | None = None
     return search.critical(scene, over, accuracy, progress)
 
 
-def uncertainty(scene: Scene, known: str | Path | Mapping[str, object], samples: int = 1024, seed: int = 0,
+def uncertainty(scene: SceneOrName, known: str | Path | Mapping[str, object], samples: int = 1024, seed: int = 0,
                 duration: float | None = None, progress: Progress = None) -> Uncertainty:
     """Return what becomes of a scene whose parameters are known only roughly: percentiles, and which one decides.
 
     `known` is a file as `stickslip uncertainty --with` takes it, or its section of parameters with a `seed`; `samples`
     is a power of two.  Raises InputError.
     """
+    scene = scene_of(scene)
     if isinstance(known, Mapping):
         found = uncertain_of({'parameters': known, 'seed': seed})
     else:
