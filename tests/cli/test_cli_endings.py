@@ -12,6 +12,8 @@ import click
 import pytest
 
 from stickslip_sim.cli.main import run
+from stickslip_sim.scene import load_scene
+from tests.support.repository import ROOT
 from tests.support.tool import Capture, answered, refused, restore_interrupt
 
 
@@ -147,3 +149,18 @@ def started(*arguments: str | Path) -> subprocess.Popen[str]:
     assert process.stdout is not None
     process.stdout.readline()
     return process
+
+
+def test_what_a_command_reads_is_not_what_it_writes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    scene, curve = tmp_path / 'mine.yaml', tmp_path / 'curve.csv'
+    scene.write_text(load_scene('paper_fig7').text)
+    curve.write_text((ROOT / 'examples' / 'friction_curve.csv').read_text())
+    for arguments, read in (
+            (['simulate', str(scene), '--duration', '1', '--samples', str(scene)], scene),
+            (['friction', str(curve), '--speed-unit', 'mm/s', '--out', str(scene), '--scene', str(scene)], scene),
+            (['friction', str(curve), '--speed-unit', 'mm/s', '--out', str(curve)], curve)):
+        before = read.read_bytes()
+        assert run(arguments) == 2
+        assert 'must be another place than that of' in capsys.readouterr().err
+        assert read.read_bytes() == before
+    assert run(['simulate', 'paper_fig7', '--duration', '1', '--samples', str(curve)]) == 0   # a file of no other use

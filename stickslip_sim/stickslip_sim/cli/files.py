@@ -12,6 +12,8 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+import click
+
 from ..core.errors import InputError
 from ..core.paths import nearest_existing
 from ..core.picture_formats import check_picture_name
@@ -20,8 +22,11 @@ STDOUT = '-'
 
 
 def check_file(option: str, path: str) -> None:
-    """Raise InputError unless a file can be written there; an existing one may be replaced."""
+    """Raise InputError unless a file can be written there; an existing one may be replaced, but no other argument."""
     place = _real(path)
+    for name, other in _files_of_the_command(option):
+        if _real(other) == place:
+            raise InputError(option, path, f'another place than that of {name}', 'name a file of its own')
     if place.is_dir():
         raise InputError(option, path, 'a file', 'this is a folder: add a file name')
     _check_folder(option, path, place.parent)
@@ -115,6 +120,17 @@ def _refusing(path: str) -> Iterator[None]:
         raise
     except OSError as error:
         raise InputError('output', path, 'a place that can be written', error.strerror or str(error)) from None
+
+
+def _files_of_the_command(but: str) -> Iterator[tuple[str, str]]:
+    """Yield the other arguments and options of the command that name files which are there."""
+    context = click.get_current_context(silent=True)
+    for parameter in context.command.params if context else ():
+        given = context.params.get(parameter.name or '') if context and but not in parameter.opts else None
+        for value in given if isinstance(given, tuple) else (given,):
+            if isinstance(value, str) and os.path.isfile(value):
+                is_argument = isinstance(parameter, click.Argument)
+                yield parameter.human_readable_name if is_argument else parameter.opts[0], value
 
 
 def _real(path: str) -> Path:
