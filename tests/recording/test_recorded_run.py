@@ -4,6 +4,7 @@
 
 import shutil
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,7 @@ import pytest
 from stickslip_sim.cli.main import run as tool
 from stickslip_sim.core.errors import InputError, RecordingWarning
 from stickslip_sim.core.types import EventKind
-from stickslip_sim.recording import read_run
+from stickslip_sim.recording import read_run, records, topic_columns
 from stickslip_sim.rig.marks import Mark
 from stickslip_sim.runs import COLUMNS, Run, simulate, simulate_events
 from stickslip_sim.scene import load_scene
@@ -40,6 +41,21 @@ def test_a_recorded_run_reads_like_the_simulation(fig8_bag: Path) -> None:
         assert tuple(cycle) == pytest.approx(tuple(again), rel=1e-12)
     assert recorded.summary.motion == simulated.summary.motion
     assert recorded.receipt['results'] == simulated.receipt['results']
+
+
+def test_samples_and_events_take_one_pass_over_the_bag(fig8_bag: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    passes: list[Path] = []
+
+    def counted(file: Path) -> Iterator[object]:
+        passes.append(file)
+        return records.contents(file)
+
+    run = read_run(fig8_bag)
+    monkeypatch.setattr(topic_columns, 'contents', counted)
+    assert len(run.samples['time']) == len(run.states['time'])
+    assert run.events
+    assert run.missing_steps == 0
+    assert len(passes) == 1
 
 
 @pytest.mark.parametrize('changes', [{'force.constant': 30.0}, {}])

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -115,7 +116,8 @@ class Bag:
         `log_time` (simulation time) and `publish_time` are in ns; `sequence` is the step.  A name without a slash at
         its begin is that of the one topic that ends so.  Raises RecordingError when there is none, or too much of it.
         """
-        return self._held(self.resolved(topic), None)
+        name = self.resolved(topic)
+        return self._held({name: None})[name]
 
     def column_blocks(self, topic: str) -> Iterator[dict[str, NDArray[Any]]]:
         """Yield the columns of a topic block by block, the first of them empty, as far as it goes."""
@@ -148,7 +150,13 @@ class Bag:
 
         Raises RecordingError when topic or fields are not there.
         """
-        return self._held(self.name_of(topic), fields)
+        return self.columns_of_all({topic: fields})[topic]
+
+    def columns_of_all(self, fields: Mapping[Topic, Sequence[str]]) -> dict[Topic, dict[str, NDArray[Any]]]:
+        """Return what `columns_of` does of several topics, in one pass over the files."""
+        names = {topic: self.name_of(topic) for topic in fields}
+        held = self._held({names[topic]: wanted for topic, wanted in fields.items()})
+        return {topic: held[name] for topic, name in names.items()}
 
     def layout(self, topic: str) -> Layout:
         """Return where a topic has its numbers; raises RecordingError when they have no fixed places."""
@@ -187,22 +195,27 @@ class Bag:
         with self._named(', '.join(wanted)), understood('a time beyond the year 2262', OverflowError):
             yield from ((topic.topic, block) for topic, block in column_blocks(self.files, topics))
 
-    def _held(self, topic: str, fields: Sequence[str] | None) -> dict[str, NDArray[Any]]:
-        """Return fields of a topic (None: all), each as one array; raises RecordingError on more than fits."""
-        count, done = self.counts[topic], 0
-        blocks = (block for _, block in self._blocks({topic: fields}))
-        first = next(blocks)
+    def _held(self, wanted: Mapping[str, Sequence[str] | None]) -> dict[str, Block]:
+        """Return fields of topics (None: all), each as one array; raises RecordingError on more than fits."""
+        blocks = self._blocks(wanted)
+        held = {name: self._room(name, first) for name, first in islice(blocks, len(wanted))}
+        done = dict.fromkeys(held, 0)
+        for name, block in blocks:
+            begin, rows = done[name], len(next(iter(block.values())))
+            # more have come meanwhile to one that is being written
+            done[name] = end = min(begin + rows, self.counts[name])
+            for field_name, column in block.items():
+                held[name][field_name][begin:end] = column[:end - begin]
+        return {name: {field_name: column[:done[name]] for field_name, column in columns.items()}
+                for name, columns in held.items()}
+
+    def _room(self, topic: str, first: Block) -> Block:
+        """Return columns for all messages of a topic; raises RecordingError on more than fits."""
+        count = self.counts[topic]
         if (size := count * sum(column.itemsize for column in first.values())) > MOST_HELD:
             raise RecordingError(f'{self.path}: {topic} has {count} messages of {size >> 20} MiB in all, which do not '
                                  'fit: take messages() one by one, or a part of the recording')
-        columns = {name: np.empty(count, column.dtype) for name, column in first.items()}
-        for block in blocks:
-            # more have come meanwhile to one that is being written
-            end = min(done + len(next(iter(block.values()))), count)
-            for name, column in block.items():
-                columns[name][done:end] = column[:end - done]
-            done = end
-        return {name: column[:done] for name, column in columns.items()}
+        return {name: np.empty(count, column.dtype) for name, column in first.items()}
 
     def _store(self, type_name: str) -> Typestore:
         """Return what reads messages of a type; raises RecordingError without a definition of it that can be read."""

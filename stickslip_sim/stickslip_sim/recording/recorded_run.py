@@ -3,7 +3,7 @@
 """A recorded run: states at its steps, events at their exact times, the scene that travels in it."""
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -20,8 +20,8 @@ from ..runs.views import Views
 from ..scene import Scene
 from ..simulation.cycles import Summary, summary
 from .opening import shortfalls
-from .reader import Bag
-from .topics import DRIVE_VELOCITY, FRICTION_FORCE, PARAMETER_EVENTS, RIG_EVENT, SLIDER_STATE, Topic
+from .reader import EVENT_FIELDS, Bag
+from .topics import DRIVE_VELOCITY, FRICTION_FORCE, MODE_EVENT, PARAMETER_EVENTS, RIG_EVENT, SLIDER_STATE, Topic
 
 _STATE = ('time', 'step', 'position', 'velocity', 'acceleration', 'drive_position', 'drive_velocity', 'drive_force',
           'rest_time', 'mode', 'direction')
@@ -47,7 +47,7 @@ class RecordedRun(Views):
         self.is_changed = any(bag.counts.get(name) for name, kind in bag.topics.items()
                               if kind == PARAMETER_EVENTS.type)
         self._given = path
-        self._states: Columns = {}
+        self._columns: dict[Topic, Columns] = {}
 
     @property
     def name(self) -> str:
@@ -91,9 +91,7 @@ class RecordedRun(Views):
 
     def state_columns(self, fields: Sequence[str]) -> Columns:
         """Return columns of `states`; those that were asked for are held, and no others."""
-        if missing := [name for name in fields if name not in self._states]:
-            self._states |= self.bag.columns_of(SLIDER_STATE, missing)
-        return {name: self._states[name] for name in fields}
+        return self._held({SLIDER_STATE: fields})[SLIDER_STATE]
 
     def state_blocks(self, fields: Sequence[str]) -> Iterator[Columns]:
         """Yield columns of `states` block by block, the first of them empty, in memory that does not grow."""
@@ -108,9 +106,10 @@ class RecordedRun(Views):
     @cached_property
     def samples(self) -> Columns:
         """The steps of which state and friction were recorded; raises RecordingError on fewer than 2."""
-        states = self.states
-        friction = self.bag.columns_of(FRICTION_FORCE, ('step', *_FRICTION))
-        states, friction = _of_the_same_steps(states, friction)
+        events = {MODE_EVENT: EVENT_FIELDS} if list(self.bag.topics.values()).count(MODE_EVENT.type) == 1 else {}
+        held = self._held({SLIDER_STATE: _STATE, FRICTION_FORCE: ('step', *_FRICTION), **events})
+        states, friction = _of_the_same_steps(held[SLIDER_STATE], held[FRICTION_FORCE])
+        del self._columns[FRICTION_FORCE], held
         if len(states['step']) < 2:
             raise RecordingError(f'{self.bag.path}: {len(states["step"])} states with their friction force; a run has '
                                  'at least 2')
@@ -129,8 +128,9 @@ class RecordedRun(Views):
     @cached_property
     def events(self) -> list[Event]:
         """The transitions up to the last state; the drive's position then is between those at the steps."""
-        states = self.state_columns(['time', 'drive_position'])
-        events, time = self.bag.events, states['time']
+        held = self._held({SLIDER_STATE: ('time', 'drive_position'), MODE_EVENT: EVENT_FIELDS})
+        states, events = held[SLIDER_STATE], self.bag.events_in(held[MODE_EVENT])
+        time = states['time']
         events = [event for event in events if len(time) and time[0] <= event.time <= time[-1]]
         times = [event.time for event in events]
         drive = np.interp(times, time, states['drive_position']).tolist() if events else []
@@ -166,6 +166,15 @@ class RecordedRun(Views):
     @property
     def _is_of_the_tool(self) -> bool:
         return self.bag.metadata.get('stickslip', {}).get('origin') == 'offline'
+
+    def _held(self, fields: Mapping[Topic, Sequence[str]]) -> dict[Topic, Columns]:
+        """Return columns of topics; those that are not held yet are read, in one pass over the bag."""
+        known = {topic: self._columns.get(topic, {}) for topic in fields}
+        missing = {topic: new for topic, names in fields.items()
+                   if (new := [name for name in names if name not in known[topic]])}
+        for topic, columns in self.bag.columns_of_all(missing).items() if missing else ():
+            known[topic] = self._columns[topic] = {**known[topic], **columns}
+        return {topic: {name: known[topic][name] for name in names} for topic, names in fields.items()}
 
     def _columns_of_any(self, topic: Topic, fields: Sequence[str]) -> Columns:
         """Return fields of a topic that a recording need not have."""
