@@ -28,7 +28,8 @@ def refusal(program: str, path: Path) -> str:
 @pytest.mark.parametrize('program', PROGRAMS)
 @pytest.mark.parametrize(('text', 'reported'), [
     (HEAD + '[' * 100_000, 'nested more than 16 deep'),
-    (HEAD + '[' + '0.1,' * 1_000_000 + '0.2]\n', 'at most 1048576 bytes'),
+    (HEAD + '[' + '0.1,' * 1_000_000 + '0.2]\n', 'more than 200000 numbers in a list'),
+    (HEAD + '"' + 'a' * 1_100_000 + '"\n', 'at most 1048576 letters'),
 ])
 def test_too_deep_or_too_long(program: str, text: str, reported: str, tmp_path: Path) -> None:
     path = tmp_path / 'parameters.yaml'
