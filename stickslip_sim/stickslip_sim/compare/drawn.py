@@ -3,6 +3,7 @@
 """What a comparison looks at in a run: the samples with the state before each event, the inputs, slips and sticks."""
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -32,20 +33,22 @@ def external_force(run: Run) -> Numbers:
     return inertia + run.samples['friction_force'] - run.samples['drive_force']
 
 
-@kept
-def drawn_columns(run: Run) -> Columns:
-    """Return the samples and the state just before each event, so that corners and jumps are where they are."""
-    before = _before_events(run)
-    times = np.concatenate([before['time'], run.samples['time']])
-    order = np.argsort(times, kind='stable')   # at equal times the state before comes first
-    return {name: np.concatenate([before[name], run.samples[name]])[order] for name in _DRAWN}
-
-
 def within(run: Run, begin: float, end: float) -> Columns:
-    """Return the `drawn_columns` from `begin` to `end` (s)."""
-    columns = drawn_columns(run)
-    inside = rows(columns['time'], begin, end)
-    return {name: column[inside] for name, column in columns.items()}
+    """Return the samples from `begin` to `end` (s), and the state just before each event there.
+
+    So corners and jumps are where they are.
+    """
+    before = before_events(run)
+    parts = [{name: source[name][rows(source['time'], begin, end)] for name in _DRAWN}
+             for source in (before, run.samples)]
+    order = np.argsort(np.concatenate([part['time'] for part in parts]), kind='stable')   # at equal times the state
+    return {name: np.concatenate([part[name] for part in parts])[order] for name in _DRAWN}   # before comes first
+
+
+def extremes(run: Run, quantity: Callable[[Columns], Numbers]) -> tuple[float, float]:
+    """Return the lowest and the highest value of a quantity at all that `within` takes from."""
+    values = [quantity(source) for source in (before_events(run), run.samples) if len(source['time'])]
+    return min(float(each.min()) for each in values), max(float(each.max()) for each in values)
 
 
 def steady_inputs(run: Run, begin: float = -math.inf, end: float = math.inf) -> SteadyInputs | None:
@@ -92,7 +95,8 @@ def complete_sticks(run: Run) -> list[tuple[Event, Event]]:
     return found
 
 
-def _before_events(run: Run) -> Columns:
+@kept
+def before_events(run: Run) -> Columns:
     """Return the state just before each event; the acceleration is that of the balance of forces."""
     events, samples = run.events, run.samples
     columns = {name: np.array([getattr(event, name) for event in events], dtype=np.float64)

@@ -12,12 +12,13 @@ import numpy as np
 from ..core.errors import InputError
 from ..core.input_profile import InputProfile
 from ..core.time_grid import Instants
-from ..core.types import Event, Instant, Sample
+from ..core.types import Event, Sample
 from ..runs import SimulatedRun, simulate_events
 from ..runs.samples import HeldSamples
 from ..runs.simulated import columns_of_rows
 from ..scene import Scene
 from ..simulation.simulator import Simulator
+from .drawn import Numbers
 from .ring_down import closed_form
 
 MAX_EVENTS = 50_000
@@ -40,38 +41,43 @@ def densely_sampled(run: SimulatedRun) -> SimulatedRun:
         raise InputError('duration', duration, f'short enough for at most {MAX_EVENTS} events',
                          f'there are {len(run.events)}: simulate a shorter time')
     simulator = Simulator(scene.axis, scene.initial, scene.drive, scene.force, scene.solver.make(scene.axis))
-    seconds, fractions = np.array(_instants(scene, duration, run.events)).T
-    rows = np.empty((len(seconds), len(Sample._fields)))
-    simulator.take_samples(Instants(seconds.copy(), fractions.copy()), rows)
+    instants = _instants(scene, duration, run.events)
+    rows = np.empty((len(instants.seconds), len(Sample._fields)))
+    simulator.take_samples(instants, rows)
     return replace(run, sampled=HeldSamples(columns_of_rows(rows)))
 
 
-def _instants(scene: Scene, duration: float, events: list[Event]) -> list[Instant]:
+def _instants(scene: Scene, duration: float, events: list[Event]) -> Instants:
     """Return when to sample: at the events, before and after the jumps of an input, and finely in between."""
     jumps = sorted({*_borders(scene.drive, duration), *_borders(scene.force, duration)})
-    corners = sorted({0.0, duration, *jumps, *(event.time for event in events)})
+    corners = np.array(sorted({0.0, duration, *jumps, *(event.time for event in events)}))
     count = min(max(_SPAN_BUDGET // len(corners), _IN_SPAN[0]), _IN_SPAN[1])
-    fine = [time for a, b in pairwise(corners) for time in np.linspace(a, b, count)[1:-1].tolist()]
-    fine += [0.0, duration, *jumps, *(max(time - _BEFORE, 0.0) for time in jumps)]
-    fine += [*_ring_downs(scene, corners), *_of_sinusoids(scene, duration)]
-    return sorted({*map(_instant, fine), *(event.instant for event in events)})
+    between = np.linspace(corners[:-1], corners[1:], count)[1:-1].ravel()
+    at_jumps = [0.0, duration, *jumps, *(max(time - _BEFORE, 0.0) for time in jumps)]
+    times = np.concatenate([between, at_jumps, *_ring_downs(scene, corners), _of_sinusoids(scene, duration)])
+    seconds = np.append(np.floor(times), [event.second for event in events])
+    fractions = np.append(times - np.floor(times), [event.fraction for event in events])
+    order = np.lexsort((fractions, seconds))
+    seconds, fractions = seconds[order], fractions[order]
+    is_new = np.append(True, (np.diff(seconds) != 0.0) | (np.diff(fractions) != 0.0))
+    return Instants(seconds[is_new], fractions[is_new])
 
 
-def _ring_downs(scene: Scene, corners: list[float]) -> Iterator[float]:
+def _ring_downs(scene: Scene, corners: Numbers) -> Iterator[Numbers]:
     """Yield the times that show how a compliant contact rings after each event."""
     ring = closed_form(scene.axis)
     if ring is None:
         return
     offsets = np.arange(1, _PERIODS * _IN_PERIOD) / (_IN_PERIOD * ring.frequency)
-    for a, b in pairwise(corners[-(_SPAN_BUDGET // len(offsets)):]):
-        yield from (a + offsets[offsets < b - a]).tolist()
+    for a, b in pairwise(corners[-(_SPAN_BUDGET // len(offsets)):].tolist()):
+        yield a + offsets[offsets < b - a]
 
 
-def _of_sinusoids(scene: Scene, duration: float) -> Iterator[float]:
-    """Yield the times that show the sines of the inputs."""
+def _of_sinusoids(scene: Scene, duration: float) -> Numbers:
+    """Return the times that show the sines of the inputs."""
     fastest = max((sinusoid.frequency for sinusoid in (*scene.drive.sinusoids, *scene.force.sinusoids)), default=0.0)
     count = min(_IN_PERIOD * fastest * duration, _SINUSOID_BUDGET)
-    yield from np.linspace(0.0, duration, math.ceil(count) + 1).tolist()
+    return np.linspace(0.0, duration, math.ceil(count) + 1, dtype=np.float64)
 
 
 def _borders(profile: InputProfile, duration: float) -> Iterator[float]:
@@ -82,8 +88,3 @@ def _borders(profile: InputProfile, duration: float) -> Iterator[float]:
             return
         yield time
         time = profile.piece_at(time).end
-
-
-def _instant(seconds: float) -> Instant:
-    whole = math.floor(seconds)
-    return Instant(float(whole), seconds - whole)

@@ -3,11 +3,16 @@
 """Which parts of a run are worth a picture."""
 
 import math
+from collections.abc import Iterable
+
+import numpy as np
 
 from ..core.types import EventKind
-from ..plots.paper_panels import DrawnMotion, Stretch
+from ..plots.paper_panels import RANGED, DrawnMotion, Stretch
+from ..plots.side_by_side import ALIKE
 from ..runs import Run
-from .drawn import complete_slips, drawn_columns
+from ..runs.samples import joined
+from .drawn import before_events, complete_slips, extremes, within
 
 _CYCLES = 5                    # that show how the motion begins
 _IN_ORBIT = 30                 # that show where it goes
@@ -17,8 +22,31 @@ _BEGINNING = 0.1               # of a slip without an end: what is shown
 
 def drawn_motion(run: Run) -> DrawnMotion:
     """Return what is drawn of a run: its first cycles, its last complete slip, its last complete cycle."""
-    slip, break_away = _slip(run)
-    return DrawnMotion(drawn_columns(run), _opening(run), slip, break_away, _orbit(run), _cycle(run))
+    opening, (slip, break_away), orbit, cycle = _opening(run), _slip(run), _orbit(run), _cycle(run)
+    begin, end = opening
+    beside = begin, begin + ALIKE * (end - begin)   # beside other runs as much of it may be drawn
+    drawn = [beside, slip, orbit, *([cycle] if cycle else [])]
+    columns = joined([within(run, *stretch) for stretch in _apart([_with_neighbours(run, *each) for each in drawn])])
+    ranges = {name: extremes(run, quantity) for name, quantity in RANGED.items()}
+    return DrawnMotion(columns, opening, slip, break_away, orbit, cycle, ranges)
+
+
+def _with_neighbours(run: Run, begin: float, end: float) -> Stretch:
+    """Return a stretch up to what is drawn just before and just after it."""
+    all_times = [source['time'] for source in (before_events(run), run.samples)]
+    before = [time[k] for time in all_times if (k := int(np.searchsorted(time, begin, 'right')) - 1) >= 0]
+    after = [time[k] for time in all_times if (k := int(np.searchsorted(time, end))) < len(time)]
+    return float(max(before, default=begin)), float(min(after, default=end))
+
+
+def _apart(stretches: Iterable[Stretch]) -> list[Stretch]:
+    """Return stretches that cover the same, in the order of time, none of them at another."""
+    found: list[Stretch] = []
+    for begin, end in sorted(stretches):
+        if found and begin <= found[-1][1]:
+            begin, end = found[-1][0], max(found.pop()[1], end)
+        found.append((begin, end))
+    return found
 
 
 def _opening(run: Run) -> Stretch:

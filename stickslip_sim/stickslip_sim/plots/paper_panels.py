@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The motion as in Fig. 7 and 8 of the paper: its panels, letters and units, for a journal's double column."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -41,10 +41,19 @@ _LETTERS = 'adbecf'   # the paper counts down the columns
 _ARROWED = 0.15   # of the picture's extent: a shorter stretch gets no arrow
 
 Stretch = tuple[float, float]   # s, from and to
+_STRETCH = 'stretch of the drive spring'
+RANGED: dict[str, Callable[[Mapping[str, Numbers]], Numbers]] = {
+    'velocity': lambda columns: columns['velocity'],
+    'friction_force': lambda columns: columns['friction_force'],
+    _STRETCH: lambda columns: columns['drive_position'] - columns['position'],
+}
 
 
 class DrawnMotion(NamedTuple):
-    """The drawn part of a run: columns named as in `types.Sample`, and `time`, with the state before each event."""
+    """The drawn parts of a run: columns named as in `types.Sample`, and `time`, with the state before each event.
+
+    `ranges` are the lowest and the highest value of RANGED in all of the run.
+    """
 
     columns: Mapping[str, Numbers]
     opening: Stretch           # of panels a and b
@@ -52,6 +61,7 @@ class DrawnMotion(NamedTuple):
     break_away: float | None   # s, 0 of their time axis
     orbit: Stretch             # that panels e and f show in grey
     cycle: Stretch | None      # that they stress
+    ranges: Mapping[str, tuple[float, float]]
 
 
 def plot_motion(motion: DrawnMotion, *paths: Path | str) -> None:
@@ -111,7 +121,7 @@ def velocity(panel: Axes, columns: Mapping[str, Numbers], label: str) -> None:
 
 def friction_loop(panel: Axes, motion: DrawnMotion) -> None:
     """Draw the friction force over the velocity: all of it, and the stressed cycle by mode."""
-    _orbit(panel, motion, motion.columns['velocity'] * MILLI, motion.columns['friction_force'] * KILO)
+    _orbit(panel, motion, ('velocity', MILLI), ('friction_force', KILO))
     panel.set(xlabel='velocity / (mm/s)', ylabel='friction force / kN')
 
 
@@ -141,19 +151,21 @@ def _speed_and_acceleration(panel: Axes, columns: Mapping[str, Numbers], label: 
 
 def phase_plane(panel: Axes, motion: DrawnMotion) -> None:
     """Draw the velocity over the stretch of the drive spring, which closes where the position would run away."""
-    stretch = (motion.columns['drive_position'] - motion.columns['position']) * MILLI
-    _orbit(panel, motion, stretch, motion.columns['velocity'] * MILLI)
-    panel.set(xlabel='stretch of the drive spring s − x / mm', ylabel='velocity / (mm/s)')
+    _orbit(panel, motion, (_STRETCH, MILLI), ('velocity', MILLI))
+    panel.set(xlabel=f'{_STRETCH} s − x / mm', ylabel='velocity / (mm/s)')
 
 
-def _orbit(panel: Axes, motion: DrawnMotion, x: Numbers, y: Numbers) -> None:
+def _orbit(panel: Axes, motion: DrawnMotion, *axes: tuple[str, float]) -> None:
+    """Draw two of RANGED, each with its scale, over each other."""
+    x, y = (RANGED[name](motion.columns) * scale for name, scale in axes)
     shown = _rows(motion, *motion.orbit)
     panel.plot(x[shown], y[shown], color=_EARLIER, linewidth=0.6, label='the run')
     if motion.cycle is None:
         return
     whole = _rows(motion, *motion.cycle)
     panel.plot(x[whole], y[whole], color='white', linewidth=2.2)   # so that the gaps of dashes are white
-    extent = np.array([np.ptp(x) or 1.0, np.ptp(y) or 1.0])
+    ranges = [(motion.ranges[name], scale) for name, scale in axes]
+    extent = np.array([high * scale - low * scale or 1.0 for (low, high), scale in ranges])
     labels = dict(zip(Mode, _MODE_NAMES))
     for mode, rows in _stretches(motion, *motion.cycle):
         panel.plot(x[rows], y[rows], color=MODE_COLOURS[mode], linestyle=_DASHES[mode], linewidth=1.5,

@@ -16,7 +16,7 @@ from .paper_panels import DrawnMotion, forces, friction_loop, legend_below, part
 from .style import DOUBLE_COLUMN, JOURNAL, letter, save
 
 _ROW, _LEGEND = 1.9, 0.6   # in
-_ALIKE = 5.0               # so many times as large an extent, and rows do not share an axis
+ALIKE = 5.0               # so many times as large an extent, and rows do not share an axis
 
 
 def plot_side_by_side(motions: Mapping[str, DrawnMotion], *paths: Path | str) -> None:
@@ -43,7 +43,7 @@ def _lengths(motions: Sequence[DrawnMotion]) -> list[float]:
     """Return how long to show each run, s: all as long as the longest if they are alike."""
     lengths = [motion.opening[1] - motion.opening[0] for motion in motions]
     longest = max(lengths)
-    return [longest] * len(lengths) if longest <= _ALIKE * min(lengths) else lengths
+    return [longest] * len(lengths) if longest <= ALIKE * min(lengths) else lengths
 
 
 def _draw_row(row: Sequence[Axes], name: str, motion: DrawnMotion, length: float) -> None:
@@ -63,6 +63,6 @@ def _share(panels: Sequence[Axes], axis: str) -> None:
     """Give panels the same limits, unless the lines of one would be lost in those of another."""
     limits = np.array([getattr(panel, f'get_{axis}lim')() for panel in panels])
     extents = np.ptp(limits, axis=1)
-    if extents.max() <= _ALIKE * extents.min():
+    if extents.max() <= ALIKE * extents.min():
         for panel in panels:
             getattr(panel, f'set_{axis}lim')(limits[:, 0].min(), limits[:, 1].max())
