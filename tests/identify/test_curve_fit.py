@@ -12,7 +12,7 @@ from stickslip_sim.core.errors import InputError
 from stickslip_sim.friction import SmoothKinetic, smooth
 from stickslip_sim.identify.curve_fit import Fit
 from stickslip_sim.identify.curve_laws import fit_laws, sides, sign_changes
-from stickslip_sim.identify.curve_scene import scene_with_friction
+from stickslip_sim.identify.curve_scene import Origin, scene_with_friction
 from stickslip_sim.identify.friction_curve import FrictionCurve, Numbers
 from stickslip_sim.identify.friction_laws import SMOOTH_FORMS
 from stickslip_sim.identify.smooth_fit import fit_smooth
@@ -49,7 +49,8 @@ def test_a_law_without_noise_is_found_again(name: str) -> None:
 @pytest.mark.parametrize('name', LAWS)
 def test_the_laws_of_a_fit_are_those_of_the_engine(name: str) -> None:
     fit = fit_smooth(FORMS[name], curve(LAWS[name].coefficient, noise=1e-3))
-    made = scene_with_friction(fit.scene, None, {'friction.kinetic.tolerance': 1e-6}, 'made').axis.friction.kinetic
+    scene = scene_with_friction(fit.scene, None, {'friction.kinetic.tolerance': 1e-6}, Origin('made', 0.005))
+    made = scene.axis.friction.kinetic
     assert [made.coefficient(speed) for speed in SPEEDS.tolist()] == pytest.approx(fit.at(SPEEDS).tolist(), abs=3e-6)
 
 
@@ -128,7 +129,7 @@ def test_the_chance_of_few_changes_is_that_of_all_orders() -> None:
     left = np.array([1.0, 1.0, -1.0, -1.0])
     fit = Fit('flat', _Flat(), (), np.array([]), (), 0, {},
               FrictionCurve(left + 2.0, left, np.full(4, True)))
-    assert sign_changes(fit) == pytest.approx((1, 2 / 6))
+    assert sign_changes(fit) == pytest.approx((1, 2 / 6, 2 / 6))
 
 
 class _Flat:
@@ -136,6 +137,41 @@ class _Flat:
 
     def coefficients(self, parameters: Numbers, speeds: Numbers) -> Numbers:
         return np.zeros_like(speeds)
+
+
+def spread(low: float, count: int, high: float = 0.1) -> Numbers:
+    return np.geomspace(low, high, count).astype(np.float64)
+
+
+SEVEN = FrictionCurve(spread(5e-4, 7), np.array([0.158, 0.147, 0.13, 0.11, 0.094, 0.083, 0.076]), np.full(7, True))
+
+
+def test_few_points_of_a_falling_curve_are_no_constant() -> None:
+    """The constant has the lower AICc, by its last term alone: it misses the points by a third of their range."""
+    fits = fit_laws(SEVEN)
+    table = next(fit for fit in fits.by_rank if fit.name == 'table')
+    assert table.criterion < fits.by_rank[0].criterion
+    assert table.miss > 0.3
+    assert (fits.by_rank[0].name, fits.passed_over) == ('hyperbolic', ['table'])
+    assert 'table' not in fits.as_good
+
+
+def test_noise_about_a_constant_stays_a_constant() -> None:
+    for seed in range(5):
+        fits = fit_laws(curve(lambda speed: 0.1, noise=1e-3, seed=seed, speeds=spread(5e-4, 9)))
+        assert (fits.by_rank[0].name, fits.passed_over) == ('table', [])
+
+
+def test_seven_residuals_cannot_show_a_pattern() -> None:
+    assert sign_changes(fit_table(SEVEN)).least > 0.05
+    assert sign_changes(fit_smooth(FORMS['hyperbolic'], curve(LAWS['gaussian'].coefficient))).least < 1e-6
+
+
+def test_a_fit_knows_when_its_value_at_rest_is_above_all_points() -> None:
+    slow, fast = (curve(LAWS['exponential'].coefficient, noise=1e-4, speeds=spread(low, 12, 0.2))
+                  for low in (1e-5, 5e-3))
+    assert not fit_smooth(FORMS['exponential'], slow).extrapolates
+    assert fit_smooth(FORMS['exponential'], fast).extrapolates
 
 
 def test_directions_that_differ_are_seen() -> None:

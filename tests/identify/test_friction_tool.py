@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """`stickslip friction`: what it prints, draws and writes, and what it refuses."""
 
+import re
+from collections.abc import Iterable
 from pathlib import Path
 
 import pytest
@@ -88,9 +90,71 @@ def test_static_friction_below_the_curve_says_how_to_go_on(tmp_path: Path, capsy
 
 
 def test_a_law_that_the_points_are_too_few_for(tmp_path: Path, capsys: Capture) -> None:
-    few = tmp_path / 'few.csv'
-    few.write_text(''.join(f'{line}\n' for line in CURVE.read_text().splitlines()[1:7]))
-    assert '--law = ' in refused(capsys, 'friction', few, '--speed-unit', 'mm/s', '--law', 'stribeck')
+    few = written(tmp_path, FALLING[:6])
+    said = refused(capsys, 'friction', few, '--speed-unit', 'mm/s', '--law', 'exponential')
+    assert 'at most 3 parameters for these points: AICc wants 3 points more' in said
     code, out, _ = answered(capsys, 'friction', few, '--speed-unit', 'mm/s')
     assert code == 0
-    assert 'not fitted: it has too many parameters for these points' in out
+    assert 'not fitted: AICc wants 3 points more than a law has parameters' in out
+
+
+FALLING = ((0.5, 0.158), (1.2, 0.147), (2.9, 0.13), (7.1, 0.11), (17.0, 0.094), (41.0, 0.083), (100.0, 0.076))
+
+
+def written(folder: Path, points: Iterable[tuple[float, float]]) -> Path:
+    """Return a file of points."""
+    path = folder / 'points.csv'
+    path.write_text(''.join(f'{speed},{friction}\n' for speed, friction in points))
+    return path
+
+
+def test_a_best_law_that_misses_the_points_is_warned_of(tmp_path: Path, capsys: Capture) -> None:
+    few = written(tmp_path, FALLING[:6])
+    code, out, _ = answered(capsys, 'friction', few, '--speed-unit', 'mm/s', '--out', tmp_path / 'few.yaml')
+    assert code == 0
+    assert re.search(r'WARNING: table misses the points by 3\d % of their range', out)
+    assert 'no pattern' not in out
+    assert re.search(r'3\d % of the range of the points', load_scene(str(tmp_path / 'few.yaml')).summary)
+    _, out, _ = answered(capsys, 'friction', written(tmp_path, FALLING), '--speed-unit', 'mm/s')
+    assert 'best: hyperbolic' in out
+    assert 'not best, for all its lower AICc: table' in out
+    assert 'WARNING' not in out
+
+
+def test_a_curve_without_a_point_at_rest_says_from_where_it_is_extrapolated(tmp_path: Path, capsys: Capture) -> None:
+    fast = written(tmp_path, ((5, 0.11), (7, 0.102), (10, 0.095), (15, 0.088), (20, 0.084), (30, 0.08), (50, 0.078),
+                              (70, 0.077), (100, 0.076)))
+    _, out, _ = answered(capsys, 'friction', fast, '--speed-unit', 'mm/s')
+    assert re.search(r'initial +0\.18\d+ +none: extrapolated, no point below 0\.005 m/s', out)
+    assert 'is extrapolated: the slowest point is 0.005 m/s, the highest measured coefficient 0.11' in out
+    assert 'extrapolated' not in answered(capsys, *GIVEN)[1]
+
+
+def test_the_scene_has_the_normal_force_of_the_measurement(tmp_path: Path, capsys: Capture) -> None:
+    forces = written(tmp_path, ((speed, 1200.0 * friction) for speed, friction in FALLING))
+    given = ('friction', forces, '--speed-unit', 'mm/s', '--force-unit', 'N', '--normal-force', '1200',
+             '--out', tmp_path / 'made.yaml')
+    assert answered(capsys, *given)[0] == 0
+    assert load_scene(str(tmp_path / 'made.yaml')).values['axis.normal_force'] == 1200.0
+    other = (*given, '--scene', 'paper_fig8', '--set', 'friction.static.initial=0.2', '--set',
+             'friction.static.limit=0.2')
+    assert '--set axis.normal_force=1200.0' in refused(capsys, *other)
+    assert answered(capsys, *other, '--set', 'axis.normal_force=3432.3275')[0] == 0
+    assert load_scene(str(tmp_path / 'made.yaml')).values['axis.normal_force'] == 3432.3275
+
+
+def test_the_command_that_it_names_next_works(tmp_path: Path, capsys: Capture) -> None:
+    made = tmp_path / 'made.yaml'
+    _, out, _ = answered(capsys, *GIVEN, '--out', made)
+    assert f'stickslip critical {made} --of drive.velocity\n' in out
+    assert 'the drive at 0.007 m/s, in the middle of the measured speeds' in out
+    assert answered(capsys, 'critical', made, '--of', 'drive.velocity')[0] == 0
+    sine = ('--set', 'drive.course=sine', '--set', 'drive.amplitude=0.01', '--set', 'drive.frequency=1.0')
+    code, out, _ = answered(capsys, *GIVEN, '--out', made, *sine)
+    assert (code, 'in the middle' in out) == (0, False)
+
+
+def test_the_points_report_on_the_table_that_is_written(capsys: Capture) -> None:
+    _, out, _ = answered(capsys, *GIVEN, '--law', 'points')
+    assert 'a table of 9 breakpoints, joined by straight segments: not fitted' in out
+    assert '95 % interval' not in out

@@ -17,6 +17,8 @@ from .friction_curve import FrictionCurve, Numbers
 
 LEVEL = 0.95
 _ROUNDING = 1e-9        # of the largest coefficient: no curve is known better
+SPARE = 3               # points more than parameters: fewer, and the last term of the criterion has no sense
+MISSED = 0.1            # of the range of the coefficients: with residuals above it, rms, a law misses the points
 _DETERMINED = 5.0       # times up and down: wider, an interval of the linearised law means nothing
 
 
@@ -33,7 +35,7 @@ class FittedLaw(Protocol):
 
 def enough_points(count: int, curve: FrictionCurve) -> bool:
     """Return whether a curve has the points and speeds that a law with `count` parameters needs for its criterion."""
-    return len(curve.speeds) >= count + 3 and len(np.unique(curve.speeds)) >= count
+    return len(curve.speeds) >= count + SPARE and len(np.unique(curve.speeds)) >= count
 
 
 @dataclass(frozen=True)
@@ -63,6 +65,23 @@ class Fit:
     def rms(self) -> float:
         """The root of the mean square of the residuals."""
         return float(np.sqrt(np.mean(self.residuals**2)))
+
+    @property
+    def miss(self) -> float:
+        """The rms of the residuals over the range of the measured coefficients."""
+        coefficients = self.curve.coefficients
+        return self.rms / max(float(np.ptp(coefficients)), _ROUNDING * float(coefficients.max()))
+
+    @property
+    def at_rest(self) -> float:
+        """The fitted coefficient at rest."""
+        return float(self.at(np.zeros(1))[0])
+
+    @property
+    def extrapolates(self) -> bool:
+        """Whether the coefficient at rest lies well above all that was measured, and no point is at rest."""
+        slowest, coefficients = self.curve.speeds.min(), self.curve.coefficients
+        return bool(slowest > 0.0 and self.at_rest > coefficients.max() + MISSED * np.ptp(coefficients))
 
     @property
     def criterion(self) -> float:

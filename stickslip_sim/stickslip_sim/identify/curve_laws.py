@@ -8,7 +8,7 @@ import numpy as np
 from scipy import special
 
 from ..core.errors import InputError
-from .curve_fit import Fit, enough_points
+from .curve_fit import MISSED, Fit, enough_points
 from .friction_curve import FrictionCurve
 from .friction_laws import SMOOTH_FORMS
 from .smooth_fit import fit_smooth
@@ -20,7 +20,11 @@ _FEWEST_SPEEDS = 2
 
 
 class Fits(NamedTuple):
-    """The fitted laws by rising criterion, and the names of those that the curve has too few points for."""
+    """The fitted laws, the best first, and the names of those that the curve has too few points for.
+
+    They rank by rising criterion; but a law that misses the points comes after those that do not.  With few points the
+    last term of the criterion is larger than what even a perfect fit gains, and a constant would win over any shape.
+    """
 
     by_rank: tuple[Fit, ...]
     left_out: tuple[str, ...]
@@ -29,7 +33,14 @@ class Fits(NamedTuple):
     def as_good(self) -> list[str]:
         """The names of the laws that are as good by these points."""
         best, *others = self.by_rank
-        return [fit.name for fit in others if fit.criterion - best.criterion < AS_GOOD]
+        return [fit.name for fit in others
+                if fit.criterion - best.criterion < AS_GOOD and fit.name not in self.passed_over]
+
+    @property
+    def passed_over(self) -> list[str]:
+        """The names of the laws with a lower criterion than the best, which miss the points."""
+        best, *others = self.by_rank
+        return [fit.name for fit in others if fit.criterion < best.criterion]
 
 
 def fit_laws(curve: FrictionCurve) -> Fits:
@@ -41,14 +52,18 @@ def fit_laws(curve: FrictionCurve) -> Fits:
     fits = [fit_table(curve)]
     fits += [fit_smooth(form, curve) for form in SMOOTH_FORMS if enough_points(len(form.names), curve)]
     left_out = [form.name for form in SMOOTH_FORMS if not enough_points(len(form.names), curve)]
-    return Fits(tuple(sorted(fits, key=lambda fit: fit.criterion)), tuple(left_out))
+    return Fits(tuple(sorted(fits, key=lambda fit: (fit.miss > MISSED, fit.criterion))), tuple(left_out))
 
 
 class SignChanges(NamedTuple):
-    """How often the residuals change their sign along the speed, and the `chance` of as few if they were noise."""
+    """How often the residuals change their sign along the speed, and the `chance` of as few if they were noise.
+
+    `least` is the chance of a single change: where it is not small, no residuals can show a pattern.
+    """
 
     changes: int
     chance: float
+    least: float
 
 
 def sign_changes(fit: Fit) -> SignChanges:
@@ -64,10 +79,10 @@ def sign_changes(fit: Fit) -> SignChanges:
     changes = int(np.sum(above[1:] != above[:-1]))
     first, second = int(above.sum()), int((~above).sum())
     if not first or not second:
-        return SignChanges(0, 1.0)
+        return SignChanges(0, 1.0, 1.0)
     total = _log_choices(first + second, first)
-    chance = sum(float(np.exp(_log_arrangements(first, second, runs) - total)) for runs in range(2, changes + 2))
-    return SignChanges(changes, min(chance, 1.0))
+    chances = [float(np.exp(_log_arrangements(first, second, runs) - total)) for runs in range(2, changes + 2)]
+    return SignChanges(changes, min(sum(chances), 1.0), chances[0])
 
 
 def _log_arrangements(first: int, second: int, runs: int) -> float:

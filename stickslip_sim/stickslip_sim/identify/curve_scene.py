@@ -3,28 +3,56 @@
 """A fitted friction law in a scene: an axis of its own, or another scene with this friction in place of its own."""
 
 from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
 
 from ..core.errors import InputError
 from ..scene import Scene, scene_from_values
 from ..scene.schema import BY_NAME
 from ..scene.text import scene_text
 from ..scene.values import overridden
+from .friction_curve import FrictionCurve
 
 _DIGITS = 6       # far finer than any measured curve
-_ALWAYS = ('scene', 'axis.', 'friction.static.', 'friction.kinetic.', 'drive.velocity')
+_FEED, _LOAD = 'drive.velocity', 'axis.normal_force'
+_ALWAYS = ('scene', 'axis.', 'friction.static.', 'friction.kinetic.', _FEED)
+
+
+class Origin(NamedTuple):
+    """What a scene without another one to begin with takes from the measurement: a name, a feed, and the load if known.
+
+    `feed` is in m/s; `normal_force`, in N, is that under which a friction force was measured.
+    """
+
+    name: str
+    feed: float
+    normal_force: float | None = None
+
+
+def origin_of(curve: FrictionCurve, name: str, normal_force: float | None) -> Origin:
+    """Return the origin of a scene: its feed is the geometric mean of slowest and fastest point, to one digit."""
+    moving = curve.speeds[curve.speeds > 0.0]
+    return Origin(name, float(f'{np.sqrt(moving.min() * moving.max()):.1g}'), normal_force)
 
 
 def scene_with_friction(kinetic: Mapping[str, object], base: Scene | None, changes: Mapping[str, object],
-                        name: str) -> Scene:
+                        origin: Origin) -> Scene:
     """Return a scene with this section friction.kinetic, rounded to six digits; raises InputError.
 
-    Without a `base` the axis is the paper's, called `name`, and static friction is that of the curve at rest: a curve
-    of kinetic friction says nothing of its growth.
+    Without a `base` the axis is the paper's with the normal force of the measurement, it has the name and the feed of
+    the `origin`, and static friction is that of the curve at rest: a curve of kinetic friction says nothing of its
+    growth.
     """
     friction = {f'friction.kinetic.{key}': _rounded(value) for key, value in kinetic.items()}
     at_rest = friction.get('friction.kinetic.initial') or _first(friction['friction.kinetic.coefficients'])
     if base is None:
-        return scene_from_values(overridden({'scene': name, 'friction.static.initial': at_rest, **friction}, changes))
+        given: dict[str, object] = {} if origin.normal_force is None else {_LOAD: origin.normal_force}
+        if not any(change.startswith('drive.') for change in changes):
+            given[_FEED] = origin.feed
+        return scene_from_values(overridden({'scene': origin.name, 'friction.static.initial': at_rest, **friction,
+                                             **given}, changes))
+    _check_load(base, changes, origin.normal_force)
     values = overridden(overridden(base.values, friction), changes)
     static = values['friction.static.initial']
     if isinstance(static, float) and isinstance(at_rest, float) and static < at_rest:
@@ -32,6 +60,15 @@ def scene_with_friction(kinetic: Mapping[str, object], base: Scene | None, chang
                          f'not below the fitted kinetic coefficient at rest, {at_rest}',
                          f'add --set friction.static.initial={at_rest}, if that is what the axis has')
     return scene_from_values(values)
+
+
+def _check_load(base: Scene, changes: Mapping[str, object], measured: float | None) -> None:
+    """Raise InputError when an axis has another normal force than the measurement had, unless it is a change."""
+    own = base.values[_LOAD]
+    if measured not in (None, own) and _LOAD not in changes:
+        raise InputError('--normal-force', measured, f'that of the axis of --scene, {_LOAD} = {own}',
+                         f'a coefficient may change with the load: add --set {_LOAD}={measured} for the load of the '
+                         f'measurement, or --set {_LOAD}={own} if the coefficient holds there too')
 
 
 def short_text(scene: Scene) -> str:
