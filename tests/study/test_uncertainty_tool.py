@@ -10,7 +10,7 @@ import pytest
 from stickslip_sim.cli.main import run
 from stickslip_sim.study.description import study_of
 from stickslip_sim.study.folder import PARTIAL, TABLE, Folder
-from tests.support.tool import Capture
+from tests.support.tool import Capture, answered, refused
 
 KNOWN = """parameters:
   friction.static.limit: {distribution: normal, mean: 0.24, standard_deviation: 0.02, between: [0.18, 0.3]}
@@ -24,6 +24,17 @@ def file(tmp_path: Path) -> str:
     path = tmp_path / 'friction.yaml'
     path.write_text(KNOWN)
     return str(path)
+
+
+def test_a_distribution_in_the_wrong_unit_is_asked_back(tmp_path: Path, capsys: Capture) -> None:
+    known = tmp_path / 'feeds.yaml'
+    known.write_text('parameters:\n  drive.velocity: {distribution: uniform, low: 5.0, high: 20.0}\n')
+    given = ('uncertainty', 'paper_fig7', '--with', known, '--samples', '16', '--out', tmp_path / 'out')
+    said = refused(capsys, *given)
+    assert f'{known}: drive.velocity = 5.0 is refused: must be plausible for a feed axis' in said
+    assert 'add --meant drive.velocity' in said
+    code, out, _ = answered(capsys, *given, '--meant', 'drive.velocity')
+    assert (code, '16 samples of 1 parameter, ' in out) == (0, True)
 
 
 def test_it_prints_percentiles_and_indices_and_writes_them(tmp_path: Path, file: str, capsys: Capture) -> None:

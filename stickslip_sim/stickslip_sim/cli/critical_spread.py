@@ -8,6 +8,7 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from .count_words import counted
 from .files import check_new_folder, new_folder, whole, write_text
 from .progress import progress_bar
 from .uncertainty_lines import Labels, index_lines, law_lines, percent_head
@@ -37,7 +38,7 @@ def spread_critical(study: 'CriticalStudy', sample: 'Saltelli', labels: Labels, 
         with whole(plot) as temporary:
             _draw(study, spreads, str(temporary))
     over = study.over
-    print(f'{study.study.scene.name}: {sample.samples} samples of {len(study.study.names)} parameters, '
+    print(f'{study.study.scene.name}: {sample.samples} samples of {counted(len(study.study.names), "parameter")}, '
           f'{study.study.count} points')
     print(f'critical {over.name} from {over.low:g} to {over.high:g} {over.unit}'.rstrip()
           + f', the highest one, to {ACCURACY:g} of the value')

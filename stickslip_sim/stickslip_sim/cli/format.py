@@ -5,6 +5,7 @@
 from ..core.types import EventKind
 from ..runs.wording import CYCLE_FIGURES, quantity
 from ..simulation.cycles import Cycle, Summary
+from .count_words import counted
 
 
 def summary_lines(figures: Summary) -> list[str]:
@@ -29,7 +30,7 @@ def beside_lines(recorded: Summary, other: Summary) -> list[str]:
 def _motion(figures: Summary) -> str:
     text = f'{figures.motion}, {100.0 * figures.stick_share:.4g} % of the time in stick'
     if figures.cycles:
-        text += f'; {figures.cycles} cycle{"s" if figures.cycles > 1 else ""}'
+        text += f'; {counted(figures.cycles, "cycle")}'
         text += ', settled' if figures.settled else ', not settled'
     return text
 

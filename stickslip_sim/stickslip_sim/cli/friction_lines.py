@@ -5,6 +5,8 @@
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
+from .count_words import counted
+
 if TYPE_CHECKING:
     from ..identify.curve_fit import Fit
     from ..identify.curve_laws import Fits
@@ -13,11 +15,6 @@ if TYPE_CHECKING:
 _PATTERN = 0.05   # a chance below it is called a pattern
 _DIFFER = 3.0     # standard errors
 _ENOUGH = 12      # points for a law of four parameters
-
-
-def counted(count: int, what: str) -> str:
-    """Return a count of things, of one without the s."""
-    return f'{count} {what}' + ('' if count == 1 else 's')
 
 
 def curve_lines(curve: str, measured: 'FrictionCurve', units: 'Units') -> list[str]:

@@ -12,6 +12,7 @@ from . import completion
 
 if TYPE_CHECKING:
     from ..scene import Scene
+    from ..study.distribution import Distribution
     from ..study.variation import Variation
 
 Command = Callable[..., Any]
@@ -46,8 +47,8 @@ class SceneChanges(NamedTuple):
 
         check_plausible({name: scene.values.get(name) for name in self.given()}, self.meant)
 
-    def check_ranges(self, ranges: 'Iterable[Variation]') -> None:
-        """Raise InputError on an end of a range to be asked back."""
+    def check_ranges(self, ranges: 'Iterable[Variation | Distribution]') -> None:
+        """Raise InputError on an end of a range, or of a distribution, to be asked back."""
         from ..scene.plausible import check_plausible
 
         for one in ranges:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from . import completion
+from .count_words import counted
 from .files import check_picture, whole, write_text
 from .scene_changes import SceneChanges
 from .sweeping import carry_out, print_failed, study_options, workers_of
@@ -42,6 +43,7 @@ def uncertainty(scene: str, file: str, critical: str | None, between: str | None
     if plot is not None:
         check_picture('--plot', plot)
     members = workers_of(workers, scheduler)
+    from ..scene.load import named
     from ..study import Saltelli, Study
     from ..study.critical_sample import CriticalStudy
     from ..study.uncertain_file import load_uncertain
@@ -51,6 +53,8 @@ def uncertainty(scene: str, file: str, critical: str | None, between: str | None
     from .critical_spread import spread_critical
 
     known = load_uncertain(file)
+    with named(file):
+        changes.check_ranges(known.distributions)
     sample = Saltelli(known.distributions, samples, known.seed)
     loaded = changes.load(scene)
     study = Study(loaded.values, sample, duration)
@@ -65,7 +69,7 @@ def uncertainty(scene: str, file: str, critical: str | None, between: str | None
     write_text(str(result), [json.dumps(_plain(sample, found), indent=1, allow_nan=False), '\n'])
     if plot is not None:
         _draw(study, sample, swept.columns, found, plot)
-    print(f'{loaded.name}: {samples} samples of {len(study.names)} parameters, {study.count} points, '
+    print(f'{loaded.name}: {samples} samples of {counted(len(study.names), "parameter")}, {study.count} points, '
           f'{swept.ran} run now')
     print_failed(study, swept.columns)
     print('\n'.join((*law_lines(sample, labels), '', *_percentiles(found), '',
