@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from ..scene import Parameter
 from . import measures
-from .measures import Measurement
+from .measures import LimitMeasure
 
 FARTHEST = 1e12   # m, like the positions of a scene
 TIMING = 'timing'
@@ -23,7 +23,7 @@ class Kind:
 
     name: str
     unit: str
-    measure: Callable[..., Measurement]
+    measure: Callable[..., LimitMeasure]
     settings: tuple[Parameter, ...] = ()
 
     @property

@@ -25,7 +25,7 @@ class MeasuredFigure(NamedTuple):
     remark: str = ''
 
 
-class Measurement:
+class LimitMeasure:
     """Measures a figure in a part of a run; takes the motion there block by block."""
 
     def __init__(self, span: MotionSpan) -> None:
@@ -58,7 +58,7 @@ class _Largest:
         return MeasuredFigure(self.value, f'at t = {self.time:.6g} s')
 
 
-class FollowingError(Measurement):
+class FollowingError(LimitMeasure):
     """The largest |commanded − actual position|, m."""
 
     def __init__(self, span: MotionSpan) -> None:
@@ -74,7 +74,7 @@ class FollowingError(Measurement):
         return self._largest.figure
 
 
-class EndPositionError(Measurement):
+class EndPositionError(LimitMeasure):
     """|Actual position − target| at the end, m: the positional deviation of ISO 230-2."""
 
     def __init__(self, span: MotionSpan, target: float) -> None:
@@ -91,7 +91,7 @@ class EndPositionError(Measurement):
         return MeasuredFigure(abs(self._last - self._target))
 
 
-class Overshoot(Measurement):
+class Overshoot(LimitMeasure):
     """How far the slider goes beyond the target in the sense of its motion, m; 0 when it does not."""
 
     def __init__(self, span: MotionSpan, target: float) -> None:
@@ -116,7 +116,7 @@ class Overshoot(Measurement):
         return beyond.figure if not beyond.value <= 0.0 else MeasuredFigure(0.0, 'the target is not passed')
 
 
-class SettlingTime(Measurement):
+class SettlingTime(LimitMeasure):
     """How long after the start the slider comes within ± `band` of the target to stay, s; inf if it does not."""
 
     def __init__(self, span: MotionSpan, target: float, band: float) -> None:
@@ -150,7 +150,7 @@ class SettlingTime(Measurement):
         return MeasuredFigure(_crossing(self._outside, edge) - self.span.begin)
 
 
-class Sticks(Measurement):
+class Sticks(LimitMeasure):
     """How often the slider came to stick."""
 
     def figure(self) -> MeasuredFigure:
@@ -158,7 +158,7 @@ class Sticks(Measurement):
         return MeasuredFigure(sum(event.kind == EventKind.STICK for event in self.span.events))
 
 
-class LongestStick(Measurement):
+class LongestStick(LimitMeasure):
     """The longest time without slip, s; only what lies within the window counts."""
 
     def figure(self) -> MeasuredFigure:
@@ -171,7 +171,7 @@ class LongestStick(Measurement):
         return MeasuredFigure(longest.end - longest.begin, f'from t = {longest.begin:.6g} s')
 
 
-class LimitCycleAmplitude(Measurement):
+class LimitCycleAmplitude(LimitMeasure):
     """The peak-to-peak following error over the last cycles (break-away to break-away), m; 0 without a cycle."""
 
     def __init__(self, span: MotionSpan, cycles: int) -> None:
@@ -200,7 +200,7 @@ class LimitCycleAmplitude(Measurement):
         return MeasuredFigure(highest + lowest, f'over {count} cycle{"s" if count > 1 else ""}')
 
 
-class PeakSpeed(Measurement):
+class PeakSpeed(LimitMeasure):
     """The largest |velocity| of the slider, m/s."""
 
     def __init__(self, span: MotionSpan) -> None:
