@@ -10,7 +10,7 @@ import numpy as np
 from ..axis import CompliantContact
 from ..core.types import Event, EventKind, Mode
 from ..runs import Run
-from .drawn import extremes, steady_inputs
+from .drawn import least_and_most, steady_inputs
 from .ring_down import closed_form
 from .statement import Finding, Statement, found, not_applicable
 
@@ -26,7 +26,7 @@ def judge(run: Run) -> Finding:
     if not there and not back:
         return not_applicable('no break-away and no standstill that is sampled finely enough')
     at_break_away, at_standstill = max(there, default=0.0), max(back, default=0.0)
-    lowest, highest = extremes(run, lambda columns: columns['friction_force'])
+    lowest, highest = least_and_most(run, lambda columns: columns['friction_force'])
     largest = max(abs(lowest), abs(highest))
     text = (f'largest jump at {len(there)} break-aways {at_break_away:.2g} N, at {len(back)} standstills '
             f'{at_standstill:.2g} N; the friction force reaches {largest:.4g} N')

@@ -45,7 +45,7 @@ def within(run: Run, begin: float, end: float) -> Columns:
     return {name: np.concatenate([part[name] for part in parts])[order] for name in _DRAWN}   # before comes first
 
 
-def extremes(run: Run, quantity: Callable[[Columns], Numbers]) -> tuple[float, float]:
+def least_and_most(run: Run, quantity: Callable[[Columns], Numbers]) -> tuple[float, float]:
     """Return the lowest and the highest value of a quantity at all that `within` takes from."""
     values = [quantity(source) for source in (before_events(run), run.samples) if len(source['time'])]
     return min(float(each.min()) for each in values), max(float(each.max()) for each in values)

@@ -12,7 +12,7 @@ from ..plots.paper_panels import RANGED, DrawnMotion, Stretch
 from ..plots.side_by_side import ALIKE
 from ..runs import Run
 from ..runs.samples import joined
-from .drawn import before_events, complete_slips, extremes, within
+from .drawn import before_events, complete_slips, least_and_most, within
 
 _CYCLES = 5                    # that show how the motion begins
 _IN_ORBIT = 30                 # that show where it goes
@@ -27,7 +27,7 @@ def drawn_motion(run: Run) -> DrawnMotion:
     beside = begin, begin + ALIKE * (end - begin)   # beside other runs as much of it may be drawn
     drawn = [beside, slip, orbit, *([cycle] if cycle else [])]
     columns = joined([within(run, *stretch) for stretch in _apart([_with_neighbours(run, *each) for each in drawn])])
-    ranges = {name: extremes(run, quantity) for name, quantity in RANGED.items()}
+    ranges = {name: least_and_most(run, quantity) for name, quantity in RANGED.items()}
     return DrawnMotion(columns, opening, slip, break_away, orbit, cycle, ranges)
 
 
