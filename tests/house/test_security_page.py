@@ -11,7 +11,7 @@ from stickslip_sim.friction.kinetic import MAX_BREAKPOINTS
 from stickslip_sim.inputs import csv_table
 from stickslip_sim.recording import opening, reader, records, schemas
 from stickslip_sim.rig.faults import MAX_FAULTS
-from stickslip_sim.runs import simulated
+from stickslip_sim.runs import samples, simulated
 from stickslip_sim.scene import profile_schema
 from stickslip_sim.study import folder
 from stickslip_sim.verify import steps
@@ -32,7 +32,7 @@ ROWS = [line for line in (ROOT / 'docs/security.md').read_text().splitlines() if
     ('a topic of a bag', (reader.MOST_HELD >> 20,)),
     ('the description of a sweep', (folder.LONGEST >> 20,)),
     ('steps that a recording may lack', (steps.MOST_MISSING,)),
-    ('samples and events', (simulated.MAX_SAMPLES, simulated.MAX_EVENTS)),
+    ('samples and events', (simulated.MAX_SAMPLES, samples.MOST_IN_MEMORY, simulated.MAX_EVENTS)),
 ])
 def test_limits(what: str, limits: tuple[int, ...]) -> None:
     (row,) = [row for row in ROWS if row.startswith(f'| {what}')]

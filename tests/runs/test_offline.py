@@ -132,6 +132,16 @@ def test_too_many_samples_are_refused_with_their_number() -> None:
         check_times(60.0, 1e-9)
 
 
+def test_a_long_run_has_its_samples_in_blocks_and_refuses_to_hold_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    check_times(10 * 3600.0, 0.001)
+    monkeypatch.setattr('stickslip_sim.runs.simulated.MOST_HELD', 10)
+    monkeypatch.setattr('stickslip_sim.runs.samples.MOST_IN_MEMORY', 100)
+    run = simulate(load_scene('paper_fig7'), 0.1, 0.001)
+    assert sum(len(block['time']) for block in run.sample_blocks()) == 101
+    with pytest.raises(InputError, match='samples = 101 is refused: must be at most 100 to be in memory at once'):
+        _ = run.samples
+
+
 def test_too_many_events_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr('stickslip_sim.runs.simulated.MAX_EVENTS', 10)
     with pytest.raises(InputError, match='at most 10 events'):

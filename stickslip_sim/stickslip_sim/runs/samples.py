@@ -8,8 +8,10 @@ from typing import Protocol
 
 import numpy as np
 
+from ..core.errors import InputError
 from .run import Columns
 
+MOST_IN_MEMORY = 10_000_000   # 1.2 GB
 _GATHERED = 16_384   # rows at a time
 
 
@@ -38,12 +40,15 @@ class HeldSamples:
 class RemadeSamples:
     """Samples that `make` yields block by block, each time that they are asked for: more than should be held."""
 
-    def __init__(self, make: Callable[[], Iterator[Columns]]) -> None:
-        self.blocks = make
+    def __init__(self, make: Callable[[], Iterator[Columns]], count: int) -> None:
+        self.blocks, self._count = make, count
 
     @cached_property
     def columns(self) -> Columns:
-        """All of them, in memory from now on."""
+        """All of them, in memory from now on; raises InputError on more than should be there."""
+        if self._count > MOST_IN_MEMORY:
+            raise InputError('samples', self._count, f'at most {MOST_IN_MEMORY} to be in memory at once',
+                             'take sample_blocks(), sample less often or simulate a shorter time')
         return joined(self.blocks())
 
 

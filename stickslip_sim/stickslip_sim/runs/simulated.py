@@ -24,8 +24,8 @@ from .samples import HeldSamples, RemadeSamples, Samples
 from .views import Views
 
 MAX_DURATION = 1e9         # s
-MAX_SAMPLES = 10_000_000   # 1.2 GB
-MAX_EVENTS = 5_000_000     # about as much
+MAX_SAMPLES = 1_000_000_000   # 120 GB as a bag, made block by block
+MAX_EVENTS = 5_000_000     # 1 GB
 MOST_HELD = 200_000        # samples that a run holds (25 MB); more are made again when they are asked for
 _PARTS = 200               # of a run: progress is reported, and Ctrl-C heard, this often
 _BLOCK = 16_384            # samples at a time
@@ -137,7 +137,8 @@ def _simulated(scene: Scene, duration: float, sample_period: float | Fraction | 
     receipt = receipt_of(scene, duration, float(sample_period) if sample_period else None, figures,
                          simulator.root_iterations, simulator.sample(), simulator.energy, *spent)
     samples: Samples = (HeldSamples(_columns(np.concatenate(held), period, 0)) if few
-                        else RemadeSamples(lambda: _blocks(scene, duration, period)))
+                        else RemadeSamples(lambda: _blocks(scene, duration, period),
+                                           _sample_count(duration, period)))
     return SimulatedRun(scene, duration, period, events, samples, figures, receipt)
 
 
@@ -168,7 +169,7 @@ def _blocks(scene: Scene, duration: float, period: Fraction | None) -> Iterator[
 
 
 def check_times(duration: float, sample_period: float | Fraction | None) -> None:
-    """Raise InputError unless a run of `duration` s with a sample every `sample_period` s can be held."""
+    """Raise InputError unless a run of `duration` s with a sample every `sample_period` s can be made."""
     if not 0.0 < duration <= MAX_DURATION:
         raise InputError('duration', duration, f'> 0 and <= {MAX_DURATION:.0e} s', 'give the seconds to simulate')
     if sample_period is None:
