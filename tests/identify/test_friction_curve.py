@@ -92,10 +92,18 @@ def test_a_file_that_is_none_is_refused(tmp_path: Path) -> None:
         load_curve(str(tmp_path / 'picture.csv'), MILLI)
 
 
+def test_text_in_another_encoding_is_to_be_saved_as_utf8_and_named_once(tmp_path: Path) -> None:
+    latin = tmp_path / 'latin.csv'
+    latin.write_bytes('v [µm/s],mu\n500,0.1\n900,0.08\n'.encode('latin-1'))
+    with pytest.raises(InputError, match='save it as UTF-8') as caught:
+        load_curve(str(latin), MILLI)
+    assert str(caught.value).count('latin.csv') == 1
+
+
 @pytest.mark.parametrize(('speed', 'force', 'normal_force', 'said'), [
     ('mm', None, None, '--speed-unit = .mm. is refused: must be one of m/s, .*did you mean mm/s?'),
     ('mm/s', 'kg', 1.0, '--force-unit = .kg. is refused'),
-    ('mm/s', 'N', None, '--normal-force = None is refused: must be given with --force-unit'),
+    ('mm/s', 'N', None, '--normal-force is missing: must be given with --force-unit'),
     ('mm/s', 'N', 0.0, '--normal-force = 0.0 is refused'),
     ('mm/s', None, 1200.0, '--normal-force = 1200.0 is refused: must be given with --force-unit'),
 ])

@@ -158,3 +158,12 @@ def test_the_points_report_on_the_table_that_is_written(capsys: Capture) -> None
     _, out, _ = answered(capsys, *GIVEN, '--law', 'points')
     assert 'a table of 9 breakpoints, joined by straight segments: not fitted' in out
     assert '95 % interval' not in out
+
+
+def test_a_critical_feed_about_none_says_what_to_give(tmp_path: Path, capsys: Capture) -> None:
+    made = tmp_path / 'made.yaml'
+    _, out, _ = answered(capsys, *GIVEN, '--set', 'drive.velocity=0.0', '--out', made)
+    assert 'of drive.velocity --between LOW:HIGH, as its drive.velocity is 0' in out
+    said = refused(capsys, 'critical', made, '--of', 'drive.velocity')
+    assert '--between is missing: must be given for drive.velocity' in said
+    assert 'add --between LOW:HIGH, or --set drive.velocity=…' in said

@@ -124,6 +124,8 @@ def test_yaml_that_ros_refuses_or_passes_over(text: str, hint: str) -> None:
     ('    friction: {excess: {velocities: [0.0, 1.0], fractions: [1.0, 0.0]}}\n', 'friction.excess.velocities',
      'acceleration_dependence: false'),
     ('    friction: {kinetic: {velocities: [0, 0.035]}}\n', 'friction.kinetic.velocities', 'one type'),
+    ('    friction: {kinetic: {coefficients: [0.16, abc]}}\n', 'friction.kinetic.coefficients',
+     "'abc' is no number, and others are"),
     ('    friction: {kinetic: {velocities: [0.0, -0.1]}}\n', 'friction.kinetic.velocities', '>= 0'),
     ('    friction: {kinetic: {velocities: []}}\n', 'friction.kinetic.velocities', 'at least one'),
     ('    friction: {kinetic: {velocities: 0.0}}\n', 'friction.kinetic.velocities', 'a list'),
@@ -144,7 +146,7 @@ def test_a_wrong_file_is_refused_by_name_in_one_line(body: str, name: str, hint:
     path = write(tmp_path, body)
     error = refusal(load_scene, path)
     assert error.name == name
-    assert str(error).startswith(f'{path}: {name} = ')
+    assert str(error).startswith((f'{path}: {name} = ', f'{path}: {name} is missing: '))
     assert hint in str(error)
 
 

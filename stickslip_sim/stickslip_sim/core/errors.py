@@ -29,12 +29,13 @@ class StickslipError(Exception):
 
 
 class InputError(StickslipError):
-    """A thing given by the user is refused: its name, value, allowed range and the fix."""
+    """A thing given by the user is refused, or missing (None): its name, value, allowed range and the fix."""
 
     exit_code = 2
 
     def __init__(self, name: str, value: object, allowed: str, fix: str) -> None:
-        super().__init__(f'{name} = {_short(value)} is refused: must be {allowed}; {fix}')
+        found = 'is missing' if value is None else f'= {_short(value)} is refused'
+        super().__init__(f'{name} {found}: must be {allowed}; {fix}')
         self.name = name
         self.value = value
         self.allowed = allowed
@@ -77,6 +78,12 @@ def one_line(text: str, limit: int = LINE_LIMIT) -> str:
     """Return text from outside as one line that any terminal and any file can hold."""
     printable = ''.join(letter if letter.isprintable() else '?' for letter in ' '.join(text[:4 * limit].split()))
     return printable if len(printable) <= limit else printable[:limit] + '…'
+
+
+def not_utf8(error: UnicodeDecodeError, what: str) -> str:
+    """Return where a file that should be `what` is not text in UTF-8, and the fix."""
+    return (f'byte {error.start} is none; is it a {what}? If it is, in another encoding (µ in Latin-1), '
+            'save it as UTF-8')
 
 
 def internal_error(error: Exception) -> str:

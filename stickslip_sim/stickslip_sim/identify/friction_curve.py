@@ -66,15 +66,15 @@ def units_of(speed: str, force: str | None, normal_force: float | None) -> Units
 
 
 def load_curve(path: str, units: Units, direction: str = 'both', meant: tuple[str, ...] = ()) -> FrictionCurve:
-    """Return the curve of a file, of one `direction` or both; raises InputError, whose text begins with the file.
+    """Return the curve of a file, of one `direction` or both; raises InputError, whose text names the file.
 
     A curve that no slideway has, because a unit was mistaken, is refused unless `speed` or `friction` is `meant`.
     """
+    text = read_text(Path(path), _WHAT)
     with named(path):
-        headings, points, columns = _read(read_text(Path(path), _WHAT))
+        headings, points, columns = _read(text)
         if not points:
-            raise InputError(_WHAT, Path(path).name, 'lines of two numbers, a speed and its friction',
-                             'the file has none')
+            raise InputError(_WHAT, 'no point', 'lines of two numbers, a speed and its friction', 'the file has none')
         if len(points) > MOST_POINTS:
             raise InputError(_WHAT, f'{len(points)} points', f'at most {MOST_POINTS}', 'average points of one speed')
         _check_headings(headings, units)

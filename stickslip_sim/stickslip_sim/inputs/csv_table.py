@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.did_you_mean import paths_beside, suggestion
-from ..core.errors import InputError
+from ..core.errors import InputError, not_utf8
 from .units import all_in_si, named_unit, unit_of
 
 Numbers = NDArray[np.float64]
@@ -123,7 +123,7 @@ def _read(option: str, path: Path) -> str:
             data = file.read(MOST_BYTES + 1)
         text = data.decode('utf-8-sig')
     except UnicodeDecodeError as error:
-        raise InputError(option, str(path), 'text in UTF-8', f'byte {error.start} is none; is it a CSV file?') from None
+        raise InputError(option, str(path), 'text in UTF-8', not_utf8(error, 'CSV file')) from None
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
         beside = [] if path.exists() else paths_beside(path, ['.csv'])

@@ -104,11 +104,11 @@ def _residuals(panel: Axes, points: MeasuredPoints, lines: Sequence[FittedLine],
     places = _shown(points.speeds, points, log)
     for k, line in enumerate(lines if len(points.speeds) <= _FEW else lines[:1]):
         left = 1e3 * (points.coefficients - line.at_points)
-        if k:
-            panel.plot(places, left, color=_COLOURS[k % len(_COLOURS)], linewidth=0.6,
-                       linestyle=_DASHES[(k - 1) % len(_DASHES)])
-            continue
         for chosen, face, _ in _directions(points):
+            if k:
+                panel.plot(places[chosen], left[chosen], color=_COLOURS[k % len(_COLOURS)], linewidth=0.6,
+                           linestyle=_DASHES[(k - 1) % len(_DASHES)])
+                continue
             panel.plot(places[chosen], left[chosen], 'o', markersize=_size(points),
                        markerfacecolor=face if face == _OPEN else BLUE, markeredgecolor=BLUE, markeredgewidth=0.7)
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from ..config.ros_yaml import LISTS_LIMIT, read_yaml
 from ..core.did_you_mean import paths_beside, suggestion
-from ..core.errors import InputError
+from ..core.errors import InputError, not_utf8
 from .build import build_scene
 from .model import Scene
 from .sections import describes_an_axis, of_a_scene, parameters_of
@@ -142,7 +142,7 @@ def read_text(path: pathlib.Path, what: str = 'scene') -> str:
             data = file.read(LISTS_LIMIT + 1)
         text = data.decode('utf-8-sig')
     except UnicodeDecodeError as error:
-        raise InputError(what, path.name, 'text in UTF-8', f'byte {error.start} is none; is it a {what}?') from None
+        raise InputError(what, path.name, 'text in UTF-8', not_utf8(error, what)) from None
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
         beside = [place.rpartition(os.sep)[2] for place in paths_beside(path, [path.suffix or _ENDINGS[0]])]

@@ -66,6 +66,14 @@ def _joined(path: str, key: str) -> str:
     return f'{path}/{key.strip("/")}'
 
 
+def _fix_of_list(values: list[object]) -> str:
+    """Return how a list of several types becomes one of one type."""
+    others = [item for item in values if isinstance(item, bool) or not isinstance(item, int | float)]
+    if others and len(others) < len(values):
+        return f'{others[0]!r} is no number, and others are; correct it'
+    return 'ROS wants 0.0, not 0, beside other numbers with a dot'
+
+
 def _flat(tree: Mapping[str, object], path: str) -> Iterator[tuple[str, object]]:
     for key, value in tree.items():
         name = f'{path}.{key}' if path else key
@@ -73,5 +81,5 @@ def _flat(tree: Mapping[str, object], path: str) -> Iterator[tuple[str, object]]
             yield from _flat(value, name)
             continue
         if isinstance(value, list) and len({type(item) for item in value}) > 1:
-            raise InputError(name, value, 'a list of one type', 'ROS wants 0.0, not 0, beside other numbers with a dot')
+            raise InputError(name, value, 'a list of one type', _fix_of_list(value))
         yield name, value

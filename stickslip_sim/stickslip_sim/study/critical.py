@@ -76,8 +76,9 @@ def default_range(scene: Scene, name: str) -> Variation:
     if isinstance(value, tuple) and index is not None and index < len(value):
         value = value[index]
     if not isinstance(value, float) or not 0.0 < value < np.inf:
-        raise InputError('--between', None, f'given for {name}, which is no number above 0 in this scene',
-                         'add --between LOW:HIGH')
+        raise InputError('--between', None, f'given for {name}, which is no number above 0 in this scene, so that the '
+                         'range around it is not known', 'add --between LOW:HIGH' + (
+                             f', or --set {name}=… to look from 1/100 to 100 times that' if index is None else ''))
     low, high = value / _WIDTH, value * _WIDTH
     return checked(Variation(name, max(low, entry.low or low), min(high, entry.high or high), 0, True))
 

@@ -35,9 +35,10 @@ class Uncertain(NamedTuple):
 
 
 def load_uncertain(path: str) -> Uncertain:
-    """Return the content of a file; raises InputError, whose text begins with the file."""
+    """Return the content of a file; raises InputError, whose text names the file."""
+    text = read_text(Path(path), 'file of distributions')
     with named(path):
-        return uncertain_of(read_yaml(read_text(Path(path), 'file of distributions')))
+        return uncertain_of(read_yaml(text))
 
 
 def uncertain_of(document: object) -> Uncertain:
