@@ -9,11 +9,14 @@ from typing import Any
 
 import pytest
 
+from stickslip_sim.check.judgement import outcomes_of
+from stickslip_sim.check.limits import limits_of
 from stickslip_sim.core.errors import InputError
-from stickslip_sim.recording import open_bag
+from stickslip_sim.recording import open_bag, read_run
 from stickslip_sim.rig import Fault
 from stickslip_sim.rig.faults import RULES
 from stickslip_sim.scene import load_scene, scene_from_values
+from stickslip_sim.verify.verification import verify
 from tests.support.replays import FIELDS, assert_same_states, made_again
 from tests.support.ros_nodes import Client, node_and_client, recording_into
 
@@ -207,6 +210,26 @@ def test_a_recorded_run_that_has_not_begun_can_be_reset(tmp_path: Path) -> None:
         assert axis.trigger('reset').message == 'simulation time and steps begin anew at 0'
     steps = open_bag(folder).columns('/slider_state')['step']
     assert steps.tolist() == list(range(11))
+
+
+def test_a_recording_that_begins_at_step_0_is_as_one_from_the_start(tmp_path: Path) -> None:
+    """The second run of a bench in lock-step: its states begin at 0 s as those of the first do."""
+    folders = [tmp_path / name for name in ('first', 'second')]
+    with node_and_client(tmp_path, 'lockstep', *recording_into(folders[0])) as (_, axis):
+        for folder in folders:
+            if folder is folders[1]:
+                assert axis.trigger('reset').success
+                assert axis.set_parameters(record__folder=str(folder)).successful
+                assert axis.switch('record', True).success
+            assert axis.call(Step, 'step', steps=10, velocity=0.01, force=math.nan).success
+            assert axis.switch('record', False).success
+    limits = limits_of({'window': {'begin': 0.0, 'end': 0.01}, 'limits': {'peak_speed': {'max': 1.0}}})
+    for folder in folders:
+        run = read_run(folder)
+        assert run.bag.columns('/slider_state')['step'].tolist() == list(range(11))
+        assert run.bag.columns('/drive_velocity')['log_time'].tolist() == [0]
+        assert all(outcome.passed for outcome in outcomes_of(limits, run))
+        assert verify(run).difference is None
 
 
 def test_the_zeros_of_the_type_are_reported_in_place_of_an_input_profile(tmp_path: Path) -> None:

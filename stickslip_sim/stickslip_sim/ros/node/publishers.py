@@ -79,6 +79,11 @@ class Publishers:
         self._send(self._state, time_ns, step, sample)
         self._send(self._friction, time_ns, step, sample)
 
+    def record_start(self, sample: Sample) -> None:
+        """Record the state at simulation time 0, which was published before."""
+        for port in (self._state, self._friction):
+            self.record(port.index, port.pack(self.start_ns, 0, sample), 0, 0)
+
     def state_messages(self, step: int, sample: Sample) -> tuple[SliderState, FrictionForce]:
         """Return the messages of a state."""
         stamp_ns = self.start_ns + sample.instant.nanoseconds

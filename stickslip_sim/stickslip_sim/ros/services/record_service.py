@@ -93,10 +93,14 @@ class RecordService:
         self._node.get_logger().info(f'recording into {self.recordings.folder}')
 
     def _attach(self) -> None:
+        rig = self._loop.rig
+        start = rig.simulator.sample() if self._loop.step == 0 else None    # went out before there was a bag
         if self._loop.step >= 0:
-            self.recordings.continue_from(self._loop.rig.checkpoint())
+            self.recordings.continue_from(rig.checkpoint())
         self._publishers.recorder = self.recordings.recorder
         self._publish()
+        if start is not None:
+            self._publishers.record_start(start)
         for kind, value in enumerate(self._loop.held):
             if value is not None:
                 self._publishers.command(kind, self._loop.step, self._loop.time_ns, value)   # since then, or before
