@@ -39,6 +39,14 @@ def test_a_time_out_lasts_until_commands_come_again_or_it_is_cleared() -> None:
     assert marks((1.0, timeout, 'velocity', '')) == [Mark(1.0, 10.0, 'time-out')]
 
 
+def test_the_first_command_after_a_cleared_time_out_is_no_second_one() -> None:
+    timeout, resumed = RigEventKind.COMMAND_TIMEOUT, RigEventKind.COMMAND_RESUMED
+    again = (3.5, resumed, 'velocity', '')
+    assert marks((1.0, timeout, 'velocity', ''), (3.0, CLEARED, '', ''), again) == [Mark(1.0, 3.0, 'time-out')]
+    assert marks((3.0, CLEARED, '', ''), again) == [Mark(0.5, 3.0, 'time-out')]    # from before the recording
+    assert marks(again) == [Mark(0.5, 3.5, 'time-out')]
+
+
 def test_what_was_not_taken_is_an_instant_with_its_number() -> None:
     events = [TimedRigEvent(1.0, RigEventKind.COMMAND_REFUSED, 'velocity', '', 12),
               TimedRigEvent(2.0, RigEventKind.COMMAND_LIMITED, 'velocity', '', 0)]

@@ -50,6 +50,7 @@ def marks_of_events(events: Iterable[TimedRigEvent], begin: float, end: float) -
     """
     marks: list[Mark] = []
     open_since: dict[str, tuple[float, str]] = {}
+    timed_out = False    # whether a time-out is known of
     for event in events:
         if event.kind in _INSTANTS:
             marks.append(Mark(event.time, event.time, _INSTANTS[event.kind], max(event.number, 1)))
@@ -57,9 +58,12 @@ def marks_of_events(events: Iterable[TimedRigEvent], begin: float, end: float) -
             open_since[event.id] = event.time, event.fault
         elif event.kind == RigEventKind.COMMAND_TIMEOUT:
             open_since.setdefault('', (event.time, TIME_OUT))
+            timed_out = True
         elif event.kind == RigEventKind.COMMAND_RESUMED or (event.kind == RigEventKind.FAULT_CLEARED and not event.id):
-            since, _ = open_since.pop('', (begin, ''))
-            marks.append(Mark(since, event.time, TIME_OUT))
+            if '' in open_since or not timed_out:    # a command after a time-out that was cleared ends none
+                since, _ = open_since.pop('', (begin, ''))
+                marks.append(Mark(since, event.time, TIME_OUT))
+            timed_out = True
         elif event.id in open_since:      # ended or cleared; one that was cleared before it began is none
             since, label = open_since.pop(event.id)
             marks.append(Mark(since, event.time, label))
