@@ -67,6 +67,16 @@ class TestOutcome:
         assert checked(capsys, 'paper_fig7', '--duration', DURATION, '--limits', limits)[0] == 0
         assert 'no recorded run there' in refused(capsys, './paper_fig7', '--limits', limits)
 
+    def test_a_run_that_does_not_suit_the_limits_is_named_and_the_others_are_checked(
+            self, bag: Path, tmp_path: Path, capsys: Capture) -> None:
+        short = node_bag(tmp_path / 'short', None)
+        limits = limits_file(tmp_path, 'window: {end: 1.0}\n' + LIMITS)
+        code, out, err = checked(capsys, bag, short, '--limits', limits, '--json', tmp_path / 'found.json')
+        assert (code, out.splitlines()[-2:]) == (2, ['PASSED: 3 of 3', f'1 of 2 runs keep {limits}'])
+        assert err.startswith(f'stickslip: {short} cannot be checked: sticks.window.end = 1.0 is refused')
+        assert checked(capsys, short, bag, '--limits', limits)[1:] == (out, err)
+        assert not (tmp_path / 'found.json').exists()
+
     def test_junit(self, tmp_path: Path, capsys: Capture) -> None:
         path = tmp_path / 'c.xml'
         code, out, _ = checked(capsys, 'paper_fig7', '--duration', DURATION, '--limits', limits_file(tmp_path, FAILING),

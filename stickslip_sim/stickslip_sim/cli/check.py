@@ -27,30 +27,41 @@ if TYPE_CHECKING:
 @scene_changes('Change a parameter of a scene.')
 def check(sources: tuple[str, ...], limits_file: str, duration: float | None, changes: SceneChanges,
           junit: str | None, json_file: str | None) -> None:
-    """Check each RUN_OR_SCENE - a run folder, or a scene to simulate - against limits; exit with 3 when one fails."""
+    """Check each RUN_OR_SCENE - a run folder, or a scene to simulate - against limits; exit with 3 when one fails.
+
+    Of several, those that cannot be checked are named in the end, and the exit code is 2.
+    """
     _check_outputs(junit, json_file)
     _check_sources(sources, duration, changes)
     from ..check.check_report import Checked, as_json, complaint, verdict_line
     from ..check.judgement import outcomes_of
     from ..check.junit import junit_text
     from ..check.limits import load_limits
-    from ..core.errors import VerdictError
+    from ..core.errors import InputError, RecordingError, VerdictError
     from .check_table import table_lines
     from .progress import progress_bar
 
     limits = load_limits(limits_file)
     is_printed = STDOUT not in (junit, json_file)
-    found = []
+    found, refused = [], []
     for source in sources:
-        run = _run(source, limits, duration, changes)
-        name = run.name if len(sources) == 1 else source   # two folders may have one name
-        with progress_bar('checking'):
-            found.append(Checked(name, run, outcomes_of(limits, run)))
+        try:
+            run = _run(source, limits, duration, changes)
+            name = run.name if len(sources) == 1 else source   # two folders may have one name
+            with progress_bar('checking'):
+                found.append(Checked(name, run, outcomes_of(limits, run)))
+        except (InputError, RecordingError) as error:
+            if len(sources) == 1:
+                raise
+            refused.append(f'{source} cannot be checked: {error}')    # the others can
+            continue
         if is_printed:
             print('\n'.join([*table_lines(found[-1]), verdict_line(found[-1])]), flush=True)
     failed = list(filter(None, (complaint(checked, limits_file) for checked in found)))
     if is_printed and len(sources) > 1:
-        print(f'{len(found) - len(failed)} of {len(found)} runs keep {limits_file}', flush=True)
+        print(f'{len(found) - len(failed)} of {len(sources)} runs keep {limits_file}', flush=True)
+    if refused:      # files without these runs would look like all is well
+        raise RecordingError('; '.join([*refused, *failed]))
     if json_file is not None:
         write_text(json_file, [json.dumps(as_json(found), indent=2, allow_nan=False) + '\n'])
     if junit is not None:
