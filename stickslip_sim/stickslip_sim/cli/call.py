@@ -78,20 +78,25 @@ def _step(steps: int, velocity: float, force: float, node: str, timeout: float) 
 
 @call.command('inject-fault', short_help='Let something go wrong.')
 @click.argument('kind')
-@click.option('--value', type=float, default=0.0, show_default=True, metavar='X', help='In the unit of the kind.')
+@click.option('--value', type=float, metavar='X', help='In the unit of the kind; needed by those that have one.')
 @click.option('--start', type=float, default=0.0, show_default=True, metavar='S', help='From now until it begins, s.')
 @click.option('--duration', type=float, default=math.inf, show_default=True, metavar='S',
               help='How long it lasts, s; inf: until it is cleared.')
 @click.option('--id', 'fault', default='', metavar='ID', help='Name of the fault [default: one is chosen].')
 @_of_node
-def _inject_fault(kind: str, value: float, start: float, duration: float, fault: str, node: str, timeout: float
-                  ) -> None:
+def _inject_fault(kind: str, value: float | None, start: float, duration: float, fault: str, node: str,
+                  timeout: float) -> None:
     """Let something go wrong, of a KIND in the list, with its --value.
 
     friction_scale (factor), force_pulse (N), encoder_freeze, encoder_step (m), encoder_dropout (share), command_loss
     (share), command_delay (s), drive_freeze
     """
-    request = {'id': fault, 'kind': kind, 'start': start, 'duration': duration, 'value': value}
+    from ..core.errors import InputError
+    from ..rig.faults import value_of_kind
+
+    if value is None and (allowed := value_of_kind(kind)):
+        raise InputError('--value', value, f'given with {kind}: {allowed}', 'add --value X')
+    request = {'id': fault, 'kind': kind, 'start': start, 'duration': duration, 'value': value or 0.0}
     print(_answered('inject_fault', request, node, timeout).message)
 
 

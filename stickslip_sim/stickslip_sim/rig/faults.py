@@ -48,6 +48,12 @@ RULES: dict[str, _Rule] = {
 }
 
 
+def value_of_kind(kind: str) -> str:
+    """Return what the value of a kind of fault may be; empty for one that has none, and for what is no kind."""
+    rule = RULES.get(kind, _NONE)
+    return '' if rule is _NONE else rule.allowed
+
+
 def check(fault: Fault, period: float) -> None:
     """Raise InputError on a fault without a meaning; `period` is the length of a step, s."""
     if fault.kind not in RULES:

@@ -59,12 +59,24 @@ def test_steps_while_it_is_paused(folder: Path, capsys: Capture) -> None:
 
 
 def test_faults(folder: Path, capsys: Capture) -> None:
-    assert said(capsys, 'inject-fault', 'friction_scale', '--value', '1.5') == 'friction_scale_1 begins 0 s from now\n'
+    assert said(capsys, 'inject-fault', 'friction_scale', '--value', '1.5'
+                ) == 'friction_scale_1 (friction_scale 1.5) begins 0 s from now\n'
     assert said(capsys, 'inject-fault', 'force_pulse', '--value', '-20', '--start', '60', '--duration', '2', '--id', 'a'
-                ) == 'a begins 60 s from now\n'
+                ) == 'a (force_pulse -20) begins 60 s from now\n'
+    assert said(capsys, 'inject-fault', 'drive_freeze', '--start', '60', '--id', 'b'
+                ) == 'b (drive_freeze) begins 60 s from now\n'
+    assert said(capsys, 'clear-faults', 'b') == 'b cleared\n'
     assert said(capsys, 'clear-faults', 'a') == 'a cleared\n'
     assert said(capsys, 'clear-faults') == 'cleared: friction_scale_1\n'
     assert "kind = 'friction' is refused" in refused(capsys, 'call', 'inject-fault', 'friction', '--node', AXIS)
+
+
+def test_a_fault_without_the_value_that_its_kind_needs(capsys: Capture) -> None:
+    """0 would be a friction that is gone."""
+    assert refused(capsys, 'call', 'inject-fault', 'friction_scale') == (
+        'stickslip: --value = None is refused: must be given with friction_scale: a factor, >= 0 and <= 100;'
+        ' add --value X\n')
+    assert 'force_pulse: within ±1e9 N' in refused(capsys, 'call', 'inject-fault', 'force_pulse')
 
 
 def test_nobody_answers(folder: Path, capsys: Capture) -> None:

@@ -12,6 +12,7 @@ from stickslip_msgs.srv import InjectFault
 from ...core.errors import InputError
 from ...realtime.step_loop import StepLoop
 from ...rig import Fault
+from ...rig.faults import value_of_kind
 from ..node.parameters import SceneNode
 from .answers import BUSY, answer
 
@@ -37,7 +38,8 @@ class FaultServices:
         def inject() -> None:
             response.id = rig.inject(asked).id
 
-        return self._at_boundary(response, inject, lambda: f'{response.id} begins {request.start:g} s from now')
+        what = f'{asked.kind} {asked.value:g}' if value_of_kind(asked.kind) else asked.kind
+        return self._at_boundary(response, inject, lambda: f'{response.id} ({what}) begins {asked.start:g} s from now')
 
     def _clear_all(self, _: Any, response: Any) -> Any:
         cleared: list[str] = []
