@@ -118,7 +118,7 @@ print(recorder.failure, recorder.written, sep='|')
         writer.abandon()
         assert writer.on_disk == 40
         assert (tmp_path / 'run' / 'run_1.mcap').read_text() == 'of somebody else'
-        with pytest.warns(RecordingWarning, match='goes on in run_1.mcap, which is not there'):
+        with pytest.warns(RecordingWarning, match='goes on in run_1.mcap, beside it'):
             bag = open_bag(tmp_path / 'run' / 'run_0.mcap')
         assert sum(bag.counts.values()) == 40
 
@@ -162,7 +162,7 @@ class TestReading:
 
     def test_a_part_by_itself(self, tmp_path: Path) -> None:
         folder = split_bag(tmp_path / 'run', Split(max_duration=40 * STEP))
-        with pytest.warns(RecordingWarning, match=r'run_1\.mcap goes on in run_2\.mcap, which is not there'):
+        with pytest.warns(RecordingWarning, match=r'run_1\.mcap goes on in run_2\.mcap, beside it; give the folder'):
             bag = open_bag(folder / 'run_1.mcap')
         assert [message.sequence for message in bag.messages()] == list(range(40, 80))
         assert open_bag(folder / 'run_2.mcap').is_complete
@@ -204,7 +204,7 @@ def test_verify_across_parts(tmp_path: Path, capsys: Capture) -> None:
     assert capsys.readouterr().out.startswith('identical, 2001 steps,')
     assert tool(['verify', str(tmp_path / 'run' / 'run_0.mcap')]) == 0
     out = capsys.readouterr().out
-    assert 'goes on in run_1.mcap' in out
+    assert 'goes on in run_1.mcap, beside it; give the folder of the bag' in out
     assert 'identical as far as it goes' in out
     assert tool(['verify', str(tmp_path / 'run' / 'run_2.mcap')]) == 2
     assert 'part 2 of a recording that was split' in capsys.readouterr().err

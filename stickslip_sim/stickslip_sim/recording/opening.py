@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from mcap.records import Attachment, Channel, Footer, McapRecord, Metadata, Schema
 
-from ..core.errors import RecordingError, RecordingWarning, one_line
+from ..core.errors import RecordingError, RecordingWarning
 from .bag import METADATA, NEXT_FILE
 from .message_places import Messages
 from .reader import OVERHEAD, Bag
@@ -74,7 +74,7 @@ def shortfalls(bag: Bag) -> tuple[str, ...]:
     if bag.is_complete:
         return ()
     if bag.next_file:
-        return (f'{bag.path} goes on in {one_line(bag.next_file)}, which is not there; give the folder of the bag',)
+        return (f'{bag.path} {bag.continuation}',)
     return (f'{bag.path} has no end: cut off, or still being written; {sum(bag.counts.values())} messages are'
             ' whole, and metadata.yaml does not count them',)
 

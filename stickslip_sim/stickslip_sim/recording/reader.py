@@ -4,6 +4,7 @@
 
 import json
 import math
+import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -17,7 +18,7 @@ from mcap.records import Channel, Message
 from numpy.typing import NDArray
 from rosbags.typesys.store import Typestore
 
-from ..core.errors import InputError, RecordingError
+from ..core.errors import InputError, RecordingError, one_line
 from ..core.types import Event, EventKind, Mode
 from ..scene import Scene, parse_scene
 from .layout import Layout, layout_of
@@ -42,7 +43,7 @@ class Bag:
     path: Path                  # for people: its file, or the folder of several
     files: list[Path]
     is_complete: bool = False
-    next_file: str = ''         # in which it goes on, where that is not there
+    next_file: str = ''         # in which it goes on, where that was not given
     attachments: dict[str, bytes] = field(default_factory=dict)
     metadata: dict[str, dict[str, str]] = field(default_factory=dict)
     schemas: dict[str, str] = field(default_factory=dict)   # definitions by type name
@@ -51,6 +52,15 @@ class Bag:
     counts: dict[str, int] = field(default_factory=dict)
     channels: set[tuple[int, str]] = field(default_factory=set)   # number and topic
     _stores: dict[str, Typestore] = field(default_factory=dict, init=False, repr=False, compare=False)
+
+    @property
+    def continuation(self) -> str:
+        """Where it goes on, and why that was not read; for people, empty when it does not."""
+        if not self.next_file:
+            return ''
+        is_beside = os.path.isfile(self.files[-1].parent / os.path.basename(self.next_file))
+        why = 'beside it; give the folder of the bag to have all' if is_beside else 'which is not there'
+        return f'goes on in {one_line(self.next_file)}, {why}'
 
     @property
     def receipt(self) -> dict[str, Any]:

@@ -77,8 +77,8 @@ def _doubts(run: RecordedRun, facts: Mapping[str, str]) -> Iterator[str]:
         yield f'{SCENE_FILE} was changed after the recording'
     elif run.scene.hash != facts.get('scene_hash'):
         yield f'{SCENE_FILE} means something else in this version'
-    if next_file := run.bag.next_file:
-        yield f'the recording goes on in {next_file}, which is not there'
+    if run.bag.next_file:
+        yield f'the recording {run.bag.continuation}'
     elif not run.is_complete:
         yield 'the recording has no end: cut off, or still being written'
     if dropped := run.receipt.get('dropped_messages'):
