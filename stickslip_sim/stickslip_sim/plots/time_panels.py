@@ -42,8 +42,8 @@ def dress(panel: Axes) -> None:
 
 
 def head(first: Axes, title: str) -> None:
-    """Write a title above the first panel; its first line is the heading."""
+    """Write a title of up to three lines above the first panel; the first line is the heading."""
     heading, _, rest = title.partition('\n')
-    first.set_title(heading, loc='left', fontsize=14, fontweight='bold', pad=42 if rest else 22)
+    first.set_title(heading, loc='left', fontsize=14, fontweight='bold', pad=(22, 42, 56)[min(title.count('\n'), 2)])
     first.annotate(rest, (0.0, 1.0), xytext=(0.0, 25.0), xycoords='axes fraction', textcoords='offset points',
                    fontsize=10, color=GREY, in_layout=False)

@@ -56,11 +56,9 @@ class Bag:
     @property
     def continuation(self) -> str:
         """Where it goes on, and why that was not read; for people, empty when it does not."""
-        if not self.next_file:
-            return ''
         is_beside = os.path.isfile(self.files[-1].parent / os.path.basename(self.next_file))
         why = 'beside it; give the folder of the bag to have all' if is_beside else 'which is not there'
-        return f'goes on in {one_line(self.next_file)}, {why}'
+        return f'goes on in {one_line(self.next_file)}, {why}' if self.next_file else ''
 
     @property
     def receipt(self) -> dict[str, Any]:

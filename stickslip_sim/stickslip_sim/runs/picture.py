@@ -51,7 +51,8 @@ def _samples_for(run: Run, windows: list[TimeWindow]) -> Columns:
 
 
 def _title(run: Run) -> str:
-    """Return the heading, and the figures of the last cycle below it."""
+    """Return the heading, the figures of the last cycle below it, and in a line of its own what is missing."""
     gaps = [] if run.is_complete else ['no end: cut off, or still being written']
     gaps += [f'{run.missing_steps} steps are missing'] if run.missing_steps else []
-    return '\n'.join([f'{run.title}, {run.duration:.6g} s', ' · '.join([headline(run.summary), *gaps])])
+    lines = [f'{run.title}, {run.duration:.6g} s', headline(run.summary), ' · '.join(gaps)]
+    return '\n'.join(filter(None, lines))
