@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What README and docs/hil.md have a newcomer do first: `make run`, and the examples beside an axis."""
 
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -36,6 +37,7 @@ def axis(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
 def test_the_demonstration_records_and_has_nothing_to_complain_of(tmp_path: Path) -> None:
     done = python('-m', 'stickslip_sim.ros.demo', '--duration', '1', '--out', tmp_path)
     assert (done.returncode, done.stderr) == (0, '')
+    assert re.search(r'^verdict  real-time valid: (yes|no), worst ', done.stdout, re.MULTILINE)
     [folder] = tmp_path.iterdir()
     assert (folder / 'run.png').stat().st_size > 10_000
     assert open_bag(folder).receipt is not None    # it was closed

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..check.check_report import real_time_verdict
 from ..recording import read_run
 from ..simulation.cycles import Summary
 
@@ -24,7 +25,8 @@ def report(folder: Path) -> list[str]:
     run = read_run(folder)
     run.plot(folder / PICTURE)
     return [f'bag      {folder} ({sum(run.bag.counts.values())} messages)', f'picture  {folder / PICTURE}',
-            *cycle_lines(run.summary), *timing_lines(run.bag.columns('/timing'))]
+            *cycle_lines(run.summary), *timing_lines(run.bag.columns('/timing')),
+            *(f'verdict  {verdict}' for verdict in [real_time_verdict(run)] if verdict)]
 
 
 def cycle_lines(figures: Summary) -> list[str]:

@@ -94,6 +94,12 @@ class TestRefusedStart:
         assert (code, len(errors.splitlines())) == (2, 1), errors
         assert all(words in errors for words in reported), errors
 
+    def test_a_parameter_without_p_is_no_name_to_be_replaced(self) -> None:
+        code, errors = run(executable('sim_node'), 'scene:=positioning')
+        assert (code, len(errors.splitlines())) == (2, 1), errors
+        assert errors.startswith("sim_node: argument = 'scene:=positioning' is refused: must be behind --ros-args -p; "
+                                 'sim_node --ros-args -p scene:=positioning')
+
 
 def start(*ros_args: str) -> tuple[int, str]:
     return run(executable('sim_node'), '--ros-args', *ros_args)

@@ -4,6 +4,7 @@
 
 import sys
 from collections.abc import Callable, Sequence
+from itertools import takewhile
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
@@ -89,6 +90,9 @@ def _wants_help(args: Sequence[str], program: Program) -> bool:
 
     from ...core.errors import InputError
 
+    for word in takewhile(lambda word: word != '--ros-args', args):
+        if ':=' in word:    # ROS takes it for a name to be replaced, and the node starts without it
+            raise InputError('argument', word, 'behind --ros-args -p', f'{program.name} --ros-args -p {word}')
     words = remove_ros_args([program.name, *args])[1:]
     if words and words[0] not in ('-h', '--help'):
         raise InputError('argument', words[0], 'one of -h, --help, or behind --ros-args', f'see {program.name} --help')
