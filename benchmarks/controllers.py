@@ -114,6 +114,7 @@ def main() -> None:
     PAGE.write_text(f'{before}{BEGIN}\n\n{text}\n\n{END}{after}', encoding='utf-8')
     draw({name: close_loop(AXIS, each, SLOW_FEED, SLOW_FEED.period) for name, each in controllers().items()},
          AXIS, PICTURE)
+    print(f'written: {PAGE}, {PICTURE}')
 
 
 def _head(*cells: str) -> tuple[str, str]:

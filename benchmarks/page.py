@@ -13,3 +13,4 @@ def replace_generated(page: pathlib.Path, text: str, name: str = 'generated') ->
     if not found or not closed:
         raise SystemExit(f'{page} lacks {begin} or {end}')
     page.write_text(f'{before}{begin}\n\n{text}\n{end}{after}', encoding='utf-8')
+    print(f'written: {page}, {name}')
