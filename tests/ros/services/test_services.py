@@ -215,7 +215,7 @@ def test_a_recorded_run_that_has_not_begun_can_be_reset(tmp_path: Path) -> None:
 def test_a_recording_that_begins_at_step_0_is_as_one_from_the_start(tmp_path: Path) -> None:
     """The second run of a bench in lock-step: its states begin at 0 s as those of the first do."""
     folders = [tmp_path / name for name in ('first', 'second')]
-    with node_and_client(tmp_path, 'lockstep', *recording_into(folders[0])) as (_, axis):
+    with node_and_client(tmp_path, 'lockstep', *recording_into(folders[0])) as (process, axis):
         for folder in folders:
             if folder is folders[1]:
                 assert axis.trigger('reset').success
@@ -223,6 +223,9 @@ def test_a_recording_that_begins_at_step_0_is_as_one_from_the_start(tmp_path: Pa
                 assert axis.switch('record', True).success
             assert axis.call(Step, 'step', steps=10, velocity=0.01, force=math.nan).success
             assert axis.switch('record', False).success
+        _, log = process.end()
+    for text in (*(f'recorded into {folder}' for folder in folders), 'simulation time and steps begin anew at 0'):
+        assert f': {text}\n' in log
     limits = limits_of({'window': {'begin': 0.0, 'end': 0.01}, 'limits': {'peak_speed': {'max': 1.0}}})
     for folder in folders:
         run = read_run(folder)

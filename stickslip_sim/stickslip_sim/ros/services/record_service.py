@@ -58,6 +58,7 @@ class RecordService:
     def end(self) -> str:
         """End the recording; return why the bag could not be finished, or an empty text."""
         receipts: list[dict[str, Any]] = []
+        folder = self.recordings.folder
 
         def detach() -> None:
             self._publishers.recorder = None
@@ -71,6 +72,8 @@ class RecordService:
             return str(error)
         finally:
             self._publish()
+        if folder:
+            self._node.get_logger().info(f'recorded into {folder}')
         return ''
 
     def close(self) -> None:

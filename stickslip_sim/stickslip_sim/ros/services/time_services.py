@@ -43,7 +43,7 @@ class TimeServices:
             return answer(response, False, 'refused while recording: a bag holds one run; end it with ~/record first'
                           ' (stickslip call record off)')
         done = self._restart()
-        return answer(response, done, 'simulation time and steps begin anew at 0' if done else BUSY)
+        return self._logged(response, done, 'simulation time and steps begin anew at 0')
 
     def set_paused(self, request: Any, response: Any) -> Any:
         """Let time stand still or go on."""
@@ -54,7 +54,7 @@ class TimeServices:
             return answer(response, False, f'the solver gave up: {loop.failure}; call ~/reset first')
         done = loop.at_boundary(lambda: loop.pause(request.data))
         word = 'paused' if request.data else 'running'
-        return answer(response, done, f'{word} at simulation time {loop.time_ns * 1e-9:g} s' if done else BUSY)
+        return self._logged(response, done, f'{word} at simulation time {loop.time_ns * 1e-9:g} s')
 
     def step(self, request: Any, response: Any) -> Any:
         """Make steps while time does not move by itself."""
@@ -78,6 +78,12 @@ class TimeServices:
             self._log.warning(f'~/step: {replaced}')
         return answer(response, done and len(results) == request.steps,
                       self._report(done, request.steps, len(results)) + (f'; {replaced}' if replaced else ''))
+
+    def _logged(self, response: Any, done: bool, text: str) -> Any:
+        """Answer, and tell in the log what was done."""
+        if done:
+            self._log.info(text)
+        return answer(response, done, text if done else BUSY)
 
     @property
     def _is_before_start(self) -> bool:
