@@ -4,10 +4,12 @@
 
 import argparse
 import math
+from signal import SIG_DFL, SIGINT, signal
 from typing import Any
 
 import rclpy
 from rclpy.client import Client
+from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args
 from std_srvs.srv import Trigger
 
@@ -19,7 +21,8 @@ parser = argparse.ArgumentParser(description=__doc__)
 parser.add_argument('--duration', type=float, default=2.0, help='of the run, s of simulation time')
 duration = parser.parse_args(remove_ros_args()[1:]).duration
 
-rclpy.init()
+signal(SIGINT, SIG_DFL)    # Ctrl-C ends it, also while it waits
+rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
 node = rclpy.create_node('controller')
 step = node.create_client(Step, 'feed_axis/step')
 reset = node.create_client(Trigger, 'feed_axis/reset')
