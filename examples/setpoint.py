@@ -120,4 +120,5 @@ if in_lock_step:
     make_steps(follower)
 else:
     spin_until(lambda: follower.is_done)
+    spin_until(lambda: False, 0.2)    # rest is sent again and again: the last message of a process may be lost
 follower.get_logger().info(f'done: the largest error was {follower.worst * 1e3:.6f} mm')

@@ -198,14 +198,14 @@ NORMAL_MASS = {'distribution': 'normal', 'mean': 350.0, 'standard_deviation': 10
 
 
 @pytest.mark.parametrize(('entry', 'words'), [
-    (NORMAL_MASS, ('axis.mass.between', 'None', '[310, 390]')),
+    (NORMAL_MASS, ('axis.mass.between', 'is missing', '[310, 390]')),
     ({**NORMAL_MASS, 'between': [370.0, 330.0]}, ('axis.mass.between', 'LOW < HIGH')),
     ({**NORMAL_MASS, 'between': [-1.0, 390.0]}, ('axis.mass', '-1.0', 'kg')),
     ({**NORMAL_MASS, 'between': [380.0, 390.0]}, ('axis.mass.between', 'keeps 0.0013')),
     ({**NORMAL_MASS, 'between': [330.0, 370.0], 'standard_deviation': 0.0}, ('standard_deviation', '> 0')),
     ({**NORMAL_MASS, 'between': [330.0, 370.0], 'mode': 1.0}, ('axis.mass.mode', 'mean')),
     ({'distribution': 'gaussian'}, ('axis.mass.distribution', 'gaussian', 'normal, lognormal')),
-    ({'distribution': 'uniform', 'low': 300.0}, ('axis.mass.high', 'None')),
+    ({'distribution': 'uniform', 'low': 300.0}, ('axis.mass.high', 'is missing')),
     ({'distribution': 'uniform', 'low': 300.0, 'high': 300.0}, ('axis.mass.high', 'above low')),
     ({'distribution': 'uniform', 'low': 300.0, 'high': math.inf}, ('axis.mass.high', 'inf')),
     ({'distribution': 'uniform', 'low': 300.0, 'high': 400.0, 'between': [1.0, 2.0]}, ('axis.mass.between',)),

@@ -74,7 +74,7 @@ def test_faults(folder: Path, capsys: Capture) -> None:
 def test_a_fault_without_the_value_that_its_kind_needs(capsys: Capture) -> None:
     """0 would be a friction that is gone."""
     assert refused(capsys, 'call', 'inject-fault', 'friction_scale') == (
-        'stickslip: --value = None is refused: must be given with friction_scale: a factor, >= 0 and <= 100;'
+        'stickslip: --value is missing: must be given with friction_scale: a factor, >= 0 and <= 100;'
         ' add --value X\n')
     assert 'force_pulse: within ±1e9 N' in refused(capsys, 'call', 'inject-fault', 'force_pulse')
 
