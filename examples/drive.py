@@ -37,12 +37,14 @@ def parse() -> dict[str, DriveVelocity | ExternalForce]:
 def send(node: Node, messages: dict[str, DriveVelocity | ExternalForce]) -> None:
     """Send the messages as soon as the axis listens, until it has reported on them; exits with what it refuses."""
     log = node.get_logger()
+    mine = [f' = {getattr(each, name.rpartition("_")[2])} ' for name, each in messages.items()]
     refused: list[str] = []
     reports: list[StepTiming] = []
 
     def hear(event: RigEvent) -> None:
         if event.kind == RigEvent.KIND_COMMAND_REFUSED:
-            refused.append(event.text)
+            if any(value in event.text for value in mine):    # and not what another sender is told
+                refused.append(event.text)
         else:
             log.warning(event.text)
 

@@ -37,6 +37,8 @@ def live(args: Sequence[str], signals: 'Signals', program: Program) -> int:
         return _refuse(program, str(error), error.exit_code)
     except Exception as error:
         return _refuse(program, internal_error(error), 1)
+    finally:
+        signals.ignore()
 
 
 def spin(node: Any, signals: 'Signals', is_over: Callable[[], bool] = lambda: False,

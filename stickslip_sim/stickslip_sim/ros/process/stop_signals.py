@@ -15,6 +15,12 @@ class Signals:
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, self._take)
 
+    @staticmethod
+    def ignore() -> None:
+        """Take no more of them: all is closed, and Python, on its way out, would let the next one kill the process."""
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, signal.SIG_IGN)
+
     def _take(self, *_: object) -> None:
         self.stop = True
         if self.is_starting:    # nothing is open yet; compiling may take long, and swallows exceptions
