@@ -43,7 +43,7 @@ def send(node: Node, messages: dict[str, DriveVelocity | ExternalForce]) -> None
 
     def hear(event: RigEvent) -> None:
         if event.kind == RigEvent.KIND_COMMAND_REFUSED:
-            if any(value in event.text for value in mine):    # and not what another sender is told
+            if any(value in event.text for value in mine):    # and not one of another sender
                 refused.append(event.text)
         else:
             log.warning(event.text)
