@@ -157,11 +157,9 @@ def test_what_a_command_reads_is_not_what_it_writes(tmp_path: Path, capsys: pyte
     curve.write_text((ROOT / 'examples' / 'friction_curve.csv').read_text())
     for arguments, read in (
             (['simulate', str(scene), '--duration', '1', '--samples', str(scene)], scene),
-            (['friction', str(curve), '--speed-unit', 'mm/s', '--out', str(scene), '--scene', str(scene)], scene),
-            (['friction', str(curve), '--speed-unit', 'mm/s', '--plot', str(curve)], curve)):
+            (['friction', str(curve), '--speed-unit', 'mm/s', '--out', str(scene), '--scene', str(scene)], scene)):
         before = read.read_bytes()
         assert run(arguments) == 2
-        said = capsys.readouterr().err
-        assert 'must be another place than that of' in said or 'must be a file ending in' in said
+        assert 'must be another place than that of' in capsys.readouterr().err
         assert read.read_bytes() == before
     assert run(['simulate', 'paper_fig7', '--duration', '1', '--samples', str(curve)]) == 0   # a file of no other use
