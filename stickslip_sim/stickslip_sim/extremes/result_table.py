@@ -36,7 +36,8 @@ def markdown_text(outcomes: Sequence[ExtremeResult], quick: bool) -> str:
              '', f'{met} of {len(outcomes)} marks met; {known}.', '',
              'The column "elsewhere" was measured on the paper\'s data with scipy 1.17, SUNDIALS CVODE (scikit-sundae',
              '1.2), heyoka 7.13, MuJoCo 4.0 and Drake 1.51, or is taken from their documentation and issues.  From X22',
-             'on it has the results of stickslip 0.1.0; [an attack](accuracy_method.md#what-an-attack-found) found these.',
+             'on it has the results of stickslip 0.1.0; [an attack](accuracy_method.md#what-an-attack-found) found',
+             'these.',
              '', '| # | extreme | elsewhere | mark | measured | met |', '|---|---|---|---|---|---|']
     for outcome in outcomes:
         cells = (outcome.number, outcome.name, outcome.elsewhere, outcome.mark, outcome.finding.figure,
