@@ -58,8 +58,11 @@ def _run(problem: Problem, method: str, tolerance: float) -> Outcome:
             _rates_into(q, w, t, y, out)
             return out
 
-        done = solve_ivp(right_side, (0.0, limit), (x, u),
-                         events=[_Guard(q, w, i) for i in range(GUARDS)], **options)
+        try:
+            done = solve_ivp(right_side, (0.0, limit), (x, u),
+                             events=[_Guard(q, w, i) for i in range(GUARDS)], **options)
+        except ValueError as error:    # its interpolant begins off the state, beyond a guard that is about to fall
+            raise SolverError(f'solve_ivp: {error}') from error
         if not done.success:
             raise SolverError(f'solve_ivp: {done.message}')
         fallen = next((i for i, times in enumerate(done.t_events) if len(times)), -1)
