@@ -30,22 +30,24 @@ def main() -> None:
     for _ in range(options.repeats):
         for case in COMMANDS:
             runs[case].append(print_figures(case, measure(case, RATE, options.seconds)))
-    rates = search(options.seconds)
+    why_not = yardstick.missing()
+    rates = {priority: search(options.seconds, priority) for priority in ((0,) if why_not else (0, yardstick.PRIORITY))}
     found = {'machine': machine(), 'seconds': options.seconds, 'repeats': options.repeats, 'runs': runs,
              'cases': {case: summary(figures) for case, figures in runs.items()}, 'rates': rates,
              'yardsticks': yardstick.compare(options.seconds, options.repeats, print_lateness),
-             'no_priority': yardstick.missing(),
-             'troubles': {rate: (loss(float(rate), figures), lag(figures)) for rate, figures in rates.items()}}
+             'no_priority': why_not,
+             'troubles': {priority: {rate: (loss(float(rate), figures), lag(figures)) for rate, figures in row.items()}
+                          for priority, row in rates.items()}}
     for file, text in ((options.json, json.dumps(found, indent=1) + '\n'), (options.out, page(found))):
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(text, encoding='utf-8')
 
 
-def search(seconds: float) -> dict[str, Figures]:
+def search(seconds: float, priority: int) -> dict[str, Figures]:
     """Return the figures of the node at higher and higher rates, up to the first at which steps are lost."""
     found: dict[str, Figures] = {}
     for rate in RATES:
-        found[str(rate)] = print_figures(f'{rate} 1/s', measure(SIMULATING, float(rate), seconds))
+        found[str(rate)] = print_figures(f'{rate} 1/s', measure(SIMULATING, float(rate), seconds, priority))
         if loss(rate, found[str(rate)]):
             break
     return found

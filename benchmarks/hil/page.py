@@ -44,6 +44,8 @@ COLUMNS = (
     Column('p99', of('answer_steps_p99')),
 )
 
+_START = ('As any process is started', 'With SCHED_FIFO and locked memory')
+
 _LEGEND = (
     '* CPU: user and system time of the whole process of the node, per step.',
     '* Unheard: steps that the controller did not receive.  Unrecorded: steps that are not in the bag.',
@@ -72,8 +74,9 @@ def page(found: Mapping[str, Any]) -> str:
         *table('node', found['cases']), '', *_LEGEND, '', *verdict(found['cases']), '',
         '## The highest rate', '',
         f'`sim_node` alone, {seconds} s at each rate, up to the first rate at which steps are lost or lag behind the',
-        'clock.  The controller answers 1000 states a second.', '',
-        *table('rate, 1/s', found['rates']), '', *highest(found['troubles']), '',
+        'clock.  The controller, which has no priority, answers 1000 states a second.', '',
+        *(line for priority, rates in found['rates'].items() for line in (
+            f'{_START[priority > 0]}:', '', *table('rate, 1/s', rates), '', *highest(found['troubles'][priority]), '')),
         *section(found['yardsticks'], found['seconds'], repeats, found['no_priority']), ''])
 
 
