@@ -115,6 +115,21 @@ def test_resampled_only_where_asked(tmp_path: Path) -> None:
     assert points(held) == ((0.0, 0.2, 0.4, 0.6), (0.0, 0.0, 1.0, 2.0))
 
 
+def test_a_column_of_positions_is_the_path_of_the_drive(tmp_path: Path) -> None:
+    rows = 'time,position [mm]\n0,12\n0.5,12.1\n2,12.1\n'
+    drive = 'course: position, file: feed.csv, file_column: position, file_unit: mm'
+    scene = scene_of(tmp_path, drive, rows, **{'initial.position': 0.012})
+    assert scene.values['drive.positions'] == (0.012, 0.0121, 0.0121)
+    assert scene.drive.values == pytest.approx((0.0002, 0.0, 0.0))
+    assert scene.sources['drive'] == ('feed.csv', 'position', 'mm')
+    begun = scene_of(tmp_path, f'{drive}, file_begin: 0.25', rows, **{'initial.position': 0.01205})
+    assert begun.values['drive.positions'] == (pytest.approx(0.01205), 0.0121, 0.0121)
+    with pytest.raises(InputError, match=r'drive\.positions\[0\] = 0\.012 is refused: .* set initial\.position: 0\.01'):
+        scene_of(tmp_path, drive, rows)
+    with pytest.raises(InputError, match=r'drive\.file = .* is refused: must be left out with drive\.slopes'):
+        scene_of(tmp_path, f'{drive}, slopes: [0.0]', rows)
+
+
 def test_the_hash_is_that_of_the_values_wherever_they_come_from(tmp_path: Path) -> None:
     rows = 't,v\n0,0.0\n0.5,0.01\n'
     scene = scene_of(tmp_path, NAMED, rows)

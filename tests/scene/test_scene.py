@@ -184,6 +184,20 @@ def test_input_profiles() -> None:
     assert [steps.force.value_at(time) for time in (0.5, 1.5, 2.5)] == [1.0, 2.0, 1.0]
 
 
+def test_the_position_of_the_drive_over_time() -> None:
+    given = {'drive.course': 'position', 'drive.times': [0.0, 1.0, 3.0], 'drive.positions': [0.5, 0.75, 0.25],
+             'initial.position': 0.375, 'initial.stretch': 0.125}
+    linear = scene_from_values(given)
+    assert [linear.drive.value_at(time) for time in (0.5, 1.0, 2.9, 3.0, 9.0)] == [0.25, -0.25, -0.25, 0.0, 0.0]
+    periodic = scene_from_values({**given, 'drive.period': 4.0})
+    assert [periodic.drive.value_at(time) for time in (3.5, 4.5)] == [0.25, 0.25]
+    bent = scene_from_values({**given, 'drive.slopes': [0.0, 0.5, -1.0]})
+    assert [bent.drive.value_at(time) for time in (0.0, 0.5, 1.0, 2.0, 3.0, 9.0)] == [0.0, 0.25, 0.5, -0.25, -1.0, -1.0]
+    table = {'drive.course': 'table', 'drive.times': [0.0, 1.0, 3.0], 'drive.velocities': [0.0, 0.5, -1.0]}
+    assert bent.drive == scene_from_values(table).drive
+    assert scene_from_values(bent.values).hash == bent.hash
+
+
 def test_sines_alone_and_on_top_of_any_profile() -> None:
     scene = scene_from_values({
         'drive.course': 'sine', 'drive.velocity': 0.5, 'drive.amplitude': 2.0, 'drive.frequency': 3.0,

@@ -133,7 +133,7 @@ def ramp(start: float, rate: float, duration: float) -> InputProfile:
 
 def steps(name: str, times: Sequence[float], values: Sequence[float], period: float = math.inf) -> InputProfile:
     """Return a profile that jumps to values[i] at times[i]; raises InputError unless the times start at 0 and rise."""
-    _check_times(name, times, values, period)
+    check_times(name, times, values, period)
     return InputProfile(tuple(times), tuple(values), (0.0,) * len(values), period)
 
 
@@ -142,7 +142,7 @@ def table(name: str, times: Sequence[float], values: Sequence[float], period: fl
 
     With a period it is linear from the last value back to the first.  Raises InputError like `steps`.
     """
-    _check_times(name, times, values, period)
+    check_times(name, times, values, period)
     rates = [(b - a) / (t1 - t0) for (t0, t1), (a, b) in zip(pairwise(times), pairwise(values), strict=True)]
     rates.append((values[0] - values[-1]) / (period - times[-1]) if period < math.inf else 0.0)
     return InputProfile(tuple(times), tuple(values), tuple(rates), period)
@@ -169,7 +169,8 @@ def _floats(numbers: Sequence[Any]) -> tuple[float, ...]:
     return tuple(map(float, numbers))
 
 
-def _check_times(name: str, times: Sequence[float], values: Sequence[float], period: float) -> None:
+def check_times(name: str, times: Sequence[float], values: Sequence[float], period: float) -> None:
+    """Raise InputError unless there is a time for each value, from 0 on, rising, and below the period."""
     if not times or len(times) != len(values):
         raise InputError(f'{name}.times', list(times), f'as many numbers as there are values ({len(values)})',
                          'give one value for every time')

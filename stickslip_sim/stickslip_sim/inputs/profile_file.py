@@ -20,14 +20,15 @@ from ..scene.profile_schema import FILE_SETTINGS, MOST_POINTS
 from ..scene.schema import BY_NAME
 from ..scene.values import stated
 from .csv_table import CsvTable, Numbers, Wanted
-from .units import FORCES, SPEEDS, TIMES
+from .units import FORCES, LENGTHS, SPEEDS, TIMES
 
 Given = Mapping[str, object]
-_FORMS = 'table', 'steps'   # the first when none is stated
+_POSITION = 'position'
+_FORMS = {'drive': ('table', 'steps', _POSITION), 'force': ('table', 'steps')}   # the first when none is stated
 
 
 class _Kind(NamedTuple):
-    """Where the values of a section go, the column that has them when none is named, and their units; first SI."""
+    """Where the values of a profile go, the column that has them when none is named, and their units; first SI."""
 
     values: str
     column: str
@@ -35,6 +36,8 @@ class _Kind(NamedTuple):
 
 
 _KINDS = {'drive': _Kind('velocities', 'velocity', SPEEDS), 'force': _Kind('forces', 'force', FORCES)}
+_PLACES = _Kind('positions', 'position', LENGTHS)   # with `course: position`
+_NUMBERS = {'drive': ('times', 'velocities', 'positions', 'slopes'), 'force': ('times', 'forces')}
 
 
 class _Table(Protocol):
@@ -46,21 +49,21 @@ class _Table(Protocol):
 
 def sections_with_file(values: Given) -> list[str]:
     """Return the sections that have a file."""
-    return [section for section in _KINDS if values.get(f'{section}.file') is not None]
+    return [section for section in _FORMS if values.get(f'{section}.file') is not None]
 
 
 def prepared(base: Given, changes: Given) -> tuple[dict[str, object], dict[str, object]]:
     """Return the values of a scene and changes to them, such that a file replaces points, and points replace a file."""
     base, changes = stated(base), stated(changes)
-    for section, kind in _KINDS.items():
+    for section, forms in _FORMS.items():
         form = f'{section}.course'
-        numbers = {f'{section}.times', f'{section}.{kind.values}'}
+        numbers = {f'{section}.{name}' for name in _NUMBERS[section]}
         settings = {f'{section}.{name}' for name in FILE_SETTINGS}
         if f'{section}.file' in changes:
-            changes.setdefault(form, base.get(form) if base.get(form) in _FORMS else _FORMS[0])
+            changes.setdefault(form, base.get(form) if base.get(form) in forms else forms[0])
             base = {name: value for name, value in base.items() if name not in numbers | settings}
         elif f'{section}.file' in base and numbers & set(changes):
-            base = {form: _FORMS[0], **{name: value for name, value in base.items() if name not in settings}}
+            base = {form: forms[0], **{name: value for name, value in base.items() if name not in settings}}
     return base, changes
 
 
@@ -74,19 +77,19 @@ def with_profiles(values: Given, folders: Mapping[str, Path]) -> tuple[dict[str,
         given = {name: result.pop(f'{section}.{name}') for name in FILE_SETTINGS
                  if result.get(f'{section}.{name}') is not None}
         checked = {name: BY_NAME[f'{section}.{name}'].checked(value) for name, value in given.items()}
-        result.setdefault(f'{section}.course', _FORMS[0])
+        result.setdefault(f'{section}.course', _FORMS[section][0])
         _check_alone(section, result, str(checked['file']))
-        profile = _Profile(section, result[f'{section}.course'] == 'steps', checked, folders.get(section, Path()))
-        result[f'{section}.times'], result[f'{section}.{_KINDS[section].values}'] = profile.points()
+        profile = _Profile(section, str(result[f'{section}.course']), checked, folders.get(section, Path()))
+        result[f'{section}.times'], result[f'{section}.{profile.kind.values}'] = profile.points()
         sources[section] = profile.source
     return result, sources
 
 
 def _check_alone(section: str, values: Given, file: str) -> None:
-    if values[f'{section}.course'] not in _FORMS:
+    if values[f'{section}.course'] not in _FORMS[section]:
         raise InputError(f'{section}.file', file, f'left out with {section}.course: {values[f"{section}.course"]}',
                          f'drop it, or set {section}.course: table (linear between the points) or steps')
-    for name in ('times', _KINDS[section].values):
+    for name in _NUMBERS[section]:
         if values.get(f'{section}.{name}') is not None:
             raise InputError(f'{section}.file', file, f'left out with {section}.{name}', 'drop one of them')
 
@@ -94,9 +97,9 @@ def _check_alone(section: str, values: Given, file: str) -> None:
 class _Profile:
     """One profile as a file has it, and what is asked of it."""
 
-    def __init__(self, section: str, held: bool, given: Mapping[str, Any], folder: Path) -> None:
-        self._section, self._held, self._given, self._folder = section, held, given, folder
-        kind = _KINDS[section]
+    def __init__(self, section: str, form: str, given: Mapping[str, Any], folder: Path) -> None:
+        self._section, self._held, self._given, self._folder = section, form == 'steps', given, folder
+        self.kind = kind = _PLACES if form == _POSITION else _KINDS[section]
         self._file = str(given['file'])
         self._column = self._wanted('file_column', kind.column, 'file_unit', kind.units)
         self._most = BY_NAME[f'{section}.{kind.values}']

@@ -62,8 +62,9 @@ def receipt_of(scene: Scene, duration: float, sample_period: float | None, figur
 
 def profiles_from_files(scene: Scene) -> dict[str, Any]:
     """Return the profiles that were in files: their points, and where these came from; nothing without any."""
-    names = {'drive': ('course', 'times', 'velocities', 'period'), 'force': ('course', 'times', 'forces', 'period')}
-    profiles = {section: {**source._asdict(), **{name: scene.values[f'{section}.{name}'] for name in names[section]}}
+    names = ('course', 'times', 'velocities', 'positions', 'slopes', 'forces', 'period')
+    profiles = {section: {**source._asdict(), **{name: scene.values[f'{section}.{name}'] for name in names
+                                                 if f'{section}.{name}' in scene.values}}
                 for section, source in scene.sources.items()}
     return {'profiles': profiles} if profiles else {}
 

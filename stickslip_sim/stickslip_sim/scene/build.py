@@ -11,6 +11,7 @@ from typing import Any
 from ..axis import Axis, CompliantContact, Friction, InitialState, RigidContact, check_start
 from ..core.errors import InputError
 from ..core.input_profile import InputProfile, Sinusoid, constant, ramp, sinusoids, steps, table
+from ..core.position_profile import check_first_position, positions
 from ..friction import (
     ExcessTable,
     KineticTable,
@@ -46,6 +47,8 @@ def build_scene(given: Mapping[str, object], summary: str = '') -> Scene:
     axis = _axis(values)
     initial = InitialState(**_section(values, 'initial'))
     check_start(axis, initial)
+    if values['drive.course'] == 'position':
+        check_first_position('drive', values['drive.positions'][0], initial.position + initial.stretch)
     if 'solver.method' not in values and (method := method_of(values)):
         values['solver.method'] = method
     solver = SolverSettings(**_section(values, 'solver'))
@@ -141,6 +144,8 @@ def _pieces(given: Mapping[str, Any], section: str, value: str, rate: str, break
     if form == 'ramp':
         profile = ramp(given[value], given[rate], given['duration'])
         name = f'{section}.{rate}'
+    elif form == 'position':
+        return positions(section, given['times'], given['positions'], given.get('slopes'), given['period'])
     else:
         profile = _BREAKPOINTS[form](section, given['times'], given[breakpoints], given['period'])
         name = f'{section}.{breakpoints}'

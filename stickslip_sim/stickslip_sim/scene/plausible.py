@@ -29,8 +29,8 @@ class Plausible(NamedTuple):
 
 _SPEED, _COEFFICIENT = Plausible(FASTEST, 'm/s', _SPEED_FIX), Plausible(ROUGHEST, '', _COEFFICIENT_FIX)
 PLAUSIBLE: Mapping[str, Plausible] = {
-    **dict.fromkeys(('drive.velocity', 'drive.velocities', 'drive.amplitude', 'drive.amplitudes', 'initial.velocity',
-                     'friction.kinetic.velocities', 'friction.kinetic.stribeck_velocity',
+    **dict.fromkeys(('drive.velocity', 'drive.velocities', 'drive.slopes', 'drive.amplitude', 'drive.amplitudes',
+                     'initial.velocity', 'friction.kinetic.velocities', 'friction.kinetic.stribeck_velocity',
                      'friction.excess.velocities', 'friction.excess.limit_velocity'), _SPEED),
     **dict.fromkeys(('friction.static.initial', 'friction.static.limit', 'friction.kinetic.initial',
                      'friction.kinetic.limit', 'friction.kinetic.coefficients'), _COEFFICIENT),

@@ -14,7 +14,7 @@ from ..core.ranges import Range
 from ..friction.shapes import MAX_EXPONENT, MIN_EXPONENT
 from ..rig.faults import MAX_TIME
 from .declare import choice, number, numbers, texts
-from .profile_schema import profile
+from .profile_schema import drive_profile, profile
 
 _SOLVERS = ('exact', 'fixed_step', 'adaptive')
 _METHODS = ('euler', 'rk4', 'RK45', 'DOP853', 'Radau', 'BDF', 'LSODA')
@@ -104,8 +104,7 @@ PARAMETERS: tuple[Parameter, ...] = (
     number('friction.excess.tolerance', 1e-3, '', 'largest difference between the smooth psi and its table',
            within=ranges.TOLERANCE, live=True, when=_EXCESS_SMOOTH),
 
-    *profile('drive', 'velocity', 'acceleration', 'velocities', 'm/s', 'velocity of the drive end of the spring',
-            ranges.VELOCITY, ranges.ACCELERATION),
+    *drive_profile(),
     *profile('force', 'constant', 'rate', 'forces', 'N', 'external force on the slider, along +x', ranges.FORCE,
             ranges.FORCE_RATE),
 

@@ -22,7 +22,8 @@ _OF_THE_MOTION = ('axis', 'contact', 'friction', 'drive', 'force', 'initial', 's
 _ALONG = {   # where an element of a list is
     'friction.kinetic.coefficients': 'friction.kinetic.velocities',
     'friction.excess.fractions': 'friction.excess.velocities',
-    'drive.velocities': 'drive.times', 'drive.amplitudes': 'drive.frequencies',
+    'drive.velocities': 'drive.times', 'drive.positions': 'drive.times', 'drive.slopes': 'drive.times',
+    'drive.amplitudes': 'drive.frequencies',
     'force.forces': 'force.times', 'force.amplitudes': 'force.frequencies',
 }
 _FORM = 'a.b=LOW:HIGH:N or a.b=LOW:HIGH:N:log'
