@@ -39,6 +39,7 @@ CHOICES = [
     Choice('contact', 'rigid (Fig. 7)', {'contact.model': 'rigid'}),
     *_numbers('contact spring c_c', 'contact.stiffness', (2.5e6, 1e7), ' kN/mm', 1e-6),
     *_numbers('contact damper h_c', 'contact.damping', (0.0, 7500.0, 30000.0), ' Ns/mm', 1e-3),
+    Choice('contact as stick begins', 'undeflected', {'contact.arrest': 'undeflected'}),
     *_numbers('feed v', 'drive.velocity', (0.0005, 0.001, 0.003, 0.004, 0.005, 0.01), ' mm/s', 1e3),
     *_numbers('normal force N', 'axis.normal_force', (0.5 * _WEIGHT, 0.8 * _WEIGHT, 1.25 * _WEIGHT, 2.0 * _WEIGHT),
               ' kN', 1e-3),

@@ -37,6 +37,7 @@ class Parameters:
     compliant: float          # 1 in a compliant contact, 0 in a rigid one
     contact_stiffness: float  # N/m
     contact_damping: float    # N s/m
+    arrest_share: float       # of the friction force, that a compliant contact carries as stick begins: 1, or 0
     static_law: float         # `friction.StaticLawKind`
     static_initial: float     # mu_s at rest time 0
     static_limit: float       # mu_s at infinite rest time
@@ -240,6 +241,6 @@ PARAMETER_FIELDS, SEGMENT_FIELDS = names_of(Parameters), names_of(Segment)
 STATE_PLACES = places_of(State)
 
 # where the numbers of `pack` stand
-(MASS, STIFFNESS, DAMPING, NORMAL, COMPLIANT, CONTACT_STIFFNESS, CONTACT_DAMPING, STATIC_LAW, STATIC_INITIAL,
- STATIC_LIMIT, STATIC_TAU, STATIC_EXPONENT, BRANCHES, END_SLOPE, SEGMENT_COUNT, TABLE) = range(16)
+(MASS, STIFFNESS, DAMPING, NORMAL, COMPLIANT, CONTACT_STIFFNESS, CONTACT_DAMPING, _, STATIC_LAW, STATIC_INITIAL,
+ STATIC_LIMIT, STATIC_TAU, STATIC_EXPONENT, BRANCHES, END_SLOPE, SEGMENT_COUNT, TABLE) = range(17)
 SEGMENT_SIZE = len(SEGMENT_FIELDS)

@@ -19,10 +19,14 @@ class RigidContact:
 
 @dataclass(frozen=True, slots=True)
 class CompliantContact:
-    """Tangential contact spring c_c `stiffness` (N/m) and damper h_c `damping` (N s/m), in stick only (Fig. 8)."""
+    """Tangential contact spring c_c `stiffness` (N/m) and damper h_c `damping` (N s/m), in stick only (Fig. 8).
+
+    A stick begins with the deflection that goes on with the friction force, or `undeflected`.
+    """
 
     stiffness: float
     damping: float
+    undeflected: bool = False
 
     def __post_init__(self) -> None:
         ranges.CONTACT_STIFFNESS.check_meaning('contact.stiffness', self.stiffness, 'N/m',
@@ -115,6 +119,7 @@ def pack(axis: Axis) -> Sequence[float]:
     breakpoints = merged_breakpoints(kinetic, excess)
     return [axis.mass, axis.drive_stiffness, axis.drive_damping, axis.normal_force,
             float(contact is not None), contact.stiffness if contact else 0.0, contact.damping if contact else 0.0,
+            0.0 if contact is not None and contact.undeflected else 1.0,
             float(static.kind), static.initial, static.limit, static.time_constant, static.exponent,
             float(excess is not None), kinetic.end_slope, float(len(breakpoints)),
             *(number for breakpoint in breakpoints for number in breakpoint)]

@@ -164,7 +164,7 @@ def rest(p: Parameters, s: State) -> None:
     s.acceleration = 0.0
     s.deflection = 0.0
     if p.compliant != 0.0:
-        friction = s.direction * p.normal_force * kinetic_at_rest(p)
+        friction = s.direction * p.normal_force * kinetic_at_rest(p) * p.arrest_share
         s.deflection = friction / p.contact_stiffness
         s.acceleration = (applied_force(p, s) - friction) / p.mass
     s.direction = 0.0

@@ -276,7 +276,8 @@ class _Automaton:
             self._emit('reverse', -sigma, friction)
             return
         if self.axis.contact == 'compliant':
-            self.state = self.state._replace(deflection=friction / self.axis.contact_stiffness)
+            deflection = mpf(0) if self.axis.undeflected else friction / self.axis.contact_stiffness
+            self.state = self.state._replace(deflection=deflection)
         self.mode = Stick(self.t, mpf(0))
         self._emit('stick', sigma, friction)
 

@@ -57,6 +57,7 @@ class Problem:
     contact: str
     contact_stiffness: mpf
     contact_damping: mpf
+    undeflected: bool
     static: StaticLaw
     kinetic: Table
     excess: Table | None
@@ -88,6 +89,7 @@ def problem(axis: product.Axis, initial: product.InitialState, drive: profiles.I
         contact='compliant' if contact else 'rigid',
         contact_stiffness=mpf(contact.stiffness if contact else 0.0),
         contact_damping=mpf(contact.damping if contact else 0.0),
+        undeflected=contact is not None and contact.undeflected,
         static=StaticLaw(
             static.kind.name.lower(),
             mpf(static.initial),

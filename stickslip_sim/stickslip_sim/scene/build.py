@@ -92,9 +92,10 @@ def _section(values: Mapping[str, Any], section: str) -> dict[str, Any]:
 
 def _axis(values: Mapping[str, Any]) -> Axis:
     contact = _section(values, 'contact')
-    model = contact.pop('model')
+    model, arrest = contact.pop('model'), contact.pop('arrest', None)
     axis = Axis(**_section(values, 'axis'), friction=_friction(values),
-                contact=CompliantContact(**contact) if model == 'compliant' else RigidContact())
+                contact=CompliantContact(**contact, undeflected=arrest == 'undeflected')
+                if model == 'compliant' else RigidContact())
     return with_friction_scaled(axis, values.get('friction.scale', 1.0))
 
 

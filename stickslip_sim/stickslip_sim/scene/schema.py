@@ -54,6 +54,9 @@ PARAMETERS: tuple[Parameter, ...] = (
            within=ranges.CONTACT_STIFFNESS, live=True, when=_COMPLIANT),
     number('contact.damping', 0.0, 'N s/m', 'tangential contact damper h_c, in stick only',
            within=ranges.DAMPING, live=True, when=_COMPLIANT),
+    Parameter('contact.arrest', 'string', None, '', 'deflection of the contact as a stick begins (docs/paper.md): such'
+              ' that the friction force is continuous; or undeflected, whereby it drops to 0; left out: continuous',
+              choices=('continuous', 'undeflected'), when=_COMPLIANT),
 
     choice('friction.static.law', 'constant', 'growth of the static coefficient mu_s with the rest time', _LAWS),
     number('friction.static.initial', 0.0, '', 'mu_s at zero rest time', within=ranges.COEFFICIENT, live=True),

@@ -1,0 +1,132 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The other closures where the paper is silent: exact as the ones by default, in every solver, and recorded."""
+
+import math
+import random
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from stickslip_sim.axis import Axis, CompliantContact, InitialState
+from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant
+from stickslip_sim.core.types import Event, EventKind
+from stickslip_sim.extremes.shared_axes import random_profiles
+from stickslip_sim.reference import simulate as simulate_reference
+from stickslip_sim.scene import load_scene
+from stickslip_sim.simulation.simulator import Simulator
+from stickslip_sim.solvers import Solver, adaptive, exact, fixed_step
+from tests.support.axes import COMPLIANT, instant, make, paper_axis, random_axis, run_events
+from tests.support.tool import Capture, answered
+from tests.support.verify_tool import verified
+
+CLOSURES: Mapping[str, Mapping[str, object]] = {   # of a scene
+    'undeflected': {'contact.arrest': 'undeflected'},
+}
+FEED, SHORT = 0.002, 2.0   # m/s, s
+SINES = Sinusoid(0.003, 3.0, 0.4), Sinusoid(150.0, 41.0, 0.0)
+
+
+def closed(axis: Axis, closure: str) -> Axis:
+    """Return an axis with another closure."""
+    if closure == 'undeflected':
+        assert isinstance(axis.contact, CompliantContact)
+        return replace(axis, contact=replace(axis.contact, undeflected=True))
+    raise ValueError(closure)
+
+
+def random_problem(closure: str, seed: int) -> tuple[Axis, InputProfile, InputProfile]:
+    rng = random.Random(seed)
+    axis = random_axis(rng)
+    while closure in ('undeflected',) and not isinstance(axis.contact, CompliantContact):
+        axis = random_axis(rng)
+    return closed(axis, closure), *random_profiles(rng)
+
+
+def agree(found: list[Event], axis: Axis, drive: InputProfile, force: InputProfile, end: float, within: float) -> None:
+    """Compare with the reference, up to where the last digits decide: when the slider has taken the drive's speed."""
+    truth = simulate_reference(axis, InitialState(), drive, force, end).events
+    settled = [abs(event.velocity - drive.value_at(event.time)) < 1e-7 * abs(event.velocity) for event in truth]
+    last = settled.index(True) if True in settled else len(truth)
+    assert [event.kind for event in found[:last]] == [event.kind for event in truth[:last]]
+    assert last < len(truth) or len(found) == len(truth)
+    for event, other in zip(found[:last], truth[:last], strict=True):
+        assert event.time == pytest.approx(other.time, abs=within)
+        assert event.position == pytest.approx(other.position, abs=within)
+        assert event.friction_force == pytest.approx(other.friction_force, rel=1e-9, abs=1e-9 * axis.normal_force)
+
+
+@pytest.mark.parametrize('closure', CLOSURES)
+@pytest.mark.parametrize('seed', range(12))
+def test_random_axes_have_the_events_of_the_reference(closure: str, seed: int) -> None:
+    axis, drive, force = random_problem(closure, seed)
+    simulator = Simulator(axis, InitialState(), drive, force, accounting=True)
+    found = simulator.advance(instant(SHORT))
+    simulator.judge()
+    agree(found, axis, drive, force, SHORT, 1e-11)
+    energy = simulator.energy
+    assert energy is not None
+    assert energy.relative_residual < 1e-11
+
+
+@pytest.mark.parametrize('closure', CLOSURES)
+def test_under_sinusoids_too(closure: str) -> None:
+    axis = closed(paper_axis(COMPLIANT), closure)
+    drive, force = replace(constant(FEED), sinusoids=SINES[:1]), replace(constant(0.0), sinusoids=SINES[1:])
+    simulator = Simulator(axis, InitialState(), drive, force, accounting=True)
+    found = simulator.advance(instant(SHORT))
+    simulator.judge()
+    assert len(found) > 20
+    agree(found, axis, drive, force, SHORT, 1e-11)
+
+
+@pytest.mark.parametrize('closure', CLOSURES)
+def test_a_run_in_parts_is_the_same_to_the_last_bit(closure: str) -> None:
+    axis = closed(paper_axis(COMPLIANT), closure)
+    for force in (constant(0.0), replace(constant(0.0), sinusoids=SINES[1:])):
+        whole = make(axis, FEED, force).advance(instant(SHORT))
+        parted, rng = make(axis, FEED, force), random.Random(1)
+        found = [event for time in sorted(rng.uniform(0.0, SHORT) for _ in range(300))
+                 for event in parted.advance(instant(time))]
+        assert found + parted.advance(instant(SHORT)) == whole
+
+
+@pytest.mark.parametrize('closure', CLOSURES)
+@pytest.mark.parametrize(('solver', 'within'), [(adaptive.solver('DOP853', 1e-10, 1e-13), 1e-7),
+                                                (fixed_step.solver('rk4', 1e-5), 1e-3)], ids=['adaptive', 'fixed_step'])
+def test_other_solvers_find_the_same_cycle(closure: str, solver: Solver, within: float) -> None:
+    axis = closed(paper_axis(COMPLIANT), closure)
+    exactly, found = (arrests(run_events(axis, FEED, SHORT, solver=one)) for one in (exact.SOLVER, solver))
+    assert len(exactly) == 2
+    assert found == pytest.approx(exactly, abs=within)
+
+
+def arrests(events: list[Event]) -> list[float]:
+    return [event.time for event in events if event.kind == EventKind.STICK]
+
+
+@pytest.mark.parametrize('closure', CLOSURES)
+def test_a_recorded_run_is_verified(closure: str, tmp_path: Path, capsys: Capture) -> None:
+    scene = load_scene('paper_fig8', CLOSURES[closure])
+    assert scene.axis == closed(paper_axis(COMPLIANT), closure)
+    assert scene.hash != load_scene('paper_fig8').hash
+    changes = [word for name, value in CLOSURES[closure].items() for word in ('--set', f'{name}={value}')]
+    answered(capsys, 'simulate', 'paper_fig8', '--duration', '1', *changes, '--bag', tmp_path / 'run')
+    code, out, _ = verified(capsys, tmp_path / 'run')
+    assert (code, 'identical' in out) == (0, True)
+
+
+def test_an_undeflected_contact_begins_without_a_force_and_gains_no_energy() -> None:
+    axis = closed(paper_axis(COMPLIANT), 'undeflected')
+    first = next(event for event in run_events(axis, FEED, 1.0) if event.kind == EventKind.STICK)
+    simulator = Simulator(axis, InitialState(), constant(FEED), constant(0.0), accounting=True)
+    simulator.advance(first.instant)
+    sample, energy = simulator.sample(), simulator.energy
+    assert (sample.contact_deflection, sample.friction_force) == (0.0, 0.0)
+    assert sample.acceleration == pytest.approx(sample.drive_force / axis.mass)
+    assert energy is not None
+    left = 0.5 * axis.normal_force * 0.24 * axis.normal_force * 0.24 / 5e6   # of the break-away, but for its damper
+    assert energy.contact_exchange == pytest.approx(-left, rel=0.1)
+    assert not math.isclose(first.friction_force, 0.0)   # as it was just before
