@@ -1,0 +1,171 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""What an identification found: the scene that reproduces a measured run, and how well each of its numbers is known."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..scene import Scene
+
+Numbers = NDArray[np.float64]
+
+FOUND, AT_BOUND, NOT_IDENTIFIABLE = 'found', 'at a bound', 'not identifiable'
+LEVEL = 0.95   # of all intervals
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A free parameter: all numbers in `unit`, but `standard_deviation` of the logarithm where `logarithmic`.
+
+    `low` and `high` are its range in the file of free parameters.  `interval` (low, high) is that of the covariance,
+    `profile` that of the profile likelihood (None where it was not computed); an end may lie at that of the range.
+    `kind` is FOUND, AT_BOUND or NOT_IDENTIFIABLE; with the last, value and interval are those of the start and range.
+    """
+
+    name: str
+    unit: str
+    value: float
+    start: float
+    low: float
+    high: float
+    logarithmic: bool
+    standard_deviation: float
+    interval: tuple[float, float]
+    profile: tuple[float, float] | None
+    kind: str
+    derivation: str
+
+    @property
+    def best_interval(self) -> tuple[float, float]:
+        """The interval to rely on: that of the profile likelihood where there is one."""
+        return self.profile or self.interval
+
+
+@dataclass(frozen=True)
+class ChannelFit:
+    """A measured channel, in `unit`: arrays (n,) of `times` (s, of the measurement), `measured` and `fitted` numbers.
+
+    `fitted` has the sensor's own offset and scale.  `resolution` is the standard deviation that the fit took for the
+    noise, `correlation_time` (s) over how long residuals go together (0 when each sample stands for itself).
+    """
+
+    name: str
+    unit: str
+    times: Numbers
+    measured: Numbers
+    fitted: Numbers
+    resolution: float
+    correlation_time: float = 0.0
+
+    @property
+    def residuals(self) -> Numbers:
+        """Measured less fitted (n,), in `unit`."""
+        return self.measured - self.fitted
+
+
+@dataclass(frozen=True)
+class Misfit:
+    """A test that the residuals of a channel fail, from a time to another (s): the `statistic` is beyond its `limit`.
+
+    `statement` says it in a sentence.
+    """
+
+    channel: str
+    test: str
+    statistic: float
+    limit: float
+    from_time: float
+    to_time: float
+    statement: str
+
+
+@dataclass(frozen=True)
+class Combination:
+    """Parameters that the data know only together: the product of each to the power of its weight is free.
+
+    (The sum of each times its weight, for those that are not fitted by their logarithm.)  `spread` is the standard
+    deviation of its logarithm (or of the sum, in widths of the ranges), inf where nothing limits it.
+    """
+
+    names: tuple[str, ...]
+    weights: tuple[float, ...]
+    spread: float
+    statement: str
+
+
+@dataclass(frozen=True)
+class StartEnd:
+    """Where the fit from one start ended: values in the order of the estimates, and the cost, chi-square, there."""
+
+    start: tuple[float, ...]
+    end: tuple[float, ...]
+    cost: float
+    is_best: bool
+
+
+@dataclass(frozen=True)
+class LawFit:
+    """A pair of laws fitted to the same data: its criterion (the lower the better), and how many parameters it took."""
+
+    static: str
+    kinetic: str
+    criterion: float
+    n_parameters: int
+    cost: float
+    is_chosen: bool
+
+
+@dataclass(frozen=True)
+class SlipFit:
+    """A slip of the measurement beside the fitted one: times of break-away (s), stick before it (s), force there (N).
+
+    NaN where one of the two has none.
+    """
+
+    time: float
+    fitted_time: float
+    stick_time: float
+    fitted_stick_time: float
+    break_away_force: float
+    fitted_break_away_force: float
+
+
+@dataclass(frozen=True)
+class Identification:
+    """A scene identified from a run.
+
+    `start` is the scene that was given, `scene` the one with the estimates in it; sensor offsets and scales are among
+    the estimates alone.  `correlation` (k, k) is of the k estimates, in their order; NaN in rows that the data do not
+    determine.  `fits` tells whether no test rejects the model (`misfits` is empty).  `criterion` names the one that
+    compares `laws`, `cost` is the chi-square over `n_residuals`, `runs` how many simulations it took, `notes` what a
+    user must know.
+    """
+
+    start: Scene
+    scene: Scene
+    estimates: tuple[Estimate, ...]
+    correlation: Numbers
+    channels: tuple[ChannelFit, ...]
+    misfits: tuple[Misfit, ...]
+    combinations: tuple[Combination, ...]
+    starts: tuple[StartEnd, ...]
+    laws: tuple[LawFit, ...]
+    slips: tuple[SlipFit, ...]
+    criterion: str
+    cost: float
+    n_residuals: int
+    runs: int
+    seconds: float
+    notes: tuple[str, ...] = ()
+
+    @property
+    def fits(self) -> bool:
+        """Whether no test of the residuals rejects the model."""
+        return not self.misfits
+
+    @property
+    def values(self) -> dict[str, float]:
+        """The estimated value of each free parameter, by its name."""
+        return {estimate.name: estimate.value for estimate in self.estimates}
