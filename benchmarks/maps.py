@@ -178,8 +178,8 @@ def million_table(costs: list[tuple[str, float]]) -> str:
 
 def of_the_uncertain() -> float:
     """Return what a point of examples/friction.yaml costs: each takes a scene of its own."""
-    distributions, seed = load_uncertain('examples/friction.yaml')
-    study = Study(load_scene('paper_fig7').values, Saltelli(distributions, 128, seed))
+    known = load_uncertain('examples/friction.yaml')
+    study = Study(load_scene('paper_fig7').values, Saltelli(known.distributions, 128, known.seed))
     return statistics.median(_seconds(study) for _ in range(_ROUNDS)) / study.count
 
 

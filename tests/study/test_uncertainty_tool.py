@@ -51,6 +51,23 @@ def test_it_prints_percentiles_and_indices_and_writes_them(tmp_path: Path, file:
     assert study_of(Folder(out).described()).count == 128
 
 
+def test_correlated_parameters_have_percentiles_and_no_indices(tmp_path: Path, capsys: Capture) -> None:
+    file, out, picture = tmp_path / 'friction.yaml', tmp_path / 'out', tmp_path / 'spread.svg'
+    file.write_text(f'{KNOWN}correlations:\n  friction.static.limit: {{friction.static.time_constant: 0.9}}\n')
+    common = ('uncertainty', 'paper_fig7', '--with', file, '--samples', '32', '--out', out, '--plot', picture)
+    code, said, _ = answered(capsys, *common)
+    assert code == 0
+    assert '32 samples of 2 parameters, 64 points, 64 run now' in said
+    assert 'correlated: most of all friction.static.time_constant with friction.static.limit, +0.9' in said
+    assert 'none of correlated ones, which vary together' in said
+    figures = json.loads((out / 'uncertainty.json').read_text())
+    assert figures['indices']['period'] is None
+    assert figures['percentiles']['period'] is not None
+    assert answered(capsys, *common, '--resume')[0] == 0
+    file.write_text(KNOWN)
+    assert 'its points is another' in refused(capsys, *common, '--resume')
+
+
 def test_a_picture_of_it(tmp_path: Path, file: str) -> None:
     common = ['uncertainty', 'paper_fig7', '--with', file, '--samples', '32', '--out', str(tmp_path / 'out')]
     assert run([*common, '--plot', str(tmp_path / 'one.svg')]) == 0

@@ -28,7 +28,7 @@ _RESULT = 'uncertainty.json'
 @click.option('--of', 'critical', metavar='A.B', help='Find how the critical value of this parameter spreads.')
 @click.option('--between', metavar='LOW:HIGH', help='With --of: where to look [default: 1/100 to 100 times its value].')
 @click.option('--samples', type=int, default=1024, show_default=True, metavar='N',
-              help='A power of two; N (parameters + 2) points are run.')
+              help='A power of two; N (parameters + 2) points are run, 2 N of correlated ones.')
 @click.option('--plot', metavar='FILE.png', help='Draw the spread of the figures and the indices (.png, .pdf or .svg).')
 @study_options
 def uncertainty(scene: str, file: str, critical: str | None, between: str | None, samples: int, plot: str | None,
@@ -55,7 +55,7 @@ def uncertainty(scene: str, file: str, critical: str | None, between: str | None
     known = load_uncertain(file)
     with named(file):
         changes.check_ranges(known.distributions)
-    sample = Saltelli(known.distributions, samples, known.seed)
+    sample = Saltelli(known.distributions, samples, known.seed, known.correlations)
     loaded = changes.load(scene)
     study = Study(loaded.values, sample, duration)
     labels = {name: with_place(loaded.values, name) for name in study.names}

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from ..study.correlations import Correlations
     from ..study.sample import Saltelli
     from ..study.uncertainty import Index
 
@@ -22,7 +23,15 @@ def law_lines(sample: 'Saltelli', labels: Labels) -> list[str]:
         cut = f', cut to {one.low:g} .. {one.high:g} ({1.0 - one.kept:.2g} off)' if LAWS[one.law].ends else ''
         unit = f' ({one.unit})' if one.unit else ''
         lines.append(f'  {labels[one.name]}{unit}: {one.law}, {numbers}{cut}')
-    return lines
+    return lines + ([] if sample.correlations is None else [_correlated_line(sample.correlations, labels)])
+
+
+def _correlated_line(correlations: 'Correlations', labels: Labels) -> str:
+    """Return the pair of parameters that is correlated most."""
+    names = list(labels.values())
+    size, number, first, second = max((abs(number), number, names[i], names[j]) for i, row in enumerate(correlations)
+                                      for j, number in enumerate(row[:i]))
+    return f'  correlated: most of all {first} with {second}, {number:+.3g}' if size else '  correlated: none'
 
 
 def percent_head(title: str) -> str:
@@ -35,6 +44,8 @@ def percent_head(title: str) -> str:
 def index_lines(sample: 'Saltelli', labels: Labels,
                 indices: Mapping[str, 'Mapping[str, Index] | None']) -> list[str]:
     """Return a table of the first-order indices, a line for each figure that has them."""
+    if sample.correlations:
+        return ['share of the variance that one parameter explains: none of correlated ones, which vary together']
     names = [one.name for one in sample.variations]
     width = max(22, *map(len, labels.values())) + 2
     lines = ['share of the variance that one parameter explains by itself (and with its interactions)']

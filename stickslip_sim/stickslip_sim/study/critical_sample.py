@@ -66,7 +66,7 @@ class CriticalSpread(NamedTuple):
 
     `all_over` and `nowhere` of the `points` stick and slip (or lose sliding) all over the range, or nowhere; of
     `unknown` the value is not known; the `percentiles` are of all others, None without any.  `indices` are None where
-    not every point has a value.
+    not every point has a value, or parameters are correlated.
     """
 
     points: int
@@ -106,7 +106,7 @@ def spreads_of(sample: Saltelli, values: Numbers) -> dict[str, CriticalSpread]:
 def _spread(sample: Saltelli, values: Numbers) -> CriticalSpread:
     drawn = values[:, :2]
     known = drawn[np.isfinite(drawn)]
-    indices = sobol_indices(np.where(np.isfinite(values), values, np.nan))
+    indices = None if sample.correlations else sobol_indices(np.where(np.isfinite(values), values, np.nan))
     names = [one.name for one in sample.variations]
     return CriticalSpread(
         drawn.size, int((drawn == ALL_OVER).sum()), int((drawn == NOWHERE).sum()), int(np.isnan(drawn).sum()), known,

@@ -30,7 +30,7 @@ def description(study: Study, command: str = '') -> dict[str, Any]:
         'points': study.count, 'duration': study.duration,
         'over': [{**_json(asdict(one)), 'unit': one.unit} for one in sample.variations],
         'sobol': {'points': sample.count, 'seed': sample.seed} if isinstance(sample, Sobol) else None,
-        'uncertain': {'samples': sample.samples, 'seed': sample.seed} if isinstance(sample, Saltelli) else None,
+        'uncertain': _uncertain(sample) if isinstance(sample, Saltelli) else None,
         'versions': versions_of_a_study(), 'scene_text': study.scene.text,
     }
 
@@ -53,6 +53,11 @@ def study_of(found: Mapping[str, Any]) -> Study:
     raise InputError('study', str(found.get('scene')), 'as a sweep describes it', 'it was changed; sweep again')
 
 
+def _uncertain(sample: Saltelli) -> dict[str, Any]:
+    correlations = {'correlations': [list(row) for row in sample.correlations]} if sample.correlations else {}
+    return {'samples': sample.samples, 'seed': sample.seed, **correlations}
+
+
 def _json(values: Mapping[str, Any]) -> dict[str, Any]:
     return {name: list(value) if isinstance(value, tuple) else value for name, value in values.items()}
 
@@ -62,7 +67,8 @@ def _sample_of(found: Mapping[str, Any]) -> Sample:
     if uncertain:
         laws = tuple(Distribution(one['name'], one['law'], tuple(one['numbers']), one['low'], one['high'])
                      for one in found['over'])
-        return Saltelli(laws, uncertain['samples'], uncertain['seed'])
+        correlations = tuple(map(tuple, uncertain.get('correlations', ())))
+        return Saltelli(laws, uncertain['samples'], uncertain['seed'], correlations or None)
     variations = tuple(checked(Variation(one['name'], float(one['low']), float(one['high']), int(one['count']),
                                          bool(one['log']))) for one in found['over'])
     return Sobol(variations, drawn['points'], drawn['seed']) if drawn else Grid(variations)

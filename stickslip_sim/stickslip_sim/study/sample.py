@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from ..core.errors import InputError
+from .correlations import Correlations, correlated, factor_of
 from .distribution import Distribution
 from .variation import Numbers, Variation
 
@@ -68,22 +69,25 @@ class Saltelli:
     """Points for Sobol' indices of d numbers that follow distributions (Saltelli et al., 2010).
 
     For each of `samples` pairs of independent points A and B, d + 2 in turn: A, B, and A with one number of B, for each
-    number.  `samples` is a power of two.
+    number.  `samples` is a power of two.  With `correlations` there are A and B alone: the indices are of numbers that
+    vary one by one.
     """
 
     variations: tuple[Distribution, ...]
     samples: int
     seed: int = 0
+    correlations: Correlations | None = None
 
     def __post_init__(self) -> None:
         if not LEAST_SAMPLES <= self.samples <= MOST_SAMPLES or self.samples.bit_count() != 1:
             raise InputError('--samples', self.samples, f'a power of two from {LEAST_SAMPLES} to {MOST_SAMPLES}',
                              'a Sobol sequence of another length is uneven')
+        _ = self._factor
 
     @property
     def each(self) -> int:
         """How many points belong to one sample."""
-        return len(self.variations) + 2
+        return 2 if self.correlations else len(self.variations) + 2
 
     @property
     def count(self) -> int:
@@ -94,14 +98,21 @@ class Saltelli:
         """Return the points from `first` on, up to `last`: a row each, a column for each variation."""
         d, begin = len(self.variations), first // self.each
         shares = sobol_shares(2 * d, self.seed, begin, -(-last // self.each)).reshape(-1, 2, d)
-        a, b = (np.stack([one.at(shares[:, half, k]) for k, one in enumerate(self.variations)], axis=1)
-                for half in (0, 1))
+        a, b = (self._at(shares[:, half]) for half in (0, 1))
         blocks = np.repeat(a[:, None, :], self.each, axis=1)
         blocks[:, 1] = b
-        for k in range(d):
+        for k in range(self.each - 2):
             blocks[:, 2 + k, k] = b[:, k]
         rows: Numbers = blocks.reshape(-1, d)[first - begin * self.each:last - begin * self.each]
         return rows
+
+    def _at(self, shares: Numbers) -> Numbers:
+        own = shares if self._factor is None else correlated(shares, self._factor)
+        return np.stack([one.at(own[:, k]) for k, one in enumerate(self.variations)], axis=1)
+
+    @cached_property
+    def _factor(self) -> Numbers | None:
+        return None if self.correlations is None else factor_of(self.correlations)
 
 
 def sobol_shares(dimensions: int, seed: int, first: int, last: int) -> Numbers:

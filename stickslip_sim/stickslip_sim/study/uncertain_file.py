@@ -6,6 +6,8 @@ seed: 0
 parameters:
 friction.static.limit: {distribution: normal, mean: 0.24, standard_deviation: 0.02, between: [0.18, 0.3]}
 axis.normal_force: {distribution: uniform, low: 3000.0, high: 3800.0}
+correlations:
+friction.static.limit: {axis.normal_force: -0.9}
 """
 
 from collections.abc import Mapping
@@ -17,6 +19,7 @@ from ..config.strict import section
 from ..core.errors import InputError
 from ..scene import Parameter
 from ..scene.load import named, read_text
+from .correlations import Correlations, correlations_of
 from .distribution import LAWS, Distribution, Law
 from .study import MOST_VARIATIONS
 from .variation import parameter_of
@@ -28,10 +31,11 @@ _LEAST_KEPT = 0.5   # of the probability: of a law cut further little is left
 
 
 class Uncertain(NamedTuple):
-    """The distributions of a file, and the seed of their sample."""
+    """The distributions of a file, the seed of their sample, and how they are correlated (None: they are not)."""
 
     distributions: tuple[Distribution, ...]
     seed: int
+    correlations: Correlations | None = None
 
 
 def load_uncertain(path: str) -> Uncertain:
@@ -43,14 +47,16 @@ def load_uncertain(path: str) -> Uncertain:
 
 def uncertain_of(document: object) -> Uncertain:
     """Return the content of a document, as YAML gives it; raises InputError."""
-    given = section('file', document, ('parameters', 'seed'), _PAGE)
+    given = section('file', document, ('parameters', 'correlations', 'seed'), _PAGE)
     entries = given.get('parameters')
     if not isinstance(entries, Mapping) or not 1 <= len(entries) <= MOST_VARIATIONS:
         raise InputError('parameters', entries, f'a section of 1 to {MOST_VARIATIONS} parameters',
                          'for example axis.mass: {distribution: uniform, low: 300.0, high: 400.0}')
     seed = _SEED.checked(given.get('seed', _SEED.default))
     assert isinstance(seed, int)
-    return Uncertain(tuple(_distribution(name, entry) for name, entry in entries.items()), seed)
+    distributions = tuple(_distribution(name, entry) for name, entry in entries.items())
+    return Uncertain(distributions, seed, correlations_of([one.name for one in distributions],
+                                                          given.get('correlations')))
 
 
 def _distribution(name: str, entry: object) -> Distribution:

@@ -39,8 +39,8 @@ class Uncertainty(NamedTuple):
     """`stick_slip` is the share of those of `points` that are `known`; all others `failed`, or are `undecided`.
 
     Cycles of `unsettled` still differ at the end.  `percentiles` are for each figure, of the points that stick and slip
-    and have it.  `indices` are for each figure and each number; None where a point does not have the figure, or all
-    have the same.
+    and have it.  `indices` are for each figure and each number; None where a point does not have the figure, all have
+    the same, or the numbers are correlated.
     """
 
     points: int
@@ -63,7 +63,8 @@ def uncertainty_of(sample: Saltelli, columns: Mapping[str, Numbers]) -> Uncertai
     count = int((~np.isnan(drawn)).sum())
     failed, undecided = (int((motion == one).sum()) for one in (Motion.FAILED, Motion.UNDECIDED))
     names = [one.name for one in sample.variations]
-    indices = {name: sobol_indices(values) for name, values in {'stick_slip': slips, **known}.items()}
+    indices = {name: None if sample.correlations else sobol_indices(values)
+               for name, values in {'stick_slip': slips, **known}.items()}
     return Uncertainty(
         drawn.size, count, failed, undecided, int(unsettled.sum()), float(np.nansum(drawn)) / count if count else None,
         {name: _percentiles(values) for name, values in spread_of(sample, columns).items()},
