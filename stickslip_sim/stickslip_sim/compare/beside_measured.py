@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 from ..core.errors import RecordingError
 from ..core.types import Mode
+from ..plots.html_page import figure, html_page, html_table
 from ..plots.overlay import DrawnOver, plot_over_measured
 from ..recording import MeasuredRun
 from ..runs import Run
@@ -22,8 +23,7 @@ from ..runs.receipt import versions
 from ..runs.slips import events_of_slips
 from ..runs.wording import quantity
 from ..simulation.cycles import Cycle, Summary, cycle_figures, summary
-from .page import figure, html_page, html_table
-from .pictures import KINDS, Picture
+from .pictures import KINDS
 
 FIGURES = (
     ('period', 'period', 's'), ('stick', 'stick_time', 's'), ('slip', 'slip_time', 's'), ('jump', 'jump', 'm'),
@@ -112,7 +112,7 @@ def _report(name: str, measured: MeasuredRun, runs: Mapping[str, Run], beside: l
     (folder / 'report.json').write_text(json.dumps(report, indent=1, allow_nan=False) + '\n', encoding='utf-8')
     body = [f'<h1>{escape(name)}, measured, and {escape(", ".join(one.name for one in beside))}</h1>']
     body += [f'<p class="note">{escape(note)}</p>' for note in notes[name]]
-    body.append(figure(Picture('overlay', '', _CAPTION), folder))
+    body.append(figure(folder / 'overlay.svg', _CAPTION))
     for one in beside:
         rows = [[each.name, quantity(each.measured, each.unit),
                  '–' if each.other is None else quantity(each.other, each.unit), each.share]

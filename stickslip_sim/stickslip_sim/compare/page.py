@@ -2,26 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """The report as one HTML page that needs no network: tables and pictures inside."""
 
-import base64
 import math
 from collections.abc import Iterable, Sequence
 from html import escape
 from pathlib import Path
 from typing import Any
 
+from ..plots.html_page import figure, html_page, html_table
 from .pictures import Picture
 
 _SHOWN = 12   # cycles of a run that are listed, the first and the last of them
-_STYLE = '''
-body { font: 15px/1.45 system-ui, sans-serif; color: #222; max-width: 62em; margin: 2em auto; padding: 0 1em }
-h1, h2, h3 { line-height: 1.2 } h2 { border-bottom: 1px solid #ccc; margin-top: 2.5em }
-table { border-collapse: collapse; margin: 1em 0; font-size: 0.9em } caption { text-align: left; font-weight: 600 }
-th, td { padding: 0.25em 0.7em; border-bottom: 1px solid #ddd; text-align: left; vertical-align: top }
-td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap }
-figure { margin: 1.5em 0 } figcaption { font-size: 0.9em } img { max-width: 100%; height: auto }
-.holds { color: #00664b; font-weight: 600 } .fails { color: #b0003a; font-weight: 600 } .note { color: #b0003a }
-.other { color: #666 } .wide { overflow-x: auto }
-'''
 _CYCLE = (('break-away', 'begin', 's', 1.0), ('period', 'period', 's', 1.0), ('stick', 'stick_time', 's', 1.0),
           ('slip', 'slip_time', 'ms', 1e3), ('jump', 'jump', 'mm', 1e3), ('peak speed', 'peak_speed', 'mm/s', 1e3),
           ('peak acceleration', 'peak_acceleration', 'm/s²', 1.0), ('break-away force', 'break_away_force', 'kN', 1e-3),
@@ -43,12 +33,6 @@ def page(report: dict[str, Any], pictures: Sequence[Picture], folder: Path) -> s
                  *_figures(pictures, run['name'], folder), _cycles(run), _ring_down(run)]
     body.append(f'<p class="other">{escape(versions)}</p>')
     return html_page(title, body)
-
-
-def html_page(title: str, body: Sequence[str]) -> str:
-    """Return a page of parts that are HTML."""
-    return (f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>'
-            f'<style>{_STYLE}</style></head>\n<body>\n' + '\n'.join(body) + '\n</body></html>\n')
 
 
 def _overview(runs: Sequence[dict[str, Any]]) -> str:
@@ -103,25 +87,7 @@ def _ring_down(run: dict[str, Any]) -> str:
 def _figures(pictures: Sequence[Picture], run: str, folder: Path) -> Iterable[str]:
     for picture in pictures:
         if picture.run == run:
-            yield figure(picture, folder)
-
-
-def figure(picture: Picture, folder: Path) -> str:
-    """Return a picture, taken from its SVG file in the folder, with its caption."""
-    data = base64.b64encode((folder / f'{picture.name}.svg').read_bytes()).decode()
-    return (f'<figure><img alt="{escape(picture.name)}" src="data:image/svg+xml;base64,{data}">'
-            f'<figcaption>{escape(picture.caption)}</figcaption></figure>')
-
-
-def html_table(caption: str, heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """Return a table; all but its first column are numbers."""
-    def line(tag: str, cells: Sequence[str]) -> str:
-        first, *rest = (escape(cell) for cell in cells)
-        numbers = ''.join(f'<{tag} class="number">{cell}</{tag}>' for cell in rest)
-        return f'<tr><{tag}>{first}</{tag}>{numbers}</tr>'
-
-    return (f'<div class="wide"><table><caption>{escape(caption)}</caption>{line("th", heads)}'
-            + ''.join(line('td', row) for row in rows) + '</table></div>')
+            yield figure(folder / f'{picture.name}.svg', picture.caption)
 
 
 def _cell(value: Any, scale: float) -> str:

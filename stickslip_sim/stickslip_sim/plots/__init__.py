@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures.  The only room that imports matplotlib."""
+"""Pictures, and pages that hold them.  The only room that imports matplotlib."""
 
 from .run import plot_run
 from .trade import SolverCurve, plot_trade

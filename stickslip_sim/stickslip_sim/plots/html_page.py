@@ -1,0 +1,43 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Reports as one HTML page each that needs no network: the page, its tables, and pictures inside."""
+
+import base64
+from collections.abc import Iterable, Sequence
+from html import escape
+from pathlib import Path
+
+_STYLE = '''
+body { font: 15px/1.45 system-ui, sans-serif; color: #222; max-width: 62em; margin: 2em auto; padding: 0 1em }
+h1, h2, h3 { line-height: 1.2 } h2 { border-bottom: 1px solid #ccc; margin-top: 2.5em }
+table { border-collapse: collapse; margin: 1em 0; font-size: 0.9em } caption { text-align: left; font-weight: 600 }
+th, td { padding: 0.25em 0.7em; border-bottom: 1px solid #ddd; text-align: left; vertical-align: top }
+td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap }
+figure { margin: 1.5em 0 } figcaption { font-size: 0.9em } img { max-width: 100%; height: auto }
+.holds { color: #00664b; font-weight: 600 } .fails { color: #b0003a; font-weight: 600 } .note { color: #b0003a }
+.other { color: #666 } .wide { overflow-x: auto }
+'''
+
+
+def html_page(title: str, body: Sequence[str]) -> str:
+    """Return a page of parts that are HTML."""
+    return (f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>'
+            f'<style>{_STYLE}</style></head>\n<body>\n' + '\n'.join(body) + '\n</body></html>\n')
+
+
+def figure(path: Path, caption: str) -> str:
+    """Return the picture of an SVG file, taken into the page, with its caption."""
+    data = base64.b64encode(path.read_bytes()).decode()
+    return (f'<figure><img alt="{escape(path.stem)}" src="data:image/svg+xml;base64,{data}">'
+            f'<figcaption>{escape(caption)}</figcaption></figure>')
+
+
+def html_table(caption: str, heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Return a table; all but its first column are numbers."""
+    def line(tag: str, cells: Sequence[str]) -> str:
+        first, *rest = (escape(cell) for cell in cells)
+        numbers = ''.join(f'<{tag} class="number">{cell}</{tag}>' for cell in rest)
+        return f'<tr><{tag}>{first}</{tag}>{numbers}</tr>'
+
+    return (f'<div class="wide"><table><caption>{escape(caption)}</caption>{line("th", heads)}'
+            + ''.join(line('td', row) for row in rows) + '</table></div>')
