@@ -1,0 +1,176 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""`python3 -m dev.api` writes the lists of docs/api.md: every public name, taken from what the programs themselves use.
+
+A test compares the page with them, so that no name changes unseen.
+"""
+
+import inspect
+import re
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import Any
+
+import click
+
+import stickslip_sim
+from stickslip_sim.cli.main import stickslip as tool
+from stickslip_sim.recording import topics
+from stickslip_sim.scene.schema import PARAMETERS
+
+from .files import ROOT
+
+PAGE = ROOT / 'docs/api.md'
+_MESSAGES = ROOT / 'stickslip_msgs'
+_OF_THE_NODE, _OF_THE_PLAYER = 'ros/services/*.py', 'ros/replay/player_services.py'
+_SERVICE = re.compile(r"create_service\((?:srv\.)?(\w+), '(~/\w+)'")
+_TYPES = {'Trigger': 'std_srvs', 'SetBool': 'std_srvs', 'Step': 'stickslip_msgs', 'InjectFault': 'stickslip_msgs'}
+_FIELD = re.compile(r'^([\w/]+(?:\[\])?) +(\w+)$')
+_OF_OTHER_ROOMS = {   # attributes that no user needs: between rooms of the package, and not promised
+    'Scene': {'make_rig', 'rig', 'sources'},
+    'Simulator': {'checkpoint', 'event_counts', 'judge', 'restore', 'root_iterations', 'skip', 'take_samples'},
+}
+_CONSTANT = re.compile(r'^\w+ +([A-Z][A-Z0-9_]*) *= *(-?\d+)')
+
+
+def verbs() -> str:
+    """Return a row for each verb of the tool: its arguments and options."""
+    rows = [_verb(name, command) for commands in tool.sections.values() for one in commands
+            for name, command in _with_their_own(one)]
+    return _table(('verb', 'arguments', 'options'), rows)
+
+
+def python() -> str:
+    """Return a row for each name of `import stickslip_sim`."""
+    names = stickslip_sim.__all__
+    return _table(('name', 'is'), [(f'`{name}`', _kind(getattr(stickslip_sim, name))) for name in names])
+
+
+def topic_list() -> str:
+    """Return a row for each topic of the node."""
+    found = [value for value in vars(topics).values() if isinstance(value, topics.Topic)]
+    return _table(('topic', 'type', 'direction', 'QoS', 'in a bag'), [
+        (f'`{one.name}`', f'`{one.type}`', 'in' if one.qos.reliability == 'best_effort' else 'out', _qos(one.qos),
+         'yes' if one in topics.RECORDED else 'no') for one in found])
+
+
+def services() -> str:
+    """Return a row for each service of the nodes."""
+    rows = []
+    for node, pattern in (('`sim_node`', _OF_THE_NODE), ('`replay_node`', _OF_THE_PLAYER)):
+        for path in sorted((ROOT / 'stickslip_sim/stickslip_sim').glob(pattern)):
+            rows += [(node, f'`{name}`', f'`{_TYPES.get(kind, "simulation_interfaces")}/srv/{kind}`')
+                     for kind, name in _SERVICE.findall(path.read_text(encoding='utf-8'))]
+    return _table(('node', 'service', 'type'), rows)
+
+
+def messages() -> str:
+    """Return a row for each message and service of our own: its fields in their order, and its constants."""
+    rows = []
+    for path in sorted((*_MESSAGES.glob('msg/*.msg'), *_MESSAGES.glob('srv/*.srv'))):
+        parts = path.read_text(encoding='utf-8').split('---\n')
+        fields = ' → '.join(', '.join(f'`{name}` {kind}' for kind, name in _matches(_FIELD, part)) for part in parts)
+        constants = ', '.join(f'{name} {number}' for name, number in _matches(_CONSTANT, ''.join(parts)))
+        rows.append((f'`{path.parent.name}/{path.stem}`', fields, constants))
+    return _table(('interface', 'fields (→ of the answer)', 'constants'), rows)
+
+
+def parameters() -> str:
+    """Return a row for each section of a scene."""
+    rows: dict[str, list[str]] = {}
+    for entry in PARAMETERS:
+        section, _, name = entry.name.rpartition('.')
+        rows.setdefault(section, []).append(name)
+    listed = {section: ', '.join(f'`{name}`' for name in names) for section, names in rows.items()}
+    return _table(('section', 'parameters'), [(section and f'`{section}`', names) for section, names in listed.items()])
+
+
+LISTS: dict[str, Callable[[], str]] = {
+    'verbs': verbs, 'python': python, 'topics': topic_list, 'services': services, 'messages': messages,
+    'parameters': parameters,
+}
+
+
+def page(text: str) -> str:
+    """Return the text of the page with the lists of today; raises ValueError where it has no place for one."""
+    for name, made in LISTS.items():
+        begin, end = f'<!-- {name}: begin -->', f'<!-- {name}: end -->'
+        before, found, rest = text.partition(begin)
+        _, closed, after = rest.partition(end)
+        if not found or not closed:
+            raise ValueError(f'{PAGE.name} lacks {begin} or {end}')
+        text = f'{before}{begin}\n\n{made()}\n{end}{after}'
+    return text
+
+
+def main() -> None:
+    """Write the page."""
+    PAGE.write_text(page(PAGE.read_text(encoding='utf-8')), encoding='utf-8')
+
+
+def _with_their_own(command: click.Command) -> Iterator[tuple[str, click.Command]]:
+    """Yield a verb, or each verb of a group with the group's name."""
+    if not isinstance(command, click.Group):
+        yield command.name or '', command
+        return
+    for name, own in command.commands.items():
+        yield f'{command.name} {name}', own
+
+
+def _verb(name: str, command: click.Command) -> tuple[str, str, str]:
+    arguments = ' '.join(one.human_readable_name.replace('|', ' or ') for one in command.params
+                         if isinstance(one, click.Argument))   # a bar would end the cell
+    options = ', '.join(f'`{one.opts[0]}`' for one in command.params if isinstance(one, click.Option))
+    return f'`{name}`', f'`{arguments}`' if arguments else '', options
+
+
+def _kind(value: Any) -> str:
+    if isinstance(value, str):
+        return 'a text'
+    if hasattr(value, '_fields'):
+        return 'a tuple of ' + ', '.join(f'`{name}`' for name in value._fields)
+    if inspect.isfunction(value):
+        return f'`({_signature(value)})`'
+    if issubclass(value, BaseException):
+        return f'an error, a kind of `{value.__base__.__name__}`' + _exit_code(value)
+    if hasattr(value, '__members__'):
+        return 'one of ' + ', '.join(f'`{name}`' for name in value.__members__)
+    return 'a class with ' + ', '.join(f'`{name}`' for name in _public(value))
+
+
+def _signature(function: Callable[..., Any]) -> str:
+    """Return the parameters of a function with their defaults, without types."""
+    plain = inspect.signature(function)
+    bare = [one.replace(annotation=inspect.Parameter.empty) for one in plain.parameters.values()]
+    return str(plain.replace(parameters=bare, return_annotation=inspect.Signature.empty))[1:-1]
+
+
+def _exit_code(error: Any) -> str:
+    code = getattr(error, 'exit_code', None)
+    return '' if code is None else f', exit code {code}'
+
+
+def _public(kind: type) -> list[str]:
+    own = {*getattr(kind, '__annotations__', ()), *vars(kind), *getattr(kind, '__dataclass_fields__', ())}
+    hidden = _OF_OTHER_ROOMS.get(kind.__name__, set())
+    return sorted(name for name in own if not name.startswith('_') and name not in hidden)
+
+
+def _qos(qos: topics.QosProfile) -> str:
+    durability = '' if qos.durability == 'volatile' else f', {qos.durability.replace("_", " ")}'
+    return f'{qos.reliability.replace("_", " ")}, keep last {qos.depth}{durability}'
+
+
+def _matches(pattern: re.Pattern[str], text: str) -> Iterator[Sequence[str]]:
+    for line in text.splitlines():
+        found = pattern.match(line)
+        if found:
+            yield found.groups()
+
+
+def _table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    lines = ['| ' + ' | '.join(heads) + ' |', '|' + '---|' * len(heads)]
+    return '\n'.join([*lines, *('| ' + ' | '.join(row) + ' |' for row in rows)]) + '\n'
+
+
+if __name__ == '__main__':
+    main()
