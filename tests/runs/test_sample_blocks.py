@@ -103,3 +103,11 @@ def test_a_long_run_makes_its_samples_again(monkeypatch: pytest.MonkeyPatch) -> 
     assert all(np.array_equal(again.samples[name], column) for name, column in held.samples.items())
     assert list(again.sample_rows()) == list(held.sample_rows())
     assert (again.events, again.summary) == (held.events, held.summary)
+
+
+def test_a_sample_a_rounding_before_a_second_is_at_that_second() -> None:
+    """106 times this period is 4e-17 s less than a second, which no fraction of one can say."""
+    at = instants(Fraction('0.009433962264150943'), 106, 107)
+    assert (at.seconds.tolist(), at.fractions.tolist()) == ([1.0], [0.0])
+    run = simulate('paper_fig7', 1.5, 0.009433962264150943)
+    assert run.samples['second'][106] == 1.0

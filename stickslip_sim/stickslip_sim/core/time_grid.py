@@ -68,8 +68,15 @@ def instants(period: Fraction, first: int, last: int) -> Instants:
     if size <= _WHOLE and last * count < 2 ** 63:
         whole, rest = np.divmod(np.arange(first, last, dtype=np.int64) * count, size)
         return Instants(whole.astype(np.float64), rest / size)
-    pairs = [divmod(k * count, size) for k in range(first, last)]
-    return Instants(np.array([float(second) for second, _ in pairs]), np.array([rest / size for _, rest in pairs]))
+    pairs = [instant_of(k * period) for k in range(first, last)]
+    return Instants(np.array([pair.second for pair in pairs]), np.array([pair.fraction for pair in pairs]))
+
+
+def instant_of(time: Fraction) -> Instant:
+    """Return a time as an instant, rounded once: to the next second where its fraction would be 1."""
+    second, rest = divmod(time.numerator, time.denominator)
+    fraction = rest / time.denominator
+    return Instant(float(second), fraction) if fraction < 1.0 else Instant(second + 1.0, 0.0)
 
 
 def multiples(period: Fraction, first: int, last: int) -> NDArray[np.float64]:

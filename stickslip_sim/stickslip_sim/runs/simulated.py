@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import InputError
-from ..core.time_grid import decimal, instants, multiples
+from ..core.time_grid import decimal, instant_of, instants, multiples
 from ..core.types import Event, Instant, Mode, Sample
 from ..rig import Rig
 from ..rig.marks import Mark, marks_of_faults
@@ -153,7 +153,7 @@ def _passage(rig: Rig, duration: float, period: Fraction | None, progress: Progr
             at = instants(period or Fraction(0), first, min(first + _BLOCK, taken))
             rows = np.empty((len(at.seconds), len(Sample._fields)))
             yield rig.take_samples(at, rows), rows
-        yield rig.advance(_instant(end)), np.empty((0, len(Sample._fields)))
+        yield rig.advance(instant_of(end)), np.empty((0, len(Sample._fields)))
         done = taken
         if progress:
             progress(part / _PARTS)
@@ -206,11 +206,6 @@ def _sample_count(duration: float, sample_period: float | Fraction | None) -> in
 def _decimal(number: float | Fraction) -> Fraction:
     """Return a time as it was written, so that 10 s hold 10000 periods of 0.001 s exactly."""
     return number if isinstance(number, Fraction) else decimal(float(number))
-
-
-def _instant(time: Fraction) -> Instant:
-    second, rest = divmod(time.numerator, time.denominator)
-    return Instant(float(second), rest / time.denominator)
 
 
 def _check_count(events: list[Event], duration: float) -> None:
