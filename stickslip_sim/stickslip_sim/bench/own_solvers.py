@@ -80,10 +80,12 @@ def _prepare(problem: Problem, solver: Solver) -> Callable[[], Outcome]:
         if end != DONE:
             raise SolverError(f'{solver.name} gave up after {rows} events')
         solver.sample(p, s, second, fraction, sample)
-        return Outcome([events.row(i) for i in range(rows)], float(sample.tolist()[_POSITION]), _event_columns)
+        return Outcome((events, rows), float(sample.tolist()[_POSITION]), _event_columns)
 
     return simulate
 
 
-def _event_columns(rows: Any) -> Numbers:
+def _event_columns(table: tuple[Any, int]) -> Numbers:
+    events, count = table
+    rows = (events.row(i) for i in range(count))
     return np.array([(e[0] + e[1], e[2], e[4], e[5], e[6]) for e in rows]).reshape(-1, 5)
