@@ -25,6 +25,8 @@ from .loop import machine
 
 RATE = 1000.0    # 1/s
 PERIOD = 1.0     # s between two looks at the memory
+PARTS = 12       # of the recording
+WARM_UP = 2      # parts, before the memory is judged
 
 
 class Limit(NamedTuple):
@@ -37,6 +39,7 @@ class Limit(NamedTuple):
 
 
 LIMITS = (
+    Limit(f'memory after the first {WARM_UP} parts, most less least, MiB', 'spread', 5.0, '.2f'),
     Limit('memory, growth in the second half, KiB/min', 'growth', 512.0, '.1f'),
     Limit('simulation time against the steady clock, drift, ms', 'drift_ms', 1.0, '.3f'),
     Limit('steps that the controller did not hear', 'unheard', 0.0, '.0f'),
@@ -73,6 +76,11 @@ class MemoryWatch:
         while not self._is_over.wait(PERIOD):
             self.samples.append(resident(self._pid))
 
+    def spread(self) -> float:
+        """Return by how much the most differs from the least after the warm-up, MiB."""
+        warm = self.samples[len(self.samples) * WARM_UP // PARTS:]
+        return (max(warm) - min(warm)) / 2**20
+
     def growth(self) -> float:
         """Return the slope of the second half by least squares, KiB/min."""
         half = self.samples[len(self.samples) // 2:]
@@ -84,11 +92,13 @@ def soak(minutes: float) -> tuple[dict[str, float], str]:
     """Return the figures of a run, and the node's own verdict on its real time."""
     with tempfile.TemporaryDirectory() as parent:
         folder = Path(parent, 'run')
-        with running(node_command(RATE, folder)) as process, MemoryWatch(process.pid) as memory:
+        split = ['-p', f'record.max_duration:={minutes * 60.0 / PARTS}']
+        with running([*node_command(RATE, folder), *split]) as process, MemoryWatch(process.pid) as memory:
             figures = control(process.pid, minutes * 60.0)
         figures |= {**node_figures(folder), **bag_figures(folder)}
         verdict = str(open_bag(folder).receipt['timing']['verdict'])
-    figures = {**figures, 'growth': memory.growth(), 'resident': memory.samples[-1] / 2**20,
+    figures = {**figures, 'growth': memory.growth(), 'spread': memory.spread(),
+               'resident': memory.samples[-1] / 2**20,
                'drift_ms': figures['drift'] * 1e3, 'overruns_percent': figures['overruns'] * 1e2,
                'lateness_p99_ms': figures['lateness_p99'] * 1e3, 'lateness_max_ms': figures['lateness_max'] * 1e3}
     return figures, verdict
@@ -109,9 +119,9 @@ def page(minutes: float, figures: Mapping[str, float], verdict: str) -> str:
         'See here whether memory, drift and losses of a recording node stay within their limits for long.',
         f'`python3 -m benchmarks.soak --minutes {minutes:g}` (`make soak`) wrote this page on',
         f'{machine()}.', '',
-        f'`sim_node` runs `{SCENE}` at {RATE:g} steps a second with its recording, for {minutes:g} minutes.  A',
-        'controller in a process of its own answers every state with a drive velocity.  The memory that grows while',
-        'the node records is the index of the bag, which MCAP writes at its end.', '',
+        f'`sim_node` runs `{SCENE}` at {RATE:g} steps a second with its recording, in parts of {minutes / PARTS:g} minutes',
+        f'(`record.max_duration`), for {minutes:g} minutes.  A controller in a process of its own answers every state with a',
+        'drive velocity.  What grows in memory while the node records is the index of a part, which MCAP writes at its end.', '',
         '| figure | measured | at most |', '|---|---|---|', *rows, '',
         'Missed: ' + '; '.join(failures) + '.' if failures else
         'Memory, drift and loss are within their limits.', '',
