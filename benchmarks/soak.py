@@ -119,9 +119,10 @@ def page(minutes: float, figures: Mapping[str, float], verdict: str) -> str:
         'See here whether memory, drift and losses of a recording node stay within their limits for long.',
         f'`python3 -m benchmarks.soak --minutes {minutes:g}` (`make soak`) wrote this page on',
         f'{machine()}.', '',
-        f'`sim_node` runs `{SCENE}` at {RATE:g} steps a second with its recording, in parts of {minutes / PARTS:g} minutes',
-        f'(`record.max_duration`), for {minutes:g} minutes.  A controller in a process of its own answers every state with a',
-        'drive velocity.  What grows in memory while the node records is the index of a part, which MCAP writes at its end.', '',
+        f'`sim_node` runs `{SCENE}` at {RATE:g} steps a second for {minutes:g} minutes, with its recording in parts',
+        f'of {minutes / PARTS:g} minutes (`record.max_duration`).  A controller in a process of its own answers every',
+        'state with a drive velocity.  What grows in memory while the node records is the index of a part, which MCAP',
+        'writes at its end.', '',
         '| figure | measured | at most |', '|---|---|---|', *rows, '',
         'Missed: ' + '; '.join(failures) + '.' if failures else
         'Memory, drift and loss are within their limits.', '',
