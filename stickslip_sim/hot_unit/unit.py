@@ -16,9 +16,10 @@ from .sources import Source, Sources, digest_of
 
 # the functions that Python calls, by file
 ENTRIES = {
-    'solvers/exact/engine.py': ('start', 'advance', 'set_inputs', 'set_parameters', 'sample', 'energy'),
+    'solvers/exact/engine.py': ('start', 'advance', 'set_inputs', 'set_parameters', 'set_load', 'sample',
+                                'energy'),
     'solvers/exact/judge.py': ('is_sound',),
-    'solvers/fixed_step/loop.py': ('start', 'advance', 'set_inputs', 'set_parameters', 'sample'),
+    'solvers/fixed_step/loop.py': ('start', 'advance', 'set_inputs', 'set_parameters', 'set_load', 'sample'),
 }
 _MANY_AXES = 'solvers/exact/many_axes.py'
 _HERE = Path(__file__).parent

@@ -3,7 +3,7 @@
 """A scene as values by dotted name, and what is run of it."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -32,13 +32,28 @@ class Undecided(Exception):  # noqa: N818
 
 
 class Parts(NamedTuple):
-    """All that a run is made of; the duration in s."""
+    """All that a run is made of; the duration in s.  A load (N) is on top of the normal force of the axis."""
 
     axis: Axis
     initial: InitialState
     drive: InputProfile
     force: InputProfile
     duration: float
+    load: InputProfile | None = None
+
+    @property
+    def inputs(self) -> tuple[InputProfile, ...]:
+        """All input profiles."""
+        return (self.drive, self.force) if self.load is None else (self.drive, self.force, self.load)
+
+    def axis_under(self, load: float) -> Axis:
+        """Return the axis with the normal force that it has under a load."""
+        return self.axis if self.load is None else replace(self.axis, normal_force=load + self.axis.normal_force)
+
+    @property
+    def heaviest(self) -> Axis:
+        """The axis with the largest normal force that it has at any time."""
+        return self.axis_under(self.load.bounds()[1]) if self.load else self.axis
 
 
 @dataclass
@@ -57,7 +72,7 @@ class Case:
     def parts(self) -> Parts:
         """What is run; raises InputError."""
         scene = self.scene
-        return Parts(scene.axis, scene.initial, scene.drive, scene.force, self.duration)
+        return Parts(scene.axis, scene.initial, scene.drive, scene.force, self.duration, scene.normal_load)
 
 
 class Run(NamedTuple):
@@ -78,7 +93,8 @@ class Run(NamedTuple):
 
 def simulator(parts: Parts, accounting: bool = False) -> Simulator:
     """Return the simulator at time 0."""
-    return Simulator(parts.axis, parts.initial, parts.drive, parts.force, accounting=accounting)
+    return Simulator(parts.axis, parts.initial, parts.drive, parts.force, accounting=accounting,
+                     load=parts.load)
 
 
 def instant(seconds: float) -> Instant:
@@ -129,7 +145,7 @@ def borders(parts: Parts) -> list[float]:
     times: list[float] = []
     time = 0.0
     while len(times) <= MOST_EVENTS:
-        time = min(parts.drive.piece_at(time).end, parts.force.piece_at(time).end)
+        time = min(profile.piece_at(time).end for profile in parts.inputs)
         if not time < parts.duration:
             break
         times.append(time)

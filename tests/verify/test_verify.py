@@ -42,6 +42,8 @@ class TestIdentical:
         ('positioning', 1.5, ['drive.amplitudes=[0.001]', 'drive.frequencies=[7.0]', *FAULTS]),
         ('paper_fig7', 0.987654, ['solver.name=fixed_step', 'solver.step=0.0003', *FAULTS]),
         ('paper_fig8', 1.00005, ['solver.name=adaptive', 'time.rate=100.0']),
+        ('paper_fig8', 1.5, ['normal_load.course=steps', 'normal_load.times=[0.0, 0.4, 0.7]',
+                             'normal_load.forces=[0.0, -3000.0, 500.0]', 'normal_load.period=0.9', *FAULTS]),
     ])
     def test_all_that_moves_the_axis(self, scene: str, duration: float, changes: list[str], tmp_path: Path) -> None:
         recording = read_run(simulated(tmp_path / 'run', scene, duration, *changes))

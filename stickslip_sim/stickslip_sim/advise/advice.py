@@ -53,6 +53,9 @@ def advise(scene: Scene, tolerance: float, duration: float, rounds: int,
     if scene.rig.faults:
         raise InputError('faults.ids', [fault.id for fault in scene.rig.faults], 'left out for advice',
                          'the effect of faults belongs to no part of the model')
+    if scene.normal_load is not None:
+        raise InputError('normal_load.course', scene.values['normal_load.course'], 'left out for advice',
+                         'the solvers are compared under a normal force that does not vary')
     reference = reference_of(scene, duration)
     parts, absent, settings = parts_of(reference.scene), absent_parts(reference.scene), solver_settings(scene)
     report = _Progress(len(parts) + len(absent) + len(settings) + _MEASURING, progress)

@@ -94,8 +94,11 @@ class InitialState:
             raise InputError('initial.rest_time', self.rest_time, '>= 0 s (.inf: prolonged rest)', 'use .inf or 0')
 
 
-def check_start(axis: Axis, initial: InitialState) -> None:
-    """Raise InputError when the start asks for an infinite static friction, or for more than the contact holds."""
+def check_start(axis: Axis, initial: InitialState, load: float = 0.0) -> None:
+    """Raise InputError when the start asks for an infinite static friction, or for more than the contact holds.
+
+    A `load` is on top of the normal force of the axis, N.
+    """
     if math.isinf(initial.rest_time) and not axis.friction.static.bounded:
         raise InputError('initial.rest_time', initial.rest_time, 'finite with the logarithmic static law',
                          'its coefficient grows without bound; give the seconds of rest before the start')
@@ -105,7 +108,7 @@ def check_start(axis: Axis, initial: InitialState) -> None:
         raise InputError('initial.deflection', initial.deflection, '0 with a rigid contact',
                          'leave it out, or use contact.type: compliant')
     force = axis.contact.stiffness * initial.deflection + axis.contact.damping * initial.velocity
-    limit = axis.normal_force * axis.friction.static.coefficient(initial.rest_time)
+    limit = (axis.normal_force + load) * axis.friction.static.coefficient(initial.rest_time)
     if not abs(force) <= limit:
         raise InputError('initial.deflection', initial.deflection,
                          f'such that the contact carries at most N mu_s = {limit:g} N; it would carry {force:g} N',

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ..core.types import Event, EventKind, Mode
 from ..runs import Columns
+from ..runs.normal_force import NORMAL_FORCE
 from .csv_numbers import rows_text
 
 EVENT_COLUMNS = ('time', 'kind', 'direction', 'position', 'velocity', 'drive_force', 'friction_force',
@@ -29,11 +30,14 @@ def event_lines(events: Iterable[Event], knots: bool = False) -> Iterator[str]:
 
 
 def sample_lines(blocks: Iterable[Columns]) -> Iterator[str]:
-    """Yield the text of a table of samples, which come block by block."""
-    yield ','.join(SAMPLE_COLUMNS) + '\n'
-    words = [[mode.name for mode in Mode] if name == 'mode' else None for name in SAMPLE_COLUMNS]
+    """Yield the text of a table of samples, which come block by block; a normal force that varies comes last."""
+    names: tuple[str, ...] = ()
     for block in blocks:
-        yield from (rows_text(part, words) for part in parts([block[name] for name in SAMPLE_COLUMNS]))
+        if not names:
+            names = (*SAMPLE_COLUMNS, *((NORMAL_FORCE,) if NORMAL_FORCE in block else ()))
+            yield ','.join(names) + '\n'
+        words = [[mode.name for mode in Mode] if name == 'mode' else None for name in names]
+        yield from (rows_text(part, words) for part in parts([block[name] for name in names]))
 
 
 def parts(columns: Sequence[NDArray[Any]]) -> Iterator[list[NDArray[Any]]]:

@@ -28,22 +28,28 @@ if TYPE_CHECKING:
 def export(run: str, csv_file: str | None, parquet: str | None, topic: str) -> None:
     """Write a topic of the recorded RUN as a table: a row for each message, a column for each number and text.
 
-    log_time is simulation time, publish_time is that of the message's stamp, both in ns; sequence is the step.
+    log_time is simulation time, publish_time is that of the message's stamp, both in ns; sequence is the step.  A
+    normal force that varies is a column more of friction_force.
     """
     _check(csv_file, parquet)
     check_run(run)
     from ..recording import open_bag
+    from ..recording.normal_force_column import normal_force_beside
 
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter('always')
         bag = open_bag(run)
     for warning in caught:
         print(f'note: {warning.message}', file=sys.stderr)
+    bag.resolved(topic)
+    normal_force = normal_force_beside(bag, topic)
     if parquet is not None:
+        frame = bag.frame(topic)
         with whole(parquet) as temporary:
-            bag.frame(topic).to_parquet(temporary, index=False)
+            frame.assign(**normal_force(frame)).to_parquet(temporary, index=False)
     if csv_file is not None:
-        write_text(csv_file, csv_lines(bag.column_blocks(topic)))
+        blocks = bag.column_blocks(topic)
+        write_text(csv_file, csv_lines({**block, **normal_force(block)} for block in blocks))
 
 
 def csv_lines(blocks: 'Iterable[dict[str, NDArray[Any]]]') -> Iterator[str]:

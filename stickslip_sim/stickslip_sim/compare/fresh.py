@@ -17,7 +17,6 @@ from ..runs import SimulatedRun, simulate_events
 from ..runs.samples import HeldSamples
 from ..runs.simulated import columns_of_rows
 from ..scene import Scene
-from ..simulation.simulator import Simulator
 from .drawn import Numbers
 from .ring_down import closed_form
 
@@ -40,7 +39,7 @@ def densely_sampled(run: SimulatedRun) -> SimulatedRun:
     if len(run.events) > MAX_EVENTS:
         raise InputError('duration', duration, f'short enough for at most {MAX_EVENTS} events',
                          f'there are {len(run.events)}: simulate a shorter time')
-    simulator = Simulator(scene.axis, scene.initial, scene.drive, scene.force, scene.solver.make(scene.axis))
+    simulator = scene.make_simulator()
     instants = _instants(scene, duration, run.events)
     rows = np.empty((len(instants.seconds), len(Sample._fields)))
     simulator.take_samples(instants, rows)
@@ -49,7 +48,7 @@ def densely_sampled(run: SimulatedRun) -> SimulatedRun:
 
 def _instants(scene: Scene, duration: float, events: list[Event]) -> Instants:
     """Return when to sample: at the events, before and after the jumps of an input, and finely in between."""
-    jumps = sorted({*_borders(scene.drive, duration), *_borders(scene.force, duration)})
+    jumps = sorted({border for profile in scene.inputs for border in _borders(profile, duration)})
     corners = np.array(sorted({0.0, duration, *jumps, *(event.time for event in events)}))
     count = min(max(_SPAN_BUDGET // len(corners), _IN_SPAN[0]), _IN_SPAN[1])
     between = np.linspace(corners[:-1], corners[1:], count)[1:-1].ravel()
@@ -75,7 +74,7 @@ def _ring_downs(scene: Scene, corners: Numbers) -> Iterator[Numbers]:
 
 def _of_sinusoids(scene: Scene, duration: float) -> Numbers:
     """Return the times that show the sines of the inputs."""
-    fastest = max((sinusoid.frequency for sinusoid in (*scene.drive.sinusoids, *scene.force.sinusoids)), default=0.0)
+    fastest = max((sinusoid.frequency for profile in scene.inputs for sinusoid in profile.sinusoids), default=0.0)
     count = min(_IN_PERIOD * fastest * duration, _SINUSOID_BUDGET)
     return np.linspace(0.0, duration, math.ceil(count) + 1, dtype=np.float64)
 

@@ -23,6 +23,8 @@ def judge(run: Run) -> Finding:
         return not_applicable(f'the first break-away follows a rest of {first.rest_time:.4g} s, not a prolonged one')
     if law.coefficient(math.inf) == law.initial or axis.normal_force == 0.0:
         return not_applicable('static friction does not grow with the rest time')
+    if run.scene.normal_load is not None:
+        return not_applicable('the normal force varies, and the limit with it')
     limit, force = law.coefficient(math.inf) * axis.normal_force, abs(first.friction_force)
     next_force = max((abs(event.friction_force) for event in later), default=0.0)
     text = f'first break-away at {force:.6g} N, mu_s(inf) N = {limit:.6g} N'

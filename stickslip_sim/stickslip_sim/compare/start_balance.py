@@ -24,7 +24,7 @@ def judge(run: Run) -> Finding:
     axis = run.scene.axis
     spring = axis.drive_stiffness * (first['drive_position'] - first['position'])
     outside = float(external_force(run)[0])
-    limit = axis.normal_force * axis.friction.static.coefficient(first['rest_time'])
+    limit = run.scene.normal_force.value_at(0.0) * axis.friction.static.coefficient(first['rest_time'])
     held = first['friction_force'] if isinstance(axis.contact, CompliantContact) else spring + outside
     open_by = abs(spring + outside - held)
     text = f'drive spring {spring:.6g} N, outside {outside:.6g} N, contact {held:.6g} N of at most {limit:.6g} N'

@@ -9,6 +9,9 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any, NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from .errors import InputError
 
 MAX_SINUSOIDS = 100
@@ -98,6 +101,34 @@ class InputProfile:
     def value_at(self, time: float) -> float:
         """Return the value at `time` >= 0 s."""
         return self.pieces_at(time)[0] + sum(sinusoid.at(time) for sinusoid in self.sinusoids)
+
+    def values_at(self, times: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the values at times >= 0 s, each as `value_at` does but for the last bit of a sinusoid."""
+        turns: NDArray[np.float64] = np.zeros(len(times))
+        if self.period < math.inf:
+            turns = np.floor(times / self.period)
+            turns += (times >= (turns + 1.0) * self.period).astype(float) - (times < turns * self.period)
+        begin: NDArray[np.float64] = turns * self.period if self.period < math.inf else turns
+        starts, last = np.array(self.starts), len(self.starts) - 1
+        piece = np.clip(np.searchsorted(starts, times - begin, 'right') - 1, 0, last)
+        piece -= (begin + starts[piece] > times) & (piece > 0)   # sums are compared, as `piece_at` does
+        piece += (begin + starts[np.minimum(piece + 1, last)] <= times) & (piece < last)
+        values = np.array(self.values)[piece] + np.array(self.rates)[piece] * (times - (begin + starts[piece]))
+        for one in self.sinusoids:
+            values += one.amplitude * np.sin(2.0 * math.pi * one.frequency * times + one.phase)
+        return np.asarray(values, dtype=np.float64)
+
+    @property
+    def is_stepwise(self) -> bool:
+        """Whether it is constant but for jumps."""
+        return not any(self.rates) and not any(sinusoid.amplitude for sinusoid in self.sinusoids)
+
+    def bounds(self) -> tuple[float, float]:
+        """Return bounds of its values at all times: those of the pieces, and what the sinusoids add at the most."""
+        ends = [value + rate * (end - start) if rate else value for start, end, value, rate in zip(
+            self.starts, (*self.starts[1:], self.period), self.values, self.rates)]
+        swing = sum(abs(sinusoid.amplitude) for sinusoid in self.sinusoids)
+        return min(*self.values, *ends) - swing, max(*self.values, *ends) + swing
 
 
 Input = InputProfile | float    # a profile, or a number that holds

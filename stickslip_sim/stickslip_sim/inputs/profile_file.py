@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Profiles from files: `drive.file` and `force.file` of a scene become the times and values that are in the file.
+"""Profiles from files: the times and values that are in `drive.file`, `force.file`, `normal_load.file` of a scene.
 
 So a scene, its hash, its bag and its receipt hold the numbers, and nothing needs the file any more.
 """
@@ -24,7 +24,8 @@ from .units import FORCES, LENGTHS, SPEEDS, TIMES
 
 Given = Mapping[str, object]
 _POSITION = 'position'
-_FORMS = {'drive': ('table', 'steps', _POSITION), 'force': ('table', 'steps')}   # the first when none is stated
+# the first when none is stated
+_FORMS = {'drive': ('table', 'steps', _POSITION), 'force': ('table', 'steps'), 'normal_load': ('table', 'steps')}
 
 
 class _Kind(NamedTuple):
@@ -35,9 +36,11 @@ class _Kind(NamedTuple):
     units: Mapping[str, Fraction]
 
 
-_KINDS = {'drive': _Kind('velocities', 'velocity', SPEEDS), 'force': _Kind('forces', 'force', FORCES)}
+_KINDS = {'drive': _Kind('velocities', 'velocity', SPEEDS), 'force': _Kind('forces', 'force', FORCES),
+          'normal_load': _Kind('forces', 'force', FORCES)}
 _PLACES = _Kind('positions', 'position', LENGTHS)   # with `course: position`
-_NUMBERS = {'drive': ('times', 'velocities', 'positions', 'slopes'), 'force': ('times', 'forces')}
+_NUMBERS = {'drive': ('times', 'velocities', 'positions', 'slopes'), 'force': ('times', 'forces'),
+            'normal_load': ('times', 'forces')}
 
 
 class _Table(Protocol):

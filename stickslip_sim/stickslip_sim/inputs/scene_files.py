@@ -9,6 +9,7 @@ from pathlib import Path
 from ..scene import Scene
 from ..scene.build import build_scene
 from ..scene.load import merged_parameters, named, read_scene
+from ..scene.profile_schema import PROFILES
 from .profile_file import prepared, sections_with_file, with_profiles
 
 
@@ -21,7 +22,7 @@ def load_scene(name_or_path: str, overrides: Mapping[str, object] | None = None)
     """
     with named(name_or_path):
         found = read_scene(name_or_path)
-        return scene_with_profiles(found.values, overrides or {}, dict.fromkeys(('drive', 'force'), found.folder),
+        return scene_with_profiles(found.values, overrides or {}, dict.fromkeys(PROFILES, found.folder),
                                    found.summary)
 
 

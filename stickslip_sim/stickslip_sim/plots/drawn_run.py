@@ -12,6 +12,7 @@ from ..core.types import Event, EventKind, Mode
 from ..rig.marks import Mark
 from .style import Numbers
 
+_INPUTS = ('drive_velocity', 'external_force', 'normal_force')
 _OF_EVENTS = ('position', 'velocity', 'drive_position', 'drive_force', 'friction_force')
 
 
@@ -26,8 +27,8 @@ class DrawnRun(NamedTuple):
     """A run as it is drawn, SI units; the first line of `title` is the heading.
 
     `motion`: columns of samples and of the states before events, in the order of time; `inputs`: `time`,
-    `drive_velocity`, `external_force`; `commands`: `time` and `velocity` as they were taken, both empty where none is
-    known; `modes`: when each began, and which.
+    `drive_velocity`, `external_force`, and `normal_force` where it varies; `commands`: `time` and `velocity` as they
+    were taken, both empty where none is known; `modes`: when each began, and which.
     """
 
     title: str
@@ -48,7 +49,7 @@ def drawn_run(title: str, samples: Mapping[str, Numbers], events: Sequence[Event
     modes = np.array([samples['mode'][0], *(event.mode for event in events)], dtype=np.float64)
     return DrawnRun(
         title, _with_events(samples, events, times),
-        {name: samples[name] for name in ('time', 'drive_velocity', 'external_force')}, commands,
+        {name: samples[name] for name in ('time', *_INPUTS) if name in samples}, commands,
         (np.concatenate([samples['time'][:1], times]), modes),
         (np.array([event.time for event in breaks]), np.array([event.friction_force for event in breaks])),
         times, marks)

@@ -1,6 +1,9 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""A run over time: position, error, velocity, forces, modes, faults; the whole of it, and beside it a part."""
+"""A run over time: position, error, velocity, forces, modes, faults; the whole of it, and beside it a part.
+
+The normal force has a panel where it varies.
+"""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -14,7 +17,8 @@ from .style import GREY, RED, save
 from .time_panels import dress, head
 
 _WIDTH, _WIDTH_OF_TWO = 11.0, 15.0            # in
-_HEIGHTS = 1.9, 1.4, 1.9, 1.9, 1.1            # in, of the panels
+_HEIGHTS = 1.9, 1.4, 1.9, 1.9                 # in, of the panels of lines
+_NORMAL_FORCE, _MODES = 1.1, 1.1              # in
 _LANE = 0.24                                  # in, of a lane of marks
 _GAP = 0.35                                   # in, between panels: a legend
 _LEFT, _RIGHT, _TOP, _BOTTOM = 1.15, 0.25, 1.0, 0.55   # in, around them: names of modes and faults, the title
@@ -28,7 +32,8 @@ def plot_run(run: DrawnRun, windows: Sequence[TimeWindow], *paths: Path | str) -
     is in them takes as long as all of the drawing.
     """
     lanes = len({mark.label for mark in run.marks})
-    heights = [*_HEIGHTS, *([_LANE * lanes + 0.1] if lanes else [])]
+    varying = [_NORMAL_FORCE] if 'normal_force' in run.inputs else []
+    heights = [*_HEIGHTS, *varying, _MODES, *([_LANE * lanes + 0.1] if lanes else [])]
     rows, columns = len(heights), len(windows)
     width = _WIDTH if columns == 1 else _WIDTH_OF_TWO
     height = sum(heights) + _GAP * (rows - 1) + _TOP + _BOTTOM
@@ -50,17 +55,18 @@ def plot_run(run: DrawnRun, windows: Sequence[TimeWindow], *paths: Path | str) -
 def _draw_column(panels: Sequence[Axes], run: DrawnRun, window: TimeWindow, parts: Sequence[TimeWindow]) -> None:
     """Draw all panels in a window; `parts` of it are shown beside it."""
     view = WindowPanels(run, window)
-    draw = view.position, view.error, view.velocity, view.forces, view.modes, view.marks
-    for panel, draw_panel in zip(panels, draw):
+    lines = [view.position, view.error, view.velocity, view.forces]
+    lines += [view.normal_force] if 'normal_force' in run.inputs else []
+    for panel, draw_panel in zip(panels, (*lines, view.modes, view.marks)):
         draw_panel(panel)
         dress(panel)
         for part in parts:
             panel.axvspan(*part, color=GREY, alpha=0.15, linewidth=1.0, zorder=0.5)
-    for panel in panels[:4]:
+    for panel in panels[:len(lines)]:
         for mark in run.marks:
             if mark.is_span:
                 panel.axvspan(mark.begin, mark.end, color=RED, alpha=0.08, linewidth=0.0, zorder=0.4)
-    for panel in panels[4:]:
+    for panel in panels[len(lines):]:
         panel.grid(visible=False, axis='y')
     panels[-1].set_xlabel('time / s')
     if window.end > window.begin:

@@ -75,6 +75,13 @@ class WindowPanels:
         panel.set_ylabel(f'force / {unit}')
         _no_closer(panel, _CLOSEST)
 
+    def normal_force(self, panel: Axes) -> None:
+        """Draw the normal force on the slideway."""
+        scale, unit = force_unit(self._run.inputs['normal_force'])
+        line(panel, self._inputs, 'normal_force', scale, '', color=PURPLE, linewidth=1.3)
+        panel.set_ylabel(f'normal force / {unit}')
+        _no_closer(panel, _CLOSEST)
+
     def modes(self, panel: Axes) -> None:
         """Draw one lane for each mode, or their shares of the time."""
         if self.is_crowded:

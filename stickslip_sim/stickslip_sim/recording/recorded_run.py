@@ -16,12 +16,14 @@ from ..core.types import Event, Mode
 from ..rig import RigEventKind
 from ..rig.marks import Mark, TimedRigEvent, marks_of_events, marks_of_faults
 from ..runs import COLUMNS, Columns
+from ..runs.normal_force import recorded_normal_force
 from ..runs.views import Views
 from ..scene import Scene
 from ..simulation.cycles import Summary, summary
+from .normal_force_column import is_changed
 from .opening import shortfalls
 from .reader import EVENT_FIELDS, Bag
-from .topics import DRIVE_VELOCITY, FRICTION_FORCE, MODE_EVENT, PARAMETER_EVENTS, RIG_EVENT, SLIDER_STATE, Topic
+from .topics import DRIVE_VELOCITY, FRICTION_FORCE, MODE_EVENT, RIG_EVENT, SLIDER_STATE, Topic
 
 _STATE = ('time', 'step', 'position', 'velocity', 'acceleration', 'drive_position', 'drive_velocity', 'drive_force',
           'rest_time', 'mode', 'direction')
@@ -44,8 +46,7 @@ class RecordedRun(Views):
         self.bag = bag
         self.notes = shortfalls(bag)
         self.is_complete = bag.is_complete
-        self.is_changed = any(bag.counts.get(name) for name, kind in bag.topics.items()
-                              if kind == PARAMETER_EVENTS.type)
+        self.is_changed = is_changed(bag)
         self._given = path
         self._columns: dict[Topic, Columns] = {}
 
@@ -119,7 +120,7 @@ class RecordedRun(Views):
             raise RecordingError(f'{self.bag.path}: its steps do not follow each other in time, or are in unknown '
                                  'modes')
         columns['external_force'] = _external_force(columns, self.scene.axis.mass)
-        return columns
+        return {**columns, **recorded_normal_force(self.scene, columns, self.is_changed)}
 
     def sample_blocks(self) -> Iterator[Columns]:
         """Yield the samples as one block."""

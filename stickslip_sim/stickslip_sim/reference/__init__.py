@@ -23,12 +23,13 @@ FEWEST_DIGITS = 20
 
 
 def simulate(
-    axis: Axis, initial: InitialState, drive: InputProfile, force: InputProfile, duration: float, digits: int = 30
+    axis: Axis, initial: InitialState, drive: InputProfile, force: InputProfile, duration: float, digits: int = 30,
+    load: InputProfile | None = None,
 ) -> ReferenceRun:
     """Return the run from time 0 to `duration` (s), right to about `digits` digits.
 
-    `drive` is in m/s and `force` in N.  Raises InputError when mpmath is missing or an argument has no meaning, and
-    SolverError when the events do not end.
+    `drive` is in m/s, `force` in N; a `load` in N, which may jump but not vary smoothly, is added to the normal force.
+    Raises InputError when mpmath is missing or an argument has no meaning, and SolverError when the events do not end.
     """
     if not 0.0 <= duration < float('inf'):
         raise InputError('duration', duration, 'finite and >= 0 s', 'give the seconds to simulate')
@@ -42,4 +43,4 @@ def simulate(
     from .problem import problem
     from .rounding import rounded
 
-    return rounded(run(problem(axis, initial, drive, force), duration, digits))
+    return rounded(run(problem(axis, initial, drive, force, load), duration, digits))

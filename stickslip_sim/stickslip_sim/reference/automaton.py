@@ -13,6 +13,7 @@ from mpmath import mpf
 
 from ..core import types
 from ..core.errors import SolverError
+from ..core.input_profile import constant
 from .flow import Flow, State, after
 from .inputs import Input, Signal
 from .modes import ACCELERATE, COAST, DECELERATE, Mode, Slip, Stick, word
@@ -62,13 +63,17 @@ class Sample:
 
 @dataclass(frozen=True)
 class Stretch:
-    """A stretch of one mode: it starts at ``start`` in ``state`` and is followed in closed form."""
+    """A stretch of one mode: it starts at ``start`` in ``state`` and is followed in closed form.
+
+    ``physics`` are the equations there: the normal force may jump between two.
+    """
 
     start: mpf
     length: mpf
     state: State
     flow: Flow
     mode: Mode
+    physics: Physics
 
 
 class Run(list[Event]):
@@ -100,7 +105,7 @@ class Run(list[Event]):
         drive, force = self._inputs(t)
         series = stretch.flow.expand(stretch.state, stretch.length)
         place = after(stretch.state, stretch.flow, series, t - stretch.start)
-        return sample(self.physics, stretch.mode, t, State(*place, drive, force))
+        return sample(stretch.physics, stretch.mode, t, State(*place, drive, force))
 
     def _inputs(self, t: mpf) -> tuple[Signal, Signal]:
         drive, force = Input(self.physics.axis.drive), Input(self.physics.axis.force)
@@ -135,6 +140,7 @@ class _Automaton:
     def __init__(self, axis: Problem, duration: mpf, digits: int) -> None:
         self.axis, self.physics, self.duration = axis, Physics(axis), duration
         self.drive, self.force = Input(axis.drive), Input(axis.force)
+        self.load = Input(axis.load or constant(0.0))
         self.result = Run(self.physics, digits)
         zero = self.t = mpf(0)
         self.state = State(
@@ -148,7 +154,7 @@ class _Automaton:
         if self.axis.velocity and not self.axis.deflection:
             self._enter_slip(1 if self.axis.velocity > 0 else -1, mpf(0))
         self.flow = self.physics.flow(self.mode)
-        while (stop := min(self.drive.until, self.force.until)) <= self.duration:
+        while (stop := min(self.drive.until, self.force.until, self.load.until)) <= self.duration:
             self._advance_to(stop)
             self._change_inputs()
         self._advance_to(self.duration)
@@ -159,7 +165,8 @@ class _Automaton:
         while self.t < stop:
             left = stop - self.t
             step = self._step(self.flow.longest_step(self.state, left))
-            self.result.stretches.append(Stretch(self.t, step.length, self.state, self.flow, self.mode))
+            self.result.stretches.append(Stretch(self.t, step.length, self.state, self.flow, self.mode,
+                                                 self.physics))
             self.t = stop if step.length == left else self.t + step.length
             self.state = State(*step.place, self.drive.at(self.t), self.force.at(self.t))
             if step.guard:
@@ -172,9 +179,16 @@ class _Automaton:
         return stick_step(self.physics, self.mode, self.flow, self.state, self.t, h)
 
     def _change_inputs(self) -> None:
-        """Load the new inputs and re-classify a slip; a rest leaves by its own guard, at once if need be."""
+        """Load the new inputs and re-classify a slip; a rest leaves by its own guard, at once if need be.
+
+        The normal force jumps with them, and the state, the rest time and E of a slip stay.
+        """
         self.drive.enter(self.t)
         self.force.enter(self.t)
+        self.load.enter(self.t)
+        if self.axis.load is not None:
+            self.axis = replace(self.axis, normal=self.load.at(self.t).value)
+            self.physics = Physics(self.axis)
         self.state = self.state._replace(drive=self.drive.at(self.t), force=self.force.at(self.t))
         if isinstance(self.mode, Slip):
             phase = self.physics.phase(self.mode.direction, self.mode.excess, self.state)

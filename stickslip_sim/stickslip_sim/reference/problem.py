@@ -13,6 +13,7 @@ from mpmath import mpf
 
 from ..axis import parameters as product
 from ..core import input_profile as profiles
+from ..core.errors import InputError
 from ..friction import ExcessTable, KineticTable
 from .statics import StaticLaw
 
@@ -48,7 +49,10 @@ class Table:
 
 @dataclass(frozen=True)
 class Problem:
-    """Everything the automaton needs; names as in docs/model.md."""
+    """Everything the automaton needs; names as in docs/model.md.
+
+    `normal` holds at the start, and `load` is the normal force over time, where it jumps.
+    """
 
     mass: mpf
     stiffness: mpf
@@ -68,6 +72,7 @@ class Problem:
     rest_time: mpf
     stretch: mpf
     deflection: mpf
+    load: profiles.InputProfile | None
 
     def breakpoints(self) -> list[mpf]:
         """Return the speeds above zero at which a friction table bends."""
@@ -76,16 +81,22 @@ class Problem:
 
 
 def problem(axis: product.Axis, initial: product.InitialState, drive: profiles.InputProfile,
-            force: profiles.InputProfile) -> Problem:
-    """Return the problem in multiple precision; raises InputError when the start has no finite static friction."""
-    product.check_start(axis, initial)
+            force: profiles.InputProfile, load: profiles.InputProfile | None = None) -> Problem:
+    """Return the problem in multiple precision; raises InputError when the start has no finite static friction.
+
+    The normal force under a load is the sum in doubles, as everything given is taken as the double that it is.
+    """
+    product.check_start(axis, initial, load.value_at(0.0) if load else 0.0)
+    normal_force = load.plus(axis.normal_force) if load else None
+    if normal_force and not normal_force.is_stepwise:
+        raise InputError('load', 'one that varies smoothly', 'constant but for jumps', 'the reference knows no other')
     contact = axis.contact if isinstance(axis.contact, product.CompliantContact) else None
     static = axis.friction.static
     return Problem(
         mass=mpf(axis.mass),
         stiffness=mpf(axis.drive_stiffness),
         damping=mpf(axis.drive_damping),
-        normal=mpf(axis.normal_force),
+        normal=mpf(normal_force.value_at(0.0) if normal_force else axis.normal_force),
         contact='compliant' if contact else 'rigid',
         contact_stiffness=mpf(contact.stiffness if contact else 0.0),
         contact_damping=mpf(contact.damping if contact else 0.0),
@@ -106,6 +117,7 @@ def problem(axis: product.Axis, initial: product.InitialState, drive: profiles.I
         rest_time=mpf(initial.rest_time),
         stretch=mpf(initial.stretch),
         deflection=mpf(initial.deflection),
+        load=normal_force,
     )
 
 

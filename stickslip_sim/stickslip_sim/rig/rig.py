@@ -33,8 +33,8 @@ class Rig:
 
     def __init__(self, axis: Axis, initial: InitialState, drive: InputProfile, force: InputProfile,
                  solver: Solver | SolverOf,
-                 grid: Grid, settings: RigSettings) -> None:
-        self.simulator = Simulator(axis, initial, drive, force, solver, accounting=True)
+                 grid: Grid, settings: RigSettings, load: InputProfile | None = None) -> None:
+        self.simulator = Simulator(axis, initial, drive, force, solver, accounting=True, load=load)
         self._grid, self._settings, self._measures = grid, settings, settings.measures
         self._profiles = drive, force
         self._begin()

@@ -25,7 +25,8 @@ def perturbed(scene: Scene, seed: str) -> Scene:
     """
     move = _Mover(seed)
     return dataclasses.replace(scene, axis=move.moved(scene.axis), initial=move.moved(scene.initial),
-                               drive=move.moved(scene.drive), force=move.moved(scene.force))
+                               drive=move.moved(scene.drive), force=move.moved(scene.force),
+                               normal_load=move.moved(scene.normal_load))
 
 
 class _Mover:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from ..core.time_grid import Instants
 from ..core.types import Event, EventKind, Sample
 from ..scene import Scene
+from .normal_force import normal_force_of
 from .run import Columns
 from .simulated import columns_of_rows
 
@@ -31,13 +32,13 @@ def sampled(scene: Scene, events: Sequence[Event], windows: Iterable[tuple[float
     """Return samples of a run of a scene, whose events are known, for a picture of some windows (s) of it."""
     times = np.array([event.time for event in events], dtype=np.float64)
     breaks = np.array([event.time for event in events if event.kind == EventKind.BREAKAWAY], dtype=np.float64)
-    fastest = max((one.frequency for one in (*scene.drive.sinusoids, *scene.force.sinusoids)), default=0.0)
+    fastest = max((one.frequency for profile in scene.inputs for one in profile.sinusoids), default=0.0)
     instants = np.unique(np.concatenate([part for begin, end in windows for part in (
         _evenly(fastest, begin, end), _by_events(times, breaks, begin, end))]))
     seconds = np.floor(instants)
     rows = np.empty((len(instants), len(Sample._fields)))
     scene.make_rig().take_samples(Instants(seconds, instants - seconds), rows)
-    return columns_of_rows(rows)
+    return {**columns_of_rows(rows), **normal_force_of(scene, instants)}
 
 
 def _evenly(fastest: float, begin: float, end: float) -> Numbers:

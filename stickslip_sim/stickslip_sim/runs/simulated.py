@@ -18,6 +18,7 @@ from ..rig import Rig
 from ..rig.marks import Mark, marks_of_faults
 from ..scene import Scene, SceneOrName, scene_of
 from ..simulation.cycles import Summary, summary
+from .normal_force import normal_force_of
 from .receipt import CostMeter, receipt_of
 from .run import Columns
 from .samples import HeldSamples, RemadeSamples, Samples
@@ -136,7 +137,7 @@ def _simulated(scene: Scene, duration: float, sample_period: float | Fraction | 
     figures = summary(events, duration, start)
     receipt = receipt_of(scene, duration, float(sample_period) if sample_period else None, figures,
                          simulator.root_iterations, simulator.sample(), simulator.energy, *spent)
-    samples: Samples = (HeldSamples(_columns(np.concatenate(held), period, 0)) if few
+    samples: Samples = (HeldSamples(_columns(scene, np.concatenate(held), period, 0)) if few
                         else RemadeSamples(lambda: _blocks(scene, duration, period),
                                            _sample_count(duration, period)))
     return SimulatedRun(scene, duration, period, events, samples, figures, receipt)
@@ -164,7 +165,7 @@ def _blocks(scene: Scene, duration: float, period: Fraction | None) -> Iterator[
     done = 0
     for _, rows in _passage(_loaded_rig(scene), duration, period):
         if len(rows):
-            yield _columns(rows, period, done)
+            yield _columns(scene, rows, period, done)
             done += len(rows)
 
 
@@ -214,7 +215,8 @@ def _check_count(events: list[Event], duration: float) -> None:
                          f'they were reached at t = {events[-1].time:.6g} s: simulate a shorter time')
 
 
-def _columns(rows: NDArray[np.float64], period: Fraction | None, first: int) -> Columns:
+def _columns(scene: Scene, rows: NDArray[np.float64], period: Fraction | None, first: int) -> Columns:
     """Return rows, the first of them at `first` periods, as columns by name."""
     times = multiples(period or Fraction(0), first, first + len(rows))
-    return {'time': times, **{name: rows[:, i] for i, name in enumerate(Sample._fields)}}
+    return {'time': times, **{name: rows[:, i] for i, name in enumerate(Sample._fields)},
+            **normal_force_of(scene, times)}

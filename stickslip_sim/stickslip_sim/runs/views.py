@@ -11,6 +11,7 @@ from ..core.picture_formats import check_picture_name
 from ..simulation.cycles import Cycle, cycle_figures
 from .frame import data_frame
 from .kept import kept
+from .normal_force import NORMAL_FORCE
 from .run import COLUMNS, Run
 
 
@@ -32,9 +33,13 @@ class Views:
         return _cycles(self)
 
     def frame(self: Run) -> Any:
-        """Return the samples as a pandas.DataFrame with COLUMNS; raises InputError without pandas."""
+        """Return the samples as a pandas.DataFrame with COLUMNS; raises InputError without pandas.
+
+        A normal force that varies is a column more.
+        """
         whole = {name: self.samples[name].astype(np.int8) for name in ('mode', 'direction')}
-        return data_frame({name: whole.get(name, self.samples[name]) for name in COLUMNS}, 'samples')
+        names = [*COLUMNS, *([NORMAL_FORCE] if NORMAL_FORCE in self.samples else [])]
+        return data_frame({name: whole.get(name, self.samples[name]) for name in names}, 'samples')
 
     def plot(self: Run, path: Path | str, window: tuple[float, float] | None = None) -> None:
         """Draw the run over time into `path` (.png, .pdf or .svg), and beside it a `window` (begin and end, s) of it.

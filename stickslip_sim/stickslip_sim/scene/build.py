@@ -25,8 +25,9 @@ from ..friction import (
 )
 from ..friction.kinetic import default_excess
 from ..rig.friction import with_friction_scaled
+from ..solvers.normal_load import under_load
 from .model import CommandSettings, RecordSettings, Scene, TimingSettings
-from .profile_schema import FILE_SETTINGS
+from .profile_schema import FILE_SETTINGS, PROFILES
 from .rig_settings import rig_settings, time_settings
 from .scaled_friction import check_scaled_friction
 from .solver import SolverSettings, method_of
@@ -46,13 +47,16 @@ def build_scene(given: Mapping[str, object], summary: str = '') -> Scene:
     values: dict[str, Any] = effective_values(given)
     axis = _axis(values)
     initial = InitialState(**_section(values, 'initial'))
-    check_start(axis, initial)
+    load = _profile(values, 'normal_load', 'constant', 'rate', 'forces') if 'normal_load.course' in values else None
+    check_start(axis, initial, load.value_at(0.0) if load else 0.0)
     if values['drive.course'] == 'position':
         check_first_position('drive', values['drive.positions'][0], initial.position + initial.stretch)
     if 'solver.method' not in values and (method := method_of(values)):
         values['solver.method'] = method
     solver = SolverSettings(**_section(values, 'solver'))
     solver.check(axis)
+    if load is not None:
+        _check_load(axis, solver, load)
     rig = rig_settings(values)
     check_scaled_friction(axis, solver, rig, values['time.rate'])
     text = scene_text(values)
@@ -73,16 +77,25 @@ def build_scene(given: Mapping[str, object], summary: str = '') -> Scene:
         values=values,
         text=text,
         hash=hashlib.sha256(text.encode()).hexdigest(),
+        normal_load=load,
     )
 
 
 def _check_read(given: Mapping[str, object]) -> None:
     """Raise InputError on a profile in a file: who loads a scene has put its points in place of it."""
-    for section in ('drive', 'force'):
+    for section in PROFILES:
         for name in FILE_SETTINGS:
             if (value := given.get(f'{section}.{name}')) is not None:
                 raise InputError(f'{section}.{name}', value, f'in a scene file with {section}.file',
                                  'a recorded scene has the times and values themselves')
+
+
+def _check_load(axis: Axis, solver: SolverSettings, load: InputProfile) -> None:
+    """Raise InputError when the solver cannot follow an axis with a load on top of its normal force."""
+    normal_force = load.plus(axis.normal_force)
+    under_load(solver.make(axis), normal_force)
+    for normal in normal_force.bounds() if normal_force.is_stepwise else ():
+        solver.check(replace(axis, normal_force=normal))
 
 
 def _section(values: Mapping[str, Any], section: str) -> dict[str, Any]:

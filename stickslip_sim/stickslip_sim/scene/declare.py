@@ -25,6 +25,7 @@ def texts(name: str, description: str) -> Parameter:
     return Parameter(name, 'string_array', None, '', description)
 
 
-def choice(name: str, default: str, description: str, choices: tuple[str, ...], when: When | None = None) -> Parameter:
+def choice(name: str, default: str | None, description: str, choices: tuple[str, ...], when: When | None = None
+           ) -> Parameter:
     """Return a text that is one of a few."""
     return Parameter(name, 'string', default, '', description, choices=choices, when=when)

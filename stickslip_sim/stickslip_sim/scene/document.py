@@ -38,6 +38,8 @@ contradict a choice, with one line.  The shipped files in `stickslip_sim/sticksl
 * **`--set a.b=value`** of the tool changes one value of the file.  If it changes a choice, the values that the file
   gives for the old choice are dropped: `--set contact.model=rigid` needs no more.
 * **Input profiles.**  `drive.course` and `force.course` choose the input profile: velocity or force over time.
+  `normal_load.course` adds a load to the normal force (docs/model.md); one that varies smoothly is for
+  `solver.name: adaptive` alone.
 * **Position of the drive.**  `drive: {course: position, times: [0.0, 1.0, 3.0], positions: [0.0, 0.002, 0.002]}`
   prescribes s, where the drive end of the spring is.  Its velocity is the derivative, exactly: s is linear between the
   breakpoints, so that the velocity jumps there; with `slopes`, the velocities just after each of them, it is quadratic.
@@ -46,15 +48,16 @@ contradict a choice, with one line.  The shipped files in `stickslip_sim/sticksl
   which is where the drive starts: initial.position + initial.stretch.  A jump of s is refused: the drive's damper would
   answer it with an infinite force.
 * **Profiles from files.**  `drive: {file: feed.csv}` takes the place of times and velocities, `force: {file:
-  pull.csv}` of times and forces: measured, or from another program.  A CSV file begins with a line of names;
-  `file_column`, `file_unit`, `file_time` and `file_time_unit` say which columns are meant, and their units.  Left out
-  they are `velocity`, `position` (`course: position`) or `force`, and `time`, in SI; a heading that names another
-  unit (`v [mm/s]`) is refused.  A decimal comma is read where the commas are not between columns, what follows a `#`
-  is not read.  `file: run:slider_state` is a topic of a bag; its column is a field of the messages, like `velocity`,
-  `wrench.force.x`, `velocity[0]` or `velocity[axis_drive]`.  The profile is linear between the rows (`course: table`)
-  unless `course: steps` says that each value holds until the next, and is resampled only where `file_resample` asks
-  for it.  The points become the times and values of the scene: its hash, the bag and the receipt hold them, and
-  `verify` needs the file no more.  Up to 200,000 rows; 25,000 are read in 0.1 s and simulated in 0.01 s.
+  pull.csv}` and `normal_load: {file: clamp.csv}` of times and forces: measured, or from another program.  A CSV file
+  begins with a line of names; `file_column`, `file_unit`, `file_time` and `file_time_unit` say which columns are
+  meant, and their units.  Left out they are `velocity`, `position` (`course: position`) or `force`, and `time`, in SI;
+  a heading that names another unit (`v [mm/s]`) is refused.  A decimal comma is read where the commas are not between
+  columns, what follows a `#` is not read.  `file: run:slider_state` is a topic of a bag; its column is a field of the
+  messages, like `velocity`, `wrench.force.x`, `velocity[0]` or `velocity[axis_drive]`.  The profile is linear between
+  the rows (`course: table`) unless `course: steps` says that each value holds until the next, and is resampled only
+  where `file_resample` asks for it.  The points become the times and values of the scene: its hash, the bag and the
+  receipt hold them, and `verify` needs the file no more.  Up to 200,000 rows; 25,000 are read in 0.1 s and simulated
+  in 0.01 s.
 * **Tables.**  The points of a table are its breakpoints; it is linear between them.
 """
 

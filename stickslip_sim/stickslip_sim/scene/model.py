@@ -9,10 +9,12 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from ..axis import Axis, InitialState
-from ..core.input_profile import InputProfile
+from ..core.input_profile import InputProfile, constant
 from ..core.time_grid import Grid
 from ..rig.rig import Rig
 from ..rig.settings import RigSettings
+from ..simulation.simulator import Simulator, SolverOf
+from ..solvers import Solver
 from .solver import SolverSettings
 
 
@@ -108,7 +110,24 @@ class Scene:
     text: str
     hash: str
     sources: Mapping[str, ProfileSource] = field(default_factory=dict, compare=False)
+    normal_load: InputProfile | None = None   # N, on top of the normal force of the axis
 
     def make_rig(self) -> Rig:
         """Return the axis and its rig at the start."""
-        return Rig(self.axis, self.initial, self.drive, self.force, self.solver.make, Grid(self.time.rate), self.rig)
+        return Rig(self.axis, self.initial, self.drive, self.force, self.solver.make, Grid(self.time.rate), self.rig,
+                   self.normal_load)
+
+    def make_simulator(self, solver: Solver | SolverOf | None = None, accounting: bool = False) -> Simulator:
+        """Return the axis alone at the start, with the solver of the scene or another."""
+        return Simulator(self.axis, self.initial, self.drive, self.force, solver or self.solver.make, accounting,
+                         self.normal_load)
+
+    @property
+    def inputs(self) -> tuple[InputProfile, ...]:
+        """The input profiles of the drive and the force, and that of the normal load where there is one."""
+        return (self.drive, self.force) if self.normal_load is None else (self.drive, self.force, self.normal_load)
+
+    @property
+    def normal_force(self) -> InputProfile:
+        """The normal force on the slideway over time, N, as long as no parameter changes."""
+        return (self.normal_load or constant(0.0)).plus(self.axis.normal_force)

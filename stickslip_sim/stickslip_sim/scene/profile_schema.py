@@ -14,6 +14,7 @@ from .declare import choice, number, numbers
 MOST_POINTS = MOST_NUMBERS   # of a profile from a file
 FILE_SETTINGS = ('file', 'file_column', 'file_unit', 'file_time', 'file_time_unit', 'file_begin', 'file_resample')
 
+PROFILES = 'drive', 'force', 'normal_load'   # the sections of a scene that are input profiles
 _SHAPES = ('constant', 'ramp', 'steps', 'sine', 'table')
 _POSITION = When('drive.course', ('position',))
 _OF_FILES = {'m/s': ('velocity, or position', 'm/s, or m', 'mm/s'), 'N': ('force', 'N', 'kN')}
@@ -35,18 +36,21 @@ def drive_profile() -> tuple[Parameter, ...]:
 
 
 def profile(section: str, value: str, rate: str, values: str, unit: str, what: str, size: Range, change: Range,
-            more: tuple[object, ...] = (), of_more: str = '') -> tuple[Parameter, ...]:
+            more: tuple[object, ...] = (), of_more: str = '', optional: bool = False) -> tuple[Parameter, ...]:
     """Return the parameters of an input profile of `what`, with values and rates in these ranges.
 
-    `more` choices have breakpoints of their own; `of_more` describes them.
+    `more` choices have breakpoints of their own; `of_more` describes them.  An `optional` profile is there where
+    `SECTION.course` is given.
     """
     ramp = When(f'{section}.course', ('ramp',))
     breakpoints = When(f'{section}.course', ('steps', 'table'))
     points = When(f'{section}.course', (*breakpoints.values, *more))
     sine = When(f'{section}.course', ('sine',))
+    on_top = When(f'{section}.course', _SHAPES) if optional else None
     return (
-        choice(f'{section}.course', 'constant',
-               f'input profile of the {what}, offline and in the node until a command arrives: constant; ramp (to a'
+        choice(f'{section}.course', None if optional else 'constant',
+               f'input profile of the {what}, offline and in the node{"" if optional else " until a command arrives"}:'
+               ' constant; ramp (to a'
                f' constant); steps (jumps); sine; table (linear between breakpoints){of_more}; sinusoids may'
                ' come on top',
                (*_SHAPES, *map(str, more))),
@@ -70,11 +74,11 @@ def profile(section: str, value: str, rate: str, values: str, unit: str, what: s
         number(f'{section}.phase', 0.0, 'rad', 'phase of a sine', within=ranges.PHASE, when=sine),
         numbers(f'{section}.amplitudes', None, unit,
                 f'amplitudes of sinusoids on top of any input profile, at most {MAX_SINUSOIDS}',
-                within=size, required=False),
+                within=size, required=False, when=on_top),
         numbers(f'{section}.frequencies', None, 'Hz', 'frequencies of these sinusoids', within=Range(*FREQUENCIES),
-                required=False),
+                required=False, when=on_top),
         numbers(f'{section}.phases', None, 'rad', 'phases of these sinusoids; left out: 0', within=ranges.PHASE,
-                required=False),
+                required=False, when=on_top),
     )
 
 

@@ -110,6 +110,8 @@ PARAMETERS: tuple[Parameter, ...] = (
     *drive_profile(),
     *profile('force', 'constant', 'rate', 'forces', 'N', 'external force on the slider, along +x', ranges.FORCE,
             ranges.FORCE_RATE),
+    *profile('normal_load', 'constant', 'rate', 'forces', 'N', 'load normal to the slideway, as of clamping, on top of'
+             ' axis.normal_force', ranges.FORCE, ranges.FORCE_RATE, optional=True),
 
     number('initial.position', 0.0, 'm', 'position of the slider at the start', within=ranges.PLACE),
     number('initial.velocity', 0.0, 'm/s', 'velocity of the slider at the start', within=ranges.VELOCITY),

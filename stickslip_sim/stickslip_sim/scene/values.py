@@ -58,8 +58,8 @@ def _given(entry: Parameter, value: object, values: Mapping[str, object]) -> obj
     checked = entry.checked(value)
     if entry.when is not None and not entry.when.holds(values):
         when = _deciding(entry.when, values)
-        choice = f'{when.name}: {yaml_word(values.get(when.name))}'
-        raise InputError(entry.name, value, f'left out with {choice}', f'drop it, or set {when}')
+        choice = f'with {when.name}: {yaml_word(values[when.name])}' if when.name in values else f'without {when.name}'
+        raise InputError(entry.name, value, f'left out {choice}', f'drop it, or set {when}')
     return checked
 
 

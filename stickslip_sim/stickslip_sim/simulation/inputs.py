@@ -73,6 +73,26 @@ class Inputs:
                 if v != 0.0 or f != 0.0 for number in (frequency, math.fmod(0.5 * phase / math.pi, 1.0), v, f)]
 
 
+class LoadedInputs(Inputs):
+    """Inputs beside a load normal to the slideway, whose pieces count in `until`."""
+
+    def __init__(self, drive: InputProfile, force: InputProfile, load: InputProfile) -> None:
+        self._load = load
+        super().__init__(drive, force)
+
+    def reset(self) -> tuple[Piece, Piece]:
+        """Take the original input profiles again; return their first pieces, without that of the load."""
+        first = super().reset()
+        self.go_on(min(self.until, self._load.piece_at(0.0).end))
+        return first
+
+    def enter(self, time: float) -> tuple[float, float, float, float]:
+        """Return the inputs from a time on, s, up to where their pieces or that of the load end."""
+        entered = super().enter(time)
+        self.go_on(min(self.until, self._load.pieces_at(time)[2]))
+        return entered
+
+
 class _KeptPieces:
     """The pieces of an input as a solver walks through them; made anew for another input only."""
 

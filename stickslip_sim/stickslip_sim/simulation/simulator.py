@@ -17,9 +17,10 @@ from ..core.time_grid import Instants
 from ..core.types import Event, EventKind, Instant, Mode, Sample, tuple_of
 from ..solvers import DONE, FULL, OUT_OF_RANGE, UNSOUND, Solver, exact
 from ..solvers.block import sample_block_of
+from ..solvers.normal_load import under_load
 from ..solvers.walk import walk_of
 from .checkpoint import check_state, event_of, numbers_of
-from .inputs import Inputs
+from .inputs import Inputs, LoadedInputs
 
 SolverOf = Callable[[Axis], Solver]
 
@@ -35,15 +36,19 @@ class Simulator:
     `drive` (m/s) and `force` (N) are input profiles over simulation time; a command replaces an input profile by a
     constant from the present time on.  Events come back from the call in which they fall, in the order of time.
     `solver` is one for any axis, or makes the one for an axis, as those must that take its smooth law.  With
-    `accounting` the solver keeps the account of energy, if it can; the motion is the same to the last bit.
+    `accounting` the solver keeps the account of energy, if it can; the motion is the same to the last bit.  A `load`
+    (N) is added to the normal force of the axis; raises InputError where the solver cannot follow it.
     """
 
     def __init__(self, axis: Axis, initial: InitialState, drive: InputProfile, force: InputProfile,
-                 solver: Solver | SolverOf = exact.SOLVER, accounting: bool = False) -> None:
-        check_start(axis, initial)
-        self._inputs = Inputs(drive, force)
+                 solver: Solver | SolverOf = exact.SOLVER, accounting: bool = False,
+                 load: InputProfile | None = None) -> None:
+        check_start(axis, initial, load.value_at(0.0) if load else 0.0)
+        self._inputs = LoadedInputs(drive, force, load) if load else Inputs(drive, force)
+        self._load = load
         self._solver_of: SolverOf = (lambda _: solver) if isinstance(solver, Solver) else solver
         self._initial = initial
+        self._time = Instant(0.0, 0.0)
         self._take_axis(axis)
         records = self._solver.records
         self._state = records.State(self._inputs.most_sinusoids)
@@ -58,6 +63,8 @@ class Simulator:
         v, f = self._inputs.reset()
         self._sinusoids = self._solver.records.Sinusoids(self._inputs.sinusoids())
         self._time = Instant(0.0, 0.0)
+        if self._load is not None:
+            self._take_axis(self._axis)
         start = self._initial
         rows = self._solver.start(self._parameters, self._state, start.position, start.velocity, start.rest_time,
                                   start.stretch, start.deflection, v.value, v.rate, f.value, f.rate, self._sinusoids,
@@ -211,21 +218,25 @@ class Simulator:
         """
         self._inputs.command_drive(drive)
         self._inputs.command_force(force)
+        second, fraction = map(float, saved['time'])
+        self._time = Instant(second, fraction)
         self._take_axis(axis)
         state = self._solver.records.State(self._inputs.most_sinusoids)
         state.take(numbers_of(saved['state'], self._state))
         check_state(state, self._inputs.most_sinusoids, self._parameters)
-        second, fraction = map(float, saved['time'])
         until, self._waiting = float(saved['until']), [event_of(event) for event in saved['waiting']]
         self._state = state
         self._inputs.go_on(until)
         self._sinusoids = self._solver.records.Sinusoids(self._inputs.sinusoids())
-        self._time = Instant(second, fraction)
 
     def _take_axis(self, axis: Axis) -> None:
         self._axis, self._solver = axis, self._solver_of(axis)
-        self._walk, self._sample_block = walk_of(self._solver), sample_block_of(self._solver)
         self._parameters = self._solver.records.Parameters(pack(axis))
+        normal_force = None if self._load is None else self._load.plus(axis.normal_force)
+        if normal_force is not None:
+            self._solver = under_load(self._solver, normal_force)
+            self._parameters.normal_force = normal_force.value_at(self._time.seconds)
+        self._walk, self._sample_block = walk_of(self._solver, normal_force), sample_block_of(self._solver)
 
     def _obey(self) -> None:
         """Let the commands of this instant take effect, all at once: their order does not matter."""

@@ -64,6 +64,14 @@ class Solver(Protocol):
                        row: int, /) -> int:
         """Let the axis have other parameters from a time on, up to which the state was advanced with the old ones."""
 
+    def set_load(self, p: Parameters, s: State, second: float, fraction: float, normal_force: float, v: float,
+                 v_rate: float, f: float, f_rate: float, sinusoids: Sinusoids, events: Events, row: int, /) -> int:
+        """Let the normal force, N, and the inputs be others from a time on, both at once, as `set_inputs`."""
+
+    @property
+    def with_normal_force(self) -> 'Callable[[InputProfile], Solver] | None':
+        """What returns the solver for a normal force that varies smoothly, N; None: it takes one that jumps alone."""
+
     def sample(self, p: Parameters, s: State, second: float, fraction: float, out: SampleRow, /) -> None:
         """Fill a row with the state at the time that it was advanced to."""
 
@@ -103,6 +111,7 @@ class SolverOfFunctions(NamedTuple):
     advance: Callable[..., tuple[int, int]]
     set_inputs: Callable[..., int]
     set_parameters: Callable[..., int]
+    set_load: Callable[..., int]
     sample: Callable[..., None]
     energy: Callable[[Parameters, State, float, float, EnergyRow], None] | None = None
     is_sound: Callable[[Parameters, State, float, float], bool] | None = None
@@ -110,9 +119,11 @@ class SolverOfFunctions(NamedTuple):
     advice: str = 'a parameter or an input is too extreme for this axis: check the scene'
     walk: PieceWalk | None = None
     sample_block: Callable[..., tuple[int, int, int]] | None = None
+    with_normal_force: None = None
 
 
 def with_advance(solver: Solver, advance: Callable[..., tuple[int, int]]) -> Solver:
     """Return a solver that advances in another way."""
     return SolverOfFunctions(solver.name, solver.start, advance, solver.set_inputs, solver.set_parameters,
-                             solver.sample, solver.energy, solver.is_sound, solver.records, solver.advice)
+                             solver.set_load, solver.sample, solver.energy, solver.is_sound, solver.records,
+                             solver.advice)

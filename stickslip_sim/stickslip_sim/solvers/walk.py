@@ -11,14 +11,18 @@ from ..core.input_profile import InputProfile
 from . import DONE, FULL, PieceWalk, Solver
 
 
-def walk_of(solver: Solver) -> PieceWalk:
-    """Return the way of a solver through the pieces: its own, or one piece after the other."""
-    return solver.walk or PieceWalk(lambda profile: profile, partial(walk, solver))
+def walk_of(solver: Solver, normal_force: InputProfile | None = None) -> PieceWalk:
+    """Return the way of a solver through the pieces: its own, or one piece after the other; through those of N, too."""
+    own = solver.walk if normal_force is None else None
+    return own or PieceWalk(lambda profile: profile, partial(walk, solver, normal_force))
 
 
-def walk(solver: Solver, p: Parameters, s: State, drive: InputProfile, force: InputProfile, until: float, time: float,
-         sinusoids: Sinusoids, events: Events, row: int, /) -> tuple[float, int, int]:
+def walk(solver: Solver, normal_force: InputProfile | None, p: Parameters, s: State, drive: InputProfile,
+         force: InputProfile, until: float, time: float, sinusoids: Sinusoids, events: Events, row: int, /
+         ) -> tuple[float, int, int]:
     """Bring a state to `until`, s, where its pieces end, enter the next ones, and so on while that is up to a time.
+
+    `normal_force` (N) is given where it varies.
 
     Returns until when the pieces hold that are in force then, the rows in use and how it ended: FULL also where there
     is no room for the event that a new piece may be.
@@ -32,6 +36,10 @@ def walk(solver: Solver, p: Parameters, s: State, drive: InputProfile, force: In
             return until, row, end
         v, v_rate, v_end = drive.pieces_at(until)
         f, f_rate, f_end = force.pieces_at(until)
-        row = solver.set_inputs(p, s, second, until - second, v, v_rate, f, f_rate, sinusoids, events, row)
-        until = min(v_end, f_end)
+        inputs = v, v_rate, f, f_rate, sinusoids, events, row
+        if normal_force is None or (normal := normal_force.value_at(until)) == p.normal_force:
+            row = solver.set_inputs(p, s, second, until - second, *inputs)
+        else:
+            row = solver.set_load(p, s, second, until - second, normal, *inputs)
+        until = min(v_end, f_end, math.inf if normal_force is None else normal_force.pieces_at(until)[2])
     return until, row, DONE

@@ -12,7 +12,6 @@ from ..core.types import Event, Instant
 from ..runs import simulate_events
 from ..scene import Scene
 from ..simulation.cycles import Cycle, cycle_figures
-from ..simulation.simulator import Simulator
 from .point_figures import Figures, Motion
 from .points import scene_at, works_in_batches
 from .steady import sliding_slope
@@ -71,7 +70,7 @@ def _last_cycles(scene: Scene, duration: float, count: int) -> list[Cycle]:
 
 def _events_from(scene: Scene, begin: float, end: float) -> list[Event]:
     """Return the events of a scene from a time on (s); those before are not looked at, which takes most of the time."""
-    simulator = Simulator(scene.axis, scene.initial, scene.drive, scene.force, scene.solver.make)
+    simulator = scene.make_simulator()
     simulator.skip(Instant(math.floor(begin), begin % 1.0))
     return simulator.advance(Instant(math.floor(end), end % 1.0))
 

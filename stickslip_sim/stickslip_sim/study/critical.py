@@ -56,7 +56,8 @@ def critical(scene: Scene, over: Variation, accuracy: float,
     if not FINEST <= accuracy < 1.0:
         raise InputError('--accuracy', accuracy, f'>= {FINEST:g} and < 1', 'give the relative width, as 1e-9')
     if not works_in_batches(scene):
-        raise InputError('scene', scene.name, 'one with constant inputs, without faults and with the solver exact',
+        raise InputError('scene', scene.name, 'one with constant inputs, without faults or a normal load, and with the '
+                         'solver exact',
                          'a critical value belongs to a motion that settles')
     for end in (over.low, over.high):
         scene_at(scene.values, [over.name], np.array([end]))

@@ -40,8 +40,8 @@ def scene_at(values: Values, names: Sequence[str], point: Numbers) -> Scene:
 
 
 def works_in_batches(scene: Scene) -> bool:
-    """Whether the compiled batch can run a scene: exactly solved, constant inputs, no faults."""
-    return scene.solver.name == 'exact' and not scene.rig.faults and all(
+    """Whether the compiled batch can run a scene: exactly solved, constant inputs, no faults, no normal load."""
+    return scene.solver.name == 'exact' and not scene.rig.faults and scene.normal_load is None and all(
         len(profile.starts) == 1 and profile.rates == (0.0,) and not profile.sinusoids and profile.period == math.inf
         for profile in (scene.drive, scene.force))
 

@@ -14,17 +14,19 @@ from ..config.parameter import Parameter
 from ..core.did_you_mean import suggestion
 from ..core.errors import InputError
 from ..runs.wording import quantity
+from ..scene.profile_schema import PROFILES
 from ..scene.schema import BY_NAME
 
 Numbers = NDArray[np.float64]
 
-_OF_THE_MOTION = ('axis', 'contact', 'friction', 'drive', 'force', 'initial', 'solver')
+_OF_THE_MOTION = ('axis', 'contact', 'friction', *PROFILES, 'initial', 'solver')
 _ALONG = {   # where an element of a list is
     'friction.kinetic.coefficients': 'friction.kinetic.velocities',
     'friction.excess.fractions': 'friction.excess.velocities',
     'drive.velocities': 'drive.times', 'drive.positions': 'drive.times', 'drive.slopes': 'drive.times',
     'drive.amplitudes': 'drive.frequencies',
     'force.forces': 'force.times', 'force.amplitudes': 'force.frequencies',
+    'normal_load.forces': 'normal_load.times', 'normal_load.amplitudes': 'normal_load.frequencies',
 }
 _FORM = 'a.b=LOW:HIGH:N or a.b=LOW:HIGH:N:log'
 _DRAWN_FORM = 'a.b=LOW:HIGH or a.b=LOW:HIGH:log'

@@ -6,7 +6,7 @@ import random
 from collections.abc import Callable, Mapping
 
 from ..case import Case
-from . import degenerate, inputs, machines, ranges, smooth
+from . import degenerate, inputs, loads, machines, ranges, smooth
 
 Generator = Callable[[random.Random], Case]
 
@@ -16,5 +16,6 @@ GENERATORS: Mapping[str, Generator] = {generator.__name__: generator for generat
     degenerate.equal_eigenvalues, degenerate.limit_velocities, degenerate.contacts, degenerate.touching,
     degenerate.ties, inputs.grazing_sine, inputs.grazing_ramp, inputs.peak_at_breakpoint, inputs.steady_at_breakpoint,
     inputs.step_at_event, inputs.resonance, inputs.sines, smooth.smooth,
-    ranges.static_laws, ranges.late, ranges.whole_range, ranges.excesses, ranges.odd_sines, ranges.periodic)}
+    ranges.static_laws, ranges.late, ranges.whole_range, ranges.excesses, ranges.odd_sines, ranges.periodic,
+    loads.loads, loads.load_onto_force)}
 PLAUSIBLE = frozenset({'two_breakpoints', 'fig4_sweep', 'any_machine', 'smooth', 'sines'})

@@ -17,6 +17,8 @@ _LAST = ('rest_time', 'slip_time', 'stick_time', 'period', 'slip_travel', 'jump'
 def judge(run: Run) -> None:
     """Run an axis under constant inputs in a batch; raises Find where a figure differs."""
     parts = run.parts
+    if parts.load is not None:
+        return
     inputs = [profile.values[0] for profile in (parts.drive, parts.force)
               if len(profile.starts) == 1 and profile.rates == (0.0,) and not profile.sinusoids
               and profile.period == math.inf]

@@ -31,14 +31,14 @@ def judge(run: Run) -> None:
 
 def _energy(run: Run) -> float:
     """Return the throughput, or what a spring at the limit stores: a drive that comes back leaves no work."""
-    axis, energy = run.parts.axis, run.energy
+    axis, energy = run.parts.heaviest, run.energy
     limit = axis.normal_force * axis.friction.static.initial
     return max(energy.throughput, energy.stored, energy.stored_at_start,
                limit * limit / axis.drive_stiffness if axis.drive_stiffness > 0.0 else 0.0)
 
 
 def _forces(run: Run) -> float:
-    axis, end = run.parts.axis, run.parts.duration
+    axis, end = run.parts.heaviest, run.parts.duration
     fastest = _most(run.parts.drive, end) + max(abs(state.velocity) for state in _states(run))
     stretch = max((abs(e.drive_force) for e in run.events), default=0.0)
     table = axis.friction.kinetic
@@ -64,7 +64,7 @@ def speed_bound(run: Run) -> float:
     Seen from the drive, E = m (ẋ − v)²/2 + c (s − x)²/2 changes by the power of F_e and friction, the damper only
     takes: sqrt(2 E/m) grows by (|F_e| + N mu)/m per second at the most, and by |dv|.  A rest begins anew.
     """
-    axis, drive, force = run.parts.axis, run.parts.drive, run.parts.force
+    axis, drive, force = run.parts.heaviest, run.parts.drive, run.parts.force
     end = run.parts.duration
     fastest, changes = _most(drive, end), _changes(drive, end)
     pull = _most(force, end) + axis.normal_force * max(_coefficients(axis, run))

@@ -74,14 +74,15 @@ def _mirror(event: Event) -> Event:
 
 def _mass_unit(parts: Parts, k: float) -> Parts:
     axis = replace(_stiffened(parts.axis, k, k), mass=k * parts.axis.mass, normal_force=k * parts.axis.normal_force)
-    return parts._replace(axis=axis, force=_scaled(parts.force, k))
+    return parts._replace(axis=axis, force=_scaled(parts.force, k), load=parts.load and _scaled(parts.load, k))
 
 
 def _length_unit(parts: Parts, k: float) -> Parts:
     axis = replace(_faster(parts.axis, k), normal_force=k * parts.axis.normal_force)
     initial = replace(parts.initial, **{name: k * getattr(parts.initial, name)
                                         for name in ('position', 'velocity', 'stretch', 'deflection')})
-    return parts._replace(axis=axis, initial=initial, drive=_scaled(parts.drive, k), force=_scaled(parts.force, k))
+    return parts._replace(axis=axis, initial=initial, drive=_scaled(parts.drive, k), force=_scaled(parts.force, k),
+                          load=parts.load and _scaled(parts.load, k))
 
 
 def _time_unit(parts: Parts, events: Sequence[Event], k: float) -> None:
@@ -91,7 +92,8 @@ def _time_unit(parts: Parts, events: Sequence[Event], k: float) -> None:
     law = StaticLaw(law.kind, law.initial, law.limit, k * law.time_constant, law.exponent)
     axis = replace(axis, normal_force=axis.normal_force / (k * k), friction=replace(axis.friction, static=law))
     initial = replace(parts.initial, velocity=parts.initial.velocity / k, rest_time=k * parts.initial.rest_time)
-    image = Parts(axis, initial, _quicker(parts.drive, k, 1.0 / k), _quicker(parts.force, k, 1.0 / (k * k)), k * end)
+    image = Parts(axis, initial, _quicker(parts.drive, k, 1.0 / k), _quicker(parts.force, k, 1.0 / (k * k)), k * end,
+                  parts.load and _quicker(parts.load, k, 1.0 / (k * k)))
     _compare(f'time unit times {k:g}', image, (
         e._replace(fraction=k * e.fraction, velocity=e.velocity / k, drive_force=e.drive_force / (k * k),
                    friction_force=e.friction_force / (k * k), rest_time=k * e.rest_time)

@@ -61,7 +61,9 @@ def _compare(parts: Parts, events: Sequence[Event]) -> None:
     axis = parts.axis
     for sign in (1.0, -1.0):
         off = sign * _ROUNDING
-        other = parts._replace(drive=_times(parts.drive, 1.0 + off), axis=replace(axis, mass=axis.mass * (1.0 + off),
+        other = parts._replace(drive=_times(parts.drive, 1.0 + off),
+                               load=parts.load and _times(parts.load, 1.0 + 0.7 * off),
+                               axis=replace(axis, mass=axis.mass * (1.0 + off),
                                             drive_stiffness=axis.drive_stiffness * (1.0 - off),
                                             drive_damping=axis.drive_damping * (1.0 + off),
                                             normal_force=axis.normal_force * (1.0 + 0.7 * off)))
@@ -130,7 +132,7 @@ def _first_difference(events: Sequence[Event], wanted: Sequence[Event]) -> int:
 
 
 def _events(parts: Parts) -> Sequence[Event]:
-    return simulate(parts.axis, parts.initial, parts.drive, parts.force, parts.duration, _DIGITS).events
+    return simulate(parts.axis, parts.initial, parts.drive, parts.force, parts.duration, _DIGITS, parts.load).events
 
 
 def _error(events: Sequence[Event], wanted: Sequence[Event], duration: float) -> tuple[float, str]:

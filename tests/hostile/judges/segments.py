@@ -115,10 +115,11 @@ def _excess(event: Event, excess: tuple[Any, Any], table: Table) -> tuple[Any, A
 
 
 def _node_of_event(event: Event, excess: Any, excess_noise: Any, jumped: bool, parts: Parts) -> Node:
-    contact, kinetic = parts.axis.contact, parts.axis.friction.kinetic
+    axis = _axis_at(parts, event.instant)
+    contact, kinetic = axis.contact, axis.friction.kinetic
     deflection = 0.0
     if isinstance(contact, CompliantContact) and event.mode == Mode.STICK:
-        deflection = event.direction * parts.axis.normal_force * kinetic.coefficients[0] / contact.stiffness
+        deflection = event.direction * axis.normal_force * kinetic.coefficients[0] / contact.stiffness
     return Node(event.instant, event, event.mode, event.direction, event.position, event.velocity, event.drive_force,
                 deflection, 0.0, excess, excess_noise, jumped)
 
@@ -131,7 +132,7 @@ def _node_of_sample(sample: Sample, excess: Any, excess_noise: Any) -> Node:
 
 def _segment(parts: Parts, table: Table, begin: Node, end: Node, length: Any, came: float) -> Segment:
     """Return the segment; the slider `came` so far (m) in the one before, and the spring knows that no better."""
-    axis = parts.axis
+    axis = _axis_at(parts, begin.at)
     m, c, h, normal = (Long(x) for x in (axis.mass, axis.drive_stiffness, axis.drive_damping, axis.normal_force))
     sinusoids = [(w, 0) for w in parts.drive.sinusoids] + [(w, 1) for w in parts.force.sinusoids]
     d = WAVE + 2 * len(sinusoids)
@@ -276,6 +277,11 @@ def _balanced(rates: Any, start: Any, noise: Any, pace: Any, mass: Any) -> tuple
     for j in range(WAVE, len(start), 2):
         unit[j] = unit[j + 1] = min(unit[j], unit[j + 1])
     return rates * unit[None, :] / unit[:, None], start / unit, noise / unit, unit
+
+
+def _axis_at(parts: Parts, at: Instant) -> Axis:
+    """Return the axis with the normal force that holds from an instant on."""
+    return parts.axis_under(_piece(parts.load, at).value) if parts.load else parts.axis
 
 
 def _piece(profile: InputProfile, at: Instant) -> Piece:

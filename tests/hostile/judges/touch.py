@@ -25,7 +25,7 @@ def judge(run: Run) -> None:
     if not isinstance(contact, CompliantContact) or contact.damping > 0.0 or axis.drive_damping > 0.0:
         return
     if any(drive.values) or any(drive.rates) or drive.sinusoids or force.sinusoids or any(force.rates) \
-            or len(force.values) > 1:
+            or len(force.values) > 1 or run.parts.load is not None:
         return
     if friction.static.initial != friction.kinetic.coefficients[0]:
         return

@@ -3,7 +3,7 @@
 """From event to event with `scipy.integrate.solve_ivp`; the transitions are those of every solver."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -30,6 +30,7 @@ from ...axis.transitions import (
     turn,
     write_event,
 )
+from ...core.input_profile import InputProfile
 from .. import DONE, FULL, NO_PROGRESS, OUT_OF_RANGE
 from ..inputs import hold_inputs, refresh_inputs, same_inputs
 from ..sampling import write_sample
@@ -52,12 +53,16 @@ class _Reached(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Engine:
-    """The solver; `law` is a smooth mu_k, or None for the table in the parameters."""
+    """The solver; `law` is a smooth mu_k, or None for the table in the parameters.
+
+    `normal_force` is N where it varies; the normal force of the parameters is then that at the state.
+    """
 
     method: str
     rtol: float
     atol: float
     law: SmoothLaw | None
+    normal_force: InputProfile | None = None
 
     name: ClassVar[str] = 'adaptive'
     records: ClassVar[Any] = PLAIN
@@ -66,6 +71,10 @@ class Engine:
     is_sound: ClassVar[None] = None
     walk: ClassVar[None] = None
     sample_block: ClassVar[None] = None
+
+    def with_normal_force(self, normal_force: InputProfile) -> 'Engine':
+        """Return the solver for a normal force that varies, N."""
+        return replace(self, normal_force=normal_force)
 
     @_QUIET
     def start(self, p: Parameters, s: State, position: float, velocity: float, rest: float, stretch: float,
@@ -91,20 +100,20 @@ class Engine:
                 return row, DONE
             if row >= events.count:
                 return row, FULL
-            motion = ModeMotion(p, s, self.law)
+            motion = self._motion(p, s)
             reached = self._integrate(motion, t, s.velocity)
             if reached is None:
                 return row, OUT_OF_RANGE
             due, y, u, kind = reached
             if kind is None:
-                _move(s, motion, second, fraction, due, (y, u))
+                _move(p, s, motion, second, fraction, due, (y, u))
                 return row, DONE
             same_instant = same_instant + 1 if due == 0.0 else 0
             if same_instant >= _SAME_INSTANT:   # no more: the table is full with 64, and the next call counts anew
                 return row, NO_PROGRESS
             later = s.fraction + due
             whole = math.floor(later)
-            _move(s, motion, s.second + whole, later - whole, due, (y, u))
+            _move(p, s, motion, s.second + whole, later - whole, due, (y, u))
             self._transition(p, s, events, row, kind)
             row += 1
 
@@ -122,18 +131,30 @@ class Engine:
     def set_parameters(self, p: Parameters, new: Parameters, s: State, second: float, fraction: float, events: Events,
                        row: int) -> int:
         """Let the axis have other parameters from a time on, to which the state was advanced with the old ones."""
-        change_contact(new, s, ModeMotion(p, s, self.law).friction(0.0, (0.0, s.velocity)))
+        change_contact(new, s, self._motion(p, s).friction(0.0, (0.0, s.velocity)))
         return self._apply(new, s, events, row)
+
+    @_QUIET
+    def set_load(self, p: Parameters, s: State, second: float, fraction: float, normal_force: float, v: float,
+                 v_rate: float, f: float, f_rate: float, sinusoids: Sinusoids, events: Events, row: int) -> int:
+        """Let the normal force, which is that of the solver, and the inputs be others from a time on, both at once."""
+        p.normal_force = normal_force
+        hold_inputs(s, second, fraction, v, v_rate, f, f_rate, sinusoids)
+        refresh_inputs(s)
+        return self._apply(p, s, events, row)
 
     @_QUIET
     def sample(self, p: Parameters, s: State, second: float, fraction: float, out: SampleRow) -> None:
         """Fill a row with the state; the time is the one that it was advanced to."""
-        motion = ModeMotion(p, s, self.law)
+        motion = self._motion(p, s)
         now = (0.0, s.velocity)
         v, f = motion.inputs.at(0.0)
         write_sample(p, s, second, fraction, 0.0, 0.0, now[1], motion.rates(0.0, now)[1], 0.0, v,
                      drive_force(p, s.spring, v, now[1]), f,
                      motion.friction(0.0, now), out)
+
+    def _motion(self, p: Parameters, s: State) -> ModeMotion:
+        return ModeMotion(p, s, self.law, self.normal_force)
 
     def _integrate(self, motion: ModeMotion, t: float, u: float) -> _Reached | None:
         """Return the next event up to t, or t; None where the integration fails."""
@@ -143,7 +164,7 @@ class Engine:
         try:
             with np.errstate(all='ignore'):
                 run = solve_ivp(motion.rates, (0.0, t), (0.0, u), self.method, events=[guard for _, guard in guards],
-                                rtol=self.rtol, atol=self.atol, max_step=motion.inputs.longest_step)
+                                rtol=self.rtol, atol=self.atol, max_step=motion.longest_step)
         except (ArithmeticError, ValueError, np.linalg.LinAlgError):   # on numbers that are not finite
             return None
         if run.status < 0 or not np.isfinite(run.y).all():
@@ -174,7 +195,7 @@ class Engine:
     def _apply(self, p: Parameters, s: State, events: Events, row: int) -> int:
         """Choose the mode anew after a jump; return the rows in use."""
         if s.mode == STICK:
-            _set_acceleration(p, s, self.law)
+            s.acceleration = self._motion(p, s).rates(0.0, (0.0, s.velocity))[1]   # that a break-away begins with
             if not apply_inputs(p, s, events, row):
                 return row
             self._correct_excess(p, s, events.rows[row])
@@ -215,7 +236,8 @@ class Engine:
         if self.law is None or s.mode == STICK or s.excess == 0.0:
             return
         coefficient, psi = self._coefficients(p, s)
-        s.excess = (abs(event.friction) / p.normal_force - coefficient) / psi
+        limit = abs(event.friction) / p.normal_force if p.normal_force > 0.0 else event.static
+        s.excess = (limit - coefficient) / psi
 
     def _find_segment(self, p: Parameters, s: State) -> None:
         """Set the segment for psi, which no breakpoint keeps up to date with a smooth law."""
@@ -223,12 +245,8 @@ class Engine:
             s.segment = float(segment_above(p, abs(s.velocity)))
 
 
-def _set_acceleration(p: Parameters, s: State, law: SmoothLaw | None) -> None:
-    """Set the acceleration that a break-away from a compliant contact begins with."""
-    s.acceleration = ModeMotion(p, s, law).rates(0.0, (0.0, s.velocity))[1]
-
-
-def _move(s: State, motion: ModeMotion, second: float, fraction: float, t: float, state: tuple[float, float]) -> None:
+def _move(p: Parameters, s: State, motion: ModeMotion, second: float, fraction: float, t: float,
+          state: tuple[float, float]) -> None:
     """Bring the state to a time, t later, where travel and velocity are `state`."""
     y, u = state
     drive = motion.inputs.travel(t)
@@ -243,4 +261,5 @@ def _move(s: State, motion: ModeMotion, second: float, fraction: float, t: float
     s.velocity = u
     s.acceleration = motion.rates(t, state)[1]
     s.second, s.fraction = second, fraction
+    p.normal_force = motion.load.at(t)
     refresh_inputs(s)

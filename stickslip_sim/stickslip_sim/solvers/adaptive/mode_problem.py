@@ -23,9 +23,11 @@ from ...axis.motion import (
     static_limit,
 )
 from ...axis.transitions import ACCELERATE, ARREST, BREAKAWAY, COAST, DECELERATE, KNOT
+from ...core.input_profile import InputProfile
 from ...linear.waves import TURN, phase_at
 
 _STEPS_PER_PERIOD = 8.0
+_ABOVE = 5e-324   # without a normal force a guard may stay exactly at 0, through which it does not fall
 
 
 class SmoothLaw(Protocol):
@@ -49,10 +51,9 @@ class ModeInputs:
         self._v, self._v_rate, self._f, self._f_rate = v, float(s.given.v_rate), f, float(s.given.f_rate)
 
     @property
-    def longest_step(self) -> float:
-        """The longest step that does not pass over a sinusoid, s."""
-        fastest = max((omega for omega, _, _, _ in self._sinusoids), default=0.0)
-        return 2.0 * math.pi / fastest / _STEPS_PER_PERIOD if fastest > 0.0 else math.inf
+    def fastest(self) -> float:
+        """The largest angular frequency, rad/s."""
+        return max((omega for omega, _, _, _ in self._sinusoids), default=0.0)
 
     def at(self, t: float) -> tuple[float, float]:
         """Return v and F_e."""
@@ -72,13 +73,43 @@ class ModeInputs:
         return travel
 
 
-class ModeMotion:
-    """One mode from a state on; `law` is a smooth mu_k, or None for the segment of the table that the state is on."""
+class ModeLoad:
+    """N(t) from the time of a state on, as the piece that holds there goes on; without a `profile` it is `now`."""
 
-    def __init__(self, p: Parameters, s: State, law: SmoothLaw | None) -> None:
+    def __init__(self, now: float, s: State, profile: InputProfile | None) -> None:
+        self._now, self._rate = now, 0.0
+        self._sinusoids: list[tuple[float, float, float]] = []
+        if profile is None:
+            return
+        self._now, self._rate, _ = profile.pieces_at(s.second + s.fraction)
+        for one in profile.sinusoids:
+            phase = TURN * phase_at(one.frequency, one.phase / TURN, s.second, s.fraction)
+            self._sinusoids.append((TURN * one.frequency, phase, one.amplitude))
+
+    @property
+    def fastest(self) -> float:
+        """The largest angular frequency, rad/s."""
+        return max((omega for omega, _, _ in self._sinusoids), default=0.0)
+
+    def at(self, t: float) -> float:
+        """Return N."""
+        if not self._sinusoids:
+            return self._now + self._rate * t
+        return self._now + self._rate * t + sum(amplitude * math.sin(omega * t + phase)
+                                                for omega, phase, amplitude in self._sinusoids)
+
+
+class ModeMotion:
+    """One mode from a state on.
+
+    `law` is a smooth mu_k, or None for the segment of the table that the state is on; `normal_force` is N where it
+    varies.
+    """
+
+    def __init__(self, p: Parameters, s: State, law: SmoothLaw | None, normal_force: InputProfile | None) -> None:
         self._p, self._law = p, law
-        self.inputs = ModeInputs(s)
-        self._mass, self._normal = p.mass, p.normal_force
+        self.inputs, self.load = ModeInputs(s), ModeLoad(p.normal_force, s, normal_force)
+        self._mass = p.mass
         self._stiffness, self._damping = p.stiffness, p.damping
         self._contact = (p.contact_stiffness, p.contact_damping)
         self._spring, self._u, self._deflection = s.spring, s.velocity, s.deflection
@@ -86,6 +117,12 @@ class ModeMotion:
         self._excess, self._residual, self._segment = s.excess, s.residual, int(s.segment)
         self._stands = is_rigid_stick(p, s)
         self._line = friction_line(p, self._segment, 0.0)
+
+    @property
+    def longest_step(self) -> float:
+        """The longest step that does not pass over a sinusoid, s."""
+        fastest = max(self.inputs.fastest, self.load.fastest)
+        return 2.0 * math.pi / fastest / _STEPS_PER_PERIOD if fastest > 0.0 else math.inf
 
     def rates(self, t: float, state: Sequence[float]) -> tuple[float, float]:
         """Return ẏ and ÿ."""
@@ -96,7 +133,7 @@ class ModeMotion:
             return self._u, 0.0
         if self._mode == STICK:
             return u, (self._applied(t, y, u) - self._contact_force(y, u)) / self._mass
-        residual = self._residual_of(t, y, u) - (self._band(u) if self._mode == ACCELERATING else 0.0)
+        residual = self._residual_of(t, y, u) - (self._band(t, u) if self._mode == ACCELERATING else 0.0)
         return u, self._direction * residual / self._mass
 
     def friction(self, t: float, state: Sequence[float]) -> float:
@@ -107,7 +144,8 @@ class ModeMotion:
     def coasting_residual(self, t: float, state: Sequence[float]) -> float:
         """Return R while it coasts, N."""
         moved = self._applied(t, *state) - self._applied(0.0, 0.0, self._u)
-        return self._residual + self._direction * moved
+        pressed = (self.load.at(t) - self.load.at(0.0)) * self._coefficient(self._direction * self._u)
+        return self._residual + self._direction * moved - pressed
 
     def guards(self) -> list[tuple[float, Callable[..., float]]]:
         """Return the kind of each event that can end the mode, with its guard, as `solve_ivp` wants them."""
@@ -123,7 +161,8 @@ class ModeMotion:
         else:
             found = [(COAST, self._brake)]
             found.append((ARREST if self._law is not None or self._segment == 0 else KNOT, self._above_breakpoint))
-        return [(kind, _falling(guard, (0.0, self._u))) for kind, guard in found]
+        stays = _ABOVE if self.load.at(0.0) == 0.0 else 0.0
+        return [(kind, _falling(guard, (0.0, self._u), stays)) for kind, guard in found]
 
     def _applied(self, t: float, y: float, u: float) -> float:
         v, f = self.inputs.at(t)
@@ -133,7 +172,7 @@ class ModeMotion:
         return self._contact[0] * (self._deflection + y) + self._contact[1] * u
 
     def _residual_of(self, t: float, y: float, u: float) -> float:
-        return self._direction * self._applied(t, y, u) - self._normal * self._coefficient(self._direction * u)
+        return self._direction * self._applied(t, y, u) - self.load.at(t) * self._coefficient(self._direction * u)
 
     def _coefficient(self, speed: float) -> float:
         if self._law is None:
@@ -142,22 +181,22 @@ class ModeMotion:
             return 2.0 * self._law.coefficient(0.0) - self._law.coefficient(-speed)
         return self._law.coefficient(speed)
 
-    def _band(self, u: float) -> float:
+    def _band(self, t: float, u: float) -> float:
         speed = self._direction * u
         psi = self._line[2] + self._line[3] * speed
         if self._law is not None:
             _, _, psi, _ = friction_line(self._p, segment_above(self._p, speed), speed)
-        return self._normal * self._excess * psi
+        return self.load.at(t) * self._excess * psi
 
     def _hold(self, t: float, state: Sequence[float]) -> float:
         force = self._applied(t, *state) if self._stands else self._contact_force(*state)
-        return self._normal * static_limit(self._p, self._rest + t) - abs(force)
+        return self.load.at(t) * static_limit(self._p, self._rest + t) - abs(force)
 
     def _below_upper(self, t: float, state: Sequence[float]) -> float:
-        return self._band(self._u) - self.coasting_residual(t, state)
+        return self._band(t, self._u) - self.coasting_residual(t, state)
 
     def _pull(self, t: float, state: Sequence[float]) -> float:
-        return self._residual_of(t, *state) - self._band(state[1])
+        return self._residual_of(t, *state) - self._band(t, state[1])
 
     def _brake(self, t: float, state: Sequence[float]) -> float:
         return -self._residual_of(t, *state)
@@ -169,11 +208,13 @@ class ModeMotion:
         return self._direction * state[1] - (breakpoint_speed(self._p, self._segment) if self._law is None else 0.0)
 
 
-def _falling(guard: Callable[..., float], start: tuple[float, float]) -> Callable[..., float]:
+def _falling(guard: Callable[..., float], start: tuple[float, float], stays: float) -> Callable[..., float]:
+    """Return a guard that ends a mode where it falls through 0; `stays` is its value where it is 0 after the start."""
     lift = min(guard(0.0, start), 0.0)
 
     def lifted(t: float, state: Sequence[float]) -> float:
-        return guard(t, state) - lift
+        value = guard(t, state) - lift
+        return value if value != 0.0 or t == 0.0 else stays
 
     lifted.terminal = True    # type: ignore[attr-defined]
     lifted.direction = -1.0   # type: ignore[attr-defined]

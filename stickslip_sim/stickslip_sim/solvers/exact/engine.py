@@ -175,6 +175,22 @@ def set_parameters(p: Parameters, new: Parameters, s: State, second: float, frac
 
 
 @compiled
+def set_load(p: Parameters, s: State, second: float, fraction: float, normal_force: float, v: float, v_rate: float,
+             f: float, f_rate: float, sinusoids: Sinusoids, events: Events, row: int) -> int:
+    """Let the normal force and the inputs be others from a time on, up to which the state was advanced; both at once.
+
+    Position, velocity, rest time and the deflection of the contact stay: the limit and the friction lines move.
+    """
+    _start_at(p, s, second, fraction)
+    p.normal_force = normal_force
+    s.inputs.v, s.inputs.v_rate, s.inputs.f, s.inputs.f_rate = v, v_rate, f, f_rate
+    load_sinusoids(s, sinusoids)
+    row = _apply(p, s, events, row)
+    _begin(p, s)
+    return row
+
+
+@compiled
 def sample(p: Parameters, s: State, second: float, fraction: float, out: SampleRow) -> None:
     """Fill a row with the state at a time before the next event."""
     t = (second - s.second) + (fraction - s.fraction)

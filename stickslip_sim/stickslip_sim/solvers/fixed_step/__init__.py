@@ -33,7 +33,8 @@ from .stability import check_step
 from .steps import EULER, RK4
 
 start, advance = entry(loop.start), entry(loop.advance)
-set_inputs, set_parameters, sample = entry(loop.set_inputs), entry(loop.set_parameters), entry(loop.sample)
+set_inputs, set_parameters = entry(loop.set_inputs), entry(loop.set_parameters)
+set_load, sample = entry(loop.set_load), entry(loop.sample)
 
 METHODS = {'euler': EULER, 'rk4': RK4}
 MIN_STEP, MAX_STEP = 1e-9, 1.0   # s
@@ -54,7 +55,8 @@ def solver(method: str = 'euler', step: float = 1e-3) -> Solver:
     def begin(*state_and_inputs: Any) -> int:
         return start(*(*state_and_inputs, *settings))
 
-    return SolverOfFunctions('fixed_step', begin, advance, set_inputs, set_parameters, sample, records=RECORDS,
+    return SolverOfFunctions('fixed_step', begin, advance, set_inputs, set_parameters, set_load, sample,
+                             records=RECORDS,
                              advice=f'try a step shorter than solver.step = {step:g} s, or check the scene')
 
 

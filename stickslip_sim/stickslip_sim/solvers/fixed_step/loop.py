@@ -102,6 +102,17 @@ def set_parameters(p: Parameters, new: Parameters, s: State, second: float, frac
 
 
 @compiled
+def set_load(p: Parameters, s: State, second: float, fraction: float, normal_force: float, v: float, v_rate: float,
+             f: float, f_rate: float, sinusoids: Sinusoids, events: Events, row: int) -> int:
+    """Let the normal force and the inputs be others at once from a time on, up to which the state was advanced."""
+    _catch_up(p, s, second, fraction)
+    p.normal_force = normal_force
+    hold_inputs(s, second, fraction, v, v_rate, f, f_rate, sinusoids)
+    refresh_inputs(s)
+    return _look(p, s, events, row)
+
+
+@compiled
 def sample(p: Parameters, s: State, second: float, fraction: float, out: SampleRow) -> None:
     """Fill a row with the state at a time from that of the state on, before the next grid point."""
     t = (second - s.second) + (fraction - s.fraction)

@@ -1,0 +1,29 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Solvers under a normal force that varies with time.
+
+Between its jumps a normal force that is constant leaves every mode a linear equation with constant coefficients.  One
+that varies smoothly makes those of a slip vary, where mu_k has a slope: that has no closed form (docs/model.md).
+"""
+
+from ..core.errors import InputError
+from ..core.input_profile import InputProfile
+from . import Solver
+
+
+def under_load(solver: Solver, normal_force: InputProfile) -> Solver:
+    """Return what solves an axis under a normal force, N; raises InputError where it has no meaning or no solution."""
+    normal_force.check('normal_load')
+    least, _ = normal_force.bounds()
+    if least < 0.0:
+        raise InputError('axis.normal_force + normal_load', least, '>= 0 N at all times',
+                         'a slideway does not pull: raise axis.normal_force, or make the load smaller (sinusoids count '
+                         'with their whole amplitudes)')
+    if solver.with_normal_force is not None:
+        return solver.with_normal_force(normal_force)
+    if not normal_force.is_stepwise:
+        raise InputError('normal_load', 'a load that varies smoothly',
+                         f'constant or steps with solver.name: {solver.name}',
+                         'a slip then has no closed form (docs/model.md): use normal_load.course: steps, or '
+                         'solver.name: adaptive')
+    return solver

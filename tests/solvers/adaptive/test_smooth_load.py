@@ -1,0 +1,77 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""A normal force that varies smoothly: closed forms where a slip has one, and a rest that it ends."""
+
+import math
+
+import pytest
+
+from stickslip_sim.axis import Axis, Friction, InitialState, RigidContact
+from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant, table
+from stickslip_sim.core.types import EventKind
+from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
+from stickslip_sim.runs import simulate_events
+from stickslip_sim.runs.error_estimate import error_estimate
+from stickslip_sim.scene import load_scene
+from stickslip_sim.simulation.simulator import Simulator
+from stickslip_sim.solvers import adaptive
+from tests.support.axes import instant
+
+SWAY = InputProfile((0.0,), (0.0,), (0.0,), math.inf, (Sinusoid(6.0, 1.5, 0.4),))
+RISE = table('normal_load', (0.0, 0.4, 1.0), (-8.0, 10.0, 0.0))
+
+
+def simulator(load: InputProfile, slope: float = 0.0, force: float = 0.0, velocity: float = 0.0) -> Simulator:
+    """Return 2 kg under 16 N and a load, without a spring: mu_k = 0.25 + slope |ẋ|, mu_s = 0.3."""
+    friction = Friction(StaticLaw(StaticLawKind.CONSTANT, 0.3, 0.3), KineticTable((0.0,), (0.25,), slope), None)
+    axis = Axis(2.0, 0.0, 0.0, 16.0, RigidContact(), friction)
+    return Simulator(axis, InitialState(velocity=velocity), constant(0.0), constant(force),
+                     adaptive.solver(rtol=1e-11, atol=1e-13), load=load)
+
+
+def pressed(load: InputProfile, time: float) -> float:
+    """Return ∫ N dt from 0 on, N s."""
+    if load is SWAY:
+        omega = 2.0 * math.pi * 1.5
+        return 16.0 * time + 6.0 * (math.cos(0.4) - math.cos(omega * time + 0.4)) / omega
+    first, rest = min(time, 0.4), max(time - 0.4, 0.0)
+    return 16.0 * time + (-8.0 + 22.5 * first) * first + (10.0 - 10.0 / 0.6 * 0.5 * rest) * rest
+
+
+@pytest.mark.parametrize('load', [SWAY, RISE])
+@pytest.mark.parametrize('slope', [0.0, 0.2])
+def test_a_slip_is_the_closed_form(load: InputProfile, slope: float) -> None:
+    """m u′ = −N (a + b u): u + a/b falls as exp(−(b/m) ∫N dt)."""
+    sim = simulator(load, slope, velocity=8.0)
+    for time in (0.2, 0.5, 0.9):
+        assert sim.advance(instant(time)) == []
+        impulse = pressed(load, time)
+        wanted = 8.0 - 0.125 * impulse
+        if slope:
+            wanted = (8.0 + 0.25 / slope) * math.exp(-0.5 * slope * impulse) - 0.25 / slope
+        assert sim.sample().velocity == pytest.approx(wanted, abs=1e-9)
+
+
+def test_a_rest_ends_where_the_limit_comes_down_to_the_force() -> None:
+    """0.3 N(t) = 3.6 N, N = 16 + 6 sin(ωt + 0.4): at N = 12, the first time behind its largest value."""
+    sim = simulator(SWAY, force=3.6)
+    first, *_ = sim.advance(instant(0.6))
+    wanted = (math.pi + math.asin(4.0 / 6.0) - 0.4) / (2.0 * math.pi * 1.5)
+    assert first.kind == EventKind.BREAKAWAY
+    assert first.time == pytest.approx(wanted, abs=1e-10)
+    assert first.friction_force == pytest.approx(3.6, rel=1e-9)
+
+
+def test_the_error_is_estimated_and_holds() -> None:
+    """Against a run with tolerances near rounding."""
+    changes = {'solver.name': 'adaptive', 'solver.rtol': 1e-6, 'solver.atol': 1e-9, 'normal_load.course': 'sine',
+               'normal_load.amplitude': 800.0, 'normal_load.frequency': 3.0}
+    run = simulate_events(load_scene('paper_fig7', changes), 1.5)
+    estimate = error_estimate(run)
+    fine = simulate_events(load_scene('paper_fig7', {**changes, 'solver.rtol': 1e-12, 'solver.atol': 1e-15}), 1.5)
+    kinds = [EventKind.BREAKAWAY, EventKind.STICK]
+    pairs = list(zip((e for e in run.events if e.kind in kinds), (e for e in fine.events if e.kind in kinds)))
+    assert len(pairs) >= 4
+    assert estimate.until_s == 1.5
+    assert 0.0 < max(abs(a.time - b.time) for a, b in pairs) <= estimate.event_time_s < 1e-4
+    assert '0.001 of the tolerances' in estimate.how
