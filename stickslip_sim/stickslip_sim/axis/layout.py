@@ -38,6 +38,7 @@ class Parameters:
     contact_stiffness: float  # N/m
     contact_damping: float    # N s/m
     arrest_share: float       # of the friction force, that a compliant contact carries as stick begins: 1, or 0
+    judges_drive: float       # 1 where such a stick ends by the drive's force, 0 where by that of the contact
     static_law: float         # `friction.StaticLawKind`
     static_initial: float     # mu_s at rest time 0
     static_limit: float       # mu_s at infinite rest time
@@ -241,6 +242,6 @@ PARAMETER_FIELDS, SEGMENT_FIELDS = names_of(Parameters), names_of(Segment)
 STATE_PLACES = places_of(State)
 
 # where the numbers of `pack` stand
-(MASS, STIFFNESS, DAMPING, NORMAL, COMPLIANT, CONTACT_STIFFNESS, CONTACT_DAMPING, _, STATIC_LAW, STATIC_INITIAL,
- STATIC_LIMIT, STATIC_TAU, STATIC_EXPONENT, BRANCHES, END_SLOPE, SEGMENT_COUNT, TABLE) = range(17)
+(MASS, STIFFNESS, DAMPING, NORMAL, COMPLIANT, CONTACT_STIFFNESS, CONTACT_DAMPING, _, _, STATIC_LAW, STATIC_INITIAL,
+ STATIC_LIMIT, STATIC_TAU, STATIC_EXPONENT, BRANCHES, END_SLOPE, SEGMENT_COUNT, TABLE) = range(18)
 SEGMENT_SIZE = len(SEGMENT_FIELDS)

@@ -21,12 +21,14 @@ class RigidContact:
 class CompliantContact:
     """Tangential contact spring c_c `stiffness` (N/m) and damper h_c `damping` (N s/m), in stick only (Fig. 8).
 
-    A stick begins with the deflection that goes on with the friction force, or `undeflected`.
+    A stick begins with the deflection that goes on with the friction force, or `undeflected`.  It ends where the force
+    of the contact reaches the static limit, or F_d + F_e: `judges_drive`.
     """
 
     stiffness: float
     damping: float
     undeflected: bool = False
+    judges_drive: bool = False
 
     def __post_init__(self) -> None:
         ranges.CONTACT_STIFFNESS.check_meaning('contact.stiffness', self.stiffness, 'N/m',
@@ -123,6 +125,7 @@ def pack(axis: Axis) -> Sequence[float]:
     return [axis.mass, axis.drive_stiffness, axis.drive_damping, axis.normal_force,
             float(contact is not None), contact.stiffness if contact else 0.0, contact.damping if contact else 0.0,
             0.0 if contact is not None and contact.undeflected else 1.0,
+            float(contact is not None and contact.judges_drive),
             float(static.kind), static.initial, static.limit, static.time_constant, static.exponent,
             float(excess is not None), kinetic.end_slope, float(len(breakpoints)),
             *(number for breakpoint in breakpoints for number in breakpoint)]

@@ -20,7 +20,6 @@ from .motion import (
     friction_force,
     friction_line,
     has_branches,
-    is_rigid_stick,
     kinetic_at_rest,
     segment_above,
     segment_below,
@@ -46,6 +45,18 @@ _TIE = 1e-15   # of the friction force: a closed-form acceleration smaller than 
 def applied_force(p: Parameters, s: State) -> float:
     """Return F_d + F_e at the segment start."""
     return drive_force(p, s.spring, s.inputs.v, s.velocity) + s.inputs.f
+
+
+@inlined
+def holds_by_drive(p: Parameters) -> bool:
+    """Whether F_d + F_e is what the static limit holds: in a rigid contact, and where a compliant one is so judged."""
+    return p.compliant == 0.0 or p.judges_drive != 0.0
+
+
+@inlined
+def stick_force(p: Parameters, s: State) -> float:
+    """Return the force in stick that ends it at the static limit."""
+    return applied_force(p, s) if holds_by_drive(p) else contact_force(p, s.deflection, s.velocity)
 
 
 @inlined
@@ -142,7 +153,7 @@ def break_away(p: Parameters, s: State, direction: float, limit: float, margin: 
     s.excess = 0.0
     s.direction = direction
     tolerance = force_rounding(p, s, limit)
-    if p.compliant != 0.0:
+    if not holds_by_drive(p):
         margin += direction * p.mass * s.acceleration
         tolerance = _TIE * p.normal_force * limit
     residual = lower = margin + p.normal_force * (limit - coefficient)
@@ -178,7 +189,7 @@ def arrest(p: Parameters, s: State, events: Events, row: int) -> None:
     force = applied_force(p, s)
     limit = static_limit(p, 0.0)
     margin = abs(force) - p.normal_force * limit
-    if p.compliant == 0.0 and margin > force_rounding(p, s, limit):
+    if holds_by_drive(p) and margin > force_rounding(p, s, limit):
         direction = 1.0 if force > 0.0 else -1.0
         write_event(p, s, events, row, REVERSE, direction, friction, limit)
         break_away(p, s, direction, limit, margin)
@@ -191,7 +202,7 @@ def arrest(p: Parameters, s: State, events: Events, row: int) -> None:
 @inlined
 def release(p: Parameters, s: State, events: Events, row: int) -> None:
     """Begin a slip from stick, where |F| has reached N mu_s(t⁻)."""
-    force = applied_force(p, s) if is_rigid_stick(p, s) else contact_force(p, s.deflection, s.velocity)
+    force = stick_force(p, s)
     limit = static_limit(p, s.rest)
     direction = _direction_out(p, s, force)
     margin = abs(force) - p.normal_force * limit
@@ -314,11 +325,9 @@ def apply_inputs(p: Parameters, s: State, events: Events, row: int) -> bool:
 
 @inlined
 def _press_stick(p: Parameters, s: State, events: Events, row: int) -> bool:
+    force = stick_force(p, s)
     if p.compliant != 0.0:
-        force = contact_force(p, s.deflection, s.velocity)
-        s.acceleration = (applied_force(p, s) - force) / p.mass
-    else:
-        force = applied_force(p, s)
+        s.acceleration = (applied_force(p, s) - contact_force(p, s.deflection, s.velocity)) / p.mass
     if abs(force) <= p.normal_force * p.static_initial:
         return False
     limit = static_limit(p, s.rest)

@@ -268,7 +268,7 @@ class _Automaton:
     def _hide_short_coast(self, static: mpf) -> None:
         """Mark a coast that exists only by 1e-15 of the force and ends by accelerating."""
         slip = self._slip()
-        if slip.phase != COAST or self.axis.contact != 'compliant':
+        if slip.phase != COAST or self.axis.by_drive:
             return
         gap = self.physics.surplus(slip.direction, self.state) - self.physics.band(
             slip.excess, abs(self.state.velocity)
@@ -280,12 +280,12 @@ class _Automaton:
             self.mode = replace(slip, silent=True)
 
     def _arrest(self) -> None:
-        """End a slip at ẋ = 0: reverse at once (rigid contact, |F| > N mu_s(0)) or stick."""
+        """End a slip at ẋ = 0: reverse at once (|F_d + F_e| > N mu_s(0), where that is judged) or stick."""
         sigma = self._slip().direction
         self.state = self.state._replace(velocity=mpf(0))
         static = self.axis.static.value(mpf(0))
         friction = sigma * self.axis.normal * self.axis.kinetic.values[0]
-        if self.axis.contact == 'rigid' and self._pulled_back(sigma, static):
+        if self.axis.by_drive and self._pulled_back(sigma, static):
             self._enter_slip(-sigma, self.physics.excess_at(static, mpf(0)))
             self._emit('reverse', -sigma, friction)
             return

@@ -57,9 +57,9 @@ class Physics:
         return net
 
     def stick_force_series(self, state: State, series: Expansion) -> Series:
-        """Contact force as a power series: c_c d + h_c u, or F_d + F_e when the contact is rigid."""
+        """Force that ends a rest as a power series: c_c d + h_c u, or F_d + F_e when that is judged (rigid: always)."""
         a = self.axis
-        if a.contact == 'rigid':
+        if a.by_drive:
             return self.net_series(state, series)
         force = combine((a.contact_stiffness, series.travel), (a.contact_damping, series.velocity))
         force[0] += a.contact_stiffness * state.deflection

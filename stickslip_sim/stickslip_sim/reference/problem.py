@@ -62,6 +62,7 @@ class Problem:
     contact_stiffness: mpf
     contact_damping: mpf
     undeflected: bool
+    by_drive: bool
     static: StaticLaw
     kinetic: Table
     excess: Table | None
@@ -101,6 +102,7 @@ def problem(axis: product.Axis, initial: product.InitialState, drive: profiles.I
         contact_stiffness=mpf(contact.stiffness if contact else 0.0),
         contact_damping=mpf(contact.damping if contact else 0.0),
         undeflected=contact is not None and contact.undeflected,
+        by_drive=contact is None or contact.judges_drive,
         static=StaticLaw(
             static.kind.name.lower(),
             mpf(static.initial),

@@ -105,10 +105,10 @@ def _section(values: Mapping[str, Any], section: str) -> dict[str, Any]:
 
 def _axis(values: Mapping[str, Any]) -> Axis:
     contact = _section(values, 'contact')
-    model, arrest = contact.pop('model'), contact.pop('arrest', None)
-    axis = Axis(**_section(values, 'axis'), friction=_friction(values),
-                contact=CompliantContact(**contact, undeflected=arrest == 'undeflected')
-                if model == 'compliant' else RigidContact())
+    model, arrest, judged = (contact.pop(name, None) for name in ('model', 'arrest', 'break_away'))
+    compliant = model == 'compliant' and CompliantContact(**contact, undeflected=arrest == 'undeflected',
+                                                          judges_drive=judged == 'drive_force')
+    axis = Axis(**_section(values, 'axis'), friction=_friction(values), contact=compliant or RigidContact())
     return with_friction_scaled(axis, values.get('friction.scale', 1.0))
 
 

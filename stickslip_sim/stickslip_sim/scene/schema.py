@@ -57,6 +57,9 @@ PARAMETERS: tuple[Parameter, ...] = (
     Parameter('contact.arrest', 'string', None, '', 'deflection of the contact as a stick begins (docs/paper.md): such'
               ' that the friction force is continuous; or undeflected, whereby it drops to 0; left out: continuous',
               choices=('continuous', 'undeflected'), when=_COMPLIANT),
+    Parameter('contact.break_away', 'string', None, '', 'force whose size ends a stick at N mu_s (docs/paper.md):'
+              ' contact_force, F_c; or drive_force, F_d + F_e, which differs while the contact rings; left out:'
+              ' contact_force', choices=('contact_force', 'drive_force'), when=_COMPLIANT),
 
     choice('friction.static.law', 'constant', 'growth of the static coefficient mu_s with the rest time', _LAWS),
     number('friction.static.initial', 0.0, '', 'mu_s at zero rest time', within=ranges.COEFFICIENT, live=True),

@@ -24,6 +24,7 @@ from tests.support.verify_tool import verified
 
 CLOSURES: Mapping[str, Mapping[str, object]] = {   # of a scene
     'undeflected': {'contact.arrest': 'undeflected'},
+    'drive_force': {'contact.break_away': 'drive_force'},
 }
 FEED, SHORT = 0.002, 2.0   # m/s, s
 SINES = Sinusoid(0.003, 3.0, 0.4), Sinusoid(150.0, 41.0, 0.0)
@@ -31,16 +32,16 @@ SINES = Sinusoid(0.003, 3.0, 0.4), Sinusoid(150.0, 41.0, 0.0)
 
 def closed(axis: Axis, closure: str) -> Axis:
     """Return an axis with another closure."""
+    assert isinstance(axis.contact, CompliantContact)
     if closure == 'undeflected':
-        assert isinstance(axis.contact, CompliantContact)
         return replace(axis, contact=replace(axis.contact, undeflected=True))
-    raise ValueError(closure)
+    return replace(axis, contact=replace(axis.contact, judges_drive=True))
 
 
 def random_problem(closure: str, seed: int) -> tuple[Axis, InputProfile, InputProfile]:
     rng = random.Random(seed)
     axis = random_axis(rng)
-    while closure in ('undeflected',) and not isinstance(axis.contact, CompliantContact):
+    while not isinstance(axis.contact, CompliantContact):
         axis = random_axis(rng)
     return closed(axis, closure), *random_profiles(rng)
 
@@ -130,3 +131,17 @@ def test_an_undeflected_contact_begins_without_a_force_and_gains_no_energy() -> 
     left = 0.5 * axis.normal_force * 0.24 * axis.normal_force * 0.24 / 5e6   # of the break-away, but for its damper
     assert energy.contact_exchange == pytest.approx(-left, rel=0.1)
     assert not math.isclose(first.friction_force, 0.0)   # as it was just before
+
+
+@pytest.mark.parametrize('sines', [(), SINES[1:]])
+def test_a_break_away_judged_by_the_drive_is_where_its_force_meets_the_limit(sines: tuple[Sinusoid, ...]) -> None:
+    force = replace(constant(0.0), sinusoids=sines)
+    axis = closed(paper_axis(COMPLIANT), 'drive_force')
+    released = [event for event in run_events(axis, 5.0 * FEED, SHORT, force) if event.kind == EventKind.BREAKAWAY]
+    assert len(released) > 5
+    for event in released:
+        pull = event.drive_force + force.value_at(event.time)
+        assert pull == pytest.approx(event.static_coefficient * axis.normal_force, rel=1e-12)
+    by_contact = [event.time for event in run_events(paper_axis(COMPLIANT), 5.0 * FEED, SHORT, force)
+                  if event.kind == EventKind.BREAKAWAY]
+    assert [event.time for event in released] != pytest.approx(by_contact, abs=1e-6)

@@ -22,7 +22,7 @@ from ...axis.motion import (
     segment_above,
     static_limit,
 )
-from ...axis.transitions import ACCELERATE, ARREST, BREAKAWAY, COAST, DECELERATE, KNOT
+from ...axis.transitions import ACCELERATE, ARREST, BREAKAWAY, COAST, DECELERATE, KNOT, holds_by_drive
 from ...core.input_profile import InputProfile
 from ...linear.waves import TURN, phase_at
 
@@ -115,7 +115,7 @@ class ModeMotion:
         self._spring, self._u, self._deflection = s.spring, s.velocity, s.deflection
         self._mode, self._direction, self._rest = s.mode, s.direction, s.rest
         self._excess, self._residual, self._segment = s.excess, s.residual, int(s.segment)
-        self._stands = is_rigid_stick(p, s)
+        self._stands, self._by_drive = is_rigid_stick(p, s), holds_by_drive(p)
         self._line = friction_line(p, self._segment, 0.0)
 
     @property
@@ -189,7 +189,7 @@ class ModeMotion:
         return self.load.at(t) * self._excess * psi
 
     def _hold(self, t: float, state: Sequence[float]) -> float:
-        force = self._applied(t, *state) if self._stands else self._contact_force(*state)
+        force = self._applied(t, *state) if self._by_drive else self._contact_force(*state)
         return self.load.at(t) * static_limit(self._p, self._rest + t) - abs(force)
 
     def _below_upper(self, t: float, state: Sequence[float]) -> float:

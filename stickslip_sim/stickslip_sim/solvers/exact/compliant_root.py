@@ -9,7 +9,7 @@ from ...axis.motion import static_limit, travel, travel_at
 from ...core.hot_path import compiled, inlined
 from ...linear.oscillator import Oscillator, amplitude, short_integrals
 from ...linear.root_steps import EPSILON, halley, halley_settles
-from .contact_force import ContactForce, ContactMotion
+from .contact_force import ContactForce, ContactMotion, judged_force, judged_part
 from .static_guards import STEPS, law
 
 _DIRECT_STEPS = 8
@@ -68,11 +68,14 @@ def _guard_at(p: Parameters, s: State, osc: Oscillator, t: float, side: float) -
     else:
         y, u, a = travel(p, s, t)
     jerk = s.jerk + s.snap * t + osc.omega2 * (s.velocity - u) - 2.0 * osc.gamma * a
-    stiffness, damping = p.contact_stiffness, p.contact_damping
+    force, rate = judged_force(p, s, t, y, u, a)
+    stiffness, damping = judged_part(p)
+    second_rate = stiffness * a + damping * jerk
+    if p.judges_drive != 0.0:
+        second_rate += p.stiffness * s.inputs.v_rate
     limit, growth, curvature = law(p, s.rest + t)
-    return (p.normal_force * limit - side * (stiffness * (s.deflection + y) + damping * u),
-            p.normal_force * growth - side * (stiffness * u + damping * a),
-            -p.normal_force * curvature - side * (stiffness * a + damping * jerk))
+    return (p.normal_force * limit - side * force, p.normal_force * growth - side * rate,
+            -p.normal_force * curvature - side * second_rate)
 
 
 @compiled

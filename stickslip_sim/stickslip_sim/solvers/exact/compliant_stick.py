@@ -1,8 +1,9 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""When the contact force of a compliant stick reaches N mu_s(t⁻).
+"""When the force of a compliant stick reaches N mu_s(t⁻).
 
-F_c = P(t) + H(t): P is linear (quadratic under a ramp of the drive), H a decaying free motion with |H| <= A exp(−d t).
+It is F_c, or F_d + F_e where that is judged (`contact_force`), and P(t) + H(t): P is linear (quadratic under a ramp of
+the drive), H a decaying free motion with |H| <= A exp(−d t).
 
 1. Safe steps with a bound on the curvature that is left, from a contact that may sit on its limit when it begins,
    until the envelope of H leaves room between P and the limit.
@@ -50,7 +51,7 @@ _GO_ON, _IS_ROOT, _IN_BRACKET = 0.0, 1.0, 2.0
 def compliant_stick(p: Parameters, s: State, horizon: float) -> float:
     """Return when |F_c| reaches N mu_s, infinity when that is behind the horizon, or GAVE_UP."""
     osc = oscillator_of(s)
-    if horizon < TICK and _keeps_off(p, s, osc, horizon):
+    if horizon < TICK and p.judges_drive == 0.0 and _keeps_off(p, s, osc, horizon):
         return math.inf
     if p.normal_force * p.static_limit == 0.0:
         return 0.0 if moves(s) else math.inf
@@ -59,7 +60,8 @@ def compliant_stick(p: Parameters, s: State, horizon: float) -> float:
     if motion.rate == 0.0 and motion.second == 0.0 and rings_within(p, s, osc, motion, rounding):
         s.next.searched = math.inf
         return math.inf
-    rounding = min(rounding, contact_rounding(p, s, motion))
+    if p.judges_drive == 0.0:
+        rounding = min(rounding, contact_rounding(p, s, motion))
     may_leap = leaps_far = motion.second == 0.0 and is_concave(p)
     pace = math.sqrt(osc.omega2)
     t = 0.0

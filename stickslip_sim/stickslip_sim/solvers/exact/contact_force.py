@@ -1,11 +1,15 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The force of a compliant contact in stick, F_c = P(t) + H(t), see `compliant_stick`."""
+"""The force that ends a compliant stick, P(t) + H(t), see `compliant_stick`.
+
+It is F_c = c_c δ + h_c ẋ.  Where a stick is judged by the drive it is F_d + F_e = F_c + m ẍ; H is then −c y − h ẏ of
+the free motion y.
+"""
 
 from typing import NamedTuple
 
 from ...axis.layout import Parameters, State
-from ...axis.motion import static_limit, travel
+from ...axis.motion import drive_travel, static_limit, travel
 from ...core.hot_path import compiled, inlined
 from ...linear.oscillator import Oscillator, amplitude, impulse
 from ...linear.root_steps import EPSILON
@@ -48,8 +52,11 @@ def contact_motion(p: Parameters, s: State, osc: Oscillator) -> ContactMotion:
     force_rate = p.stiffness * s.inputs.v + p.damping * s.inputs.v_rate + s.inputs.f_rate
     y1 = force_rate / (p.stiffness + stiffness) - 2.0 * gamma * y2 / omega2
     y0 = (s.acceleration + 2.0 * gamma * (u - y1) - y2) / omega2
-    return ContactMotion(y0, u - y1, s.acceleration - y2, s.jerk - 2.0 * gamma * y2,
-                         stiffness * (s.deflection + y0) + damping * y1, stiffness * y1 + damping * y2, stiffness * y2)
+    steady = stiffness * (s.deflection + y0) + damping * y1
+    if p.judges_drive != 0.0:
+        steady += p.mass * y2
+    return ContactMotion(y0, u - y1, s.acceleration - y2, s.jerk - 2.0 * gamma * y2, steady,
+                         stiffness * y1 + damping * y2, stiffness * y2)
 
 
 @compiled
@@ -58,7 +65,7 @@ def contact_at(p: Parameters, osc: Oscillator, motion: ContactMotion, t: float) 
 
     Far over-damped, 2γ v and ω² y leave nothing of their difference; there the acceleration moves freely by itself.
     """
-    stiffness, damping = p.contact_stiffness, p.contact_damping
+    stiffness, damping = judged_part(p)
     gamma, omega2 = osc.gamma, osc.omega2
     y0, free_u, free_a, free_push, steady, rate, second = motion
     g, slope = impulse(osc, t)
@@ -79,8 +86,27 @@ def contact_at(p: Parameters, osc: Oscillator, motion: ContactMotion, t: float) 
 def force_at(p: Parameters, s: State, t: float) -> tuple[float, float]:
     """Return F_c and its rate at t, from the travel: P + H may cancel."""
     y, u, a = (0.0, s.velocity, s.acceleration) if t == 0.0 else travel(p, s, t)
+    return judged_force(p, s, t, y, u, a)
+
+
+@inlined
+def judged_part(p: Parameters) -> tuple[float, float]:
+    """Return what part of the force a deflection and a velocity are, N/m and N s/m."""
+    if p.judges_drive != 0.0:
+        return -p.stiffness, -p.damping
+    return p.contact_stiffness, p.contact_damping
+
+
+@inlined
+def judged_force(p: Parameters, s: State, t: float, y: float, u: float, a: float) -> tuple[float, float]:
+    """Return the force and its rate at t, after the travel y at the velocity u with the acceleration a."""
     stiffness, damping = p.contact_stiffness, p.contact_damping
-    return stiffness * (s.deflection + y) + damping * u, stiffness * u + damping * a
+    if p.judges_drive == 0.0:
+        return stiffness * (s.deflection + y) + damping * u, stiffness * u + damping * a
+    v = s.inputs.v + s.inputs.v_rate * t
+    held = p.stiffness * (s.spring + (drive_travel(s, t) - y)) + p.damping * (v - u)
+    return (held + (s.inputs.f + s.inputs.f_rate * t),
+            p.stiffness * (v - u) + p.damping * (s.inputs.v_rate - a) + s.inputs.f_rate)
 
 
 @inlined

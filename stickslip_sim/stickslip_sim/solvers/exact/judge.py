@@ -20,13 +20,12 @@ from ...axis.motion import (
     drive_force,
     drive_travel,
     friction_line,
-    is_rigid_stick,
     spring_after,
     static_limit,
     travel,
 )
 from ...axis.sinusoids import inputs_at
-from ...axis.transitions import ACCELERATE, COAST, band_of
+from ...axis.transitions import ACCELERATE, COAST, band_of, holds_by_drive
 from ...core.hot_path import compiled, inlined
 from .account import balance
 
@@ -74,7 +73,7 @@ def _holds(p: Parameters, s: State, t: float, spring: float, deflection: float, 
     held = drive_force(p, spring, v, u) + force
     top = p.normal_force * static_limit(p, rest)
     slack = ALLOWED * _forces(p, spring, v, u, force, top)
-    if not is_rigid_stick(p, s):   # what a stiff one does within the rounding of the time
+    if not holds_by_drive(p):   # what a stiff one does within the rounding of the time
         held = contact_force(p, deflection, u)
         slack += _TIME * t * (p.contact_stiffness * abs(u) + p.contact_damping * abs(a))
     return share * top - slack <= abs(held) <= top + slack

@@ -10,7 +10,7 @@ from ...axis.motion import STICK
 from ...axis.sinusoids import sinusoid_force, sinusoid_travel
 from ...core.hot_path import compiled
 from ...linear.oscillator import Oscillator, amplitude, integrals, short_integrals
-from .signals import GuardSignal, is_still
+from .signals import GuardSignal, inertia, is_still
 
 _ROUNDING = 8.0 * 2.220446049250313e-16
 
@@ -61,13 +61,17 @@ def _read_contact(p: Parameters, s: State, osc: Oscillator, signal: GuardSignal,
     free, free_rate = _free_motion(osc, signal.free, signal.free_rate, g, slope)
     size, decay = amplitude(osc, free, free_rate)
     reach, curvature = _curvature(osc, signal, t, g, slope)
-    ramp_size = abs(start) + abs(rate * t) + abs(second * t * t)
-    return Reading(
-        value=start + (rate + 0.5 * second * t) * t + stiffness * (y + more.y) + damping * (v + more.u),
-        rate=rate + second * t + stiffness * (v + more.u) + damping * (acc + more.a),
-        curvature=curvature, reach=reach, size=size, decay=decay,
-        noise=_ROUNDING * (ramp_size + stiffness * (abs(y) + more.size_y) + damping * (abs(v) + more.size_u)),
-        gained=0.0)
+    force = start + (rate + 0.5 * second * t) * t + stiffness * (y + more.y) + damping * (v + more.u)
+    force_rate = rate + second * t + stiffness * (v + more.u) + damping * (acc + more.a)
+    noise = abs(start) + abs(rate * t) + abs(second * t * t)
+    noise += stiffness * (abs(y) + more.size_y) + damping * (abs(v) + more.size_u)
+    mass = inertia(p)
+    if mass != 0.0:
+        force += mass * (acc + more.a)
+        force_rate += mass * (more.jerk - 2.0 * gamma * acc - omega2 * v)
+        noise += mass * (abs(acc) + more.size_a)
+    return Reading(value=force, rate=force_rate, curvature=curvature, reach=reach, size=size, decay=decay,
+                   noise=_ROUNDING * noise, gained=0.0)
 
 
 @compiled

@@ -18,7 +18,7 @@ from typing import NamedTuple
 from ...axis.layout import Parameters, State
 from ...axis.motion import ACCELERATING, COASTING, STICK
 from ...axis.transitions import applied_force
-from ...core.hot_path import compiled
+from ...core.hot_path import compiled, inlined
 from ...linear.oscillator import Oscillator
 from ...linear.waves import TURN
 
@@ -97,8 +97,15 @@ def _contact_signal(p: Parameters, s: State, osc: Oscillator) -> GuardSignal:
     y0 = (a + 2.0 * gamma * (u - y1) - y2) / omega2
     start = stiffness * (s.deflection + y0) + damping * y1
     rate, second = stiffness * y1 + damping * y2, stiffness * y2
-    a1, a2, _ = _acceleration_rates(p, s, osc)
-    swing, free, free_rate, curvature, z, z_rate, resonant, fastest, lag = _steady(p, s, osc, damping, stiffness)
+    a1, a2, a3 = _acceleration_rates(p, s, osc)
+    mass = inertia(p)
+    swing, free, free_rate, curvature, z, z_rate, resonant, fastest, lag = _steady(p, s, osc, damping, stiffness, mass)
+    if mass != 0.0:
+        start += mass * y2
+        free += mass * a
+        free_rate += mass * a1
+        z += mass * a2
+        z_rate += mass * a3
     mean = start + stiffness * lag / omega2
     free += stiffness * s.deflection + damping * u - mean
     free_rate += stiffness * u + damping * a - rate
@@ -113,10 +120,16 @@ def _contact_signal(p: Parameters, s: State, osc: Oscillator) -> GuardSignal:
 def _slip_signal(p: Parameters, s: State, osc: Oscillator) -> GuardSignal:
     sense = s.direction if s.mode == ACCELERATING else -s.direction
     _, a2, a3 = _acceleration_rates(p, s, osc)
-    _, _, _, curvature, z, z_rate, resonant, fastest, _ = _steady(p, s, osc, 0.0, -1.0)
+    _, _, _, curvature, z, z_rate, resonant, fastest, _ = _steady(p, s, osc, 0.0, -1.0, 0.0)
     return GuardSignal(sense=sense, start=0.0, rate=0.0, second=0.0, y0=0.0, free_u=0.0, mean=0.0, amplitude=math.inf,
                        free=0.0, free_rate=0.0, z=z + a2, z_rate=z_rate + a3, curvature=curvature, resonant=resonant,
                        fastest=fastest)
+
+
+@inlined
+def inertia(p: Parameters) -> float:
+    """Return what the acceleration of a compliant stick adds to the force that ends it, kg."""
+    return p.mass if p.judges_drive != 0.0 else 0.0
 
 
 @compiled
@@ -134,12 +147,13 @@ def _acceleration_rates(p: Parameters, s: State, osc: Oscillator) -> tuple[float
 
 
 @compiled
-def _steady(p: Parameters, s: State, osc: Oscillator, damping: float, stiffness: float
+def _steady(p: Parameters, s: State, osc: Oscillator, damping: float, stiffness: float, mass: float
            ) -> tuple[float, float, float, float, float, float, float, float, float]:
     """Return the sums over the sinusoids of the steady answer X = B W/(ω² − w² + 2iγw) and its rates.
 
-    W = damping − i stiffness/w for a contact; the acceleration of a slip (stiffness −1, no damping) has W = i w.  They
-    are |X|, −Im X, −(Im X)′; off resonance w²|X|, −(Im X)″, −(Im X)‴, else the forcing w²|B W|; the highest w; Re B/w.
+    W = damping − i stiffness/w + i mass w for a contact; the acceleration of a slip (stiffness −1, no damping) has
+    W = i w.  They are |X|, −Im X, −(Im X)′; off resonance w²|X|, −(Im X)″, −(Im X)‴, else the forcing w²|B W|; the
+    highest w; Re B/w.
     """
     gamma, omega2 = osc.gamma, osc.omega2
     swing, free, free_rate, curvature, z, z_rate = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
@@ -147,7 +161,7 @@ def _steady(p: Parameters, s: State, osc: Oscillator, damping: float, stiffness:
     for k in range(int(s.sinusoid_count)):
         w = TURN * s.sinusoids[k].frequency
         b_re, b_im = s.sinusoids[k].force_rate_re / p.mass, s.sinusoids[k].force_rate_im / p.mass
-        turned = w if stiffness < 0.0 else -stiffness / w
+        turned = w if stiffness < 0.0 else mass * w - stiffness / w
         re, im = b_re * damping - b_im * turned, b_re * turned + b_im * damping
         d_re, d_im = omega2 - w * w, 2.0 * gamma * w
         size = d_re * d_re + d_im * d_im

@@ -14,10 +14,8 @@ from ...axis.motion import (
     COASTING,
     DECELERATING,
     STICK,
-    contact_force,
     drive_force,
     friction_line,
-    is_rigid_stick,
     static_limit,
 )
 from ...axis.rows import Events, SampleRow, Sinusoids
@@ -29,6 +27,7 @@ from ...axis.transitions import (
     arrest,
     force_rounding,
     release,
+    stick_force,
     write_event,
 )
 from ...core.hot_path import compiled
@@ -176,12 +175,12 @@ def _look(p: Parameters, s: State, events: Events, row: int) -> int:
 @compiled
 def _look_at_stick(p: Parameters, s: State, events: Events, row: int) -> int:
     applied = applied_force(p, s)
-    force = applied if is_rigid_stick(p, s) else contact_force(p, s.deflection, s.velocity)
+    force = stick_force(p, s)
     limit = static_limit(p, s.rest)
     margin = abs(force) - p.normal_force * limit
     if margin <= 0.0 or margin <= force_rounding(p, s, limit):
         return row
-    s.acceleration = (applied - force) / p.mass
+    s.acceleration = (applied - friction_at(p, s, applied, s.velocity, s.deflection)) / p.mass
     release(p, s, events, row)
     return row + 1
 
