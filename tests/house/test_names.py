@@ -23,7 +23,7 @@ SAME_NAMES = {
     'choose_slip': RIVAL, 'static_coefficient': RIVAL, 'step': RIVAL, 'start': RIVAL,
     'sample': JUDGE,
     'advise': VERB, 'critical': VERB, 'simulate': f'{VERB}; the judge has it too', 'sweep': VERB,
-    'uncertainty': VERB, 'verify': VERB,
+    'identify': VERB, 'uncertainty': VERB, 'verify': VERB,
     'check': 'the command, and the check of a fault as given',
     'main': 'the start of an executable',
     'run': 'the run of the tool; of a rival; of the judge',

@@ -30,6 +30,7 @@ from .critical import critical
 from .export import export
 from .extremes import extremes
 from .friction import friction
+from .identify import identify
 from .import_ import import_
 from .map import map_
 from .plot import plot
@@ -45,7 +46,7 @@ _SECTIONS: dict[str, tuple[click.Command, ...]] = {   # each verb by what a read
     'Look': (plot, compare, export),
     'Judge': (check, verify),
     'Study': (critical, sweep, map_, uncertainty),
-    'Identify': (friction,),
+    'Identify': (friction, identify),
     'Measure the engine': (advise, bench, extremes),
 }
 _INTERRUPTED = 130

@@ -49,7 +49,7 @@ def workers_of(workers: str | None, scheduler: str | None) -> AbstractContextMan
         if workers is not None:
             raise click.UsageError('--workers and --scheduler exclude each other.')
         return cluster(scheduler)
-    count = _processes('1' if workers is None else workers)
+    count = process_count('1' if workers is None else workers)
     return processes(count) if count > 1 else nullcontext()
 
 
@@ -83,7 +83,8 @@ def print_failed(study: 'Study', columns: 'Columns') -> None:
         print(f'{failed} of {study.count} points failed: the {engine} engine gave up; see column motion')
 
 
-def _processes(workers: str) -> int:
+def process_count(workers: str) -> int:
+    """Return how many processes `--workers` asks for; raises InputError."""
     from ..core.errors import InputError
     from ..study.resources import check_memory_for_workers
 

@@ -71,10 +71,13 @@ def _check_load(base: Scene, changes: Mapping[str, object], measured: float | No
                          f'measurement, or --set {_LOAD}={own} if the coefficient holds there too')
 
 
-def short_text(scene: Scene) -> str:
-    """Return a scene as a file without what it leaves at the default, but with its whole axis and friction."""
+def short_text(scene: Scene, remarks: Mapping[str, str] | None = None) -> str:
+    """Return a scene as a file without what it leaves at the default, but with its whole axis and friction.
+
+    `remarks` are put behind parameters, by their names, as comments.
+    """
     return scene_text({name: value for name, value in scene.values.items()
-                       if name.startswith(_ALWAYS) or value != BY_NAME[name].default})
+                       if name.startswith(_ALWAYS) or value != BY_NAME[name].default}, remarks)
 
 
 def _rounded(value: object) -> object:

@@ -13,8 +13,11 @@ from .schema import PARAMETERS
 _WHOLE = re.compile(r'(?<![.\d])(\d+)(?=e)')   # of a number without a dot
 
 
-def scene_text(values: Mapping[str, object]) -> str:
-    """Return effective values as a scene file, in the order of the schema; equal values give equal text."""
+def scene_text(values: Mapping[str, object], remarks: Mapping[str, str] | None = None) -> str:
+    """Return effective values as a scene file, in the order of the schema; equal values give equal text.
+
+    `remarks` are put behind parameters, by their names, as comments.
+    """
     lines = ['/**:', '  ros__parameters:']
     inside: list[str] = []
     for entry in PARAMETERS:
@@ -25,7 +28,9 @@ def scene_text(values: Mapping[str, object]) -> str:
             if inside[:depth + 1] != sections[:depth + 1]:
                 lines.append(f'{_indent(depth)}{section}:')
         inside = sections
-        lines.append(f'{_indent(len(sections))}{leaf}: {yaml_value(entry, values[entry.name])}')
+        remark = (remarks or {}).get(entry.name)
+        lines.append(f'{_indent(len(sections))}{leaf}: {yaml_value(entry, values[entry.name])}'
+                     + (f'    # {remark}' if remark else ''))
     return '\n'.join(lines) + '\n'
 
 

@@ -1,0 +1,48 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""`stickslip identify`: from a measured run to the scene that reproduces it, and how well that is known."""
+
+from pathlib import Path
+
+import click
+
+from . import completion
+from .files import check_new_folder, new_folder
+from .run_or_scene import recorded_run
+from .scene_changes import SceneChanges, scene_changes
+from .sweeping import process_count
+
+
+@click.command(short_help='Find the parameters of an axis from a measured run.')
+@click.argument('run', metavar='RUN', shell_complete=completion.complete_folders)
+@click.option('--scene', required=True, metavar='START', shell_complete=completion.complete_scenes,
+              help='The scene to begin with: a file, or a shipped one.')
+@click.option('--free', required=True, metavar='FILE.yaml', help='What is sought, and in which ranges.')
+@click.option('--out', required=True, metavar='FOLDER', help='New folder for the results.')
+@click.option('--workers', metavar='N|all', help='Processes to use [default: 1].')
+@scene_changes('Change a parameter of the scene to begin with.')
+def identify(run: str, scene: str, free: str, out: str, workers: str | None, changes: SceneChanges) -> None:
+    """Find from a measured RUN of an axis the scene that reproduces it, with intervals.
+
+    FOLDER gets identified.yaml, a scene; posterior.yaml, what is left open of it, for uncertainty --with; report.html
+    and report.json.  Exit with 3 when the model does not fit the run; the report shows where.
+    """
+    check_new_folder('--out', out)
+    _ = process_count('1' if workers is None else workers)
+    from ..core.errors import VerdictError
+    from ..identify.fit import identify as find
+    from ..identify.result_folder import PAGE, write_results
+    from .identify_lines import result_lines
+    from .progress import progress_bar
+
+    start = changes.load(scene)
+    measured = recorded_run(run)
+    with progress_bar('identifying') as progress:
+        found = find(measured, start, free, progress=progress and (lambda stage, share: progress(share)))
+    with new_folder('--out', out) as folder:
+        write_results(measured, found, scene, folder)
+    print('\n'.join(result_lines(found, measured.name)))
+    print(f'written: {Path(out) / PAGE}')
+    if not found.fits:
+        raise VerdictError(f'the model does not fit {measured.name}: {found.misfits[0].statement}; {Path(out) / PAGE} '
+                           'shows where')

@@ -1,0 +1,64 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""What an identification found, as lines for people."""
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ..identify.identification import Identification
+
+_NAME, _NUMBER = 36, 14
+_MISFITS = 4         # that are printed
+_AS_GOOD = 2.0       # of the criterion: laws nearer than that are as good
+_ELSEWHERE = 1.01    # times the least sum of squares: a search that ended above it ended elsewhere
+
+
+def result_lines(found: 'Identification', run: str) -> Iterator[str]:
+    """Yield what was found: the parameters, what they cannot tell, laws and starts."""
+    channels = ' and '.join(one.name for one in found.channels)
+    yield (f'{run}: {found.scene.name} from {channels}, {found.n_residuals} residuals, {found.runs} simulations in '
+           f'{found.seconds:.3g} s')
+    for note in found.notes:
+        yield f'  note: {note}'
+    yield f'{"":{_NAME}}{"start":>{_NUMBER}}{"found":>{_NUMBER}}   95 % interval'
+    yield from _estimates(found)
+    for together in found.combinations:
+        yield f'not separated: {together.statement}'
+    yield from _laws(found)
+    yield from _starts(found)
+    yield 'the model fits: no test of the residuals rejects it' if found.fits else 'THE MODEL DOES NOT FIT this run:'
+    for misfit in found.misfits[:_MISFITS]:
+        yield f'  {misfit.statement}'
+    if len(found.misfits) > _MISFITS:
+        yield f'  and {len(found.misfits) - _MISFITS} more, in report.html'
+
+
+def _estimates(found: 'Identification') -> Iterator[str]:
+    from ..identify.identification import FOUND
+    from ..identify.identified_scene import interval_words, number_words
+
+    for one in found.estimates:
+        kind = '' if one.kind == FOUND else f', {one.kind}'
+        yield (f'{one.name:{_NAME}}{number_words(one.start, one.unit):>{_NUMBER}}'
+               f'{number_words(one.value, one.unit):>{_NUMBER}}   {interval_words(one)}{kind}')
+
+
+def _laws(found: 'Identification') -> Iterator[str]:
+    """Yield which laws the criterion prefers, and which are as good."""
+    if len(found.laws) < 2:
+        return
+    best, *others = sorted(found.laws, key=lambda one: one.criterion)
+    as_good = [f'{one.static} with {one.kinetic}' for one in others if one.criterion - best.criterion < _AS_GOOD]
+    yield (f'laws by {found.criterion}: best is {best.static} with {best.kinetic}, '
+           + (f'as good {"; ".join(as_good)}' if as_good else
+              f'the next is {others[0].criterion - best.criterion:.3g} above'))
+
+
+def _starts(found: 'Identification') -> Iterator[str]:
+    """Yield how many searches ended elsewhere."""
+    best = min((one.cost for one in found.starts), default=0.0)
+    elsewhere = sum(one.cost > _ELSEWHERE * best for one in found.starts)
+    if elsewhere:
+        yield (f'{elsewhere} of {len(found.starts)} starts ended elsewhere, with a larger sum of squares: report.html '
+               'has them')

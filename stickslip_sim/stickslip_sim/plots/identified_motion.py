@@ -1,0 +1,157 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""A fitted motion over the measured one, and what is left: over time, and over the phase of the cycle."""
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from string import ascii_lowercase
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
+
+from .style import (
+    BLACK,
+    BLUE,
+    DOUBLE_COLUMN,
+    GREY,
+    JOURNAL,
+    ORANGE,
+    RED,
+    Numbers,
+    legend_outside,
+    letter,
+    save,
+    thinned,
+)
+
+_ROW = 1.7        # in
+_LEGEND = 0.5     # in
+_BINS = 50        # of the phase
+_FEWEST = 3       # readings in one of them
+_BUNDLE = 6000    # readings that are drawn one by one
+_SCALES = {'m': (1e3, 'mm'), 'm/s': (1e3, 'mm/s')}
+
+
+class FittedChannel(NamedTuple):
+    """A channel over `times` (s): measured and fitted numbers in `unit`, and the `resolution` of the sensor.
+
+    `phases` (n,) are shares of the cycle, NaN outside of one; `misfits` the times (from, to) where a test rejects it.
+    """
+
+    name: str
+    unit: str
+    times: Numbers
+    measured: Numbers
+    fitted: Numbers
+    resolution: float
+    phases: Numbers
+    misfits: Sequence[tuple[float, float]]
+
+    @property
+    def residuals(self) -> Numbers:
+        """Measured less fitted, in standard deviations of the sensor."""
+        return (self.measured - self.fitted) / self.resolution
+
+
+def plot_fit(channels: Sequence[FittedChannel], window: tuple[float, float], path: Path | str) -> None:
+    """Draw a row for each channel: the whole run, and a `window` of it (s); thin on top what was fitted."""
+    with _figure(len(channels)) as (figure, rows):
+        for panels, channel in zip(rows, channels):
+            _motion(panels[0], channel, (channel.times[0], channel.times[-1]))
+            _motion(panels[1], channel, window)
+            panels[0].set_ylabel(_label(channel.name, _SCALES.get(channel.unit, (1.0, channel.unit))[1]))
+            panels[0].axvspan(*window, color=GREY, alpha=0.15, linewidth=0.0)
+        _finish(figure, rows, ('time / s', 'time / s'), path)
+
+
+def plot_residuals(channels: Sequence[FittedChannel], slip_share: float, path: Path | str) -> None:
+    """Draw what is left of each channel, in standard deviations of its sensor: over time, and over the phase.
+
+    `slip_share` is the share of a cycle after which its slip has ended.
+    """
+    with _figure(len(channels)) as (figure, rows):
+        for panels, channel in zip(rows, channels):
+            _over_time(panels[0], channel)
+            _over_phase(panels[1], channel, slip_share)
+        _finish(figure, rows, ('time / s', 'phase of the cycle'), path)
+
+
+@contextmanager
+def _figure(count: int) -> Iterator[tuple[Figure, Sequence[Sequence[Axes]]]]:
+    """Yield a figure with two panels for each channel, in the style of a journal."""
+    with rc_context(JOURNAL):
+        figure = Figure(figsize=(DOUBLE_COLUMN, _ROW * count + _LEGEND),
+                        layout=ConstrainedLayoutEngine(w_pad=0.05, h_pad=0.05))
+        panels = figure.subplots(count, 2, squeeze=False, sharex='col', sharey='row', width_ratios=(3, 2))
+        yield figure, panels.tolist()
+
+
+def _finish(figure: Figure, rows: Sequence[Sequence[Axes]], labels: Sequence[str], path: Path | str) -> None:
+    for panel, label in zip(rows[-1], labels):
+        panel.set_xlabel(label)
+    for panel, name in zip((panel for row in rows for panel in row), ascii_lowercase):
+        letter(panel, name)
+    handles = {name: handle for row in rows for panel in row
+               for handle, name in zip(*panel.get_legend_handles_labels())}
+    legend_outside(figure, 'upper center', handles.values(), handles, ncols=4)
+    save(figure, path)
+
+
+def _motion(panel: Axes, channel: FittedChannel, window: tuple[float, float]) -> None:
+    scale, _ = _SCALES.get(channel.unit, (1.0, ''))
+    inside = (channel.times >= window[0]) & (channel.times <= window[1])
+    times = channel.times[inside]
+    panel.plot(*thinned(times, scale * channel.measured[inside]), color=GREY, linewidth=2.4, alpha=0.5,
+               label='measured')
+    panel.plot(*thinned(times, scale * channel.fitted[inside]), color=BLUE, linewidth=0.9, label='fitted')
+    panel.set_xlim(*window)
+
+
+def _over_time(panel: Axes, channel: FittedChannel) -> None:
+    _lines(panel)
+    panel.plot(*thinned(channel.times, channel.residuals), color=BLUE, linewidth=0.5, label='measured less fitted')
+    for begin, end in channel.misfits:
+        panel.axvspan(begin, end, color=RED, alpha=0.15, linewidth=0.0, label='a test rejects the model')
+    panel.set_ylabel(f'{channel.name.replace("_", " ")}\nresidual / σ')
+    panel.set_xlim(channel.times[0], channel.times[-1])
+
+
+def _over_phase(panel: Axes, channel: FittedChannel, slip_share: float) -> None:
+    _lines(panel)
+    known = np.flatnonzero(np.isfinite(channel.phases))
+    some = known[::max(1, len(known) // _BUNDLE)]
+    panel.plot(channel.phases[some], channel.residuals[some], '.', color=BLUE, markersize=1.2, alpha=0.4,
+               markeredgewidth=0.0)
+    places, means = _means(channel.phases[known], channel.residuals[known])
+    panel.plot(places, means, color=ORANGE, linewidth=1.4, label='its mean at this phase')
+    if 0.0 < slip_share < 1.0:
+        panel.axvline(slip_share, color=BLACK, linewidth=0.6, linestyle=(0, (2.0, 2.0)))
+        panel.annotate('slip', (slip_share, 1.0), xycoords=('data', 'axes fraction'), xytext=(-2.0, -8.0),
+                       textcoords='offset points', ha='right', fontsize=6.5, color=GREY)
+        panel.annotate('stick', (slip_share, 1.0), xycoords=('data', 'axes fraction'), xytext=(2.0, -8.0),
+                       textcoords='offset points', ha='left', fontsize=6.5, color=GREY)
+    if not len(known):
+        panel.text(0.5, 0.5, 'no complete cycle', transform=panel.transAxes, ha='center', va='center')
+    panel.set_xlim(0.0, 1.0)
+
+
+def _means(phases: Numbers, values: Numbers) -> tuple[Numbers, Numbers]:
+    """Return the mean of the values in each bin of the phase that has enough of them."""
+    bins = np.minimum((phases * _BINS).astype(np.int64), _BINS - 1)
+    full = [k for k in range(_BINS) if (bins == k).sum() >= _FEWEST]
+    return (np.array(full) + 0.5) / _BINS, np.array([values[bins == k].mean() for k in full], dtype=np.float64)
+
+
+def _lines(panel: Axes) -> None:
+    panel.axhline(0.0, color=BLACK, linewidth=0.6)
+    panel.axhspan(-2.0, 2.0, color=GREY, alpha=0.15, linewidth=0.0, label='±2 σ of the sensor')
+
+
+def _label(name: str, unit: str) -> str:
+    words = name.replace('_', ' ')
+    return f'{words} / ({unit})' if '/' in unit else f'{words} / {unit}'
