@@ -17,8 +17,8 @@ floor down; each imports only from the floors below it:
     advise       which solver and which parts of a scene are worth their time
     check        a run against limits
     verify       a recorded run again, bit by bit, or as something else had been
+    identify     from measurements to a scene: friction curves, and runs from which all parameters are fitted
     study        sweeps, maps, critical values, uncertainty
-    identify     from measurements to a scene: friction curves and the laws that fit them
     bench        this solver beside its rivals, which are in bench/peers
     inputs       what comes from outside: profiles and measured numbers from files, in their units
     recording    runs as bags: written, read back, played
@@ -53,6 +53,7 @@ if TYPE_CHECKING:
         VerdictError,
     )
     from .core.types import Event, EventKind, Instant, Mode, Sample
+    from .identify.fit import identify
     from .inputs import load_scene
     from .recording import read_run
     from .runs import Run, simulate, simulate_events
@@ -66,8 +67,8 @@ if TYPE_CHECKING:
 __all__ = [
     'Cycle', 'Event', 'EventKind', 'InputError', 'Instant', 'Mode', 'RecordingError', 'RecordingWarning', 'Run',
     'Sample', 'Scene', 'Simulator', 'SolverError', 'StickslipError', 'Summary', 'UnsoundError', 'VerdictError',
-    '__version__', 'critical', 'error_estimate', 'load_scene', 'read_run', 'run_batch', 'scene_names', 'simulate',
-    'simulate_events', 'sweep', 'uncertainty',
+    '__version__', 'critical', 'error_estimate', 'identify', 'load_scene', 'read_run', 'run_batch', 'scene_names',
+    'simulate', 'simulate_events', 'sweep', 'uncertainty',
 ]
 
 if not TYPE_CHECKING:   # a type checker knows the names from above, and finds a misspelt one
@@ -75,6 +76,7 @@ if not TYPE_CHECKING:   # a type checker knows the names from above, and finds a
         '.core.errors': ('InputError', 'RecordingError', 'RecordingWarning', 'SolverError', 'StickslipError',
                          'UnsoundError', 'VerdictError'),
         '.core.types': ('Event', 'EventKind', 'Instant', 'Mode', 'Sample'),
+        '.identify.fit': ('identify',),
         '.inputs': ('load_scene',),
         '.recording': ('read_run',),
         '.runs': ('Run', 'simulate', 'simulate_events'),

@@ -138,7 +138,7 @@ class Identification:
 
     `start` is the scene that was given, `scene` the one with the estimates in it; sensor offsets and scales are among
     the estimates alone.  `correlation` (k, k) is of the k estimates, in their order; NaN in rows that the data do not
-    determine.  `fits` tells whether no test rejects the model (`misfits` is empty).  `criterion` names the one that
+    determine.  `fits` says whether no test rejects the model (`misfits` is empty).  `criterion` names the one that
     compares `laws`, `cost` is the chi-square over `n_residuals`, `runs` how many simulations it took, `notes` what a
     user must know.
     """

@@ -6,7 +6,7 @@ import hashlib
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 from ..axis import Axis, CompliantContact, Friction, InitialState, RigidContact, check_start
 from ..core.errors import InputError
@@ -41,16 +41,21 @@ _EXCESS: dict[str, Callable[..., SmoothExcess]] = {'cosine': smooth.cosine, 'pow
 _BREAKPOINTS: dict[str, Callable[..., InputProfile]] = {'steps': steps, 'table': table}
 
 
+class Dynamics(NamedTuple):
+    """The part of a scene that decides the motion: axis, start, drive velocity (m/s), external force and load (N)."""
+
+    axis: Axis
+    initial: InitialState
+    drive: InputProfile
+    force: InputProfile
+    load: InputProfile | None
+
+
 def build_scene(given: Mapping[str, object], summary: str = '') -> Scene:
     """Return the scene of the values given by dotted name; raises InputError."""
     _check_read(given)
     values: dict[str, Any] = effective_values(given)
-    axis = _axis(values)
-    initial = InitialState(**_section(values, 'initial'))
-    load = _profile(values, 'normal_load', 'constant', 'rate', 'forces') if 'normal_load.course' in values else None
-    check_start(axis, initial, load.value_at(0.0) if load else 0.0)
-    if values['drive.course'] == 'position':
-        check_first_position('drive', values['drive.positions'][0], initial.position + initial.stretch)
+    axis, initial, drive, force, load = dynamics_of(values)
     if 'solver.method' not in values and (method := method_of(values)):
         values['solver.method'] = method
     solver = SolverSettings(**_section(values, 'solver'))
@@ -65,8 +70,8 @@ def build_scene(given: Mapping[str, object], summary: str = '') -> Scene:
         summary=summary or _summary(values),
         axis=axis,
         initial=initial,
-        drive=_profile(values, 'drive', 'velocity', 'acceleration', 'velocities'),
-        force=_profile(values, 'force', 'constant', 'rate', 'forces'),
+        drive=drive,
+        force=force,
         solver=solver,
         time=time_settings(values),
         command=CommandSettings(*(values[f'command.{name}'] for name in ('max_velocity', 'max_force', 'timeout'))),
@@ -79,6 +84,18 @@ def build_scene(given: Mapping[str, object], summary: str = '') -> Scene:
         hash=hashlib.sha256(text.encode()).hexdigest(),
         normal_load=load,
     )
+
+
+def dynamics_of(values: Mapping[str, Any]) -> Dynamics:
+    """Return what decides the motion, from effective values; raises InputError where they contradict each other."""
+    axis = _axis(values)
+    initial = InitialState(**_section(values, 'initial'))
+    load = _profile(values, 'normal_load', 'constant', 'rate', 'forces') if 'normal_load.course' in values else None
+    check_start(axis, initial, load.value_at(0.0) if load else 0.0)
+    if values['drive.course'] == 'position':
+        check_first_position('drive', values['drive.positions'][0], initial.position + initial.stretch)
+    return Dynamics(axis, initial, _profile(values, 'drive', 'velocity', 'acceleration', 'velocities'),
+                    _profile(values, 'force', 'constant', 'rate', 'forces'), load)
 
 
 def _check_read(given: Mapping[str, object]) -> None:

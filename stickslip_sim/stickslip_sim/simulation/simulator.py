@@ -46,7 +46,7 @@ class Simulator:
         check_start(axis, initial, load.value_at(0.0) if load else 0.0)
         self._inputs = LoadedInputs(drive, force, load) if load else Inputs(drive, force)
         self._load = load
-        self._solver_of: SolverOf = (lambda _: solver) if isinstance(solver, Solver) else solver
+        self._solver_of: SolverOf = solver if callable(solver) else lambda _: solver
         self._initial = initial
         self._time = Instant(0.0, 0.0)
         self._take_axis(axis)

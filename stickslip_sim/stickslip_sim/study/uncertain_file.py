@@ -10,7 +10,7 @@ correlations:
 friction.static.limit: {axis.normal_force: -0.9}
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
@@ -30,6 +30,9 @@ _LARGEST = 1e15    # as far as any parameter goes
 _LEAST_KEPT = 0.5   # of the probability: of a law cut further little is left
 
 
+ParameterOf = Callable[[str], tuple[Parameter, int | None]]
+
+
 class Uncertain(NamedTuple):
     """The distributions of a file, the seed of their sample, and how they are correlated (None: they are not)."""
 
@@ -38,15 +41,18 @@ class Uncertain(NamedTuple):
     correlations: Correlations | None = None
 
 
-def load_uncertain(path: str) -> Uncertain:
-    """Return the content of a file; raises InputError, whose text names the file."""
+def load_uncertain(path: str, find: ParameterOf = parameter_of) -> Uncertain:
+    """Return the content of a file, as `uncertain_of` does; raises InputError, whose text names the file."""
     text = read_text(Path(path), 'file of distributions')
     with named(path):
-        return uncertain_of(read_yaml(text))
+        return uncertain_of(read_yaml(text), find)
 
 
-def uncertain_of(document: object) -> Uncertain:
-    """Return the content of a document, as YAML gives it; raises InputError."""
+def uncertain_of(document: object, find: ParameterOf = parameter_of) -> Uncertain:
+    """Return the content of a document, as YAML gives it; raises InputError.
+
+    `find` returns the parameter of a name, and the index of an element: those of a scene, or others beside them.
+    """
     given = section('file', document, ('parameters', 'correlations', 'seed'), _PAGE)
     entries = given.get('parameters')
     if not isinstance(entries, Mapping) or not 1 <= len(entries) <= MOST_VARIATIONS:
@@ -54,13 +60,13 @@ def uncertain_of(document: object) -> Uncertain:
                          'for example axis.mass: {distribution: uniform, low: 300.0, high: 400.0}')
     seed = _SEED.checked(given.get('seed', _SEED.default))
     assert isinstance(seed, int)
-    distributions = tuple(_distribution(name, entry) for name, entry in entries.items())
+    distributions = tuple(_distribution(name, entry, find) for name, entry in entries.items())
     return Uncertain(distributions, seed, correlations_of([one.name for one in distributions],
                                                           given.get('correlations')))
 
 
-def _distribution(name: str, entry: object) -> Distribution:
-    parameter_of(name)
+def _distribution(name: str, entry: object, find: ParameterOf) -> Distribution:
+    parameter = find(name)
     word = entry.get('distribution') if isinstance(entry, Mapping) else entry
     if not isinstance(entry, Mapping) or not isinstance(word, str) or word not in LAWS:
         raise InputError(f'{name}.distribution', word, 'one of ' + ', '.join(LAWS),
@@ -71,7 +77,7 @@ def _distribution(name: str, entry: object) -> Distribution:
     numbers = tuple(_number(f'{name}.{key}', given.get(key)) for key in law.numbers)
     _check_rules(name, law, numbers)
     low, high = _ends(name, given.get('between'), law, numbers) if law.ends else (numbers[0], numbers[-1])
-    _check_ends(name, (low, high))
+    _check_ends(*parameter, (low, high))
     return _kept(Distribution(name, word, numbers, low, high))
 
 
@@ -96,9 +102,8 @@ def _ends(name: str, given: object, law: Law, numbers: tuple[float, ...]) -> tup
     return low, high
 
 
-def _check_ends(name: str, ends: tuple[float, float]) -> None:
+def _check_ends(entry: Parameter, index: int | None, ends: tuple[float, float]) -> None:
     """Raise InputError unless the parameter may have these values."""
-    entry, index = parameter_of(name)
     for end in ends:
         entry.checked(end if index is None else (end,))
 

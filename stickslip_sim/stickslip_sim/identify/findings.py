@@ -1,0 +1,135 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""What the best fit amounts to: estimates with intervals, channels, tests, combinations, slips."""
+
+import time
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..scene import Scene, changed
+from .certainty import QUANTILE, Certainty, certainty_of, combinations_of
+from .free_parameters import FreeParameter
+from .identification import (
+    AT_BOUND,
+    FOUND,
+    NOT_IDENTIFIABLE,
+    ChannelFit,
+    Estimate,
+    Identification,
+    LawFit,
+    SlipFit,
+    StartEnd,
+)
+from .problem import FitProblem
+from .residual_tests import correlation_length, misfits_of
+from .slip_features import rest_force, simulated_slip
+from .stages import Ended, effective_count
+
+Numbers = NDArray[np.float64]
+
+_SCORE = float(np.sqrt(QUANTILE))
+_AT_END = 1e-6       # of a range
+_UNSETTLED = 'the fit has not come to rest: the best point so far, whose intervals may be too narrow'
+CRITERION = 'BIC'
+
+
+def identification_of(problem: FitProblem, scene: Scene, ends: Sequence[Ended], began: float) -> Identification:
+    """Return what was found; `ends` are those of all starts, the best first, `began` when the work did, s."""
+    best = ends[0]
+    point = best.solution.point
+    whole = problem.stretches(0)
+    fitted = problem.fitted(point, whole)
+    assert fitted is not None
+    channels = _channels(problem, fitted)
+    count = len(problem.parameters)
+    information = best.solution.information
+    known = certainty_of(information, _inflation(problem, fitted), problem.parameters)
+    values = problem.values(point)
+    stretches = problem.stretches(1).parts
+    misfits = [misfit for k, channel in enumerate(problem.measurement.channels) for misfit in misfits_of(
+        channel, channel.values - fitted[k], problem.measurement.times, stretches)]
+    criterion = best.solution.cost + count * float(np.log(effective_count(problem)))
+    return Identification(
+        start=scene, scene=changed(scene, problem.model.changes(values)),
+        estimates=_estimates(problem, values, known), correlation=known.correlation, channels=channels,
+        misfits=tuple(misfits),
+        combinations=combinations_of(information - problem.information_beforehand(), problem.parameters),
+        starts=tuple(_start_end(problem, end, end is best) for end in ends),
+        laws=(LawFit(str(scene.values['friction.static.law']), str(scene.values['friction.kinetic.law']), criterion,
+                     count, best.solution.cost, True),),
+        slips=_slips(problem, values), criterion=CRITERION, cost=best.solution.cost,
+        n_residuals=len(whole.rows) * len(channels), runs=problem.model.runs, seconds=time.perf_counter() - began,
+        notes=(*problem.measurement.notes, *([] if best.solution.is_settled else [_UNSETTLED])))
+
+
+def _channels(problem: FitProblem, fitted: Sequence[Numbers]) -> tuple[ChannelFit, ...]:
+    measurement = problem.measurement
+    found = []
+    for k, channel in enumerate(measurement.channels):
+        length = correlation_length(channel.values - fitted[k], channel.weights)
+        found.append(ChannelFit(channel.name, channel.unit, measurement.times + measurement.shift, channel.values,
+                                fitted[k], channel.resolution, (length - 1.0) * measurement.period))
+    return tuple(found)
+
+
+def _inflation(problem: FitProblem, fitted: Sequence[Numbers]) -> float:
+    """Return the factor on the covariance: what residuals are larger than the noise, and go together, of the worst."""
+    factors = [1.0]
+    for k, channel in enumerate(problem.measurement.channels):
+        residuals = channel.values - fitted[k]
+        mean = float((channel.weights * residuals**2).sum() / channel.weights.sum()) / channel.resolution**2
+        length = correlation_length(residuals, channel.weights)
+        factors.append(mean * (length if length > _TOGETHER else 1.0))
+    return max(factors)
+
+
+_TOGETHER = 1.5   # samples: below, the correlation is that of chance
+
+
+def _estimates(problem: FitProblem, values: Numbers, known: Certainty) -> tuple[Estimate, ...]:
+    return tuple(_estimate(one, float(value), float(deviation), bool(is_known)) for one, value, deviation, is_known
+                 in zip(problem.parameters, values, known.deviations, known.known, strict=True))
+
+
+def _estimate(one: FreeParameter, value: float, deviation: float, is_known: bool) -> Estimate:
+    inner = one.inner(value)
+    ends = one.outer(inner - _SCORE * deviation), one.outer(inner + _SCORE * deviation)
+    margin = _AT_END * (one.inner(one.high) - one.inner(one.low))
+    at_end = min(inner - one.inner(one.low), one.inner(one.high) - inner) <= margin
+    own = deviation if one.logarithmic else deviation * (one.high - one.low)
+    kind = AT_BOUND if at_end else FOUND if is_known else NOT_IDENTIFIABLE
+    if kind == NOT_IDENTIFIABLE:
+        return Estimate(one.name, one.unit, value, one.start, one.low, one.high, one.logarithmic, own,
+                        (one.low, one.high), None, kind, 'the data do not determine it by itself')
+    return Estimate(one.name, one.unit, value, one.start, one.low, one.high, one.logarithmic, own, ends, None, kind,
+                    'fit of the whole run')
+
+
+def _start_end(problem: FitProblem, end: Ended, is_best: bool) -> StartEnd:
+    return StartEnd(tuple(problem.values(end.start).tolist()), tuple(problem.values(end.solution.point).tolist()),
+                    end.solution.cost, is_best)
+
+
+def _slips(problem: FitProblem, values: Numbers) -> tuple[SlipFit, ...]:
+    """Return each measured slip beside the one that the model does from the same rest on.
+
+    A slip begins without any speed, which no sensor sees: the measured one is taken to begin as long before half of its
+    way as the fitted one does.
+    """
+    dynamics = problem.model.dynamics(values)
+    assert dynamics is not None
+    found = []
+    for measured in problem.slips:
+        slip = simulated_slip(problem.model, dynamics, values, measured)
+        since = measured.rest_begin
+        if slip is None:
+            begin = measured.motion.begin
+            fitted, force = np.nan, np.nan
+        else:
+            begin, fitted = since + measured.slip.middle + slip.begin, since + slip.middle + slip.begin
+            force = slip.break_away
+        found.append(SlipFit(begin, fitted, begin - since, fitted - since,
+                             rest_force(problem.measurement, begin, since, begin), force))
+    return tuple(found)

@@ -1,0 +1,45 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""From a measured run to the scene that reproduces it, with how well each of its numbers is known."""
+
+import os
+import time
+from collections.abc import Mapping
+from pathlib import Path
+
+from ..recording import read_run
+from ..runs import Run
+from ..scene import SceneOrName, scene_of
+from .axis_model import AxisModel
+from .findings import identification_of
+from .free_parameters import free_parameters
+from .identification import Identification
+from .input_checks import check_data, check_parameters
+from .motions import motions_of, track_of
+from .problem import FitProblem
+from .readings import readings_of
+from .stages import Progress, best_fit
+
+
+def identify(run: Run | str | os.PathLike[str], start: SceneOrName, free: str | Path | Mapping[str, object], *,
+             resolutions: Mapping[str, float] | None = None, seed: int = 0, progress: Progress | None = None
+             ) -> Identification:
+    """Return the scene that reproduces a measured or recorded run, found from the scene `start`.
+
+    `free` is a file as `uncertainty --with` takes it, or its section of parameters, and names beside parameters of the
+    scene `sensor.CHANNEL.offset` and `sensor.CHANNEL.scale`.  `resolutions` are standard deviations of the noise by
+    channel, in its unit, where they are known.  `progress` is called with a stage and the share of it that is done.
+    Raises InputError and RecordingError.
+    """
+    began = time.perf_counter()
+    scene = scene_of(start)
+    parameters = free_parameters(scene, free)
+    found = read_run(os.fspath(run)) if isinstance(run, str | os.PathLike) else run
+    measurement = readings_of(found, scene, resolutions or {})
+    motions = motions_of(track_of(measurement))
+    check_parameters(parameters, measurement)
+    check_data(parameters, measurement, motions, scene)
+    model = AxisModel(scene, parameters, measurement)
+    problem = FitProblem(model, parameters, measurement, motions)
+    ends = best_fit(problem, seed, progress or (lambda stage, share: None))
+    return identification_of(problem, scene, ends, began)

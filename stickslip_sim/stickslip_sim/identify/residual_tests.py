@@ -1,0 +1,88 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Tests that reject a model which does not fit: by the size of its residuals, as a whole and stretch by stretch.
+
+The noise of a sensor is known from its own readings, neighbour by neighbour, without any model.  Residuals that are
+larger than that, or that go together from sample to sample where the noise does not, are the model's.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import chi2
+
+from .identification import Misfit
+from .problem import MeasuredStretch
+from .readings import Channel
+
+Numbers = NDArray[np.float64]
+
+_CHANCE = 1e-4       # of rejecting a model that is right
+_SLACK = 1.15        # on a mean square: the noise is known only so well
+_CORRELATED = 0.2    # of neighbouring residuals
+
+
+def misfits_of(channel: Channel, residuals: Numbers, times: Numbers, stretches: Sequence[MeasuredStretch]
+               ) -> list[Misfit]:
+    """Return the tests that the residuals (n,) of a channel, in its unit, fail."""
+    squares = channel.weights * (residuals / channel.resolution)**2
+    found = [_size(channel, squares, times, np.arange(len(times)), 1, 'mean square')]
+    found.append(_correlation(channel, residuals, times))
+    if found[0] is not None:
+        found += [_size(channel, squares, times, stretch.rows, len(stretches), 'mean square of a stretch')
+                  for stretch in stretches]
+    return [misfit for misfit in found if misfit is not None]
+
+
+def correlation_length(residuals: Numbers, weights: Numbers) -> float:
+    """Return how many samples in a row say what one does: 1 + 2 Σ ρ, up to where the correlation ρ is lost in noise."""
+    own = _by_runs(residuals, weights)
+    own = own - own.mean()
+    power = float(own @ own)
+    if power == 0.0:
+        return 1.0
+    total, least = 1.0, 2.0 / len(own)**0.5
+    for lag in range(1, len(own) // 4):
+        share = float(own[lag:] @ own[:-lag]) / power
+        if share < least:
+            break
+        total += 2.0 * share
+    return total
+
+
+def _size(channel: Channel, squares: Numbers, times: Numbers, rows: NDArray[np.intp], tests: int, name: str
+          ) -> Misfit | None:
+    count = float(channel.weights[rows].sum())
+    mean = float(squares[rows].sum()) / count
+    limit = _SLACK * float(chi2.ppf(1.0 - _CHANCE / tests, count)) / count
+    if mean <= limit:
+        return None
+    begin, end = float(times[rows[0]]), float(times[rows[-1]])
+    factor = f'{mean**0.5:.3g} times the noise of {channel.resolution:.3g} {channel.unit}'
+    return Misfit(channel.name, name, mean, limit, begin, end,
+                  f'{channel.name} is off by {factor} (rms) from {begin:.6g} to {end:.6g} s')
+
+
+def _correlation(channel: Channel, residuals: Numbers, times: Numbers) -> Misfit | None:
+    """Return the failure where neighbouring residuals go together; a sensor that counts in steps makes them do so."""
+    if channel.quantum > channel.resolution:
+        return None
+    own = residuals - residuals.mean()
+    share = float(own[1:] @ own[:-1]) / max(float(own @ own), 1e-300)
+    limit = max(_CORRELATED, 4.0 / len(own)**0.5)
+    if share <= limit:
+        return None
+    return Misfit(channel.name, 'correlation of neighbours', share, limit, float(times[0]), float(times[-1]),
+                  f'the residuals of {channel.name} go together from sample to sample (correlation {share:.2g}): they '
+                  'are no noise')
+
+
+def _by_runs(residuals: Numbers, weights: Numbers) -> Numbers:
+    """Return the mean residual of each run of equal readings, in which each weighs 1/L."""
+    lengths = np.rint(1.0 / weights).astype(int)
+    rows, row = [], 0
+    while row < len(lengths):
+        rows.append(row)
+        row += int(lengths[row])
+    return np.asarray(np.add.reduceat(residuals * weights, rows))

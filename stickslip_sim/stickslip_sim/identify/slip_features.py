@@ -1,0 +1,158 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""What a single slip shows, measured or simulated: after how long a rest it came, how long and far it went, its forces.
+
+These figures change smoothly and almost in proportion with the parameters, however far off these are; the positions
+at given times do not: a slip that comes a little later than measured has nothing in common with it.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.types import Event, EventKind, Mode, Sample
+from ..scene.build import Dynamics
+from .axis_model import AxisModel
+from .motions import SHARES, MeasuredMotion
+from .readings import SensorReadings, instants_of
+
+Numbers = NDArray[np.float64]
+
+N_FIGURES = 9  # of a slip, see `slip_distance`
+_TIME, _WIDTH, _SHAPE, _JUMP, _FORCE = 0.01, 0.02, 0.02, 0.01, 0.01   # relative: as well as a coarse fit has to do
+_LONGER = 1.3, 4.0     # of the measured time: so far a simulation looks for the slip, first and again
+_PART = 0.2            # of a measured slip: one that goes less far is passed over for a longer one
+_REST_PART = 0.15      # of a rest: over so much of it, before and after, a line is laid through its force
+_POSITION = Sample._fields.index('position')
+_FORCE_PLACE = Sample._fields.index('drive_force')
+_AT_REST = 0.5, 0.85   # of a rest: there forces are taken, when the contact rings no more
+_POINTS = np.linspace(0.0, 1.0, 33)
+
+
+class SlipFigures(NamedTuple):
+    """A slip: `middle` (s after the rest began) at half its way, `begin` and `passed` relative to it (s)."""
+
+    middle: float
+    begin: float
+    passed: Numbers
+    way: float         # m
+    forces: Numbers    # N, at shares _AT_REST of the measured rest; NaN where not known
+    break_away: float  # N, of a simulated slip
+
+
+class MeasuredSlip(NamedTuple):
+    """A measured slip, the motion before it (None: the run begins), and since when the slider rests, s."""
+
+    slip: SlipFigures
+    motion: MeasuredMotion
+    before: MeasuredMotion | None
+    rest_begin: float
+
+
+def measured_slips(motions: Sequence[MeasuredMotion], measurement: SensorReadings) -> list[MeasuredSlip]:
+    """Return the slips of a measurement, in the order of time."""
+    found = []
+    before: MeasuredMotion | None = None
+    for motion in motions:
+        begin = 0.0 if before is None else before.end
+        passed = np.array(motion.passed)
+        middle = passed[len(SHARES) // 2]
+        forces = np.array([rest_force(measurement, begin + share * (motion.begin - begin), begin, motion.begin)
+                           for share in _AT_REST])
+        slip = SlipFigures(middle - begin, motion.begin - middle, passed - middle, motion.stop - motion.start, forces,
+                    float('nan'))
+        found.append(MeasuredSlip(slip, motion, before, begin))
+        before = motion
+    return found
+
+
+def simulated_slip(model: AxisModel, dynamics: Dynamics, values: Numbers, measured: MeasuredSlip) -> SlipFigures | None:
+    """Return the first slip, of some length, that the model does from the same rest on; None where it does none."""
+    before = measured.before
+    initial = dynamics.initial if before is None else model.state_after(before, dynamics, values)
+    length = measured.motion.end - measured.rest_begin
+    least = _PART * abs(measured.slip.way)
+    for longer in _LONGER:
+        events = model.events(dynamics, measured.rest_begin, initial, longer * length)
+        if events is None:
+            return None
+        ends = _ends(events, least)
+        if ends is not None and (longer == _LONGER[-1] or abs(ends[1].position - ends[0].position) >= least):
+            rest = measured.motion.begin - measured.rest_begin
+            at_rest = [min(share * rest, ends[0].time) for share in _AT_REST]
+            times = np.append(at_rest, ends[0].time + _POINTS * (ends[1].time - ends[0].time))
+            rows = model.samples(dynamics, measured.rest_begin, initial, instants_of(times))
+            return None if rows is None else _measured(_slip(*ends, rows), model, values)
+    return None
+
+
+def _measured(slip: SlipFigures, model: AxisModel, values: Numbers) -> SlipFigures:
+    """Return a slip as the sensors measure it."""
+    offset, scale = model.gain(values, 'drive_force')
+    _, length_scale = model.gain(values, 'position')
+    return slip._replace(way=length_scale * slip.way, forces=offset + scale * slip.forces,
+                         break_away=offset + scale * slip.break_away)
+
+
+def slip_distance(found: SlipFigures | None, measured: MeasuredSlip, measurement: SensorReadings) -> Numbers:
+    """Return how far a simulated slip is from the measured one, in units of what a coarse fit should reach (9,)."""
+    slip = measured.slip
+    width = float(slip.passed[-1] - slip.passed[0])
+    forces = measurement.channel('drive_force')
+    span = 1.0 if forces is None else float(np.ptp(forces.values)) * _FORCE + forces.resolution
+    if found is None:
+        longest = _LONGER[-1] * (measured.motion.end - measured.rest_begin)
+        found = slip._replace(middle=longest, way=_PART * slip.way)
+    blur = measurement.period
+    time = np.log(found.middle / slip.middle) / max(_TIME, blur / slip.middle)
+    own = max(float(found.passed[-1] - found.passed[0]), 1e-9)
+    wide = np.log(own / width) / max(_WIDTH, blur / width)
+    shape = (found.passed / own - slip.passed / width)[[0, 1, 3, 4]] / max(_SHAPE, blur / width)
+    way = np.log(max(found.way / slip.way, 1e-3)) / _JUMP
+    force = np.nan_to_num((found.forces - slip.forces) / span)
+    return np.concatenate([[time, wide, way], shape, force])
+
+
+def _ends(events: Sequence[Event], least: float) -> tuple[Event, Event] | None:
+    """Return begin and end of the first slip that goes at least so far, until rest or reversal; else of the longest."""
+    first: Event | None = None
+    longest: tuple[Event, Event] | None = None
+    for event in events:
+        starts = event.kind == EventKind.REVERSE or (first is None and event.kind == EventKind.BREAKAWAY)
+        if first is not None and (starts or event.mode == Mode.STICK):
+            way = abs(event.position - first.position)
+            if way >= least:
+                return first, event
+            if way > 0.0 and (longest is None or way > abs(longest[1].position - longest[0].position)):
+                longest = first, event
+            first = None
+        if starts:
+            first = event
+    return longest
+
+
+def _slip(begin: Event, end: Event, rows: Numbers) -> SlipFigures:
+    """Return a slip by its ends, and samples between them."""
+    way = end.position - begin.position
+    slip = rows[2:]
+    shares = np.maximum.accumulate((slip[:, _POSITION] - begin.position) / way)
+    passed = np.interp(SHARES, shares, slip[:, 0] + slip[:, 1])
+    middle = float(passed[len(SHARES) // 2])
+    return SlipFigures(max(middle, 1e-9), begin.time - middle, passed - middle, way,
+                np.array([*rows[:2, _FORCE_PLACE]]), begin.drive_force)
+
+
+def rest_force(measurement: SensorReadings, time: float, begin: float, end: float) -> float:
+    """Return the drive force at a time in a rest, by a line through it near there; NaN without a measurement."""
+    channel = measurement.channel('drive_force')
+    if channel is None:
+        return float('nan')
+    part = _REST_PART * (end - begin)
+    low, high = max(time - part, begin), min(time + part, end)
+    rows = np.flatnonzero((measurement.times >= low) & (measurement.times <= high))
+    if len(rows) < 3:
+        return float(np.interp(time, measurement.times, channel.values))
+    _, offset = np.polyfit(measurement.times[rows] - time, channel.values[rows], 1)
+    return float(offset)

@@ -1,0 +1,164 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Scenes found again from what sensors measured of them, from starts up to 40 % off; and what is refused."""
+
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+import pytest
+
+import stickslip_sim as stickslip
+from stickslip_sim.identify.identification import AT_BOUND, FOUND, NOT_IDENTIFIABLE, Identification
+from tests.identify.measured_axis import between, measure
+
+RIGID = stickslip.load_scene('paper_fig7', {'drive.course': 'steps', 'drive.times': (0.0, 2.0, 4.0),
+                                            'drive.velocities': (0.003, 0.005, 0.002)})
+COMPLIANT = stickslip.load_scene('paper_fig8', {'drive.velocity': 0.003})
+OF_FRICTION = {'friction.static.limit': between(0.1, 0.5), 'friction.static.time_constant': between(0.05, 0.6),
+               'friction.kinetic.coefficients[1]': between(0.01, 0.11)}
+OF_DRIVE = {'axis.mass': between(150.0, 900.0), 'axis.drive_stiffness': between(2.5e5, 1.5e6),
+            'axis.drive_damping': between(1000.0, 9000.0)}
+OFF = {'friction.static.limit': 0.3, 'friction.static.time_constant': 0.13,
+       'friction.kinetic.coefficients': (0.12, 0.065)}
+DRIVE_OFF = {'axis.mass': 450.0, 'axis.drive_stiffness': 4.4e5, 'axis.drive_damping': 5400.0}
+
+
+def changed(scene: stickslip.Scene, changes: dict[str, object]) -> stickslip.Scene:
+    from stickslip_sim.scene import changed as with_changes
+
+    return with_changes(scene, changes)
+
+
+def truth(scene: stickslip.Scene, name: str) -> float:
+    plain, _, index = name.rstrip(']').partition('[')
+    value = scene.values[plain]
+    if isinstance(value, tuple):
+        value = value[int(index)]
+    assert isinstance(value, float)
+    return value
+
+
+def check(found: Identification, scene: stickslip.Scene, within: float) -> None:
+    """Assert that all was found, near the truth, and within a little more than its interval."""
+    assert found.fits, found.misfits
+    for estimate in found.estimates:
+        right = truth(scene, estimate.name)
+        low, high = estimate.best_interval
+        assert estimate.kind == FOUND, estimate
+        assert abs(estimate.value / right - 1.0) < within, estimate
+        assert low - (high - low) <= right <= high + (high - low), estimate
+        assert truth(found.scene, estimate.name) == pytest.approx(estimate.value, rel=1e-12)
+
+
+@pytest.fixture(scope='module')
+def rigid(tmp_path_factory: pytest.TempPathFactory) -> stickslip.Run:
+    return measure(tmp_path_factory.mktemp('runs') / 'rigid', RIGID, 6.0)
+
+
+def test_a_rigid_axis_from_position_and_force(rigid: stickslip.Run) -> None:
+    found = stickslip.identify(rigid, changed(RIGID, {**OFF, **DRIVE_OFF}), {**OF_FRICTION, **OF_DRIVE})
+    check(found, RIGID, 0.01)
+    assert found.criterion == 'BIC'
+    assert [(law.static, law.n_parameters, law.is_chosen) for law in found.laws] == [('exponential', 6, True)]
+    assert found.n_residuals == 2 * 6001
+    assert all('whole run' in estimate.derivation for estimate in found.estimates)
+    assert [channel.name for channel in found.channels] == ['position', 'drive_force']
+    assert all(channel.correlation_time < 1e-3 for channel in found.channels)
+    assert not found.notes
+    assert len(found.slips) >= 10
+    assert max(abs(slip.fitted_time - slip.time) for slip in found.slips) < 1e-3
+    for slip in found.slips:
+        assert slip.fitted_break_away_force == pytest.approx(slip.break_away_force, rel=0.05)
+        assert slip.fitted_stick_time == pytest.approx(slip.stick_time, rel=0.05)
+
+
+def test_a_compliant_axis_from_its_position_alone(tmp_path: Path) -> None:
+    run = measure(tmp_path / 'run', COMPLIANT, 6.0, force=False, gap=(3.0, 3.05))
+    start = changed(COMPLIANT, {**OFF, 'axis.mass': 450.0, 'contact.stiffness': 4e6, 'contact.damping': 2e4})
+    free = {**OF_FRICTION, 'axis.mass': between(150.0, 900.0), 'contact.stiffness': between(1e6, 2e7),
+            'contact.damping': between(2e3, 1e5)}
+    check(stickslip.identify(run, start, free), COMPLIANT, 0.02)
+
+
+def test_without_a_force_only_ratios(tmp_path: Path) -> None:
+    """Mass, spring, damper and normal force all larger by one factor: the same motion."""
+    run = measure(tmp_path / 'run', RIGID, 4.0, force=False)
+    found = stickslip.identify(run, RIGID, {**OF_DRIVE, 'axis.normal_force': between(2000.0, 5000.0)})
+    (together,) = found.combinations
+    assert set(together.names) == {*OF_DRIVE, 'axis.normal_force'}
+    assert all(weight == pytest.approx(1.0, abs=0.05) for weight in together.weights)
+    assert 'ratios' in together.statement
+    assert {estimate.kind for estimate in found.estimates} == {NOT_IDENTIFIABLE}
+
+
+def test_a_sensor_that_is_off(tmp_path: Path) -> None:
+    run = measure(tmp_path / 'run', RIGID, 4.0, change={'drive_force': 0.25})
+    free = {**OF_FRICTION, 'sensor.drive_force.scale': between(0.1, 10.0),
+            'sensor.drive_force.offset': between(-50.0, 50.0)}
+    found = stickslip.identify(run, changed(RIGID, OFF), free)
+    values = found.values
+    assert values['sensor.drive_force.scale'] == pytest.approx(0.25, rel=0.01)
+    assert values['sensor.drive_force.offset'] == pytest.approx(0.0, abs=1.0)
+    assert values['friction.static.limit'] == pytest.approx(0.24, rel=0.01)
+    assert found.fits
+
+
+def test_a_model_that_does_not_fit_is_rejected(rigid: stickslip.Run) -> None:
+    """Without the excess of the accelerating branch no parameters make this motion."""
+    start = changed(RIGID, {'friction.acceleration_dependence': False})
+    found = stickslip.identify(rigid, start, OF_FRICTION)
+    assert not found.fits
+    assert {misfit.test for misfit in found.misfits} >= {'mean square', 'mean square of a stretch'}
+    assert all(misfit.statistic > misfit.limit for misfit in found.misfits)
+    assert all(0.0 <= misfit.from_time < misfit.to_time <= 6.0 for misfit in found.misfits)
+    assert all('off by' in misfit.statement or 'go together' in misfit.statement for misfit in found.misfits)
+
+
+def test_a_range_that_ends_before_the_truth(rigid: stickslip.Run) -> None:
+    found = stickslip.identify(rigid, changed(RIGID, {'axis.mass': 300.0}), {'axis.mass': between(200.0, 340.0)})
+    assert found.estimates[0].kind == AT_BOUND
+    assert found.estimates[0].value == 340.0
+    assert not found.fits
+
+
+Refused = Callable[[], Identification]
+
+
+def test_what_is_refused(rigid: stickslip.Run, tmp_path: Path) -> None:
+    mass = {'axis.mass': between(200.0, 500.0)}
+    limit = {'friction.static.limit': between(0.2, 0.3)}
+    identify = partial(stickslip.identify, rigid)
+    still = measure(tmp_path / 'still', changed(RIGID, {'drive.velocities': (0.0, 0.0, 0.0)}), 1.0)
+    sliding = measure(tmp_path / 'sliding', changed(RIGID, {'drive.velocities': (0.2, 0.2, 0.2)}), 1.0)
+    cases: list[tuple[str, Refused]] = [
+        ('axis.mass = 350.0 is refused: must be in its range',
+         lambda: identify(RIGID, {'axis.mass': between(100.0, 200.0)})),
+        ("free parameter = 'friction.static.exponent' is refused: must be one that the laws of the scene have",
+         lambda: identify(RIGID, {'friction.static.exponent': between(0.5, 2.0)})),
+        ("free parameter = 'friction.kinetic.velocities\\[0\\]' is refused",
+         lambda: identify(RIGID, {'friction.kinetic.velocities[0]': between(0.0, 1.0)})),
+        ("free parameter = 'sensor.velocity.scale' is refused: must be of a channel that was measured: position",
+         lambda: identify(RIGID, {'sensor.velocity.scale': between(0.5, 2.0)})),
+        ("free parameter = 'sensor.speed.scale' is refused",
+         lambda: identify(RIGID, {'sensor.speed.scale': between(0.5, 2.0)})),
+        ('a position that changes by', lambda: stickslip.identify(still, RIGID, mass)),
+        ('there is no rest between two motions', lambda: stickslip.identify(
+            sliding, changed(RIGID, {'drive.velocities': (0.2, 0.2, 0.2)}), limit)),
+        ('look at the unit of the position', lambda: stickslip.identify(
+            measure(tmp_path / 'mm', RIGID, 2.0, change={'position': 1e3}), RIGID, mass)),
+        ('look at its unit, or free sensor.drive_force.scale', lambda: stickslip.identify(
+            measure(tmp_path / 'kn', RIGID, 2.0, change={'drive_force': 1e-3}), RIGID, mass)),
+        ('a jump of its time from 1 to', lambda: stickslip.identify(
+            measure(tmp_path / 'gap', RIGID, 5.0, gap=(1.0, 4.5)), RIGID, mass)),
+        ('resolution = .velocity. is refused', lambda: identify(RIGID, mass, resolutions={'velocity': 1e-3})),
+    ]
+    for text, refused in cases:
+        with pytest.raises(stickslip.InputError, match=text):
+            refused()
+
+
+def test_too_few_samples(tmp_path: Path) -> None:
+    run = measure(tmp_path / 'run', RIGID, 1.0, rate=25.0, force=False)
+    with pytest.raises(stickslip.InputError, match='5 or more for each of the 6 free parameters'):
+        stickslip.identify(run, RIGID, {**OF_DRIVE, **OF_FRICTION})
