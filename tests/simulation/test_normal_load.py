@@ -16,7 +16,7 @@ from stickslip_sim.extremes.against import error_of_events
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
 from stickslip_sim.reference import simulate as reference
 from stickslip_sim.simulation.simulator import Simulator
-from stickslip_sim.solvers import Solver, adaptive, exact, fixed_step
+from stickslip_sim.solvers import Solver, adaptive, exact, fixed_step, with_advance
 from tests.support.axes import COMPLIANT, RIGID, Contact, instant, paper_axis
 
 NORMAL = 3432.3275
@@ -103,6 +103,20 @@ def test_any_split_of_time_gives_the_same_bits(contact: Contact) -> None:
     again.restore(kept.checkpoint(), axis, drive, NOTHING)
     assert seen + again.advance(instant(2.0)) == events
     assert again.sample() == whole.sample()
+
+
+@pytest.mark.parametrize('contact', [RIGID, COMPLIANT])
+def test_a_walk_through_thousands_of_pieces_gives_the_bits_of_one_after_the_other(contact: Contact) -> None:
+    rng = np.random.default_rng(5)
+    times = (np.arange(3000) / 1000.0).tolist()
+    load = steps('normal_load', times, rng.choice([0.0, 300.0, -NORMAL, -1000.0], 3000).tolist(), 3.2)
+    drive = steps('drive', times[::3], rng.uniform(-0.01, 0.02, 1000).tolist())
+    ends = []
+    for solver in (exact.SOLVER, with_advance(exact.SOLVER, exact.advance)):
+        sim = simulator(paper_axis(contact), load, NOTHING, drive, solver=solver)
+        ends.append((sim.advance(instant(3.5)), sim.sample(), sim.checkpoint(), sim.energy))
+    assert len(ends[0][0]) > 100
+    assert ends[0] == ends[1]
 
 
 @pytest.mark.parametrize('contact', [RIGID, COMPLIANT])

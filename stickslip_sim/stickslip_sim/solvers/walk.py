@@ -13,12 +13,14 @@ from . import DONE, FULL, PieceWalk, Solver
 
 def walk_of(solver: Solver, normal_force: InputProfile | None = None) -> PieceWalk:
     """Return the way of a solver through the pieces: its own, or one piece after the other; through those of N, too."""
-    own = solver.walk if normal_force is None else None
-    return own or PieceWalk(lambda profile: profile, partial(walk, solver, normal_force))
+    way = solver.walk or PieceWalk(lambda profile: profile, partial(walk, solver))
+    if normal_force is None:
+        return way
+    return way._replace(run=partial(way.run, normal_force=way.pieces_of(normal_force)))
 
 
-def walk(solver: Solver, normal_force: InputProfile | None, p: Parameters, s: State, drive: InputProfile,
-         force: InputProfile, until: float, time: float, sinusoids: Sinusoids, events: Events, row: int, /
+def walk(solver: Solver, p: Parameters, s: State, drive: InputProfile, force: InputProfile, until: float, time: float,
+         sinusoids: Sinusoids, events: Events, row: int, /, normal_force: InputProfile | None = None
          ) -> tuple[float, int, int]:
     """Bring a state to `until`, s, where its pieces end, enter the next ones, and so on while that is up to a time.
 

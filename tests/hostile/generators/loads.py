@@ -62,4 +62,4 @@ def _times(rng: random.Random, case: Case) -> list[float]:
     times |= {draw.beside(rng, time) for time in rng.sample(events, min(len(events), 2)) if rng.random() < 0.5}
     borders = [*case.values.get('drive.times', ()), *case.values.get('force.times', ())]
     times |= {time for time in borders if rng.random() < 0.4}
-    return sorted(time for time in times if time > 0.0)
+    return sorted(time for time in times if time > 1e-12)
