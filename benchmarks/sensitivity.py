@@ -30,6 +30,11 @@ class Choice(NamedTuple):
     changes: Changes
 
 
+def ring_down_time(share: float) -> float:
+    """Return how long the ring-down of the paper's contact takes to come down to a share of its start, s."""
+    return -math.log(share) * 2.0 * 350.0 / (4000.0 + 15000.0)
+
+
 def _numbers(what: str, name: str, values: Sequence[float], unit: str, scale: float = 1.0) -> list[Choice]:
     return [Choice(what, f'{value * scale:.5g}{unit}', {name: value}) for value in values]
 
@@ -43,6 +48,8 @@ CHOICES = [
     Choice('break-away judged by', 'F_d + F_e', {'contact.break_away': 'drive_force'}),
     Choice('break-away judged by', 'F_d + F_e, at 10 mm/s', {'drive.velocity': 0.01,
            'contact.break_away': 'drive_force'}),
+    *(Choice('rest time begins', f'ring-down over to {share:g} %', {f'{_STATIC}.delay': ring_down_time(0.01 * share)})
+      for share in (10.0, 1.0)),
     *_numbers('feed v', 'drive.velocity', (0.0005, 0.001, 0.003, 0.004, 0.005, 0.01), ' mm/s', 1e3),
     *_numbers('normal force N', 'axis.normal_force', (0.5 * _WEIGHT, 0.8 * _WEIGHT, 1.25 * _WEIGHT, 2.0 * _WEIGHT),
               ' kN', 1e-3),

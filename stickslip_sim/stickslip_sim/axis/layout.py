@@ -44,6 +44,7 @@ class Parameters:
     static_limit: float       # mu_s at infinite rest time
     static_tau: float         # s
     static_exponent: float    # of Kato's law
+    static_delay: float       # s of rest before mu_s begins to grow
     branches: float           # 1 where friction depends on the sign of the acceleration, 0 elsewhere
     end_slope: float          # s/m, of mu_k beyond the last breakpoint
     segment_count: float
@@ -243,5 +244,5 @@ STATE_PLACES = places_of(State)
 
 # where the numbers of `pack` stand
 (MASS, STIFFNESS, DAMPING, NORMAL, COMPLIANT, CONTACT_STIFFNESS, CONTACT_DAMPING, _, _, STATIC_LAW, STATIC_INITIAL,
- STATIC_LIMIT, STATIC_TAU, STATIC_EXPONENT, BRANCHES, END_SLOPE, SEGMENT_COUNT, TABLE) = range(18)
+ STATIC_LIMIT, STATIC_TAU, STATIC_EXPONENT, _, BRANCHES, END_SLOPE, SEGMENT_COUNT, TABLE) = range(19)
 SEGMENT_SIZE = len(SEGMENT_FIELDS)

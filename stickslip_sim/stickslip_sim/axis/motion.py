@@ -40,7 +40,7 @@ _SPLIT = 131073.0      # splits off the upper 36 bits of a number (Dekker 1971)
 def static_limit(p: Parameters, rest: float) -> float:
     """Return mu_s after the rest time."""
     return static_coefficient(p.static_law, p.static_initial, p.static_limit, p.static_tau, p.static_exponent,
-                              rest)
+                              max(rest - p.static_delay, 0.0))
 
 
 @inlined

@@ -127,5 +127,6 @@ def pack(axis: Axis) -> Sequence[float]:
             0.0 if contact is not None and contact.undeflected else 1.0,
             float(contact is not None and contact.judges_drive),
             float(static.kind), static.initial, static.limit, static.time_constant, static.exponent,
+            static.delay,
             float(excess is not None), kinetic.end_slope, float(len(breakpoints)),
             *(number for breakpoint in breakpoints for number in breakpoint)]

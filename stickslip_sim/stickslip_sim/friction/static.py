@@ -9,6 +9,8 @@
 | kato        | mu_inf − (mu_inf − mu_0) exp(−(t/τ)ⁿ)         | Kato, Sato and Matsubayashi 1972|
 | hyperbolic  | mu_0 + (mu_inf − mu_0) t/(t + τ)              |                                 |
 | logarithmic | mu_0 + (mu_inf − mu_0) ln(1 + t/τ), unbounded | Dieterich 1978                  |
+
+With a delay t is what the rest time is beyond that, and mu_s = mu_0 before.
 """
 
 import math
@@ -42,7 +44,8 @@ LOGARITHMIC = int(StaticLawKind.LOGARITHMIC)
 class StaticLaw:
     """mu_s(t⁻): `initial` mu_0, `limit` mu_inf, `time_constant` τ in s, `exponent` n of Kato's law.
 
-    Raises InputError when the coefficient would be negative or fall with the rest time.
+    It begins to grow after a `delay` in s.  Raises InputError when the coefficient would be negative or fall with the
+    rest time.
     """
 
     kind: StaticLawKind
@@ -50,6 +53,7 @@ class StaticLaw:
     limit: float
     time_constant: float = 1.0
     exponent: float = 1.0
+    delay: float = 0.0
 
     def __post_init__(self) -> None:
         ranges.COEFFICIENT.check_meaning('friction.static.initial', self.initial, '', 'give mu_s at zero rest time')
@@ -62,6 +66,7 @@ class StaticLaw:
                                            'use law: constant for a coefficient that does not grow')
         ranges.KATO_EXPONENT.check_meaning('friction.static.exponent', self.exponent, '',
                                            'n = 1 is the exponential law')
+        ranges.TIME.check_meaning('friction.static.delay', self.delay, 's', 'use 0 for a growth from the arrest on')
 
     @property
     def bounded(self) -> bool:
@@ -71,7 +76,7 @@ class StaticLaw:
     def coefficient(self, rest_time: float) -> float:
         """Return mu_s after `rest_time` seconds (infinite is allowed for a bounded law)."""
         return static_coefficient(int(self.kind), self.initial, self.limit, self.time_constant, self.exponent,
-                                  rest_time)
+                                  max(rest_time - self.delay, 0.0))
 
 
 @inlined

@@ -109,6 +109,7 @@ def problem(axis: product.Axis, initial: product.InitialState, drive: profiles.I
             mpf(static.limit),
             mpf(static.time_constant),
             mpf(static.exponent),
+            mpf(static.delay),
         ),
         kinetic=_kinetic(axis.friction.kinetic),
         excess=_excess(axis.friction.excess),

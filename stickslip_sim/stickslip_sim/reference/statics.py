@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Static coefficient mu_s(t^-) = mu_0 + (mu_inf - mu_0) q(t), with its power series about any age.
 
+t is the age beyond a delay, 0 before.
+
 constant     q = 0
 exponential  q = 1 - exp(-t/tau)
 kato         q = 1 - exp(-(t/tau)^n)
@@ -30,6 +32,7 @@ class StaticLaw:
     limit: mpf
     time_constant: mpf
     exponent: mpf
+    delay: mpf
 
     def value(self, age: mpf) -> mpf:
         """Return mu_s at a rest time (which may be infinite)."""
@@ -39,7 +42,7 @@ class StaticLaw:
             if self.law == 'logarithmic':
                 raise ValueError('the logarithmic law has no limit: give a finite rest time')
             return self.limit
-        return self.initial + (self.limit - self.initial) * self._rise(age)
+        return self.initial + (self.limit - self.initial) * self._rise(max(age - self.delay, mpf(0)))
 
     def _rise(self, age: mpf) -> mpf:
         z = age / self.time_constant
@@ -53,6 +56,9 @@ class StaticLaw:
 
     def span(self, age: mpf) -> mpf:
         """Return the longest time over which ``series`` is exact to the working precision."""
+        if self._waits(age) and self.law != 'constant':
+            return self.delay - age
+        age = max(age - self.delay, mpf(0))
         if self.law == 'constant' or isinf(age) or self._settled(age):
             return inf
         if self.law == 'exponential':
@@ -61,6 +67,10 @@ class StaticLaw:
             z = (age / self.time_constant) ** self.exponent
             return min(age / 16, age / (self.exponent * z)) if age else mpf(0)
         return (age + self.time_constant) / 16
+
+    def _waits(self, age: mpf) -> bool:
+        """Return whether the rise is yet to begin, by more than rounding."""
+        return bool(age < self.delay * (1 - mpf(10) ** (12 - mp.dps)))
 
     def _settled(self, age: mpf) -> bool:
         """Return whether an exponential rise is over to well below the working precision."""
@@ -74,8 +84,9 @@ class StaticLaw:
 
     def series(self, age: mpf) -> Series:
         """Return the power series of mu_s(age + τ) in τ, valid on [0, span(age)]."""
-        if isinf(self.span(age)):
+        if isinf(self.span(age)) or self._waits(age):
             return [self.value(age)]
+        age = max(age - self.delay, mpf(0))
         rise = {
             'exponential': self._exponential,
             'kato': self._kato,
@@ -83,7 +94,7 @@ class StaticLaw:
             'logarithmic': self._logarithmic,
         }[self.law](age)
         change = self.limit - self.initial
-        return [self.value(age), *(change * c for c in rise)]
+        return [self.value(age + self.delay), *(change * c for c in rise)]
 
     def _exponential(self, age: mpf) -> Series:
         c, out = -exp(-age / self.time_constant), []

@@ -69,6 +69,8 @@ PARAMETERS: tuple[Parameter, ...] = (
            within=ranges.TIME_CONSTANT, live=True, when=_GROWS),
     number('friction.static.exponent', None, '', "n of Kato's law exp(-(t/tau)^n)",
            within=ranges.KATO_EXPONENT, live=True, when=When('friction.static.law', ('kato',))),
+    Parameter('friction.static.delay', 'double', None, 's', 'rest time before mu_s begins to grow, as while the contact'
+              ' still rings (docs/paper.md); left out: 0', *ranges.TIME, live=True, when=_GROWS),
     choice('friction.kinetic.law', 'table', 'kinetic coefficient mu_k over the speed: a table, linear between'
            ' breakpoints; or mu_c + (mu_0 - mu_c) g(speed/v_s) + k_v speed with g(z) = exp(-z^exponent) (stribeck),'
            ' exp(-z) (exponential) or 1/(1 + z) (hyperbolic)', _KINETIC),

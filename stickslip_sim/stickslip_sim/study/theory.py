@@ -94,7 +94,7 @@ def _feed_of_a_drop(slider: SliderOnDrive, drop: float) -> float:
 
 def _feed_of_growth(slider: SliderOnDrive, static: StaticLaw, kinetic: KineticTable, normal: float) -> float | None:
     convex = static.kind == StaticLawKind.KATO and static.exponent > 1.0
-    if slider.damping > 0.0 or kinetic.coefficients[0] != static.initial or convex:
+    if slider.damping > 0.0 or kinetic.coefficients[0] != static.initial or convex or static.delay > 0.0:
         return None
     if static.kind == StaticLawKind.KATO and static.exponent < 1.0:
         return math.inf

@@ -13,25 +13,31 @@ import pytest
 from stickslip_sim.axis import Axis, CompliantContact, InitialState
 from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant
 from stickslip_sim.core.types import Event, EventKind
-from stickslip_sim.extremes.shared_axes import random_profiles
+from stickslip_sim.extremes.shared_axes import random_profiles, with_static
+from stickslip_sim.friction import StaticLawKind
 from stickslip_sim.reference import simulate as simulate_reference
 from stickslip_sim.scene import load_scene
 from stickslip_sim.simulation.simulator import Simulator
 from stickslip_sim.solvers import Solver, adaptive, exact, fixed_step
-from tests.support.axes import COMPLIANT, instant, make, paper_axis, random_axis, run_events
+from tests.support.axes import COMPLIANT, RIGID, instant, make, paper_axis, random_axis, run_events
 from tests.support.tool import Capture, answered
 from tests.support.verify_tool import verified
 
+DELAY = 0.1   # s
 CLOSURES: Mapping[str, Mapping[str, object]] = {   # of a scene
     'undeflected': {'contact.arrest': 'undeflected'},
     'drive_force': {'contact.break_away': 'drive_force'},
+    'delay': {'friction.static.delay': DELAY},
 }
 FEED, SHORT = 0.002, 2.0   # m/s, s
+START = InitialState(rest_time=3.0)
 SINES = Sinusoid(0.003, 3.0, 0.4), Sinusoid(150.0, 41.0, 0.0)
 
 
 def closed(axis: Axis, closure: str) -> Axis:
     """Return an axis with another closure."""
+    if closure == 'delay':
+        return with_static(axis, replace(axis.friction.static, delay=DELAY))
     assert isinstance(axis.contact, CompliantContact)
     if closure == 'undeflected':
         return replace(axis, contact=replace(axis.contact, undeflected=True))
@@ -41,14 +47,18 @@ def closed(axis: Axis, closure: str) -> Axis:
 def random_problem(closure: str, seed: int) -> tuple[Axis, InputProfile, InputProfile]:
     rng = random.Random(seed)
     axis = random_axis(rng)
-    while not isinstance(axis.contact, CompliantContact):
+    while closure != 'delay' and not isinstance(axis.contact, CompliantContact):
         axis = random_axis(rng)
+    if closure == 'delay':   # any law, and another delay
+        kind, exponent = rng.choice(tuple(StaticLawKind)), rng.choice((0.5, 1.0, 2.0))
+        axis = with_static(axis, replace(axis.friction.static, kind=kind, exponent=exponent))
+        return with_static(axis, replace(axis.friction.static, delay=10 ** rng.uniform(-3, 0))), *random_profiles(rng)
     return closed(axis, closure), *random_profiles(rng)
 
 
 def agree(found: list[Event], axis: Axis, drive: InputProfile, force: InputProfile, end: float, within: float) -> None:
     """Compare with the reference, up to where the last digits decide: when the slider has taken the drive's speed."""
-    truth = simulate_reference(axis, InitialState(), drive, force, end).events
+    truth = simulate_reference(axis, START, drive, force, end).events
     settled = [abs(event.velocity - drive.value_at(event.time)) < 1e-7 * abs(event.velocity) for event in truth]
     last = settled.index(True) if True in settled else len(truth)
     assert [event.kind for event in found[:last]] == [event.kind for event in truth[:last]]
@@ -63,7 +73,7 @@ def agree(found: list[Event], axis: Axis, drive: InputProfile, force: InputProfi
 @pytest.mark.parametrize('seed', range(12))
 def test_random_axes_have_the_events_of_the_reference(closure: str, seed: int) -> None:
     axis, drive, force = random_problem(closure, seed)
-    simulator = Simulator(axis, InitialState(), drive, force, accounting=True)
+    simulator = Simulator(axis, START, drive, force, accounting=True)
     found = simulator.advance(instant(SHORT))
     simulator.judge()
     agree(found, axis, drive, force, SHORT, 1e-11)
@@ -76,7 +86,7 @@ def test_random_axes_have_the_events_of_the_reference(closure: str, seed: int) -
 def test_under_sinusoids_too(closure: str) -> None:
     axis = closed(paper_axis(COMPLIANT), closure)
     drive, force = replace(constant(FEED), sinusoids=SINES[:1]), replace(constant(0.0), sinusoids=SINES[1:])
-    simulator = Simulator(axis, InitialState(), drive, force, accounting=True)
+    simulator = Simulator(axis, START, drive, force, accounting=True)
     found = simulator.advance(instant(SHORT))
     simulator.judge()
     assert len(found) > 20
@@ -121,8 +131,9 @@ def test_a_recorded_run_is_verified(closure: str, tmp_path: Path, capsys: Captur
 
 def test_an_undeflected_contact_begins_without_a_force_and_gains_no_energy() -> None:
     axis = closed(paper_axis(COMPLIANT), 'undeflected')
-    first = next(event for event in run_events(axis, FEED, 1.0) if event.kind == EventKind.STICK)
-    simulator = Simulator(axis, InitialState(), constant(FEED), constant(0.0), accounting=True)
+    first = next(event for event in run_events(axis, FEED, 1.0, initial=START)
+                 if event.kind == EventKind.STICK)
+    simulator = Simulator(axis, START, constant(FEED), constant(0.0), accounting=True)
     simulator.advance(first.instant)
     sample, energy = simulator.sample(), simulator.energy
     assert (sample.contact_deflection, sample.friction_force) == (0.0, 0.0)
@@ -145,3 +156,18 @@ def test_a_break_away_judged_by_the_drive_is_where_its_force_meets_the_limit(sin
     by_contact = [event.time for event in run_events(paper_axis(COMPLIANT), 5.0 * FEED, SHORT, force)
                   if event.kind == EventKind.BREAKAWAY]
     assert [event.time for event in released] != pytest.approx(by_contact, abs=1e-6)
+
+
+def test_static_friction_waits_for_its_growth() -> None:
+    """Rigid contact, from a rest of no age: N mu_0 = c v t + h v within the delay, else N mu_s(t − delay)."""
+    axis = paper_axis(RIGID)
+    for delay in (0.0, 0.1, 0.336, 0.337, 0.5, 10.0):
+        law = replace(axis.friction.static, delay=delay)
+        first = run_events(with_static(axis, law), FEED, SHORT, initial=InitialState(rest_time=0.0))[0]
+        pull = axis.drive_stiffness * FEED * first.time + axis.drive_damping * FEED
+        assert first.kind == EventKind.BREAKAWAY
+        assert pull == pytest.approx(axis.normal_force * first.static_coefficient, rel=1e-14)
+        grown = 0.24 - 0.12 * math.exp(-max(first.time - delay, 0.0) / 0.2)
+        assert first.static_coefficient == pytest.approx(grown, rel=1e-14)
+        assert first.static_coefficient == law.coefficient(first.rest_time)
+        assert (first.static_coefficient == 0.12) == (delay > 0.3365)

@@ -36,7 +36,7 @@ from ...linear.roots import first_passage
 from ...linear.zeros import finite_horizon, half_period
 from .compliant_stick import compliant_stick
 from .forced import forced_event
-from .static_guards import rigid_stick
+from .static_guards import delay_left, rigid_stick
 
 RENEWAL = -1.0           # in place of an `types.EventKind`: a new segment start, and no event
 _LONG_RING = 1e10        # (ω t)² of a contact that has rung for long
@@ -47,7 +47,27 @@ _SURELY = 1e-9   # of the change over a tick: far more than it changes within a 
 
 @inlined
 def find_event(p: Parameters, s: State, due: float) -> None:
-    """Set the next event of the mode, searched up to `due` (s after the segment start) at least."""
+    """Set the next event of the mode, searched up to `due` (s after the segment start) at least.
+
+    A stick whose mu_s waits for its growth is searched up to there with that limit, and then renewed.
+    """
+    wait = delay_left(p, s) if s.mode == STICK else 0.0
+    if wait == 0.0:
+        _find_event(p, s, due)
+        return
+    rest = s.rest
+    s.rest = -math.inf
+    _find_event(p, s, wait)
+    s.rest = rest
+    s.next.searched = math.inf
+    if s.next.time > wait:
+        s.next.time = wait
+        s.next.kind = RENEWAL
+        s.cache.at.time = -1.0
+
+
+@inlined
+def _find_event(p: Parameters, s: State, due: float) -> None:
     if s.sinusoid_count != 0.0:
         forced_event(p, s, due)
         return

@@ -23,6 +23,7 @@ from ...linear.root_steps import EPSILON, halley, householder, householder_settl
 STEPS = 100_000
 _DIRECT_STEPS = 8
 GAVE_UP = -1.0     # instead of a time: the steps were used up
+_SAME_TIME = 2.0 ** -50   # s, and of a time: more than rounding of the time of a segment's start
 
 
 @inlined
@@ -33,7 +34,7 @@ def rigid_stick(p: Parameters, s: State, horizon: float) -> float:
     if second_rate == 0.0:
         if rate == 0.0:
             return math.inf
-        if p.static_law == EXPONENTIAL and s.rest < math.inf:
+        if p.static_law == EXPONENTIAL and p.static_delay <= s.rest < math.inf:
             t = _exponential_root(p, s, force if rate > 0.0 else -force, abs(rate), horizon)
             if t >= 0.0:
                 return t if t <= horizon else math.inf
@@ -63,8 +64,8 @@ def _exponential_root(p: Parameters, s: State, force: float, rate: float, horizo
     there is but one at which it falls.  Householder's step, from the last stick's time or else from above: 1 − exp(−z)
     is less than 2z/(2 + z), with which the guard is a quadratic.
     """
-    normal, rest, tau = p.normal_force, s.rest, p.static_tau
-    gap = max(normal * static_limit(p, rest) - force, 0.0)
+    normal, rest, tau = p.normal_force, s.rest - p.static_delay, p.static_tau
+    gap = max(normal * static_limit(p, s.rest) - force, 0.0)
     if rate * horizon < gap:
         return math.inf   # even the limit of now is out of reach
     d = normal * (p.static_limit - p.static_initial)
@@ -99,7 +100,27 @@ def _exponential_root(p: Parameters, s: State, force: float, rate: float, horizo
 @inlined
 def law(p: Parameters, rest: float) -> StaticGrowth:
     """Return mu_s, its rate and a bound on −mu_s″ after a rest time."""
-    return static_growth(p.static_law, p.static_initial, p.static_limit, p.static_tau, p.static_exponent, rest)
+    if rest < p.static_delay:
+        return StaticGrowth(p.static_initial, 0.0, 0.0)
+    return _grown(p, rest - p.static_delay)
+
+
+@inlined
+def _grown(p: Parameters, age: float) -> StaticGrowth:
+    """Return the same at a time after the growth began."""
+    return static_growth(p.static_law, p.static_initial, p.static_limit, p.static_tau, p.static_exponent, age)
+
+
+@inlined
+def delay_left(p: Parameters, s: State) -> float:
+    """Return how long mu_s still waits for its growth, s; up to rounding of the time it waits no more."""
+    left = p.static_delay - s.rest
+    if p.static_delay == 0.0 or left < -_SAME_TIME - _SAME_TIME * p.static_delay:
+        return 0.0
+    if left <= _SAME_TIME + _SAME_TIME * p.static_delay:
+        s.rest = p.static_delay
+        return 0.0
+    return left
 
 
 @compiled
@@ -138,7 +159,7 @@ def concave_root(p: Parameters, s: State, rest: float, force: float, rate: float
         step = halley(value, slope, bow) if slope < 0.0 else math.inf
         guess = t - step if slope < 0.0 else math.inf
         if low <= guess <= high:
-            sharpness = bow / slope + 1.0 / p.static_tau + 3.0 / (rest + guess) + decay
+            sharpness = bow / slope + 1.0 / p.static_tau + 3.0 / (rest - p.static_delay + guess) + decay
             if abs(step) <= 2.0 * EPSILON * t or abs(step) * (step * sharpness) ** 2 <= 0.1 * EPSILON * guess:
                 return guess
         else:
@@ -200,6 +221,6 @@ def steep_start(p: Parameters, value: float, rate: float, second_rate: float) ->
     It never falls, so a force that is off the limit by `value` takes its time as well.
     """
     step = p.static_tau
-    while p.normal_force * law(p, step).rate < rate + second_rate * step and step > 0.0:
+    while p.normal_force * _grown(p, step).rate < rate + second_rate * step and step > 0.0:
         step *= 0.125
     return max(step, safe_step(value, -rate, second_rate))
