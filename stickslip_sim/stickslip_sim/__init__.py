@@ -18,6 +18,7 @@ floor down; each imports only from the floors below it:
     check        a run against limits
     verify       a recorded run again, bit by bit, or as something else had been
     identify     from measurements to a scene: friction curves, and runs from which all parameters are fitted
+    sensitivity  derivatives of what a run shows with respect to the numbers of its scene
     study        sweeps, maps, critical values, uncertainty
     bench        this solver beside its rivals, which are in bench/peers
     inputs       what comes from outside: profiles and measured numbers from files, in their units
@@ -60,15 +61,16 @@ if TYPE_CHECKING:
     from .runs.batch import run_batch
     from .runs.error_estimate import error_estimate
     from .scene import Scene, scene_names
+    from .sensitivity.sensitivities import Sensitivities, sensitivities
     from .simulation.cycles import Cycle, Summary
     from .simulation.simulator import Simulator
     from .study.in_memory import critical, sweep, uncertainty
 
 __all__ = [
     'Cycle', 'Event', 'EventKind', 'InputError', 'Instant', 'Mode', 'RecordingError', 'RecordingWarning', 'Run',
-    'Sample', 'Scene', 'Simulator', 'SolverError', 'StickslipError', 'Summary', 'UnsoundError', 'VerdictError',
-    '__version__', 'critical', 'error_estimate', 'identify', 'load_scene', 'read_run', 'run_batch', 'scene_names',
-    'simulate', 'simulate_events', 'sweep', 'uncertainty',
+    'Sample', 'Scene', 'Sensitivities', 'Simulator', 'SolverError', 'StickslipError', 'Summary', 'UnsoundError',
+    'VerdictError', '__version__', 'critical', 'error_estimate', 'identify', 'load_scene', 'read_run',
+    'run_batch', 'scene_names', 'sensitivities', 'simulate', 'simulate_events', 'sweep', 'uncertainty',
 ]
 
 if not TYPE_CHECKING:   # a type checker knows the names from above, and finds a misspelt one
@@ -83,6 +85,7 @@ if not TYPE_CHECKING:   # a type checker knows the names from above, and finds a
         '.runs.batch': ('run_batch',),
         '.runs.error_estimate': ('error_estimate',),
         '.scene': ('Scene', 'scene_names'),
+        '.sensitivity.sensitivities': ('Sensitivities', 'sensitivities'),
         '.simulation.cycles': ('Cycle', 'Summary'),
         '.simulation.simulator': ('Simulator',),
         '.study.in_memory': ('critical', 'sweep', 'uncertainty'),

@@ -13,9 +13,9 @@ from tests.support.repository import ROOT
 
 NAMES = [
     'Cycle', 'Event', 'EventKind', 'InputError', 'Instant', 'Mode', 'RecordingError', 'RecordingWarning', 'Run',
-    'Sample', 'Scene', 'Simulator', 'SolverError', 'StickslipError', 'Summary', 'UnsoundError', 'VerdictError',
-    '__version__', 'critical', 'error_estimate', 'identify', 'load_scene', 'read_run', 'run_batch', 'scene_names',
-    'simulate', 'simulate_events', 'sweep', 'uncertainty']
+    'Sample', 'Scene', 'Sensitivities', 'Simulator', 'SolverError', 'StickslipError', 'Summary', 'UnsoundError',
+    'VerdictError', '__version__', 'critical', 'error_estimate', 'identify', 'load_scene', 'read_run',
+    'run_batch', 'scene_names', 'sensitivities', 'simulate', 'simulate_events', 'sweep', 'uncertainty']
 ROOM = re.compile(r'^ {4}(\w+) {2,}\S', re.MULTILINE)   # a line of the map
 
 

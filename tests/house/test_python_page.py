@@ -22,7 +22,7 @@ def test_the_blocks_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys:
     for block in BLOCK.findall((ROOT / 'docs' / 'python.md').read_text(encoding='utf-8')):
         exec(block, names)
         printed.append(capsys.readouterr().out)
-    assert len(printed) == 12
+    assert len(printed) == 13
     assert printed[1].splitlines()[0] == 'stick-slip'
     assert printed[1].splitlines()[1].startswith('BREAKAWAY 0.7625675504')
     assert 'axis.mass = -1.0 is refused' in printed[-1]

@@ -19,7 +19,7 @@ from .point_figures import Motion, Numbers, figures_of_runs
 from .points import batches, runs_in_batches, scene_at, works_in_batches
 from .steady import sliding_slope
 from .table_facts import TableFact, table_fact
-from .variation import Variation, checked, parameter_of
+from .variation import Variation, checked, number_at, parameter_of
 from .verdict_changes import FAILED, NO, OPEN, YES, Findings, Verdicts, find_transitions
 
 _PATIENCE = 20_000   # cycles that a motion is given to settle
@@ -73,10 +73,8 @@ def critical(scene: Scene, over: Variation, accuracy: float,
 def default_range(scene: Scene, name: str) -> Variation:
     """Return the range of a parameter from a hundredth to a hundred times its value in the scene; raises InputError."""
     entry, index = parameter_of(name)
-    value = scene.values.get(entry.name)
-    if isinstance(value, tuple) and index is not None and index < len(value):
-        value = value[index]
-    if not isinstance(value, float) or not 0.0 < value < np.inf:
+    value = number_at(scene.values, name)
+    if value is None or not 0.0 < value < np.inf:
         raise InputError('--between', None, f'given for {name}, which is no number above 0 in this scene, so that the '
                          'range around it is not known', 'add --between LOW:HIGH' + (
                              f', or --set {name}=… to look from 1/100 to 100 times that' if index is None else ''))

@@ -19,7 +19,7 @@ from ..scene.schema import BY_NAME
 
 Numbers = NDArray[np.float64]
 
-_OF_THE_MOTION = ('axis', 'contact', 'friction', *PROFILES, 'initial', 'solver')
+MOTION_SECTIONS = ('axis', 'contact', 'friction', *PROFILES, 'initial', 'solver')
 _ALONG = {   # where an element of a list is
     'friction.kinetic.coefficients': 'friction.kinetic.velocities',
     'friction.excess.fractions': 'friction.excess.velocities',
@@ -107,8 +107,8 @@ def parameter_of(name: str) -> tuple[Parameter, int | None]:
     if found is None or entry is None:
         raise InputError('parameter', name, 'a parameter of a scene (docs/scene.md)',
                          suggestion(name, BY_NAME, 'check the name'))
-    if entry.name.partition('.')[0] not in _OF_THE_MOTION:
-        raise InputError('parameter', name, 'one that decides the motion: in ' + ', '.join(_OF_THE_MOTION),
+    if entry.name.partition('.')[0] not in MOTION_SECTIONS:
+        raise InputError('parameter', name, 'one that decides the motion: in ' + ', '.join(MOTION_SECTIONS),
                          'the others change no run')
     if entry.type == 'double' and found[2] is None:
         return entry, None
@@ -117,6 +117,15 @@ def parameter_of(name: str) -> tuple[Parameter, int | None]:
     what = 'a list of numbers' if entry.type == 'double_array' else 'no list' if found[2] else f'a {entry.type}'
     raise InputError('parameter', name, f'a number; this is {what}',
                      f'vary an element of it: {entry.name}[0]' if entry.type == 'double_array' else 'use --set for it')
+
+
+def number_at(values: Mapping[str, object], name: str) -> float | None:
+    """Return the number of a scene (`values`) that a variation names, None where it has none; raises InputError."""
+    entry, index = parameter_of(name)
+    value = values.get(entry.name)
+    if index is not None:
+        value = value[index] if isinstance(value, tuple) and index < len(value) else None
+    return value if isinstance(value, float) else None
 
 
 def place_of(values: Mapping[str, object], name: str) -> str:

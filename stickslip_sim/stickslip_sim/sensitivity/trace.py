@@ -1,0 +1,59 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""A run that goes on only as far as its figures need, with the sequence of its events."""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.time_grid import Instants
+from ..core.types import Event, Instant, Sample
+from ..scene import Scene
+
+Numbers = NDArray[np.float64]
+Step = tuple[int, int, int]   # kind, mode and direction of an event
+
+LONGEST = 1e6        # s
+MOST_EVENTS = 50_000
+
+
+class Trace:
+    """The `events` of a scene from 0 to `end` (s), and the samples `rows` (times, fields of `Sample`).
+
+    The run goes on when it is asked to; raises SolverError when the solver gives up.  `times` (s) rise.
+    """
+
+    def __init__(self, scene: Scene, times: Numbers | None = None) -> None:
+        self.times = np.empty(0) if times is None else times
+        self.rows = np.empty((len(self.times), len(Sample._fields)))
+        self.events: list[Event] = []
+        self.sequence: list[Step] = []
+        self.end = 0.0
+        self._rig = scene.make_rig()
+        if len(self.times):
+            seconds = np.floor(self.times)
+            self._take(self._rig.take_samples(Instants(seconds, self.times - seconds), self.rows))
+            self.end = float(self.times[-1])
+
+    def extend(self, end: float) -> None:
+        """Go on to a time, s, unless the run is there."""
+        if end <= self.end:
+            return
+        second = float(np.floor(end))
+        self._take(self._rig.advance(Instant(second, end - second)))
+        self._rig.simulator.judge()
+        self.end = end
+
+    def extend_until(self, is_enough: Callable[['Trace'], bool], least: float) -> bool:
+        """Go on to `least` s, then twice as long, and so on until it is enough; return whether it is."""
+        self.extend(least)
+        while not is_enough(self):
+            if self.end >= LONGEST or len(self.events) >= MOST_EVENTS:
+                return False
+            self.extend(min(2.0 * self.end, LONGEST))
+        return True
+
+    def _take(self, events: Sequence[Event]) -> None:
+        self.events += events
+        self.sequence += [(event.kind, event.mode, event.direction) for event in events]
