@@ -9,7 +9,9 @@ from ..bench.measure import Cost
 from ..core.errors import InputError
 from ..runs.error_estimate import ErrorEstimate, error_estimate
 from ..scene import Scene
+from ..sensitivity.sensitivities import Sensitivities
 from .absent import absent_parts
+from .numbers import sensitivities_of
 from .parts import parts_of
 from .recommendation import Least, PartTrial, best_trial, least_scene
 from .solver_settings import solver_settings
@@ -34,6 +36,7 @@ class Advice(NamedTuple):
     tables: list[Trial]    # of smooth laws, made finer
     least: Least
     least_cost: tuple[Cost | None, Cost | None]   # of the whole scene and of the least one, measured side by side
+    sensitivities: Sensitivities | None   # of the motion to all numbers of the scene; None without an event
 
 
 def check_tolerance(tolerance: float) -> None:
@@ -70,7 +73,8 @@ def advise(scene: Scene, tolerance: float, duration: float, rounds: int,
     least = least_scene(reference, found, solved, tolerance)
     side_by_side = costs([reference.scene, least.trial.scene or reference.scene], duration, rounds)
     return Advice(reference, cost, error_estimate(reference.run), tolerance, found, given, solved,
-                  _finer_tables(reference), least, (side_by_side[0], side_by_side[1]))
+                  _finer_tables(reference), least, (side_by_side[0], side_by_side[1]),
+                  sensitivities_of(reference))
 
 
 def _finer_tables(reference: ExactRun) -> list[Trial]:

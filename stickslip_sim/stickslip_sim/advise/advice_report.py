@@ -12,6 +12,7 @@ from ..scene import PARAMETERS
 from ..scene.text import yaml_value
 from .advice import Advice
 from .figure_distance import ANOTHER_MOTION
+from .numbers import number_lines, numbers_as_json
 from .part import Changes
 from .solver_settings import EXACT
 from .trial_runs import Trial
@@ -21,7 +22,7 @@ _Row = tuple[str, ...]
 
 
 def text_lines(advice: Advice) -> Iterator[str]:
-    """Yield the tables of parts, of parts that the scene leaves out, and of solvers."""
+    """Yield the tables of parts, of parts that the scene leaves out, of solvers, and of numbers."""
     yield _headline(advice)
     parts = [(_named(found.trial), *_outcome(advice, found.trial), _need(advice, k))
              for k, found in enumerate(advice.parts)]
@@ -33,6 +34,9 @@ def text_lines(advice: Advice) -> Iterator[str]:
         (), ('not in the scene', 'given without effect', 'by', 'cost', ''), *absent,
         (), ('solver', 'differs most', 'by', 'cost', f'within {advice.tolerance:g}'), *solvers])
     yield ''
+    if advice.sensitivities is not None:
+        yield from number_lines(advice.sensitivities)
+        yield ''
     yield from notes(advice)
 
 
@@ -87,6 +91,7 @@ def as_json(advice: Advice, overrides: Changes) -> dict[str, Any]:
         'parts': [{**_trial(found.trial), 'needed': is_needed(advice, k)} for k, found in enumerate(advice.parts)],
         'not_in_the_scene': [_trial(trial) for trial in advice.absent],
         'solvers': [_trial(trial) for trial in advice.solvers],
+        'numbers': numbers_as_json(advice.sensitivities),
         'finer_tables': [_trial(trial) for trial in advice.tables],
         'least': {**_trial(least.trial), 'changes': _plain(overrides), 'without': list(least.parts),
                   'solver': least.solver, 'cost_of_whole': _cost(advice.least_cost[0]),
