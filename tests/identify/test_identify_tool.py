@@ -6,14 +6,21 @@ import csv
 import json
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
+from stickslip_sim.identify import many_fits
+from stickslip_sim.identify.stages import fit_from
+from stickslip_sim.identify.work_folder import WorkFolder
 from stickslip_sim.scene import load_scene
 from tests.support.measured_axes import FREE, VALUES, Readings, free_file, readings, start_scene
 from tests.support.tool import Capture, answered, refused
 
+WIDE = {'axis.drive_stiffness': (5e4, 1e6), 'friction.static.initial': (0.15, 0.9),
+        'friction.kinetic.coefficients[0]': (0.02, 0.15), 'friction.kinetic.coefficients[1]': (0.01, 0.3),
+        'friction.kinetic.velocities[1]': (1e-3, 0.1)}
 FILES = {'identified.yaml', 'posterior.yaml', 'report.html', 'report.json'}
 
 
@@ -160,3 +167,53 @@ def test_a_scene_is_no_run(tmp_path: Path, capsys: Capture) -> None:
     assert 'this is a scene' in refused(capsys, 'identify', 'paper_fig7', '--scene', 'paper_fig7', '--free',
                                         free_file(tmp_path / 'free.yaml'), '--out', tmp_path / 'found')
 
+
+
+@pytest.fixture
+def without_a_fit(tmp_path: Path, start: Path, capsys: Capture) -> tuple[Path | str, ...]:
+    """An identification that tries all of its starts, since none fits."""
+    run = imported(tmp_path, readings({**VALUES, 'axis.mass': 20.0}, 1.0, 250.0), capsys)
+    return ('identify', run, '--scene', start, '--free', free_file(tmp_path / 'free.yaml', WIDE), '--out')
+
+
+def test_an_interrupted_one_ends_as_one_of_two_processes(without_a_fit: tuple[Path | str, ...], tmp_path: Path,
+                                                         capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
+    whole, cut = tmp_path / 'whole', tmp_path / 'cut'
+    assert answered(capsys, *without_a_fit, whole, '--workers', '2')[0] == 3
+    done: list[int] = []
+
+    def interrupted(*arguments: Any) -> Any:
+        if len(done) == 2:
+            raise KeyboardInterrupt
+        done.append(1)
+        return fit_from(*arguments)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(many_fits, 'fit_from', interrupted)
+        said = refused(capsys, *without_a_fit, cut, code=130)
+    assert f'what is done is kept in {cut}, --resume goes on' in said
+    assert {path.name for path in cut.iterdir()} == {'identify.json', 'fit_0.npz', 'fit_1.npz'}
+    assert 'a folder that does not exist' in refused(capsys, *without_a_fit, cut)
+    (cut / 'fit_1.npz').write_bytes(b'PK damaged')    # as a crash of the machine may leave it
+    code, _, error = answered(capsys, *without_a_fit, cut, '--resume')
+    assert (code, error.count('\n')) == (3, 1)
+    assert {path.name for path in cut.iterdir()} == FILES
+    for name in ('identified.yaml', 'posterior.yaml'):
+        assert (cut / name).read_bytes() == (whole / name).read_bytes()
+    runs = [json.loads((folder / 'report.json').read_text())['runs'] for folder in (whole, cut)]
+    assert runs[0] == runs[1]
+    assert 'the folder of an interrupted identification' in refused(capsys, *without_a_fit, cut, '--resume')
+
+
+def test_another_one_is_not_gone_on_with(without_a_fit: tuple[Path | str, ...], tmp_path: Path, capsys: Capture,
+                                         monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(*_: Any) -> Any:
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr(many_fits, 'fit_from', interrupted)
+        assert 'kept' not in refused(capsys, *without_a_fit, tmp_path / 'cut', code=130)   # nothing was done
+    assert not (tmp_path / 'cut').exists()
+    work = WorkFolder(tmp_path / 'cut', {'form': 'stickslip identification 1', 'run': 'another'}, False)
+    work.keep('fit_0', {'point': np.zeros(3)})
+    assert 'its run is another' in refused(capsys, *without_a_fit, tmp_path / 'cut', '--resume')

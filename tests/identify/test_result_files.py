@@ -15,6 +15,7 @@ import pytest
 from stickslip_sim.config.ros_yaml import read_yaml
 from stickslip_sim.identify.cycle_phases import phases, slip_share, usual_cycles
 from stickslip_sim.identify.fit import identify
+from stickslip_sim.identify.free_parameters import FreeParameter
 from stickslip_sim.identify.friction_band import half_width, kinetic_of, static_of
 from stickslip_sim.identify.identification import (
     AT_BOUND,
@@ -226,3 +227,11 @@ def test_a_report_shows_what_does_not_fit_and_what_is_not_known(run: MeasuredRun
     assert values['correlation'][1] == [None] * 3
     assert values['combinations'][0]['spread'] == 'inf'
     assert values['misfits'][0]['from_time'] == 1.0
+
+
+def test_an_end_beyond_all_numbers_is_that_of_the_range() -> None:
+    """The interval of a number that nothing determines reaches further than exp() does."""
+    one = FreeParameter('axis.mass', 'kg', 100.0, 50.0, 200.0)
+    assert (one.outer(-1e4), one.outer(1e4)) == pytest.approx((50.0, 200.0))
+    offset = FreeParameter('sensor.position.offset', 'm', 0.0, -1.0, 3.0)
+    assert (offset.outer(-1e4), offset.outer(0.25), offset.outer(1e4)) == (-1.0, 1.0, 3.0)

@@ -2,7 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """`stickslip identify`: from a measured run to the scene that reproduces it, and how well that is known."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
@@ -12,6 +15,9 @@ from .run_or_scene import recorded_run
 from .scene_changes import SceneChanges, scene_changes
 from .sweeping import process_count
 
+if TYPE_CHECKING:
+    from ..identify.work_folder import WorkFolder
+
 
 @click.command(short_help='Find the parameters of an axis from a measured run.')
 @click.argument('run', metavar='RUN', shell_complete=completion.complete_folders)
@@ -20,29 +26,49 @@ from .sweeping import process_count
 @click.option('--free', required=True, metavar='FILE.yaml', help='What is sought, and in which ranges.')
 @click.option('--out', required=True, metavar='FOLDER', help='New folder for the results.')
 @click.option('--workers', metavar='N|all', help='Processes to use [default: 1].')
+@click.option('--resume', is_flag=True, help='Go on with what was interrupted.')
 @scene_changes('Change a parameter of the scene to begin with.')
-def identify(run: str, scene: str, free: str, out: str, workers: str | None, changes: SceneChanges) -> None:
+def identify(run: str, scene: str, free: str, out: str, workers: str | None, resume: bool, changes: SceneChanges
+             ) -> None:
     """Find from a measured RUN of an axis the scene that reproduces it, with intervals.
 
     FOLDER gets identified.yaml, a scene; posterior.yaml, what is left open of it, for uncertainty --with; report.html
-    and report.json.  Exit with 3 when the model does not fit the run; the report shows where.
+    and report.json.  Exit with 3 when the model does not fit the run; the report shows where.  Ctrl-C keeps the fits
+    that are done.
     """
-    check_new_folder('--out', out)
-    _ = process_count('1' if workers is None else workers)
+    if not resume:
+        check_new_folder('--out', out)
+    count = process_count('1' if workers is None else workers)
     from ..core.errors import VerdictError
     from ..identify.fit import identify as find
     from ..identify.result_folder import PAGE, write_results
+    from ..identify.work_folder import WorkFolder, facts_of
+    from ..scene.load import read_text
     from .identify_lines import result_lines
     from .progress import progress_bar
 
     start = changes.load(scene)
     measured = recorded_run(run)
-    with progress_bar('identifying') as progress:
-        found = find(measured, start, free, progress=progress and (lambda stage, share: progress(share)))
-    with new_folder('--out', out) as folder:
+    work = WorkFolder(out, facts_of(measured, start, read_text(Path(free), 'file of distributions')), resume)
+    with _going_on(work), progress_bar('identifying') as progress:
+        found = find(measured, start, free, workers=count, keeper=work,
+                     progress=progress and (lambda stage, share: progress(share)))
+    with new_folder('--out', work.results) as folder:
         write_results(measured, found, scene, folder)
+    work.finish()
     print('\n'.join(result_lines(found, measured.name)))
     print(f'written: {Path(out) / PAGE}')
     if not found.fits:
         raise VerdictError(f'the model does not fit {measured.name}: {found.misfits[0].statement}; {Path(out) / PAGE} '
                            'shows where')
+
+
+@contextmanager
+def _going_on(work: 'WorkFolder') -> Iterator[None]:
+    """Say how an interrupted identification goes on."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        if not work.exists:
+            raise
+        raise KeyboardInterrupt(f'interrupted; what is done is kept in {work.path}, --resume goes on') from None

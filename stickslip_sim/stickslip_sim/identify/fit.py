@@ -5,6 +5,7 @@
 import os
 import time
 from collections.abc import Mapping
+from contextlib import closing
 from pathlib import Path
 
 from ..recording import read_run
@@ -15,20 +16,22 @@ from .findings import identification_of
 from .free_parameters import free_parameters
 from .identification import Identification
 from .input_checks import check_data, check_parameters
+from .many_fits import Keeper, fits_from
 from .motions import motions_of, track_of
 from .problem import FitProblem
 from .readings import readings_of
-from .stages import Progress, best_fit
+from .stages import Progress, best_fit, starts_of
 
 
 def identify(run: Run | str | os.PathLike[str], start: SceneOrName, free: str | Path | Mapping[str, object], *,
-             resolutions: Mapping[str, float] | None = None, seed: int = 0, progress: Progress | None = None
-             ) -> Identification:
+             resolutions: Mapping[str, float] | None = None, seed: int = 0, workers: int = 1,
+             progress: Progress | None = None, keeper: Keeper | None = None) -> Identification:
     """Return the scene that reproduces a measured or recorded run, found from the scene `start`.
 
     `free` is a file as `uncertainty --with` takes it, or its section of parameters, and names beside parameters of the
     scene `sensor.CHANNEL.offset` and `sensor.CHANNEL.scale`.  `resolutions` are standard deviations of the noise by
     channel, in its unit, where they are known.  `progress` is called with a stage and the share of it that is done.
+    Fits from several starts are shared out to `workers` processes, and kept by a `keeper`, if there is one.
     Raises InputError and RecordingError.
     """
     began = time.perf_counter()
@@ -41,5 +44,6 @@ def identify(run: Run | str | os.PathLike[str], start: SceneOrName, free: str | 
     check_data(parameters, measurement, motions, scene)
     model = AxisModel(scene, parameters, measurement)
     problem = FitProblem(model, parameters, measurement, motions)
-    ends = best_fit(problem, seed, progress or (lambda stage, share: None))
+    with closing(fits_from(problem, starts_of(problem, seed), workers, keeper)) as fits:
+        ends = best_fit(fits, progress or (lambda stage, share: None))
     return identification_of(problem, scene, ends, began)

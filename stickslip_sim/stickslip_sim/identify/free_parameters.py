@@ -53,8 +53,9 @@ class FreeParameter:
         return math.log(value) if self.logarithmic else value / (self.high - self.low)
 
     def outer(self, number: float) -> float:
-        """Return the value of what the fit works on, kept within the range against rounding."""
-        value = math.exp(number) if self.logarithmic else number * (self.high - self.low)
+        """Return the value of what the fit works on, kept within the range."""
+        inside = min(max(number, self.inner(self.low)), self.inner(self.high))   # before exp, which may overflow
+        value = math.exp(inside) if self.logarithmic else inside * (self.high - self.low)
         return min(max(value, self.low), self.high)
 
 

@@ -83,13 +83,14 @@ def effective_count(problem: FitProblem) -> float:
     return float(sum(channel.weights.sum() for channel in problem.measurement.channels))
 
 
-def best_fit(problem: FitProblem, seed: int, progress: Progress) -> list[Ended]:
+def best_fit(ends: Iterator[Ended], progress: Progress) -> list[Ended]:
     """Return the ends of the fits that were made, the best first; others are tried only where the first is not good."""
     ended: list[Ended] = []
-    for k, start in enumerate(starts_of(problem, seed)):
+    progress('fit', 0.0)
+    for k, end in enumerate(ends, 1):
         progress('fit', k / (1 + _FITTED_STARTS))
-        ended.append(fit_from(problem, start))
-        if ended[-1].mean_square < _GOOD:
+        ended.append(end)
+        if end.mean_square < _GOOD:
             break
     return sorted(ended, key=lambda end: end.solution.cost)
 
