@@ -42,7 +42,7 @@ def bag(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_blocks_of_any_size_give_the_same_figures(bag: Path, monkeypatch: pytest.MonkeyPatch, rows: int) -> None:
     expected = outcomes_of(LIMITS, read_run(bag))
     assert expected[-2].value
-    monkeypatch.setattr(samples, '_GATHERED', rows)
+    monkeypatch.setattr(samples, 'GATHERED', rows)
     assert outcomes_of(LIMITS, read_run(bag)) == expected
 
 

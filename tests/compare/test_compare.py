@@ -4,7 +4,6 @@
 
 import base64
 import json
-import math
 import re
 from html.parser import HTMLParser
 from pathlib import Path
@@ -18,12 +17,13 @@ from stickslip_sim.cli.compare import named_apart
 from stickslip_sim.cli.main import run
 from stickslip_sim.compare.characteristics import characteristics_of
 from stickslip_sim.compare.conventional import characteristics_beside
-from stickslip_sim.compare.drawn import steady_inputs, within
+from stickslip_sim.compare.drawn import in_order
+from stickslip_sim.compare.drawn_motion import drawn_motion
 from stickslip_sim.compare.fresh import simulate_densely
-from stickslip_sim.compare.ring_down import closed_form, identified
+from stickslip_sim.compare.look import look_at
+from stickslip_sim.compare.ring_down import RING_DOWN, closed_form, identified
 from stickslip_sim.compare.statement import StatementOutcome
-from stickslip_sim.compare.statements import judged
-from stickslip_sim.compare.windows import drawn_motion
+from stickslip_sim.compare.statements import judged, observed
 from stickslip_sim.core.types import EventKind
 from stickslip_sim.plots.characteristics import plot_characteristics
 from stickslip_sim.plots.paper_panels import plot_motion
@@ -143,7 +143,7 @@ def test_ring_down_is_that_of_the_closed_form(report: Path) -> None:
 def test_ring_down_is_identified_from_the_motion(damping: float) -> None:
     """Also where nothing swings: a damping ratio of 1.93."""
     moving = simulate_densely(load_scene('paper_fig8', {'contact.damping': damping}), 3.0)
-    form, found = closed_form(moving.scene.axis), identified(moving)
+    form, found = closed_form(moving.scene.axis), identified(observed(moving).found[RING_DOWN])
     assert form is not None
     assert found is not None
     assert tuple(found) == pytest.approx(tuple(form), rel=1e-6)
@@ -155,11 +155,11 @@ def test_a_bag_gives_the_figures_of_the_scene(bag: Path) -> None:
     assert [cycle.begin for cycle in recorded.cycles()] == pytest.approx([cycle.begin for cycle in fresh.cycles()])
     assert recorded.summary.stick_share == pytest.approx(fresh.summary.stick_share, abs=1e-12)
     assert recorded.scene.axis == fresh.scene.axis
-    one, other = identified(recorded), identified(fresh)
+    one, other = (identified(observed(run).found[RING_DOWN]) for run in (recorded, fresh))
     assert one is not None
     assert other is not None
     assert tuple(one) == pytest.approx(tuple(other), rel=1e-9)
-    inputs = steady_inputs(recorded)
+    inputs = look_at(recorded).steady
     assert inputs is not None
     assert tuple(inputs) == (DRIVE, 0.0)
 
@@ -185,7 +185,7 @@ def test_a_recording_that_began_later(bag: Path, tmp_path: Path) -> None:
 def test_corners_are_where_they_are() -> None:
     """At each event there is a sample just before and one just after it, at any sample rate."""
     moving = simulate_densely(load_scene('paper_fig7'), 2.0)
-    columns = within(moving, -math.inf, math.inf)
+    columns = in_order(look_at(moving).before, moving.samples)
     for event in moving.events:
         at = np.flatnonzero(columns['time'] == event.time)
         assert len(at) == 2

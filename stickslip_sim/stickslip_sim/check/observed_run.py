@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a check takes from a run: its motion, its first command, the verdict on its timing, what is missing of it."""
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -14,6 +13,7 @@ from ..core.types import Event, EventKind, Mode
 from ..recording import MeasuredRun, RecordedRun
 from ..recording.bag import METADATA
 from ..recording.reader import EVENT_FIELDS
+from ..recording.states_seen import StatesSeen
 from ..recording.topics import DRIVE_VELOCITY, MODE_EVENT, SLIDER_STATE
 from ..runs import Columns, Run
 from ..runs.kept import kept
@@ -104,7 +104,7 @@ def unmeasured(run: Run) -> tuple[str, ...]:
 def _recorded_motion(run: RecordedRun) -> ObservedMotion:
     """Look once through what was recorded; raises RecordingError unless it is that of one run."""
     unknown = unmeasured(run)
-    states = _StatesSeen([name for name in _STATE_FIELDS if name not in unknown])
+    states = StatesSeen([name for name in _STATE_FIELDS if name not in unknown])
     events = _taken(run, states)
     if not states.count:
         raise RecordingError(f'{run.bag.path}: no state of the axis in it; nothing can be checked')
@@ -117,7 +117,7 @@ def _recorded_motion(run: RecordedRun) -> ObservedMotion:
     return ObservedMotion(begin, end, Mode(states.mode), seen, states.count, states.missing_steps)
 
 
-def _taken(run: RecordedRun, states: '_StatesSeen') -> list[Event]:
+def _taken(run: RecordedRun, states: StatesSeen) -> list[Event]:
     """Take the states block by block; return the transitions."""
     if isinstance(run, MeasuredRun):
         states.take(run.state_columns(_SEEN_FIELDS))
@@ -129,33 +129,6 @@ def _taken(run: RecordedRun, states: '_StatesSeen') -> list[Event]:
         elif len(block['time']):
             states.take(block)
     return run.bag.events_in(joined(transitions))
-
-
-class _StatesSeen:
-    """What the states of a run come to, block by block; some fields of them must be finite."""
-
-    def __init__(self, finite: Sequence[str]) -> None:
-        self._finite = finite
-        self.count = 0
-        self.are_finite = self.rise = True
-        self.begin = self.end = math.nan    # s, of the first and of the last
-        self.mode = 0                       # of the first
-        self._steps = 0, 0                  # of the first and of the last
-
-    def take(self, block: Columns) -> None:
-        time, steps = block['time'], block['step']
-        self.are_finite &= all(bool(np.isfinite(block[name]).all()) for name in self._finite)
-        if not self.count:
-            self.begin, self.mode, self._steps = float(time[0]), int(block['mode'][0]), (int(steps[0]), 0)
-        elif not time[0] > self.end:
-            self.rise = False
-        self.rise &= bool((np.diff(time) > 0.0).all())
-        self.end, self._steps = float(time[-1]), (self._steps[0], int(steps[-1]))
-        self.count += len(time)
-
-    @property
-    def missing_steps(self) -> int:
-        return self._steps[1] - self._steps[0] + 1 - self.count
 
 
 def _seen(events: Sequence[Event]) -> list[Event]:

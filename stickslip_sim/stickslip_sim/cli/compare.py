@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from . import completion
-from .files import check_new_folder, new_folder
+from .files import check_new_folder, new_folder, say_written
 from .run_or_scene import is_recorded, recorded_run
 from .scene_changes import SceneChanges, scene_changes
 
@@ -54,7 +54,7 @@ def compare(runs: tuple[str, ...], out: str, duration: float | None, changes: Sc
         return
     for each in judged:
         _print_judged(each)
-    print(f'written: {Path(out) / "report.html"}')
+    say_written(str(Path(out) / 'report.html'))
     failed = [f'{found.name}: {name}' for found in judged for name in found.failed]
     if failed:
         raise VerdictError(f'{len(failed)} of the statements that apply do not hold ({"; ".join(failed)})')
@@ -79,7 +79,7 @@ def _run(source: str, duration: float | None, changes: SceneChanges) -> 'Run':
 
     if is_recorded(source):
         run = recorded_run(source)
-        _ = run.samples, run.events, _is_measured([run]) or run.scene   # refused before the work begins
+        _ = run.begin, run.events, _is_measured([run]) or run.scene   # refused before the work begins
         return run
     scene = changes.load(source)
     return simulate_densely(scene, default_duration(scene) if duration is None else duration)
@@ -120,7 +120,7 @@ def _print_beside(runs: list['Run'], out: str) -> None:
         print(f'{one.name} beside {measured}, means of the last cycles:')
         for each in one.differences:
             print(f'  {each.name:25} {each.text}')
-    print(f'written: {Path(out) / "report.html"}')
+    say_written(str(Path(out) / 'report.html'))
 
 
 def _print_judged(judged: 'Judged') -> None:

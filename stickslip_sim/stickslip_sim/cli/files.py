@@ -111,6 +111,13 @@ def write_text(path: str, lines: Iterable[str]) -> None:
         file.writelines(lines)
 
 
+def say_written(*paths: str | None) -> None:
+    """Print where results lie (None: not asked for); nothing where some of them are in the standard output."""
+    given = [path for path in paths if path is not None]
+    if given and STDOUT not in given:
+        print(f'written: {", ".join(given)}')
+
+
 @contextmanager
 def _refusing(path: str) -> Iterator[None]:
     """Turn an error of the disk into an InputError; a reader that left is no error of the output."""

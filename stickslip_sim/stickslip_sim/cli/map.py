@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from . import completion
-from .files import check_distinct, check_picture, whole
+from .files import check_distinct, check_picture, say_written, whole
 from .sweeping import print_failed
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ def map_(folder: str, pictures: tuple[str, ...], show: str, picks: tuple[str, ..
         else:
             work.draw_map(study, columns, show, motions, paths)
     print_failed(study, columns)
-    print(f'written: {", ".join(pictures)}')
+    say_written(*pictures)
 
 
 def _check_pictures(pictures: tuple[str, ...]) -> None:
@@ -81,8 +81,8 @@ def _check_complete(sweep: 'Folder') -> None:
 
 def _pick(study: 'Study', columns: 'Columns', text: str) -> 'Pick':
     """Return a point of the map with its motion."""
+    from ..compare.drawn_motion import drawn_motion
     from ..compare.fresh import densely_sampled, simulate_densely
-    from ..compare.windows import drawn_motion
     from ..plots.stability_map import Pick
     from ..study.picks import ending_at, place_in_map, point_of
     from ..study.point_figures import Motion

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from . import completion
-from .files import check_new_folder, new_folder
+from .files import check_new_folder, new_folder, say_written
 from .run_or_scene import recorded_run
 from .scene_changes import SceneChanges, scene_changes
 
@@ -18,6 +18,9 @@ if TYPE_CHECKING:
     from ..runs import Run
     from ..scene import Scene
     from ..verify.verification import Verdict
+
+
+_DRAWN = 'position', 'velocity', 'friction_force'
 
 
 @click.command(short_help='Run a recorded run again; with --set, what would have been.')
@@ -91,16 +94,18 @@ def _what_if(run: 'RecordedRun', scene: 'Scene', changes: dict[str, object], out
     if out is not None:
         with new_folder('--out', out) as folder:
             _write(folder, changes, run, other)
-        print(f'written: {out}')
+        say_written(out)
 
 
 def _write(folder: Path, changes: dict[str, object], recorded: 'Run', other: 'Run') -> None:
     from ..plots import plot_beside
     from ..runs.receipt import plain
+    from ..runs.reduced import reduced
 
     scene = other.scene
     changed = ', '.join(f'{name} = {value}' for name, value in changes.items())
-    plot_beside(recorded.samples, other.samples, f'{scene.name}\nwhat if {changed}', folder / 'what_if.png')
+    was, would_be = (reduced(run.sample_blocks(), [(run.begin, run.end)], _DRAWN) for run in (recorded, other))
+    plot_beside(was, would_be, f'{scene.name}\nwhat if {changed}', folder / 'what_if.png')
     figures = {'scene': scene.name, 'changes': changes, 'recorded': recorded.summary, 'what_if': other.summary}
     text = json.dumps(plain(figures), indent=2, allow_nan=False) + '\n'
     (folder / 'what_if.json').write_text(text, encoding='utf-8')

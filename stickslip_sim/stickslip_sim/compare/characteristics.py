@@ -11,6 +11,7 @@ from ..friction import StaticLaw
 from ..plots.characteristics import Characteristics, Curve
 from ..runs import Run
 from .drawn import Numbers
+from .look import look_at
 
 _BEYOND = 1.25   # of the limit velocity, and of the longest rest: how far the axes go
 _POINTS = 400
@@ -37,7 +38,7 @@ def _speeds(run: Run) -> Numbers:
     """Return speeds that show all of the tables, breakpoints among them."""
     friction = run.scene.axis.friction
     breakpoints = {*friction.kinetic.velocities, *(friction.excess.velocities if friction.excess else ())}
-    end = _BEYOND * (friction.kinetic.limit_velocity or float(np.abs(run.samples['velocity']).max()) or 1.0)
+    end = _BEYOND * (friction.kinetic.limit_velocity or max(map(abs, look_at(run).ranges['velocity'])) or 1.0)
     return np.array(sorted({*np.linspace(0.0, end, _POINTS).tolist(), *(w for w in breakpoints if w < end)}))
 
 

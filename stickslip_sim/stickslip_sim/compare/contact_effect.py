@@ -2,13 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Statement: the contact changes the course of the motion not essentially."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from ..axis import Axis, CompliantContact, RigidContact
 from ..runs import Run
 from ..simulation.cycles import Cycle
-from .drawn import steady_inputs
 from .long_runs import last_cycles, lasts, longest_period
+from .look import look_at
 from .statement import Finding, Statement, found, not_applicable
 
 PAPER_CONTACT = CompliantContact(5.0e6, 15_000.0)   # N/m, N s/m
@@ -17,9 +18,9 @@ _FIGURES = {'period': 'period', 'stick time': 'stick_time', 'slip time': 'slip_t
             'peak speed': 'peak_speed', 'break-away force': 'break_away_force'}
 
 
-def judge(run: Run) -> Finding:
+def judge(run: Run, _: Sequence[object]) -> Finding:
     """Compare the limit cycles of this axis with a rigid and with a compliant contact."""
-    axis, inputs = run.scene.axis, steady_inputs(run)
+    axis, inputs = run.scene.axis, look_at(run).steady
     if axis.friction.excess is None:
         return not_applicable('said of the acceleration-dependent characteristic only')
     if inputs is None:

@@ -8,7 +8,7 @@ from ..core.errors import InputError
 from ..runs import Run
 from ..scene import Scene, changed
 from ..scene.load import unscaled
-from .drawn import steady_inputs
+from .look import look_at
 
 _KINETIC = 'friction.kinetic'
 
@@ -17,7 +17,7 @@ def scene_as_run(run: Run) -> Scene | None:
     """Return the scene with the inputs of the run; None for a recorded run whose inputs were not constant."""
     if not run.is_recorded:
         return run.scene
-    inputs = steady_inputs(run)
+    inputs = look_at(run).steady
     if inputs is None or run.is_changed:
         return None
     return changed(run.scene, {'drive.course': 'constant', 'drive.velocity': inputs.velocity,

@@ -11,19 +11,13 @@ import numpy as np
 from ..runs import Run
 from ..runs.receipt import plain
 from ..simulation.cycles import Cycle
-from .drawn import complete_slips, within
 from .long_runs import difference
-from .ring_down import closed_form, identified
+from .ring_down import RING_DOWN, closed_form, identified
+from .slip_peaks import SLIP_PEAKS, peak_accelerations
 from .statement import Finding, Statement
+from .statements import observed
 
 _ROUNDING = 1e-10   # relative: a smaller difference of two cycles says nothing of how they converge
-
-
-def peak_accelerations(run: Run) -> list[float]:
-    """Return the largest |ẍ| in the slip of each cycle, m/s²."""
-    ends = {begin.time: end.time for begin, end in complete_slips(run)}
-    parts = (within(run, cycle.begin, ends[cycle.begin]) for cycle in run.cycles())
-    return [float(np.abs(part['acceleration']).max()) for part in parts]
 
 
 def convergence(cycles: Sequence[Cycle]) -> list[float]:
@@ -39,7 +33,8 @@ def contraction(changes: Sequence[float]) -> float | None:
 
 def figures_of(name: str, run: Run, findings: Sequence[tuple[Statement, Finding]]) -> dict[str, Any]:
     """Return all figures of a run by its name, as JSON values, in SI; an infinite number is the text 'inf'."""
-    outline, form, ring = run.summary, closed_form(run.scene.axis), identified(run)
+    outline, form, found = run.summary, closed_form(run.scene.axis), observed(run).found
+    ring = identified(found[RING_DOWN])
     changes = convergence(run.cycles())
     figures = {
         'name': name, 'source': run.source, 'notes': list(run.notes),
@@ -47,7 +42,7 @@ def figures_of(name: str, run: Run, findings: Sequence[tuple[Statement, Finding]
         'begin': run.begin, 'end': run.end, 'motion': outline.motion, 'settled': outline.settled,
         'stick_share': outline.stick_share,
         'cycles': [{**cycle._asdict(), 'peak_acceleration': peak}
-                   for cycle, peak in zip(run.cycles(), peak_accelerations(run))],
+                   for cycle, peak in zip(run.cycles(), peak_accelerations(run, found[SLIP_PEAKS]))],
         'convergence': changes, 'contraction': contraction(changes),
         'ring_down': {'identified': ring and ring._asdict(), 'closed_form': form and form._asdict()},
         'statements': [{'name': statement.name, 'text': statement.text, 'outcome': finding.outcome.value,

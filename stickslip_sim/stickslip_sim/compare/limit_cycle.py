@@ -3,21 +3,21 @@
 """Statement: from several starts the motion converges to one stable limit cycle."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from ..axis import InitialState
 from ..runs import Run
 from ..simulation.cycles import Cycle
-from .drawn import steady_inputs
 from .long_runs import CYCLES, distance, last_cycles, lasts, longest_period
+from .look import look_at
 from .statement import Finding, Statement, found, not_applicable
 
 _SAME = 1e-6   # relative difference of two limit cycles that are one
 
 
-def judge(run: Run) -> Finding:
+def judge(run: Run, _: Sequence[object]) -> Finding:
     """Start the axis of this run in other ways, with the same inputs, and compare the cycles that it ends in."""
-    inputs = steady_inputs(run)
+    inputs = look_at(run).steady
     if inputs is None:
         return not_applicable('drive or force are not constant')
     if not lasts(run.cycles(), run.end):

@@ -3,6 +3,7 @@
 """Statement: a long rest raises the first break-away to mu_s(inf) N."""
 
 import math
+from collections.abc import Sequence
 
 from ..core.types import Event, EventKind, Mode
 from ..runs import Run
@@ -11,7 +12,7 @@ from .statement import Finding, Statement, found, not_applicable
 _EQUAL = 1e-3   # relative; the exact solver has rounding only, others their step
 
 
-def judge(run: Run) -> Finding:
+def judge(run: Run, _: Sequence[object]) -> Finding:
     """Compare the first break-away of a run that begins after prolonged rest with those that follow."""
     axis = run.scene.axis
     law = axis.friction.static

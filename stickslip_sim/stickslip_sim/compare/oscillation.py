@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Statement: after a slip the slider oscillates a little, and soon no more, with the contact only."""
 
+from collections.abc import Sequence
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -10,6 +12,7 @@ from ..axis import CompliantContact
 from ..core.types import Event, EventKind
 from ..runs import Run
 from .drawn import Numbers, complete_slips, complete_sticks, steady_inputs
+from .parts import RunPart
 from .ring_down import RingDown, closed_form
 from .statement import Finding, Statement, found, not_applicable
 
@@ -29,16 +32,31 @@ class _Ringing(NamedTuple):
     rest: float        # share of the largest acceleration that is left in the last quarter
 
 
-def judge(run: Run) -> Finding:
-    """Look at the motion in each stick after a complete slip."""
+class _SticksSeen(NamedTuple):
+    """The motion in the sticks of a part that are complete: how a contact rings there, the largest speeds (m/s)."""
+
+    rings: list[_Ringing]
+    speeds: list[float]
+
+
+def sticks_in(part: RunPart) -> _SticksSeen:
+    """Look at the motion in each stick: with a compliant contact in those after a complete slip that show it."""
+    ring, sticks = closed_form(part.scene.axis), complete_sticks(part.events)
+    if ring is None:
+        return _SticksSeen([], [float(np.abs(_part(part, *stick, 'velocity')).max(initial=0.0)) for stick in sticks])
+    begins = {stop: begin for begin, stop in complete_slips(part.events)} if ring.damped_frequency else {}
+    return _SticksSeen([_ringing(part, begins[stop], stop, end) for stop, end in sticks
+                        if stop in begins and _is_fit(part, ring, begins[stop], stop, end)], [])
+
+
+def judge(run: Run, seen: Sequence[_SticksSeen]) -> Finding:
+    """Judge the motion in the sticks."""
     ring = closed_form(run.scene.axis)
     if not isinstance(run.scene.axis.contact, CompliantContact) or ring is None:
-        return _without_contact(run)
+        return _without_contact(run, list(chain(*(part.speeds for part in seen))))
     if ring.damped_frequency == 0.0:
         return not_applicable(f'the contact is overdamped: damping ratio {ring.damping_ratio:.4g}')
-    begins = {stop: begin for begin, stop in complete_slips(run)}
-    rings = [_ringing(run, begins[stop], stop, end) for stop, end in complete_sticks(run)
-             if stop in begins and _is_fit(run, ring, begins[stop], stop, end)]
+    rings = list(chain(*(part.rings for part in seen)))
     if not rings:
         return not_applicable('no slip and stick with constant inputs, long enough for the oscillation to vanish and '
                               'sampled finely enough to show it')
@@ -50,27 +68,26 @@ def judge(run: Run) -> Finding:
                  amplitude=last.amplitude, amplitude_ratio=share, remaining_ratio=rest)
 
 
-def _without_contact(run: Run) -> Finding:
-    """Look for motion in the sticks of a rigid contact: there must be none."""
+def _without_contact(run: Run, speeds: Sequence[float]) -> Finding:
+    """Judge the largest speeds in the sticks of a rigid contact: there must be no motion."""
     if not any(event.kind == EventKind.STICK for event in run.events):
         return not_applicable('no slip ends in this run')
-    ends = complete_sticks(run)
-    moving = max((float(np.abs(_part(run, begin, end, 'velocity')).max()) for begin, end in ends), default=0.0)
-    return found(moving == 0.0, f'rigid contact: none; the largest speed in {len(ends)} sticks is {moving:g} m/s',
-                 sticks=len(ends), largest_speed=moving)
+    moving = max(speeds, default=0.0)
+    return found(moving == 0.0, f'rigid contact: none; the largest speed in {len(speeds)} sticks is {moving:g} m/s',
+                 sticks=len(speeds), largest_speed=moving)
 
 
-def _is_fit(run: Run, ring: RingDown, begin: Event, stop: Event, end: Event) -> bool:
+def _is_fit(part: RunPart, ring: RingDown, begin: Event, stop: Event, end: Event) -> bool:
     """Whether the stick lasts, under the inputs of the slip before, and is sampled finely enough to see it swing."""
-    times = run.samples['time']
+    times = part.samples['time']
     first, last = np.searchsorted(times, (stop.time, stop.time + 1.0 / ring.damped_frequency))
     return ((end.time - stop.time) * ring.decay >= _LONG and last - first >= _SAMPLES
-            and steady_inputs(run, begin.time, end.time) is not None)
+            and steady_inputs(part, begin.time, end.time) is not None)
 
 
-def _ringing(run: Run, begin: Event, stop: Event, end: Event) -> _Ringing:
+def _ringing(part: RunPart, begin: Event, stop: Event, end: Event) -> _Ringing:
     time, position, velocity, acceleration = (
-        _part(run, stop, end, name) for name in ('time', 'position', 'velocity', 'acceleration'))
+        _part(part, stop, end, name) for name in ('time', 'position', 'velocity', 'acceleration'))
     settled = position - position[-1] - velocity[-1] * (time - time[-1])   # from the line along which it drifts
     size = np.abs(acceleration)
     signs = np.sign(acceleration[size > _VISIBLE * size.max()])
@@ -79,11 +96,11 @@ def _ringing(run: Run, begin: Event, stop: Event, end: Event) -> _Ringing:
                     int(np.count_nonzero(np.diff(signs))), float(size[last_quarter].max() / size.max()))
 
 
-def _part(run: Run, begin: Event, end: Event, name: str) -> Numbers:
-    first, last = np.searchsorted(run.samples['time'], (begin.time, end.time))
-    return run.samples[name][first:last]
+def _part(part: RunPart, begin: Event, end: Event, name: str) -> Numbers:
+    first, last = np.searchsorted(part.samples['time'], (begin.time, end.time))
+    return part.samples[name][first:last]
 
 
 OSCILLATION = Statement('oscillation after a slip',
                         'After the end of a slip there is a small, vanishing oscillation, with the contact only.',
-                        judge)
+                        judge, sticks_in)

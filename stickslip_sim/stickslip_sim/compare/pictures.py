@@ -8,13 +8,13 @@ from typing import NamedTuple
 
 from ..axis import CompliantContact
 from ..plots.characteristics import plot_characteristics
-from ..plots.paper_panels import plot_motion
+from ..plots.paper_panels import DrawnMotion, plot_motion
 from ..plots.side_by_side import plot_side_by_side
 from ..runs import Run
 from .characteristics import characteristics_of
 from .conventional import characteristics_beside, scene_as_run
+from .drawn_motion import drawn_motion
 from .fresh import simulate_densely
-from .windows import drawn_motion
 
 KINDS = ('png', 'svg')
 _OF_MOTION = (
@@ -39,26 +39,27 @@ class Picture(NamedTuple):
 def draw(runs: Mapping[str, Run], folder: Path, progress: Callable[[float], None] | None = None) -> list[Picture]:
     """Draw all pictures of runs by their names into a folder, each as PNG and SVG."""
     pictures: list[Picture] = []
+    motions: dict[str, DrawnMotion] = {}
     for k, (name, run) in enumerate(runs.items()):
-        for k_drawn, draw_one in enumerate((_motion, _friction)):
-            if progress:
-                progress((2 * k + k_drawn) / (2 * len(runs) + 1))
-            pictures.append(draw_one(name, run, folder))
-    rows = runs
+        if progress:
+            progress(2 * k / (2 * len(runs) + 1))
+        motions[name] = drawn_motion(run)
+        pictures.append(_motion(name, run, motions[name], folder))
+        if progress:
+            progress((2 * k + 1) / (2 * len(runs) + 1))
+        pictures.append(_friction(name, run, folder))
     caption = f'The runs beside each other: {_OF_ROWS}'
     if len(runs) == 1:
         (alone,) = runs.values()
-        rows = _beside(alone)
+        motions = _beside(alone)
         caption = f'The same axis with the conventional characteristics and with acceleration dependence: {_OF_ROWS}'
-    if rows:
-        motions = {name: drawn_motion(run) for name, run in rows.items()}
+    if motions:
         pictures.append(_drawn(Picture('side_by_side', '', caption), folder,
                                lambda *paths: plot_side_by_side(motions, *paths)))
     return pictures
 
 
-def _motion(name: str, run: Run, folder: Path) -> Picture:
-    motion = drawn_motion(run)
+def _motion(name: str, run: Run, motion: DrawnMotion, folder: Path) -> Picture:
     picture = Picture(f'{name}_motion', name, f'{_likeness(run)}: {_OF_MOTION}')
     return _drawn(picture, folder, lambda *paths: plot_motion(motion, *paths))
 
@@ -69,12 +70,13 @@ def _friction(name: str, run: Run, folder: Path) -> Picture:
     return _drawn(picture, folder, lambda *paths: plot_characteristics(friction, *paths))
 
 
-def _beside(run: Run) -> Mapping[str, Run]:
-    """Return runs of the same axis with other characteristics; none when the inputs of a recorded run are unknown."""
+def _beside(run: Run) -> dict[str, DrawnMotion]:
+    """Return the same axis with other characteristics; nothing when the inputs of a recorded run are unknown."""
     scene = scene_as_run(run)
     if scene is None:
         return {}
-    return {name: simulate_densely(other, run.duration) for name, other in characteristics_beside(scene).items()}
+    return {name: drawn_motion(simulate_densely(other, run.duration))
+            for name, other in characteristics_beside(scene).items()}
 
 
 def _drawn(picture: Picture, folder: Path, draw_to: Callable[..., None]) -> Picture:

@@ -10,16 +10,20 @@ is linear in what is sought: least squares find it from the recorded motion, wit
 """
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from ..axis import Axis, CompliantContact
-from ..runs import Run
+from ..runs import Columns
 from .drawn import complete_sticks, steady_inputs
+from .parts import RunPart
 
+RING_DOWN = 'ring-down'   # the watch
 _LEAST_SAMPLES = 8
 _PERIODS = 4.0      # of the ring-down: what comes later is too small to add anything
+_OF_FIT = 'acceleration', 'velocity', 'position', 'time'
 
 
 class RingDown(NamedTuple):
@@ -39,25 +43,27 @@ def closed_form(axis: Axis) -> RingDown | None:
     return _ring_down(stiffness / axis.mass, (axis.drive_damping + axis.contact.damping) / axis.mass)
 
 
-def identified(run: Run) -> RingDown | None:
-    """Return the ring-down of the last complete stick with constant inputs, None when there is none to see."""
-    form = closed_form(run.scene.axis)
+def latest_ringing(part: RunPart) -> Columns | None:
+    """Return the motion at the start of the last complete stick of a part with constant inputs; None without any."""
+    form = closed_form(part.scene.axis)
     if form is None:
         return None
-    for begin, end in reversed(complete_sticks(run)):
+    for begin, end in reversed(complete_sticks(part.events)):
         until = min(end.time, begin.time + _PERIODS / form.frequency)
-        if steady_inputs(run, begin.time, until):
-            return _fitted(run, begin.time, until)
+        if steady_inputs(part, begin.time, until):
+            first, last = np.searchsorted(part.samples['time'], (begin.time, until))
+            return {name: part.samples[name][first:last].copy() for name in _OF_FIT}
     return None
 
 
-def _fitted(run: Run, begin: float, end: float) -> RingDown | None:
-    samples = run.samples
-    first, last = np.searchsorted(samples['time'], (begin, end))
-    if last - first < _LEAST_SAMPLES:
-        return None
-    a, u, x, t = (samples[name][first:last] - samples[name][first]
-                  for name in ('acceleration', 'velocity', 'position', 'time'))
+def identified(found: Sequence[Columns | None]) -> RingDown | None:
+    """Return the ring-down of the latest motion that was found, None when there is none to see."""
+    latest = next((motion for motion in reversed(found) if motion is not None), None)
+    return None if latest is None or len(latest['time']) < _LEAST_SAMPLES else _fitted(latest)
+
+
+def _fitted(motion: Columns) -> RingDown | None:
+    a, u, x, t = (motion[name] - motion[name][0] for name in _OF_FIT)
     columns = np.stack([-u, -x, t], axis=1)
     scales = np.abs(columns).max(axis=0)
     if not np.all(scales > 0.0):

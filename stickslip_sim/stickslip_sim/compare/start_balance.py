@@ -2,28 +2,31 @@
 # SPDX-License-Identifier: Apache-2.0
 """Statement: the initial displacements correspond to the stick balance condition."""
 
+from collections.abc import Sequence
+
 from ..axis import CompliantContact
 from ..core.types import Mode
 from ..runs import Run
-from .drawn import external_force
+from .look import look_at
+from .parts import APPLIED
 from .statement import Finding, Statement, found, not_applicable
 
 _EQUAL = 1e-9   # relative: rounding of the forces
 
 
-def judge(run: Run) -> Finding:
+def judge(run: Run, _: Sequence[object]) -> Finding:
     """Compare the forces that displacements make at the start: of the drive spring, of the contact, and from outside.
 
     The drive damper is left out: a drive that sets off at a velocity has its force from the first instant on.
     """
     if run.begin != 0.0:
         return not_applicable(f'the recording begins at t = {run.begin:g} s, in mid-run')
-    first = {name: float(column[0]) for name, column in run.samples.items()}
+    first = look_at(run).first
     if Mode(int(first['mode'])) != Mode.STICK:
         return not_applicable(f'the run begins in slip, at {first["velocity"]:.4g} m/s')
     axis = run.scene.axis
     spring = axis.drive_stiffness * (first['drive_position'] - first['position'])
-    outside = float(external_force(run)[0])
+    outside = first[APPLIED]
     limit = run.scene.normal_force.value_at(0.0) * axis.friction.static.coefficient(first['rest_time'])
     held = first['friction_force'] if isinstance(axis.contact, CompliantContact) else spring + outside
     open_by = abs(spring + outside - held)

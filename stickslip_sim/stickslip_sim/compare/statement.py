@@ -2,11 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the paper says, as something to be judged on a run."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from enum import Enum
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from ..runs import Run
+from .look import Watch
 
 
 class StatementOutcome(Enum):
@@ -26,11 +27,12 @@ class Finding(NamedTuple):
 
 
 class Statement(NamedTuple):
-    """One statement of the paper, in our words, and who judges it."""
+    """One statement of the paper, in our words, and who judges it, with what a watch found of each part of the run."""
 
     name: str
     text: str
-    judge: Callable[[Run], Finding]
+    judge: Callable[[Run, Sequence[Any]], Finding]
+    watch: Watch | None = None
 
 
 def found(holds: bool, text: str, **figures: float) -> Finding:

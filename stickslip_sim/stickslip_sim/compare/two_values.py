@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Statement: within a slip, friction over velocity has two values."""
 
+from collections.abc import Sequence
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -9,6 +11,7 @@ import numpy as np
 from ..core.types import Event, EventKind, Mode
 from ..runs import Run
 from .drawn import Numbers, complete_slips, within
+from .parts import RunPart
 from .statement import Finding, Statement, found, not_applicable
 
 _GAP = 0.01   # of the lower value: less is one value
@@ -22,11 +25,18 @@ class _Gap(NamedTuple):
     lower: float   # N, decelerating
 
 
-def judge(run: Run) -> Finding:
+def gaps_in(part: RunPart) -> list[_Gap]:
     """Compare both branches of each slip half-way between the speeds of its break-away and its peak."""
+    if part.scene.axis.friction.excess is None:
+        return []
+    return [gap for slip in complete_slips(part.events) if _is_raised(part, *slip) and (gap := _gap(part, *slip))]
+
+
+def judge(run: Run, found_gaps: Sequence[list[_Gap]]) -> Finding:
+    """Judge the gaps between the branches."""
     if run.scene.axis.friction.excess is None:
         return not_applicable('without acceleration dependence friction has one value at each velocity')
-    gaps = [gap for slip in complete_slips(run) if _is_raised(run, *slip) and (gap := _gap(run, *slip))]
+    gaps = list(chain(*found_gaps))
     if not gaps:
         return not_applicable('no complete slip with a break-away above kinetic friction')
     least = min(gap.upper / gap.lower - 1.0 if gap.lower > 0.0 else np.inf for gap in gaps)
@@ -37,15 +47,15 @@ def judge(run: Run) -> Finding:
                  accelerating_force=last.upper, decelerating_force=last.lower)
 
 
-def _is_raised(run: Run, begin: Event, _: Event) -> bool:
+def _is_raised(part: RunPart, begin: Event, _: Event) -> bool:
     """Whether static friction at the break-away is above kinetic friction, so that there is a second branch."""
-    kinetic = run.scene.axis.friction.kinetic.coefficient(abs(begin.velocity))
+    kinetic = part.scene.axis.friction.kinetic.coefficient(abs(begin.velocity))
     return begin.kind == EventKind.BREAKAWAY and begin.static_coefficient > (1.0 + _GAP) * kinetic
 
 
-def _gap(run: Run, begin: Event, end: Event) -> _Gap | None:
+def _gap(part: RunPart, begin: Event, end: Event) -> _Gap | None:
     """Return the friction of both branches at one speed, None when a branch has no two points."""
-    columns = within(run, begin.time, end.time)
+    columns = within(part, begin.time, end.time)
     speed, force = np.abs(columns['velocity']), np.abs(columns['friction_force'])
     branches = [columns['mode'] == mode for mode in (Mode.ACCELERATING, Mode.DECELERATING)]
     if min(branch.sum() for branch in branches) < 2:
@@ -62,4 +72,4 @@ def _rising(speed: Numbers, force: Numbers) -> tuple[Numbers, Numbers]:
 
 TWO_VALUES = Statement('two-valued friction',
                        'Within a slip the friction force over velocity has two values: more while the slider '
-                       'accelerates than while it decelerates.', judge)
+                       'accelerates than while it decelerates.', judge, gaps_in)

@@ -44,6 +44,10 @@ class MeasuredRun(RecordedRun):
         return f'{self.name} (measured)'
 
     @property
+    def _outline(self) -> None:
+        """None: all of a measurement is held."""
+
+    @property
     def source(self) -> str:
         """Where it comes from."""
         return f'measured: {self.bag.metadata[METADATA].get("file", "")}, imported as {self._given}'
@@ -97,6 +101,10 @@ class MeasuredRun(RecordedRun):
     def commands(self) -> Columns:
         """None."""
         return {'time': np.empty(0), 'velocity': np.empty(0)}
+
+    def command_blocks(self) -> Iterator[Columns]:
+        """Yield none."""
+        yield self.commands
 
     @cached_property
     def marks(self) -> list[Mark]:

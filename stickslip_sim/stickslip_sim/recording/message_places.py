@@ -3,6 +3,8 @@
 """Where the messages stand in the content of a chunk, and those of a channel as rows of an array."""
 
 import struct
+from functools import lru_cache
+from itertools import accumulate
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,6 +14,8 @@ from numpy.typing import NDArray
 
 _HEAD = struct.Struct('<BQ')       # of a record: what it is, and its length without this
 _CHANNEL = 9                       # where the channel of a message stands in its record
+_LONGEST = 8                       # messages of a step whose sizes may repeat
+_WORTH_IT, _AT_ONCE = 4, 256       # steps, at least and at most
 FRAME = 31                         # bytes of the record of a message before those of the message itself
 
 
@@ -37,23 +41,68 @@ class Messages(NamedTuple):
 
 
 def messages_in(data: bytes) -> Messages:
-    """Return the messages in the content of a chunk; raises McapError where its records do not fit into it."""
+    """Return the messages in the content of a chunk; raises McapError where its records do not fit into it.
+
+    Their sizes repeat from step to step, as a rule: where they do, many are looked at at once.
+    """
     at, end = 0, len(data)
     others: list[tuple[int, int]] = []
-    starts: list[int] = []
-    ends: list[int] = []
+    starts: list[NDArray[np.int64]] = []   # in turn some by themselves, and some at once
+    ends: list[NDArray[np.int64]] = []
+    alone: list[tuple[int, int]] = []      # begins and ends since then
     unpack, size = _HEAD.unpack_from, _HEAD.size
     while at + size <= end:
         kind, length = unpack(data, at)
         begin, at = at, at + size + length
-        if kind == Opcode.MESSAGE:
-            starts.append(begin)
-            ends.append(at)
-        else:
+        if at > end:
+            break
+        if kind != Opcode.MESSAGE:
             others.append((begin, at))
-    places = np.array(starts, np.int64)
-    if at != end or (np.array(ends) - places).min(initial=FRAME) < FRAME:
+            continue
+        alone.append((begin, at))
+        period = _period(alone)
+        if period and len(again := _repeated(data, at, tuple(stop - start for start, stop in alone[-period:]))):
+            for found, places in ((starts, [start for start, _ in alone]), (ends, [stop for _, stop in alone])):
+                found.append(np.array(places, np.int64))
+            starts.append(again[:-1])
+            ends.append(again[1:])
+            alone, at = [], int(again[-1])
+    whole = np.concatenate([*starts, np.array([start for start, _ in alone], np.int64)])
+    sizes = np.concatenate([*ends, np.array([stop for _, stop in alone], np.int64)]) - whole
+    if at != end or sizes.min(initial=FRAME) < FRAME:
         raise McapError('a record that does not fit into its chunk')
     raw = np.frombuffer(data, np.uint8)
-    channels = raw[places + _CHANNEL] + 256 * raw[places + _CHANNEL + 1].astype(np.int64)
-    return Messages(data, places, np.array(ends, np.int64) - places, channels, others)
+    channels = raw[whole + _CHANNEL] + 256 * raw[whole + _CHANNEL + 1].astype(np.int64)
+    return Messages(data, whole, sizes, channels, others)
+
+
+def _period(places: list[tuple[int, int]]) -> int:
+    """Return after how many messages, one behind the other, their sizes came again; 0 where they did not."""
+    sizes = [stop - start for start, stop in places[-2 * _LONGEST:]]
+    if places[-len(sizes)][0] + sum(sizes) != places[-1][1]:   # other records are between them
+        return 0
+    return next((k for k in range(1, len(sizes) // 2 + 1) if sizes[-k:] == sizes[-2 * k:-k]), 0)
+
+
+def _repeated(data: bytes, at: int, sizes: tuple[int, ...]) -> NDArray[np.int64]:
+    """Return where messages begin that come behind a place with these sizes, again and again, and where they end."""
+    step, heads = sum(sizes), _heads(sizes)
+    count = min((len(data) - at) // step, _AT_ONCE)
+    if count < _WORTH_IT:
+        return np.empty(0, np.int64)
+    rows = np.frombuffer(data, heads, count, at)
+    differ = np.zeros(count, np.bool_)
+    for k, size in enumerate(sizes):
+        differ |= (rows[f'kind{k}'] != Opcode.MESSAGE) | (rows[f'length{k}'] != size - _HEAD.size)
+    same = int(differ.argmax()) if differ.any() else count
+    begins = (at + step * np.arange(same)[:, None] + np.array([0, *accumulate(sizes[:-1])])).ravel()
+    return np.append(begins, at + step * same) if same else np.empty(0, np.int64)
+
+
+@lru_cache
+def _heads(sizes: tuple[int, ...]) -> np.dtype[Any]:
+    """Return what stands at the heads of messages of these sizes, one behind the other."""
+    begins = [0, *accumulate(sizes[:-1])]
+    return np.dtype({'names': [f'{name}{k}' for k in range(len(sizes)) for name in ('kind', 'length')],
+                     'formats': ['u1', '<u8'] * len(sizes),
+                     'offsets': [begin + place for begin in begins for place in (0, 1)], 'itemsize': sum(sizes)})

@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.errors import RecordingError, one_line
 from ..core.types import Event, Mode
@@ -17,12 +16,15 @@ from ..rig import RigEventKind
 from ..rig.marks import Mark, TimedRigEvent, marks_of_events, marks_of_faults
 from ..runs import COLUMNS, Columns
 from ..runs.normal_force import recorded_normal_force
+from ..runs.samples import MOST_HELD, joined
 from ..runs.views import Views
 from ..scene import Scene
 from ..simulation.cycles import Summary, summary
 from .normal_force_column import is_changed
 from .opening import shortfalls
+from .paired_steps import of_the_same_steps, paired_blocks
 from .reader import EVENT_FIELDS, Bag
+from .run_outline import RunOutline, check_samples, outline_of
 from .topics import DRIVE_VELOCITY, FRICTION_FORCE, MODE_EVENT, RIG_EVENT, SLIDER_STATE, Topic
 
 _STATE = ('time', 'step', 'position', 'velocity', 'acceleration', 'drive_position', 'drive_velocity', 'drive_force',
@@ -78,12 +80,12 @@ class RecordedRun(Views):
     @cached_property
     def begin(self) -> float:
         """Time of the first sample, s."""
-        return float(self.samples['time'][0])
+        return self._outline.begin if self._outline else float(self.samples['time'][0])
 
     @cached_property
     def end(self) -> float:
         """Time of the last sample, s."""
-        return float(self.samples['time'][-1])
+        return self._outline.end if self._outline else float(self.samples['time'][-1])
 
     @property
     def states(self) -> Columns:
@@ -101,6 +103,8 @@ class RecordedRun(Views):
     @cached_property
     def missing_steps(self) -> int:
         """How many steps have no recorded state between the first and the last that has."""
+        if self._outline:
+            return self._outline.missing_steps
         steps = self.state_columns(['step'])['step']
         return int(steps[-1]) - int(steps[0]) + 1 - len(steps) if len(steps) else 0
 
@@ -109,26 +113,46 @@ class RecordedRun(Views):
         """The steps of which state and friction were recorded; raises RecordingError on fewer than 2."""
         events = {MODE_EVENT: EVENT_FIELDS} if list(self.bag.topics.values()).count(MODE_EVENT.type) == 1 else {}
         held = self._held({SLIDER_STATE: _STATE, FRICTION_FORCE: ('step', *_FRICTION), **events})
-        states, friction = _of_the_same_steps(held[SLIDER_STATE], held[FRICTION_FORCE])
+        states, friction = of_the_same_steps(held[SLIDER_STATE], held[FRICTION_FORCE])
         del self._columns[FRICTION_FORCE], held
-        if len(states['step']) < 2:
-            raise RecordingError(f'{self.bag.path}: {len(states["step"])} states with their friction force; a run has '
-                                 'at least 2')
-        columns = {name: states[name].astype(np.float64, copy=False) for name in _STATE if name in COLUMNS}
-        columns |= {name: friction[field].astype(np.float64, copy=False) for field, name in _FRICTION.items()}
-        if np.any(np.diff(columns['time']) <= 0.0) or not np.all(np.isin(columns['mode'], list(Mode))):
-            raise RecordingError(f'{self.bag.path}: its steps do not follow each other in time, or are in unknown '
-                                 'modes')
-        columns['external_force'] = _external_force(columns, self.scene.axis.mass)
-        return {**columns, **recorded_normal_force(self.scene, columns, self.is_changed)}
+        columns = _columns(states, friction)
+        check_samples(self.bag, len(columns['time']), bool((np.diff(columns['time']) > 0.0).all()),
+                      np.unique(columns['mode']))
+        largest = max(np.abs(columns[name]).max() for name in ('friction_force', 'drive_force'))
+        return self._completed(columns, float(largest))
 
     def sample_blocks(self) -> Iterator[Columns]:
-        """Yield the samples as one block."""
-        yield self.samples
+        """Yield the samples block by block: those of a long run are read again, those of a short one are held."""
+        outline = self._outline
+        if outline is None:
+            yield self.samples
+            return
+        left = outline.samples    # more have come meanwhile to one that is being written
+        for pair in paired_blocks(self.bag.blocks_of({SLIDER_STATE: _STATE, FRICTION_FORCE: ('step', *_FRICTION)})):
+            columns = {name: column[:left] for name, column in _columns(*pair).items()}
+            left -= len(columns['time'])
+            if len(columns['time']):
+                yield self._completed(columns, outline.largest_force)
+
+    @cached_property
+    def _outline(self) -> RunOutline | None:
+        """What one look through a long run found; None of a run whose samples are held."""
+        return outline_of(self.bag) if self.bag.counts[self.bag.name_of(SLIDER_STATE)] > MOST_HELD else None
+
+    def _completed(self, columns: Columns, largest: float) -> Columns:
+        """Add what the other forces, at most so large in all of the run, leave of m ẍ, N; 0 where it is rounding.
+
+        And the normal force, where it varies.
+        """
+        force = self.scene.axis.mass * columns['acceleration'] + columns['friction_force'] - columns['drive_force']
+        columns = {**columns, 'external_force': np.where(np.abs(force) > _NO_FORCE * largest, force, 0.0)}
+        return {**columns, **recorded_normal_force(self.scene, columns, self.is_changed)}
 
     @cached_property
     def events(self) -> list[Event]:
         """The transitions up to the last state; the drive's position then is between those at the steps."""
+        if self._outline and self._outline.events is not None:
+            return self._outline.events
         held = self._held({SLIDER_STATE: ('time', 'drive_position'), MODE_EVENT: EVENT_FIELDS})
         states, events = held[SLIDER_STATE], self.bag.events_in(held[MODE_EVENT])
         time = states['time']
@@ -143,11 +167,16 @@ class RecordedRun(Views):
 
         A run of the tool has none: its scene decides.
         """
-        if self._is_of_the_tool:
-            return {'time': np.empty(0), 'velocity': np.empty(0)}
-        columns = self._columns_of_any(DRIVE_VELOCITY, ('sequence', 'velocity'))
-        times = np.maximum(columns['sequence'].astype(np.float64) - 1.0, 0.0) / self.scene.time.rate
-        return {'time': times, 'velocity': columns['velocity'].astype(np.float64)}
+        return joined(self.command_blocks())
+
+    def command_blocks(self) -> Iterator[Columns]:
+        """Yield the commands block by block, the first of them empty."""
+        yield {'time': np.empty(0), 'velocity': np.empty(0)}
+        if self._is_of_the_tool or DRIVE_VELOCITY.type not in self.bag.topics.values():
+            return
+        for _, block in self.bag.blocks_of({DRIVE_VELOCITY: ('sequence', 'velocity')}):
+            times = np.maximum(block['sequence'].astype(np.float64) - 1.0, 0.0) / self.scene.time.rate
+            yield {'time': times, 'velocity': block['velocity'].astype(np.float64)}
 
     @cached_property
     def marks(self) -> list[Mark]:
@@ -187,21 +216,11 @@ class RecordedRun(Views):
     def summary(self) -> Summary:
         """What the run amounts to, from its first sample to its last."""
         events = [event for event in self.events if self.begin <= event.time <= self.end]
-        return summary(events, self.duration, Mode(int(self.samples['mode'][0])), self.begin)
+        start = self._outline.mode if self._outline else Mode(int(self.samples['mode'][0]))
+        return summary(events, self.duration, start, self.begin)
 
 
-def _of_the_same_steps(states: Columns, friction: Columns) -> tuple[Columns, Columns]:
-    """Return the rows of both whose steps are in both, in the order of the steps, each once."""
-    if len(states['step']) == len(friction['step']) and (np.diff(states['step'].astype(np.int64)) > 0).all() \
-            and (states['step'] == friction['step']).all():
-        return states, friction
-    _, rows, others = np.intersect1d(states['step'], friction['step'], return_indices=True)
-    return ({name: column[rows] for name, column in states.items()},
-            {name: column[others] for name, column in friction.items()})
-
-
-def _external_force(columns: Columns, mass: float) -> NDArray[np.float64]:
-    """Return what the other forces leave of m ẍ, N; 0 where it is no more than their rounding."""
-    friction, drive = columns['friction_force'], columns['drive_force']
-    force = mass * columns['acceleration'] + friction - drive
-    return np.where(np.abs(force) > _NO_FORCE * max(np.abs(friction).max(), np.abs(drive).max()), force, 0.0)
+def _columns(states: Columns, friction: Columns) -> Columns:
+    """Return the columns of samples, all but the external force, from states and friction of the same steps."""
+    columns = {name: states[name].astype(np.float64, copy=False) for name in _STATE if name in COLUMNS}
+    return columns | {name: friction[field].astype(np.float64, copy=False) for field, name in _FRICTION.items()}

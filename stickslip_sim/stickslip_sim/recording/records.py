@@ -5,6 +5,7 @@
 import os
 import struct
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from io import BytesIO
@@ -32,6 +33,7 @@ COMPRESSIONS = ('', 'zstd', 'lz4')
 _FOOTER = struct.Struct('<QQI')   # where the summary begins, and its part of offsets; checksum of all that but itself
 _CHECKSUM_SIZE = 4
 _BLOCK = 1 << 20
+_GATHERED = 1 << 19   # bytes of chunks that are looked at together
 
 # What a file that ends or is damaged anywhere makes the libraries stumble over (RuntimeError: lz4).
 CUT_OFF = (McapError, CRCValidationError, struct.error, zstandard.ZstdError, RuntimeError, UnicodeDecodeError,
@@ -47,12 +49,14 @@ def records(path: Path) -> Iterator[McapRecord]:
 
 
 def contents(path: Path) -> Iterator[McapRecord | Messages]:
-    """Yield what `records` does, but the messages of each chunk at once, behind its other records."""
-    return _understood(path, partial(_opened, path))
+    """Yield what `records` does, but the messages of some chunks at once, behind their other records."""
+    gathered = _GatheredChunks(path)
+    return _understood(path, gathered.take, gathered.rest)
 
 
-def _understood(path: Path, understand: Callable[[McapRecord], Iterable[_Part]]) -> Iterator[_Part]:
-    """Yield what is made of one record after the other, as far as the file goes."""
+def _understood(path: Path, understand: Callable[[McapRecord], Iterable[_Part]],
+                rest: Callable[[], Iterable[_Part]] = tuple) -> Iterator[_Part]:
+    """Yield what is made of one record after the other, as far as the file goes, and at its end the rest."""
     try:
         with path.open('rb') as file:
             begin = True
@@ -61,12 +65,15 @@ def _understood(path: Path, understand: Callable[[McapRecord], Iterable[_Part]])
                                        emit_chunks=True).records:
                     begin = False
                     yield from understand(record)
+                yield from rest()
             except CUT_OFF:
                 if begin:
                     raise RecordingError(f'{path} is not an MCAP file: it is empty, or begins as none does') from None
                 if _is_finished(file):
                     raise RecordingError(f'{path}: damaged: it was finished, but is no longer what was written; fetch '
                                          'the file again') from None
+                with suppress(*CUT_OFF):
+                    yield from rest()
     except OSError as error:
         raise RecordingError(f'{path}: {error.strerror}') from None
 
@@ -136,18 +143,44 @@ def _unpacked(path: Path, record: McapRecord) -> Iterable[McapRecord]:
     return breakup_chunk(replace(record, compression='', data=_content(path, record)), validate_crc=True)
 
 
-def _opened(path: Path, record: McapRecord) -> Iterator[McapRecord | Messages]:
-    """Yield the records of a chunk, and its messages as they stand there; any other record by itself."""
-    if not isinstance(record, Chunk):
-        yield messages_in(bytes_of(record)) if isinstance(record, Message) else record
-        return
-    data = _content(path, record)
-    if record.uncompressed_crc and (found := crc32(data)) != record.uncompressed_crc:
-        raise CRCValidationError(record.uncompressed_crc, found, record)
-    messages = messages_in(data)
-    for begin, end in messages.others:
-        yield from breakup_chunk(replace(record, compression='', data=data[begin:end]))
-    yield messages
+class _GatheredChunks:
+    """Takes the records of a file, and gives the messages of several chunks at once: then arrays are worth it."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._held: list[bytes] = []   # contents of chunks, messages by themselves
+        self._size = 0
+
+    def take(self, record: McapRecord) -> Iterator[McapRecord | Messages]:
+        """Take a record; yield those that are no messages, and the messages that were held when they are enough."""
+        if not isinstance(record, (Chunk, Message)):
+            yield record
+            return
+        data = bytes_of(record) if isinstance(record, Message) else _content(self._path, record)
+        if isinstance(record, Chunk) and record.uncompressed_crc and (found := crc32(data)) != record.uncompressed_crc:
+            raise CRCValidationError(record.uncompressed_crc, found, record)
+        self._held.append(data)
+        self._size += len(data)
+        if self._size >= _GATHERED:
+            yield from self.rest()
+
+    def rest(self) -> Iterator[McapRecord | Messages]:
+        """Yield what is held: the messages behind other records."""
+        held, self._held, self._size = self._held, [], 0
+        together: Iterable[Messages]
+        try:
+            together = [messages_in(b''.join(held))] if held else []
+        except McapError:    # those before the one that is damaged are whole
+            together = map(messages_in, held)
+        for messages in together:
+            for begin, end in messages.others:
+                yield from breakup_chunk(_chunk_of(messages.data[begin:end]))
+            yield messages
+
+
+def _chunk_of(data: bytes) -> Chunk:
+    return Chunk(compression='', data=data, message_start_time=0, message_end_time=0, uncompressed_crc=0,
+                 uncompressed_size=len(data))
 
 
 def _content(path: Path, record: Chunk) -> bytes:

@@ -7,7 +7,9 @@ from pathlib import Path
 from ..core.errors import InputError
 from ..plots import plot_run
 from ..plots.drawn_run import TimeWindow, drawn_run
+from .normal_force import NORMAL_FORCE
 from .picture_samples import sampled
+from .reduced import reduced
 from .run import Columns, Run
 from .simulated import SimulatedRun
 from .wording import headline
@@ -15,13 +17,16 @@ from .wording import headline
 _READABLE = 40   # cycles of the latest period, in all of a run
 _SHOWN = 5       # cycles at the end of a longer one
 _MARGIN = 0.25   # of a period, before and after them
+_DRAWN = ('position', 'velocity', 'drive_position', 'drive_velocity', 'drive_force', 'friction_force',
+          'external_force', NORMAL_FORCE, 'mode')
 
 
 def draw_run(run: Run, window: tuple[float, float] | None, *paths: Path | str) -> None:
     """Draw a run into each path; raises InputError for a window (s) that is not in it."""
     windows = windows_of(run, window)
     samples = _samples_for(run, windows)
-    plot_run(drawn_run(_title(run), samples, run.events, run.commands, run.marks), windows, *paths)
+    commands = reduced(run.command_blocks(), windows, ['velocity'])
+    plot_run(drawn_run(_title(run), samples, run.events, commands, run.marks), windows, *paths)
 
 
 def windows_of(run: Run, window: tuple[float, float] | None) -> list[TimeWindow]:
@@ -44,10 +49,10 @@ def windows_of(run: Run, window: tuple[float, float] | None) -> list[TimeWindow]
 
 
 def _samples_for(run: Run, windows: list[TimeWindow]) -> Columns:
-    """Return the samples of a run; of one that its scene alone decides, those that a picture needs."""
+    """Return samples that a picture needs: of a run that its scene alone decides, taken for it."""
     if isinstance(run, SimulatedRun) and (run.sample_period is not None or not len(run.samples['time'])):
         return sampled(run.scene, run.events, windows)
-    return run.samples
+    return reduced(run.sample_blocks(), windows, _DRAWN)
 
 
 def _title(run: Run) -> str:

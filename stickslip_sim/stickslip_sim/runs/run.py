@@ -104,6 +104,9 @@ class Run(Protocol):
     def sample_blocks(self) -> Iterator[Columns]:
         """Yield the samples block by block, in memory that does not grow with them."""
 
+    def command_blocks(self) -> Iterator[Columns]:
+        """Yield the commands block by block, at least one, in memory that does not grow with them."""
+
     def cycles(self) -> list[Cycle]:
         """Return the complete cycles of stick-slip, from break-away to break-away."""
 

@@ -12,7 +12,8 @@ from ..core.errors import InputError
 from .run import Columns
 
 MOST_IN_MEMORY = 10_000_000   # 1.2 GB
-_GATHERED = 16_384   # rows at a time
+MOST_HELD = 200_000           # that a run holds (25 MB); more are made or read again when they are asked for
+GATHERED = 16_384   # rows at a time
 
 
 class Samples(Protocol):
@@ -60,7 +61,7 @@ def gathered(blocks: Iterable[Columns]) -> Iterator[Columns]:
         if rows := len(next(iter(block.values()))):
             held.append(block)
             count += rows
-        if count >= _GATHERED:
+        if count >= GATHERED:
             yield joined(held)
             held, count = [], 0
     if held:

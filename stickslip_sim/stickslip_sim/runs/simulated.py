@@ -21,13 +21,12 @@ from ..simulation.cycles import Summary, summary
 from .normal_force import normal_force_of
 from .receipt import CostMeter, receipt_of
 from .run import Columns
-from .samples import HeldSamples, RemadeSamples, Samples
+from .samples import MOST_HELD, HeldSamples, RemadeSamples, Samples
 from .views import Views
 
 MAX_DURATION = 1e9         # s
 MAX_SAMPLES = 1_000_000_000   # 120 GB as a bag, made block by block
 MAX_EVENTS = 5_000_000     # 1 GB
-MOST_HELD = 200_000        # samples that a run holds (25 MB); more are made again when they are asked for
 _PARTS = 200               # of a run: progress is reported, and Ctrl-C heard, this often
 _BLOCK = 16_384            # samples at a time
 
@@ -83,6 +82,10 @@ class SimulatedRun(Views):
     def sample_blocks(self) -> Iterator[Columns]:
         """Yield the samples block by block."""
         return self.sampled.blocks()
+
+    def command_blocks(self) -> Iterator[Columns]:
+        """Yield the commands as one block."""
+        yield self.commands
 
     def sample_rows(self) -> Iterator[Sample]:
         """Yield the samples one by one."""

@@ -2,21 +2,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """A recorded run beside what would have been with other parameters, under the same orders."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
 from ..core.errors import InputError
-from ..core.types import Event, Sample
+from ..core.types import Event, Mode, Sample
 from ..recording import RecordedRun
-from ..runs import SimulatedRun
-from ..runs.samples import HeldSamples
+from ..runs import Columns, SimulatedRun
+from ..runs.samples import GATHERED, MOST_HELD, HeldSamples, RemadeSamples, Samples, joined
 from ..runs.simulated import columns_of_rows
 from ..scene import Scene, changed
 from ..scene.schema import BY_NAME
 from ..simulation.cycles import summary
 from .origin import checkpoint_of, offline_of
-from .remake import Progress, maker_of
+from .remake import Maker, Progress, maker_of
 from .steps import steps_of
 
 
@@ -38,14 +38,35 @@ def other_run(run: RecordedRun, scene: Scene, changes: Mapping[str, object], pro
 
     Raises RecordingError when an order makes no sense any more, SolverError when the solver gives up.
     """
-    maker = maker_of(run, scene, changes.keys(), progress)
+    def made(progress: Progress = None) -> Iterator[tuple[Columns, list[Event]]]:
+        return _blocks(run, maker_of(run, scene, changes.keys(), progress))
+
+    held: list[Columns] = []
+    events: list[Event] = []
+    count, begin, end, start = 0, 0.0, 0.0, Mode.STICK
+    for block, new in made(progress):
+        if not count:
+            begin, start = float(block['time'][0]), Mode(int(block['mode'][0]))
+        count, end = count + len(block['time']), float(block['time'][-1])
+        events += new
+        if count <= MOST_HELD:
+            held.append(block)
+    figures = summary([event for event in events if begin <= event.time <= end], end - begin, start, begin)
+    samples: Samples = (HeldSamples(joined(held)) if count <= MOST_HELD
+                        else RemadeSamples(lambda: (block for block, _ in made()), count))
+    return SimulatedRun(scene, end, None, events, samples, figures, begin=begin)
+
+
+def _blocks(run: RecordedRun, maker: Maker) -> Iterator[tuple[Columns, list[Event]]]:
+    """Yield the samples and the events of the steps of a recording, made again, block by block."""
     samples: list[Sample] = []
     events: list[Event] = []
     for step in steps_of(run, maker.start):
         for made in maker.make(step):
             samples.append(made.sample)
             events += made.events
-    begin, end = samples[0].time, samples[-1].time
-    figures = summary([event for event in events if begin <= event.time <= end], end - begin, samples[0].mode, begin)
-    columns = HeldSamples(columns_of_rows(np.array(samples)))
-    return SimulatedRun(scene, end, None, events, columns, figures, begin=begin)
+        if len(samples) >= GATHERED:
+            yield columns_of_rows(np.array(samples)), events
+            samples, events = [], []
+    if samples:
+        yield columns_of_rows(np.array(samples)), events

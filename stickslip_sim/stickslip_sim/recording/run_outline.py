@@ -1,0 +1,144 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""A long recorded run looked through once: where it begins and ends, its transitions, what its samples come to."""
+
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.errors import RecordingError
+from ..core.types import Event, Mode
+from ..runs import Columns
+from ..runs.samples import GATHERED, joined
+from .paired_steps import OutOfOrderError, paired_blocks
+from .reader import EVENT_FIELDS, Bag
+from .states_seen import StatesSeen
+from .topics import FRICTION_FORCE, MODE_EVENT, SLIDER_STATE, Topic
+
+_STATE = 'time', 'step', 'drive_position', 'drive_force', 'mode'
+_FRICTION = 'step', 'force'
+
+
+class RunOutline(NamedTuple):
+    """A run from its first sample to its last; `events` are those up to its last state."""
+
+    begin: float           # s
+    end: float             # s
+    mode: Mode             # of the first sample
+    samples: int
+    missing_steps: int     # without a state, between the first and the last that has
+    largest_force: float   # N, friction or drive
+    events: list[Event] | None   # None: not of one topic
+
+
+def outline_of(bag: Bag) -> RunOutline | None:
+    """Look through a bag once; None when what is in it comes in no order.
+
+    Raises RecordingError when a topic is missing, or it has fewer than 2 samples, or some of no run.
+    """
+    states, drive, samples = StatesSeen(), _DriveAtEvents(), _SamplesSeen()
+    transitions: list[Columns] = []
+    events = {MODE_EVENT: EVENT_FIELDS} if list(bag.topics.values()).count(MODE_EVENT.type) == 1 else {}
+
+    def of_steps(blocks: Iterable[tuple[Topic, Columns]]) -> Iterator[tuple[Topic, Columns]]:
+        for topic, block in blocks:
+            if topic is MODE_EVENT:
+                transitions.append(block)
+                drive.take_events(block['time'])
+                continue
+            if topic is SLIDER_STATE and len(block['time']):
+                states.take(block)
+                drive.take_states(block)
+            yield topic, block
+
+    try:
+        for pair in paired_blocks(of_steps(bag.blocks_of({**events, SLIDER_STATE: _STATE, FRICTION_FORCE: _FRICTION}))):
+            samples.take(*pair)
+        if not states.rise:
+            return None
+        positions = drive.found()
+    except OutOfOrderError:
+        return None
+    check_samples(bag, samples.count, samples.rise, samples.modes)
+    found = [event._replace(drive_position=position)
+             for event, position in zip(bag.events_in(joined(transitions)), positions.tolist())
+             if states.begin <= event.time <= states.end] if events else None
+    return RunOutline(samples.begin, samples.end, Mode(samples.mode), samples.count, states.missing_steps,
+                      samples.largest_force, found)
+
+
+def check_samples(bag: Bag, count: int, rise: bool, modes: Iterable[float]) -> None:
+    """Raise RecordingError unless samples are those of a run: at least 2, one after the other, in known modes."""
+    if count < 2:
+        raise RecordingError(f'{bag.path}: {count} states with their friction force; a run has at least 2')
+    if not rise or not set(modes) <= set(Mode):
+        raise RecordingError(f'{bag.path}: its steps do not follow each other in time, or are in unknown modes')
+
+
+class _SamplesSeen:
+    """Takes the steps of which state and friction were recorded."""
+
+    def __init__(self) -> None:
+        self.count, self.rise, self.mode = 0, True, 0
+        self.begin = self.end = -np.inf
+        self.largest_force = 0.0
+        self.modes: set[int] = set()
+
+    def take(self, states: Columns, friction: Columns) -> None:
+        """Take the next of them."""
+        time = states['time']
+        if not len(time):
+            return
+        if not self.count:
+            self.begin, self.mode = float(time[0]), int(states['mode'][0])
+        elif not time[0] > self.end:
+            self.rise = False
+        self.rise &= bool((np.diff(time) > 0.0).all())
+        self.end = float(time[-1])
+        self.count += len(time)
+        self.modes |= set(np.unique(states['mode']).tolist())
+        self.largest_force = max(self.largest_force, float(np.abs(friction['force']).max()),
+                                 float(np.abs(states['drive_force']).max()))
+
+
+class _DriveAtEvents:
+    """Finds where the drive is at each transition, between the states; both come block by block, about in order."""
+
+    def __init__(self) -> None:
+        self._held: list[Columns] = []
+        self._rows = 0
+        self._is_cut = False       # states before those that are held were forgotten
+        self._waiting: NDArray[np.float64] = np.empty(0)
+        self._found: list[NDArray[np.float64]] = []
+
+    def take_events(self, times: NDArray[np.float64]) -> None:
+        """Take the times of the next transitions, s."""
+        self._waiting = np.append(self._waiting, times)
+
+    def take_states(self, block: Columns) -> None:
+        """Take the next states."""
+        self._held.append({name: block[name] for name in ('time', 'drive_position')})
+        self._rows += len(block['time'])
+        if self._rows > 2 * GATHERED:
+            self._settle()
+
+    def found(self) -> NDArray[np.float64]:
+        """Return the positions at the transitions up to the last state, m; raises OutOfOrderError."""
+        if self._held:
+            self._settle()
+        return np.concatenate([*self._found, np.empty(0)])
+
+    def _settle(self) -> None:
+        """Find what can be found; a later transition may come before the last of the states, but not by many."""
+        states = joined(self._held)
+        time, waiting = states['time'], self._waiting
+        if (np.diff(waiting) < 0.0).any() or (self._is_cut and len(waiting) and waiting[0] < time[0]):
+            raise OutOfOrderError
+        count = int(np.searchsorted(waiting, time[-1], 'right'))
+        self._found.append(np.interp(waiting[:count], time, states['drive_position']))
+        self._waiting = waiting[count:]
+        self._is_cut |= len(time) > GATHERED
+        self._held = [{name: column[-GATHERED:] for name, column in states.items()}]
+        self._rows = len(self._held[0]['time'])
