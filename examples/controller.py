@@ -13,6 +13,8 @@ from rclpy.signals import SignalHandlerOptions
 
 from stickslip_msgs.msg import DriveVelocity, SliderState
 
+_PATIENCE = 2.0    # s without a state, until it says so
+
 
 class Controller(Node):
     """Answers each state with a velocity of the drive."""
@@ -22,10 +24,16 @@ class Controller(Node):
         latest_only = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
         self._out = self.create_publisher(DriveVelocity, 'drive_velocity', latest_only)
         self.create_subscription(SliderState, 'slider_state', self._answer, latest_only)
+        self._silence = self.create_timer(_PATIENCE, self._complain)
 
     def _answer(self, state: SliderState) -> None:
+        self._silence.cancel()
         velocity = 20.0 * (0.010 - state.position)    # m/s
         self._out.publish(DriveVelocity(velocity=min(max(velocity, -0.010), 0.010)))
+
+    def _complain(self) -> None:
+        self._silence.cancel()
+        self.get_logger().warning('waiting for an axis: ros2 run stickslip_sim sim_node, with this ROS_DOMAIN_ID')
 
 
 # Ctrl-C only sets a flag: raised in the midst of a message it would come out of rclpy as another error.

@@ -27,6 +27,7 @@ from stickslip_msgs.srv import Step
 _TRAVEL, _TIME, _REST = 0.010, 1.4, 0.6    # m, s, s
 _STOP = 0.1                                # s in which the drive is stopped: a command may get lost
 _GAIN = 10.0                               # 1/s: velocity for an error of the position
+_PATIENCE = 2.0                            # s without a measurement, until it says so
 _STEPS = 5                                 # of the axis for each answer in lock-step: 200 Hz beside 1 kHz
 
 
@@ -91,7 +92,9 @@ def make_steps(follower: Follower) -> None:
     step, reset = follower.create_client(Step, 'feed_axis/step'), follower.create_client(Trigger, 'feed_axis/reset')
     # A server that does not know its client yet loses the answer.  A second reset does no harm; a second step would.
     while not (begun := ask(reset, Trigger.Request(), 1.0)):
-        follower.get_logger().info('waiting for an axis with time.mode lockstep')
+        follower.get_logger().warning('waiting for an axis: ros2 run stickslip_sim sim_node --ros-args'
+                                      ' -p time.mode:=lockstep -p joint_interface.enabled:=true, with this'
+                                      ' ROS_DOMAIN_ID', once=True)
     if not begun.success:
         raise SystemExit(begun.message)
     while not follower.is_done:
@@ -119,6 +122,9 @@ executor.add_node(follower)
 if in_lock_step:
     make_steps(follower)
 else:
+    if not spin_until(lambda: follower.stamp >= 0, _PATIENCE):
+        follower.get_logger().warning('waiting for an axis: ros2 run stickslip_sim sim_node --ros-args'
+                                      ' -p joint_interface.enabled:=true, with this ROS_DOMAIN_ID')
     spin_until(lambda: follower.is_done)
     spin_until(lambda: False, 0.2)    # rest is sent again and again: the last message of a process may be lost
 follower.get_logger().info(f'done: the largest error was {follower.worst * 1e3:.6f} mm')

@@ -3,9 +3,11 @@
 """What README and docs/hil.md have a newcomer do first: `make run`, and the examples beside an axis."""
 
 import re
+import signal
 import subprocess
 import sys
 from collections.abc import Iterator
+from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
@@ -65,10 +67,24 @@ def test_nothing_to_send_is_wrong_use() -> None:
 
 
 def test_the_controller_is_the_one_of_the_page() -> None:
-    _, _, code = CONTROLLER.read_text(encoding='utf-8').partition('DriveVelocity, SliderState\n\n\n')
+    _, _, code = CONTROLLER.read_text(encoding='utf-8').partition('DriveVelocity, SliderState\n\n')
     shown = [line.strip() for line in (ROOT / 'docs/hil.md').read_text(encoding='utf-8').splitlines()]
     assert code
     assert [line.strip() for line in code.splitlines() if line.strip() and line.strip() not in shown] == []
+
+
+def test_the_examples_say_once_that_they_wait_for_an_axis() -> None:
+    """In a namespace where there is none; all at once, as each takes its time."""
+    nowhere = '--ros-args', '-r', '__ns:=/nowhere'
+    with ExitStack() as ended:
+        waiting = [ended.enter_context(subprocess.Popen([sys.executable, *map(str, example), *nowhere],
+                                                        stderr=subprocess.PIPE, text=True))
+                   for example in ([CONTROLLER], [SETPOINT], [SETPOINT, '--lockstep'])]
+        for each in waiting:
+            assert each.stderr
+            assert 'waiting for an axis: ros2 run stickslip_sim sim_node' in each.stderr.readline()
+            each.send_signal(signal.SIGINT)
+            assert each.stderr.read() == ''
 
 
 ENCODERS = ('-p', 'drive.velocity:=0.0', '-p', 'joint_interface.enabled:=true', '-p', 'encoder.resolution:=1.0e-6')

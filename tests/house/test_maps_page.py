@@ -50,7 +50,7 @@ def test_the_commands_run_as_written_one_after_the_other(page: str, tmp_path: Pa
     drawn = {picture_of(command) for command in commands if '.png' in command}
     assert len(drawn) == len(PICTURES) + 1
     assert all(picture.is_file() for picture in drawn)
-    assert {path.name for path in tmp_path.iterdir()} == {'examples', 'runs', 'study'}
+    assert {path.name for path in tmp_path.iterdir()} == {'examples', 'runs'}
 
 
 def test_every_critical_value_has_its_command(page: str) -> None:
