@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 
 from stickslip_sim.cli.main import run as tool
-from stickslip_sim.compare import parts
 from stickslip_sim.compare.report_folder import write_report
 from stickslip_sim.core.errors import RecordingError, RecordingWarning
 from stickslip_sim.recording import RecordedRun, paired_steps, read_run, recorded_run, records, run_outline

@@ -14,7 +14,7 @@ from stickslip_sim.core.energy import EnergyBalance
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.types import Event, EventKind, Sample
 from stickslip_sim.runs import SimulatedRun, simulate, simulate_events
-from stickslip_sim.runs.simulated import MAX_SAMPLES, check_times
+from stickslip_sim.runs.simulated import MAX_SAMPLES, check_run_times
 from stickslip_sim.scene import load_scene
 
 
@@ -127,13 +127,13 @@ def test_refused_sample_periods(period: float) -> None:
 
 
 def test_too_many_samples_are_refused_with_their_number() -> None:
-    check_times(1.0, 1.0 / (MAX_SAMPLES - 2))
+    check_run_times(1.0, 1.0 / (MAX_SAMPLES - 2))
     with pytest.raises(InputError, match='60000000001 rows'):
-        check_times(60.0, 1e-9)
+        check_run_times(60.0, 1e-9)
 
 
 def test_a_long_run_has_its_samples_in_blocks_and_refuses_to_hold_them(monkeypatch: pytest.MonkeyPatch) -> None:
-    check_times(10 * 3600.0, 0.001)
+    check_run_times(10 * 3600.0, 0.001)
     monkeypatch.setattr('stickslip_sim.runs.simulated.MOST_HELD', 10)
     monkeypatch.setattr('stickslip_sim.runs.samples.MOST_IN_MEMORY', 100)
     run = simulate(load_scene('paper_fig7'), 0.1, 0.001)

@@ -100,10 +100,10 @@ def _simulated(source: str, limits: 'Limits', duration: float, changes: SceneCha
     """Return the run of a scene with a sample each step, as its node would record it."""
     from ..check.limits import check_fit
     from ..runs import simulate
-    from ..runs.simulated import check_times
+    from ..runs.simulated import check_run_times
     from .progress import progress_bar
 
-    check_times(duration, None)
+    check_run_times(duration, None)
     check_fit(limits, 0.0, duration, has_timing=False, commands=None)
     scene = changes.load(source)
     with progress_bar('simulating') as progress:

@@ -70,10 +70,10 @@ def _run(source: str, duration: float | None, changes: SceneChanges) -> 'Run':
 
 def _simulated(source: str, duration: float, changes: SceneChanges) -> 'Run':
     from ..runs import simulate_events
-    from ..runs.simulated import check_times
+    from ..runs.simulated import check_run_times
     from .progress import progress_bar
 
-    check_times(duration, None)
+    check_run_times(duration, None)
     scene = changes.load(source)
     with progress_bar('simulating') as progress:
         return simulate_events(scene, duration, progress)

@@ -52,10 +52,10 @@ def simulate(scene: str, changes: SceneChanges, **options: object) -> None:
     wishes = _Wishes(**options)  # type: ignore[arg-type]
     _check(wishes)
     from ..runs import simulate, simulate_events
-    from ..runs.simulated import check_times
+    from ..runs.simulated import check_run_times
     from .progress import progress_bar
 
-    check_times(wishes.duration, wishes.sample_period)
+    check_run_times(wishes.duration, wishes.sample_period)
     loaded = changes.load(scene)
     period = _sample_period(wishes, loaded)
     with progress_bar('simulating') as progress:

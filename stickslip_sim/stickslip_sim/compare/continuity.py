@@ -13,8 +13,8 @@ from ..axis import CompliantContact
 from ..core.types import Event, EventKind, Mode
 from ..runs import Run
 from .look import look_at
-from .parts import RunPart
 from .ring_down import closed_form
+from .run_part import RunPart
 from .statement import Finding, Statement, found, not_applicable
 
 _JUMP = 0.01     # of the largest friction force: less is none

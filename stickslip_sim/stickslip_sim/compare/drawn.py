@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..core.types import Event, EventKind
 from ..runs import Columns
-from .parts import APPLIED, RunPart, begins_slip
+from .run_part import APPLIED, RunPart, begins_slip
 
 Numbers = NDArray[np.float64]
 

@@ -16,7 +16,7 @@ from ..plots.paper_panels import RANGED
 from ..runs import Columns, Run
 from ..runs.reduced import ReducedWindows
 from .drawn import DRAWN, InputsSeen, Numbers, SteadyInputs
-from .parts import APPLIED, SEEN, PartCutter, RunPart
+from .run_part import APPLIED, SEEN, PartCutter, RunPart
 from .windows import drawn_stretches
 
 Watch = Callable[[RunPart], Any]

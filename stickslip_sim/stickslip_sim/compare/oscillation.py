@@ -12,8 +12,8 @@ from ..axis import CompliantContact
 from ..core.types import Event, EventKind
 from ..runs import Run
 from .drawn import Numbers, complete_slips, complete_sticks, steady_inputs
-from .parts import RunPart
 from .ring_down import RingDown, closed_form
+from .run_part import RunPart
 from .statement import Finding, Statement, found, not_applicable
 
 _SMALL = 0.1       # of the longest slip's travel

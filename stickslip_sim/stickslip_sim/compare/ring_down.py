@@ -18,7 +18,7 @@ import numpy as np
 from ..axis import Axis, CompliantContact
 from ..runs import Columns
 from .drawn import complete_sticks, steady_inputs
-from .parts import RunPart
+from .run_part import RunPart
 
 RING_DOWN = 'ring-down'   # the watch
 _LEAST_SAMPLES = 8

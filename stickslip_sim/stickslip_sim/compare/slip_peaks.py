@@ -8,7 +8,7 @@ import numpy as np
 
 from ..runs import Run
 from .drawn import complete_slips, within
-from .parts import RunPart
+from .run_part import RunPart
 
 SLIP_PEAKS = 'slip peaks'   # the watch
 

@@ -8,7 +8,7 @@ from ..axis import CompliantContact
 from ..core.types import Mode
 from ..runs import Run
 from .look import look_at
-from .parts import APPLIED
+from .run_part import APPLIED
 from .statement import Finding, Statement, found, not_applicable
 
 _EQUAL = 1e-9   # relative: rounding of the forces

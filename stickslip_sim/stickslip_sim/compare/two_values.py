@@ -11,7 +11,7 @@ import numpy as np
 from ..core.types import Event, EventKind, Mode
 from ..runs import Run
 from .drawn import Numbers, complete_slips, within
-from .parts import RunPart
+from .run_part import RunPart
 from .statement import Finding, Statement, found, not_applicable
 
 _GAP = 0.01   # of the lower value: less is one value
@@ -25,7 +25,7 @@ class _Gap(NamedTuple):
     lower: float   # N, decelerating
 
 
-def gaps_in(part: RunPart) -> list[_Gap]:
+def branch_gaps(part: RunPart) -> list[_Gap]:
     """Compare both branches of each slip half-way between the speeds of its break-away and its peak."""
     if part.scene.axis.friction.excess is None:
         return []
@@ -72,4 +72,4 @@ def _rising(speed: Numbers, force: Numbers) -> tuple[Numbers, Numbers]:
 
 TWO_VALUES = Statement('two-valued friction',
                        'Within a slip the friction force over velocity has two values: more while the slider '
-                       'accelerates than while it decelerates.', judge, gaps_in)
+                       'accelerates than while it decelerates.', judge, branch_gaps)

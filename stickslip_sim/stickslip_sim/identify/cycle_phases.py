@@ -12,14 +12,14 @@ from .identification import Identification
 Numbers = NDArray[np.float64]
 
 
-def break_aways(found: Identification) -> Numbers:
+def measured_break_aways(found: Identification) -> Numbers:
     """Return the times of the measured break-aways, s."""
     return np.array([slip.time for slip in found.slips if math.isfinite(slip.time)], dtype=np.float64)
 
 
 def phases(found: Identification, times: Numbers) -> Numbers:
     """Return the share of the cycle at each time (n,), NaN before the first break-away and after the last."""
-    begins = break_aways(found)
+    begins = measured_break_aways(found)
     shares = np.full(len(times), np.nan)
     if len(begins) > 1:
         cycle = np.searchsorted(begins, times, side='right') - 1
@@ -31,7 +31,7 @@ def phases(found: Identification, times: Numbers) -> Numbers:
 
 def slip_share(found: Identification) -> float:
     """Return the share of a cycle after which its slip has ended, in the median; 0 where it is not known."""
-    begins = break_aways(found)
+    begins = measured_break_aways(found)
     sticks = np.array([slip.stick_time for slip in found.slips if math.isfinite(slip.time)], dtype=np.float64)[1:]
     periods = np.diff(begins)
     known = np.isfinite(sticks) & (sticks < periods)
@@ -40,7 +40,7 @@ def slip_share(found: Identification) -> float:
 
 def usual_cycles(found: Identification, count: int = 2) -> tuple[float, float]:
     """Return from when to when some cycles are that take as long as most do, s; without cycles the last tenth."""
-    times, begins = found.channels[0].times, break_aways(found)
+    times, begins = found.channels[0].times, measured_break_aways(found)
     lengths = begins[count:] - begins[:-count]
     if not len(lengths):
         return float(times[-1] - 0.1 * (times[-1] - times[0])), float(times[-1])

@@ -121,7 +121,7 @@ def columns_of_rows(rows: NDArray[np.float64]) -> Columns:
 
 def _simulated(scene: Scene, duration: float, sample_period: float | Fraction | None,
                progress: Progress) -> SimulatedRun:
-    check_times(duration, sample_period)
+    check_run_times(duration, sample_period)
     rig = _loaded_rig(scene)
     simulator = rig.simulator
     start = simulator.sample().mode
@@ -172,7 +172,7 @@ def _blocks(scene: Scene, duration: float, period: Fraction | None) -> Iterator[
             done += len(rows)
 
 
-def check_times(duration: float, sample_period: float | Fraction | None) -> None:
+def check_run_times(duration: float, sample_period: float | Fraction | None) -> None:
     """Raise InputError unless a run of `duration` s with a sample every `sample_period` s can be made."""
     if not 0.0 < duration <= MAX_DURATION:
         raise InputError('duration', duration, f'> 0 and <= {MAX_DURATION:.0e} s', 'give the seconds to simulate')

@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from ..core.errors import InputError
-from ..runs.simulated import check_times
+from ..runs.simulated import check_run_times
 from ..scene import Scene, scene_from_values
 from ..scene.load import named
 from .point_figures import Figures, Runs, figures_of_runs
@@ -40,7 +40,7 @@ class Study:
             with named('at ' + ', '.join(f'{name}={number:g}' for name, number in zip(self.names, corner))):
                 self.scene_at(np.array(corner))
         if self.duration is not None:
-            check_times(self.duration, None)
+            check_run_times(self.duration, None)
         elif not self.works_in_batches:
             raise InputError('duration', None, 'given for a scene with faults, inputs that change with time, or a '
                              'solver other than exact', 'add --duration S')
