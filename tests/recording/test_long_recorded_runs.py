@@ -24,7 +24,7 @@ from tests.support.tool import Capture
 def _short_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let no run be held."""
     monkeypatch.setattr(recorded_run, 'MOST_HELD', 10)
-    monkeypatch.setattr(parts, 'MOST_HELD', 2500)
+    monkeypatch.setattr(run_part, 'MOST_HELD', 2500)
     monkeypatch.setattr(reduced, 'MOST_HELD', 2500)
     monkeypatch.setattr(records, '_GATHERED', 1 << 14)
     for module in (paired_steps, run_outline):
