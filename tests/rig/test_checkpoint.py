@@ -18,7 +18,9 @@ from stickslip_sim.scene import Scene, changed, load_scene
 LIMITS = {'command.acceleration_limit': 0.5, 'command.on_timeout': 'ramp_to_zero'}
 SINES = {'force.course': 'sine', 'force.amplitude': 200.0, 'force.frequency': 7.0, 'drive.course': 'table',
          'drive.times': [0.0, 0.3], 'drive.velocities': [0.001, 0.004], 'drive.period': 0.5}
-SCENES = [('paper_fig8', LIMITS), ('paper_fig7', SINES), ('cutting_force', {}),
+LOADS = {'normal_load.course': 'steps', 'normal_load.times': [0.0, 0.15, 0.2503], 'normal_load.period': 0.4,
+         'normal_load.forces': [0.0, -3000.0, 900.0]}
+SCENES = [('paper_fig8', LIMITS), ('paper_fig7', SINES), ('cutting_force', {}), ('paper_fig8', LOADS),
           ('paper_fig8', {'solver.name': 'fixed_step', 'solver.step': 1e-4})]
 
 

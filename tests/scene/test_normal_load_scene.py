@@ -52,6 +52,8 @@ def test_a_scene_with_it_comes_back_from_its_text() -> None:
      'whole amplitudes'),
     ({'normal_load.course': 'ramp', 'normal_load.rate': -1.0, 'solver.name': 'adaptive'},
      'axis.normal_force + normal_load', '-inf'),
+    ({**STEPS, 'normal_load.forces': [0.0, 1e6, 0.0], 'friction.kinetic.end_slope': 10.0, 'solver.name': 'fixed_step'},
+     'solver.step', '<= 6.97e-05 s for slip'),
     ({'normal_load.times': [0.0]}, 'normal_load.times', 'normal_load.course: steps or table'),
     ({'normal_load.amplitudes': [1.0]}, 'normal_load.amplitudes', 'normal_load.course'),
     ({**STEPS, 'axis.normal_force': 999.0}, 'axis.normal_force + normal_load', '= -1.0 '),
