@@ -72,7 +72,12 @@ def in_order(before: Columns, samples: Columns) -> Columns:
 
 
 def steady_inputs(part: RunPart, begin: float, end: float) -> SteadyInputs | None:
-    """Return the drive velocity and the external force between two times (s); None when they are not constant."""
+    """Return the drive velocity and the external force between two times (s); None when they are not constant.
+
+    So it is under a normal load, which is no part of the axis.
+    """
+    if part.scene.normal_load is not None:
+        return None
     inside = rows(part.samples['time'], begin, end)
     if inside.start >= inside.stop:
         return None
