@@ -14,7 +14,7 @@ from ..core.errors import StickslipError
 from ..core.input_profile import InputProfile
 from ..core.time_grid import Instants
 from ..core.types import Event, Instant, Sample
-from ..scene import Scene
+from ..scene import Scene, changed
 from ..scene.build import Dynamics, dynamics_of
 from ..simulation.simulator import Simulator
 from ..study.variation import changes_at
@@ -46,6 +46,16 @@ class AxisModel:
         self._tables = SameTables(scene, self._names)
         self.runs = 0
 
+    def take_tables_of(self, values: Numbers) -> bool:
+        """Make the tables of a smooth kinetic law anew, as those of the scene with these values; return if it has one.
+
+        How fine a table is depends on how far the law falls, and so a little on what is sought.
+        """
+        if self._scene.axis.friction.kinetic.law is None:
+            return False
+        self._tables = SameTables(changed(self._scene, self.changes(values)), self._names)
+        return True
+
     def changes(self, values: Numbers) -> dict[str, object]:
         """Return the changes to the scene that trial values are, with static friction not below kinetic."""
         own = self._values(values)
@@ -69,6 +79,11 @@ class AxisModel:
         own = {**self._scene.values, **changes_at(self._scene.values, self._names, values[self._own])}
         put_in_order(own)
         return own
+
+    def drive_of(self, values: Numbers) -> InputProfile:
+        """Return the velocity of the drive: as it was measured, or with trial values."""
+        found = self.dynamics(values)
+        return self._scene.drive if found is None else found.drive
 
     def gain(self, values: Numbers, channel: str) -> tuple[float, float]:
         """Return offset and scale of the sensor of a channel."""

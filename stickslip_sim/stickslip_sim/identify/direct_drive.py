@@ -25,7 +25,7 @@ def direct_drive(model: AxisModel, values: Numbers, measurement: SensorReadings)
     dynamics = model.dynamics(values)
     if force is None or measurement.channel('position') is None or dynamics is None:
         return {}
-    track = track_of(measurement)
+    track = track_of(measurement, dynamics.drive)
     offset, scale = model.gain(values, 'position')
     gone = travelled(dynamics.drive, track.times)
     position = (track.position - offset) / scale

@@ -39,7 +39,8 @@ def identification_of(problem: FitProblem, scene: Scene, ends: Sequence[Ended], 
     """Return what was found; `ends` are those of all starts, the best first, `began` when the work did, s."""
     best = ends[0]
     point = best.solution.point
-    whole = problem.stretches(0)
+    problem.model.take_tables_of(problem.values(point))
+    whole = problem.stretches()
     fitted = problem.fitted(point, whole)
     assert fitted is not None
     channels = _channels(problem, fitted)
@@ -47,7 +48,7 @@ def identification_of(problem: FitProblem, scene: Scene, ends: Sequence[Ended], 
     information = best.solution.information
     known = certainty_of(information, _inflation(problem, fitted), problem.parameters)
     values = problem.values(point)
-    stretches = problem.stretches(1).parts
+    stretches = problem.stretches(0).parts
     misfits = [misfit for k, channel in enumerate(problem.measurement.channels) for misfit in misfits_of(
         channel, channel.values - fitted[k], problem.measurement.times, stretches)]
     criterion = best.solution.cost + count * float(np.log(effective_count(problem)))

@@ -8,9 +8,10 @@ from collections.abc import Mapping
 from contextlib import closing
 from pathlib import Path
 
+from ..inputs import load_scene
 from ..recording import read_run
 from ..runs import Run
-from ..scene import SceneOrName, scene_of
+from ..scene import Scene, SceneOrName
 from .axis_model import AxisModel
 from .findings import identification_of
 from .free_parameters import free_parameters
@@ -35,11 +36,11 @@ def identify(run: Run | str | os.PathLike[str], start: SceneOrName, free: str | 
     Raises InputError and RecordingError.
     """
     began = time.perf_counter()
-    scene = scene_of(start)
+    scene = start if isinstance(start, Scene) else load_scene(start)
     parameters = free_parameters(scene, free)
     found = read_run(os.fspath(run)) if isinstance(run, str | os.PathLike) else run
     measurement = readings_of(found, scene, resolutions or {})
-    motions = motions_of(track_of(measurement))
+    motions = motions_of(track_of(measurement, measurement.drive or scene.drive))
     check_parameters(parameters, measurement)
     check_data(parameters, measurement, motions, scene)
     model = AxisModel(scene, parameters, measurement)

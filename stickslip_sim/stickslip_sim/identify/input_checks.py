@@ -27,7 +27,7 @@ def check_parameters(parameters: Sequence[FreeParameter], measurement: SensorRea
                              + ', '.join(channel.name for channel in measurement.channels), 'leave it out')
     count = sum(float(channel.weights.sum()) for channel in measurement.channels)
     if count < _PER_PARAMETER * len(parameters):
-        raise InputError('run', f'{len(measurement.times)} samples, which say as much as {count:.0f} different ones',
+        raise InputError('RUN', f'{len(measurement.times)} samples, which say as much as {count:.0f} different ones',
                          f'{_PER_PARAMETER:g} or more for each of the {len(parameters)} free parameters',
                          'measure longer, or free fewer')
 
@@ -45,14 +45,14 @@ def check_data(parameters: Sequence[FreeParameter], measurement: SensorReadings,
     if position is not None and gone > 0.0 and scene.axis.drive_stiffness > 0.0:
         way = float(np.ptp(position.values))
         if not gone / _FAR < way < gone * _FAR:
-            raise InputError('run', f'a way of {way:g} m', f'about as long as that of the drive, {gone:g} m',
+            raise InputError('RUN', f'a way of {way:g} m', f'about as long as that of the drive, {gone:g} m',
                              'look at the unit of the position, and at the drive of the scene')
     force = measurement.channel('drive_force')
     scaled = any(one.name == 'sensor.drive_force.scale' for one in parameters)
     friction = scene.axis.friction
-    most = scene.axis.normal_force * max(friction.static.limit, *friction.kinetic.coefficients)
+    most = scene.axis.normal_force * max(friction.static.limit, friction.kinetic.coefficients[0])
     if force is not None and most > 0.0 and not scaled:
         size = float(np.abs(force.values).max())
         if not most / _FAR < size < most * _FAR:
-            raise InputError('run', f'a drive force up to {size:g} N', 'about as large as friction in the scene, '
+            raise InputError('RUN', f'a drive force up to {size:g} N', 'about as large as friction in the scene, '
                              f'{most:g} N', 'look at its unit, or free sensor.drive_force.scale')

@@ -55,11 +55,12 @@ def slopes_of(residuals: Residuals, point: Numbers, low: Numbers, high: Numbers,
 
 
 def minimise(residuals: Residuals, point: Numbers, low: Numbers, high: Numbers, *, most: int, tolerance: float,
-             share: float = 1e-9, robust: float = np.inf, step: float = STEP) -> Solution:
+             share: float = 1e-9, robust: float = np.inf, step: float = STEP, steepest: float = np.inf) -> Solution:
     """Return where the sum of squares is least, from a point on, after at most so many steps.
 
     It is settled where the next step would gain less than `tolerance`, or that `share` of the sum.  Residuals are all
     NaN where the parameters contradict each other; those beyond `robust` count by their size, not their square.
+    A derivative beyond `steepest` is that of a jump, and is left out.
     """
     point = np.clip(point, low, high)
     here = residuals(point)
@@ -68,6 +69,7 @@ def minimise(residuals: Residuals, point: Numbers, low: Numbers, high: Numbers, 
     information = np.eye(len(point))
     for _ in range(most):
         slopes = slopes_of(residuals, point, low, high, step)
+        slopes[np.abs(slopes) > steepest] = 0.0
         weights = _weights(here, robust)
         weighted = slopes if weights is None else slopes * weights[:, None]
         information, gradient = weighted.T @ slopes, weighted.T @ here

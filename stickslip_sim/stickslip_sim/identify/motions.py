@@ -7,21 +7,31 @@ is small beside the highest speed.  A motion begins where the slope, on a line t
 where it comes back to it: the noise, which hides the very ends, is passed over.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import savgol_filter
 
-from ..runs.slips import slips_of
+from ..core.input_profile import InputProfile
+from .measured_inputs import travelled
 from .readings import SensorReadings
 
 Numbers = NDArray[np.float64]
 
-_NOISE = 0.01            # of the highest speed: so much noise a slope may have
-_SHARE, _NOISES = 0.04, 4.0   # a motion is faster than this share of the highest speed, and so many deviations
+_NOISE, _OF_DRIVE = 0.01, 0.05   # of the highest speed, and of a low one of the drive: so much noise a slope may have
+_SLOWEST = 0.05          # quantile of the speeds of the drive
+_YIELDS = 0.3             # of the speed of the drive: a slider that moves slower rests, on a contact that yields
+_SHARE, _NOISES = 0.04, 4.0   # of the highest speed, without a drive; standard deviations
+_PEAK = 2.0              # times that: so fast is a motion at its peak
+_RINGS_FOR, _RINGS = 0.7, 0.15   # of the motion before: its duration, and its way
 _RISE, _FALL = (0.15, 0.6), (0.03, 0.25)   # of the peak: between these a line is laid through the slope
+_SHORT = 0.2             # of a motion: what is shorter is no rest
+_MIDDLE = 0.25, 0.75     # of a rest: between these the slider stands still,
+_FOLLOWS = 0.4           # or goes less than this share of the way of the drive, as a compliant contact lets it
 _LONGEST = 0.02          # of the run: so long a parabola may be
 SHARES = 0.1, 0.3, 0.5, 0.7, 0.9   # of the way at which a motion is timed
 
@@ -43,54 +53,93 @@ class MeasuredMotion:
 
 
 class Track(NamedTuple):
-    """A position, m, and its slope, m/s, over times (s), with the standard deviations of both."""
+    """A position, m, and its slope, m/s, over even times (s); at speeds below `still` (m/s, at each time) it rests.
+
+    `position_noise` and `velocity_noise` are standard deviations.
+    """
 
     times: Numbers
     position: Numbers
     velocity: Numbers
+    still: Numbers
     position_noise: float
     velocity_noise: float
 
 
-def track_of(measurement: SensorReadings) -> Track:
+def track_of(measurement: SensorReadings, drive: InputProfile) -> Track:
     """Return position and velocity of the slider as they were measured, each from the other where it was not.
 
-    They are at even times; in a gap of the measurement they are linear.
+    In a gap of the measurement they are linear.  A slider that rests moves slower than its drive: as the contact
+    yields, not at all in one that is rigid.
     """
     count = max(round(float(np.ptp(measurement.times)) / measurement.period), 3) + 1
     times = np.linspace(measurement.times[0], measurement.times[-1], count)
+    driven = np.abs(np.gradient(travelled(drive, times), times))
     position, velocity = measurement.channel('position'), measurement.channel('velocity')
     if position is None:
         assert velocity is not None
         speed = np.interp(times, measurement.times, velocity.values)
-        gone = np.append(0.0, np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(times)))
-        return Track(times, gone, speed, velocity.resolution * measurement.period, velocity.resolution)
-    readings = np.interp(times, measurement.times, position.values)
-    length, slope = 3, np.gradient(readings, times)
-    most = max(3, int(_LONGEST * count))
+        noise = velocity.resolution
+        readings = np.append(0.0, np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(times)))
+        place_noise = noise * measurement.period
+    else:
+        readings, place_noise = np.interp(times, measurement.times, position.values), position.resolution
+        speed, noise = _slope(readings, measurement.period, place_noise, driven)
+        if velocity is not None and velocity.resolution < noise:
+            speed, noise = np.interp(times, measurement.times, velocity.values), velocity.resolution
+    share = _YIELDS * driven if driven.any() else np.full(count, _SHARE * float(np.abs(speed).max()))
+    return Track(times, readings, speed, np.maximum(share, _NOISES * noise), place_noise, noise)
+
+
+def _slope(readings: Numbers, period: float, resolution: float, driven: Numbers) -> tuple[Numbers, float]:
+    """Return the slope of readings at even times, and its noise, by parabolas through as few as keep the noise low."""
+    length, slope = 3, np.gradient(readings, period)
+    most = max(3, int(_LONGEST * len(readings)))
+    moving = driven[driven > 0.0]
+    slowest = float(np.quantile(moving, _SLOWEST)) if len(moving) else np.inf
     while True:
-        noise = position.resolution * (12.0 / (length * (length**2 - 1.0)))**0.5 / measurement.period
-        if noise <= _NOISE * float(np.abs(slope).max()) or length + 2 > most:
-            break
+        noise = resolution * float(np.sqrt(12.0 / (length * (length**2 - 1.0)))) / period
+        if noise <= min(_NOISE * float(np.abs(slope).max()), _OF_DRIVE * slowest) or length + 2 > most:
+            return np.asarray(slope, dtype=np.float64), noise
         length += 2
-        slope = savgol_filter(readings, length, 2, deriv=1, delta=measurement.period)
-    if velocity is not None and velocity.resolution < noise:
-        slope, noise = np.interp(times, measurement.times, velocity.values), velocity.resolution
-    return Track(times, readings, np.asarray(slope, dtype=np.float64), position.resolution, noise)
+        slope = savgol_filter(readings, length, 2, deriv=1, delta=period)
 
 
 def motions_of(track: Track) -> list[MeasuredMotion]:
     """Return the motions between rests, in the order of time; one that is cut off by the run is left out."""
-    speed = np.abs(track.velocity)
-    threshold = max(_SHARE * float(speed.max()), _NOISES * track.velocity_noise)
+    ways = np.where(np.abs(track.velocity) > track.still, np.sign(track.velocity), 0.0)
+    edges = [0, *(np.flatnonzero(np.diff(ways) != 0.0) + 1).tolist(), len(ways)]
     found: list[MeasuredMotion] = []
-    for rows in slips_of(track.velocity, threshold):
-        if rows.first == 0 or rows.end >= len(track.times):
+    for first, end in pairwise(edges):
+        if first == 0 or end >= len(ways) or ways[first] == 0.0:
             continue
-        motion = _motion(track, rows.first, rows.end, rows.peak, float(rows.direction))
-        if motion is not None and (not found or motion.begin > found[-1].end):
+        peak = first + int(np.abs(track.velocity[first:end]).argmax())
+        if abs(track.velocity[peak]) < _PEAK * track.still[peak]:
+            continue
+        motion = _motion(track, first, end, peak, float(ways[first]))
+        if motion is not None and (not found or (motion.begin > found[-1].end and not _rings(motion, found[-1]))):
             found.append(motion)
     return found
+
+
+def _rings(motion: MeasuredMotion, before: MeasuredMotion) -> bool:
+    """Return whether a motion is that of a contact that rings after the motion before it."""
+    return (motion.begin - before.end < _RINGS_FOR * (before.end - before.begin)
+            and abs(motion.stop - motion.start) < _RINGS * abs(before.stop - before.start))
+
+
+def ends_in_rest(motions: Sequence[MeasuredMotion], track: Track, drive: InputProfile) -> tuple[MeasuredMotion, ...]:
+    """Return the motions that end in a rest: not those that only slow down, or go on with the drive."""
+    found = []
+    for motion, after in zip(motions, [*motions[1:], None]):
+        end = float(track.times[-1]) if after is None else after.begin
+        ends = motion.end + np.array(_MIDDLE) * (end - motion.end)
+        gone, driven = (float(abs(np.diff(way)[0])) for way in (np.interp(ends, track.times, track.position),
+                                                                travelled(drive, ends)))
+        if end - motion.end >= _SHORT * (motion.end - motion.begin) \
+                and gone <= _FOLLOWS * driven + _NOISES * track.position_noise:
+            found.append(motion)
+    return tuple(found)
 
 
 def _motion(track: Track, first: int, end: int, peak: int, direction: float) -> MeasuredMotion | None:

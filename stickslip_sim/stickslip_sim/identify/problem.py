@@ -12,14 +12,14 @@ from ..core.time_grid import Instants
 from .axis_model import PLACES, AxisModel
 from .direct_drive import direct_drive
 from .free_parameters import FreeParameter
-from .motions import MeasuredMotion
-from .readings import SensorReadings, instants_of
+from .motions import MeasuredMotion, ends_in_rest, track_of
+from .readings import Channel, SensorReadings, instants_of
 from .slip_features import N_FIGURES, MeasuredSlip, measured_slips, simulated_slip, slip_distance
 
 Numbers = NDArray[np.float64]
 Rows = NDArray[np.intp]
 
-_FAR = 0.03    # of a slip
+_ROUGH = 0.02  # of a slip: so well the motion after a measured arrest is known
 _LOOSE = 2.0   # ranges: the standard deviation of a weak prior, which holds what the data do not determine
 
 
@@ -51,7 +51,11 @@ class FitProblem:
                  motions: Sequence[MeasuredMotion]) -> None:
         self.model, self.parameters, self.measurement = model, tuple(parameters), measurement
         self.motions = tuple(motions)
+        drive = model.drive_of(np.array([one.start for one in parameters]))
+        self._rests = ends_in_rest(motions, track_of(measurement, drive), drive)
+        rests = {id(motion) for motion in self._rests}
         self.slips = measured_slips(motions, measurement)
+        self.clear_slips = [slip for slip in self.slips if slip.before is None or id(slip.before) in rests]
         self.start = np.array([one.inner(one.start) for one in parameters])
         self.low = np.array([one.inner(one.low) for one in parameters])
         self.high = np.array([one.inner(one.high) for one in parameters])
@@ -79,18 +83,16 @@ class FitProblem:
                  for slip in slips]
         return np.concatenate([*parts, self.beforehand(point)])
 
-    def far(self) -> float:
-        """Return the residual of a position that is off by a small part of a slip; one beyond is of another slip."""
-        way = float(np.median([abs(motion.stop - motion.start) for motion in self.motions])) if self.motions else 0.0
-        position = self.measurement.channel('position')
-        return np.inf if position is None or not way else max(_FAR * way / position.resolution, 3.0)
+    def stretches(self, first: int | None = None, stride: int = 1) -> Stretches:
+        """Return the whole run as one stretch; or its `first` slips, and behind them a stretch for each further one.
 
-    def stretches(self, slips: int, stride: int = 1) -> Stretches:
-        """Return stretches over so many slips each, with every `stride`-th sample; 0 slips: the whole run."""
+        The first comes from the start of the run; the others come from measured arrests, and weigh as little as these
+        are known.  Only every `stride`-th sample is taken.
+        """
         times = self.measurement.times
         every = np.arange(len(times))[stride // 2::stride]
-        ends = self.motions[slips - 1::slips] if slips else ()
-        begins: list[MeasuredMotion | None] = [None, *(motion for motion in ends if motion.end < times[-1])]
+        rests = self._rests[max(first - 1, 0):] if first is not None else ()
+        begins: list[MeasuredMotion | None] = [None, *(motion for motion in rests if motion.end < times[-1])]
         parts = []
         for before, after in zip(begins, [*begins[1:], None]):
             begin = 0.0 if before is None else before.end
@@ -99,10 +101,18 @@ class FitProblem:
             if len(rows):
                 parts.append(MeasuredStretch(before, begin, rows, instants_of(times[rows] - begin)))
         rows = np.concatenate([part.rows for part in parts])
-        factors = tuple(np.sqrt(channel.weights[rows]) / channel.resolution for channel in self.measurement.channels)
+        own = np.concatenate([np.full(len(part.rows), part.before is None and first != 0) for part in parts])
+        factors = tuple(np.sqrt(channel.weights[rows]) / np.where(own, channel.resolution, self._roughly(channel))
+                        for channel in self.measurement.channels)
         targets = tuple(channel.values[rows] * factor
                         for channel, factor in zip(self.measurement.channels, factors, strict=True))
         return Stretches(tuple(parts), rows, targets, factors)
+
+    def _roughly(self, channel: Channel) -> float:
+        """Return the standard deviation of a channel where a stretch begins from a measured arrest."""
+        ways = [abs(motion.stop - motion.start) for motion in self.motions]
+        size = float(np.median(ways)) if channel.name == 'position' and ways else 0.1 * float(np.ptp(channel.values))
+        return max(channel.resolution, _ROUGH * size)
 
     def of_stretches(self, point: Numbers, stretches: Stretches) -> Numbers:
         """Return the weighted residuals of the samples of stretches, and of what is known beforehand."""

@@ -95,15 +95,15 @@ def readings_of(run: Run, scene: Scene, resolutions: Mapping[str, float]) -> Sen
 def _times(times: Numbers) -> tuple[Numbers, float, float]:
     """Return times from the start of the simulation on, that start, and the period; raises InputError."""
     if len(times) < _FEWEST:
-        raise InputError('run', f'{len(times)} samples', f'{_FEWEST} samples or more', 'measure longer or more often')
+        raise InputError('RUN', f'{len(times)} samples', f'{_FEWEST} samples or more', 'measure longer or more often')
     steps = np.diff(times)
     period = float(np.median(steps))
     if not 1.0 / _RATES[1] <= period <= 1.0 / _RATES[0]:
-        raise InputError('run', f'{1.0 / period:g} samples/s', '{:g} to {:g} samples/s'.format(*_RATES),
+        raise InputError('RUN', f'{1.0 / period:g} samples/s', '{:g} to {:g} samples/s'.format(*_RATES),
                          'look at the unit of its time')
     gap = int(steps.argmax())
     if steps[gap] > max(_LONGEST_GAP * (times[-1] - times[0] - steps[gap]), 10.0 * period):
-        raise InputError('run', f'a jump of its time from {times[gap]:g} to {times[gap + 1]:g} s', 'without a gap that '
+        raise InputError('RUN', f'a jump of its time from {times[gap]:g} to {times[gap + 1]:g} s', 'without a gap that '
                          'is longer than all the rest', 'import the part before or after it')
     shift = float(times[0]) if times[0] > times[-1] - times[0] else 0.0
     return times - shift, shift, period
@@ -119,11 +119,11 @@ def _check_motion(channels: tuple[Channel, ...]) -> None:
     """Raise InputError where the slider does not move."""
     moving = next((channel for channel in channels if channel.name in ('position', 'velocity')), None)
     if moving is None:
-        raise InputError('run', ', '.join(channel.name for channel in channels), 'with a position or a velocity of the '
+        raise InputError('RUN', ', '.join(channel.name for channel in channels), 'with a position or a velocity of the '
                          'slider', 'import one of them')
     span = float(np.ptp(moving.values))
     if span <= max(6.0 * moving.resolution, 3.0 * moving.quantum):
-        raise InputError('run', f'a {moving.name} that changes by {span:g} {moving.unit}', 'one in which the slider '
+        raise InputError('RUN', f'a {moving.name} that changes by {span:g} {moving.unit}', 'one in which the slider '
                          'moves', 'look at its column and unit, or measure with a larger feed')
 
 

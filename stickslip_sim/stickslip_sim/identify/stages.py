@@ -27,9 +27,13 @@ _TRIAL_SLIPS = 3        # at each of them
 _FITTED_STARTS = 4      # of them, the best
 _SLIPS = 10             # at most, for the coarse fit
 _SAMPLES = 4000         # about so many are enough until the last stage
-_LENGTHS = 1, 4, 16     # slips a stretch, before the whole run
+_FIRST_SLIPS = 0, 1, 3, 8, 20, 50   # that are fitted as one, before the whole run
 _GOOD = 1.5             # a mean square up to that, and no other start is tried
 _COARSE_STEP = 1e-5
+_TABLES = 4             # times at most that tables of smooth laws are made anew
+_STEEPEST = 1e4         # figures of slips over a logarithm: a hundred times in proportion
+_KEPT = 0.5, 0.8        # of the slips, in turn; in the last also those whose cost is not far above the median
+_FAR_OFF = 4.0
 _ROBUST = 3.0           # figures of slips: beyond, a coarse fit counts their size
 
 
@@ -43,10 +47,10 @@ class Ended(NamedTuple):
 
 def starts_of(problem: FitProblem, seed: int) -> Iterator[Numbers]:
     """Yield points to start from, by the figures of single slips: from the given start, then from many others."""
-    chosen = [problem.slips[k] for k in _spread(len(problem.slips), _SLIPS)]
+    chosen = [problem.clear_slips[k] for k in _spread(len(problem.clear_slips), _SLIPS)]
     first = _coarse(problem, problem.with_direct(problem.start), chosen)
     yield first.point
-    few = [problem.slips[k] for k in _spread(len(problem.slips), _TRIAL_SLIPS)]
+    few = [problem.clear_slips[k] for k in _spread(len(problem.clear_slips), _TRIAL_SLIPS)]
     shares = qmc.Sobol(len(problem.start), seed=seed).random(_STARTS)
     trials = [problem.with_direct(trial) for trial in problem.low + shares * (problem.high - problem.low)]
     costs = [_cost(problem.of_slips(trial, few)) for trial in trials]
@@ -56,25 +60,39 @@ def starts_of(problem: FitProblem, seed: int) -> Iterator[Numbers]:
 
 
 def _coarse(problem: FitProblem, start: Numbers, slips: Sequence[MeasuredSlip]) -> Solution:
+    """Return where the figures of slips are best, from a start on: first without the worst, then without those far off.
+
+    What was taken for a slip may be none, and a slip that is another one from a point on bars the way with a step.
+    """
     if not slips:
-        return Solution(problem.with_direct(start), np.inf, np.eye(len(start)), True)
-    return minimise(partial(problem.of_slips, slips=slips), start, problem.low, problem.high, most=30, tolerance=1e-2,
-                    share=1e-4, robust=_ROBUST, step=_COARSE_STEP)
+        return Solution(start, np.inf, np.eye(len(start)), True)
+    found = Solution(start, np.inf, np.eye(len(start)), True)
+    for kept in _KEPT:
+        costs = np.array([_cost(problem.of_slips(found.point, [slip])) for slip in slips])
+        limit = max(float(np.quantile(costs, kept)), _FAR_OFF * float(np.median(costs)) if kept == _KEPT[-1] else 0.0)
+        near = [slip for slip, cost in zip(slips, costs) if cost <= limit]
+        found = minimise(partial(problem.of_slips, slips=near), found.point, problem.low, problem.high, most=20,
+                         tolerance=1e-2, share=1e-4, robust=_ROBUST, step=_COARSE_STEP, steepest=_STEEPEST)
+    return found._replace(cost=_cost(problem.of_slips(found.point, slips)))
 
 
 def fit_from(problem: FitProblem, start: Numbers) -> Ended:
     """Return the best fit of the whole run from a point near it."""
-    count = len(problem.measurement.times)
     point = start
-    stride = max(1, count // _SAMPLES)
-    for length in _LENGTHS:
-        if length < max(len(problem.motions), 2):
-            part = problem.stretches(length, stride)
-            point = minimise(partial(problem.of_stretches, stretches=part), point, problem.low, problem.high, most=10,
-                             tolerance=1.0, share=1e-3, robust=problem.far()).point
-    whole = problem.stretches(0)
-    solution = minimise(partial(problem.of_stretches, stretches=whole), point, problem.low, problem.high, most=60,
-                        tolerance=1e-3)
+    stride = max(1, len(problem.measurement.times) // _SAMPLES)
+    for first in (first for first in _FIRST_SLIPS if first < len(problem.motions)):
+        part = problem.stretches(first, stride)
+        point = minimise(partial(problem.of_stretches, stretches=part), point, problem.low, problem.high, most=10,
+                         tolerance=1.0, share=1e-3, robust=_ROBUST if first == 0 else np.inf).point
+    residuals = partial(problem.of_stretches, stretches=problem.stretches())
+    solution = minimise(residuals, point, problem.low, problem.high, most=60, tolerance=1e-3)
+    for _ in range(_TABLES):
+        if not problem.model.take_tables_of(problem.values(solution.point)):
+            break
+        before = solution.cost
+        solution = minimise(residuals, solution.point, problem.low, problem.high, most=30, tolerance=1e-3)
+        if abs(solution.cost - before) < 0.1:
+            break
     return Ended(start, solution, solution.cost / effective_count(problem))
 
 

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Scenes whose profiles may be in files."""
 
+import os
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -13,15 +14,16 @@ from ..scene.profile_schema import PROFILES
 from .profile_file import prepared, sections_with_file, with_profiles
 
 
-def load_scene(name_or_path: str, overrides: Mapping[str, object] | None = None) -> Scene:
+def load_scene(name_or_path: str | os.PathLike[str], overrides: Mapping[str, object] | None = None) -> Scene:
     """Return a shipped scene or one from a file, with other values by dotted name.
 
     An override of a choice (contact.model) drops the values of the file for the old one (contact.stiffness).  A profile
     from a file lies in the folder of the scene, one of the overrides in the working directory, or below.  Raises
     InputError, whose text begins with the file, and RecordingError for a profile in a bag.
     """
-    with named(name_or_path):
-        found = read_scene(name_or_path)
+    name = os.fspath(name_or_path)
+    with named(name):
+        found = read_scene(name)
         return scene_with_profiles(found.values, overrides or {}, dict.fromkeys(PROFILES, found.folder),
                                    found.summary)
 
