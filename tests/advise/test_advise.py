@@ -217,7 +217,8 @@ def test_the_tool_prints_overrides_that_give_the_least_scene(tmp_path: Path, cap
     assert run(['advise', 'paper_fig8', '--tolerance', '0.5', '--duration', '0.2', '--rounds', '1', '--set',
                 'contact.stiffness=6.0e6', '--set', 'force.amplitudes=[1.0]', '--set', 'force.frequencies=[2.0]',
                 '--out', str(out), '--scene-out', str(least)]) == 0
-    line = capsys.readouterr().out.splitlines()[-1]
+    line, said = capsys.readouterr().out.splitlines()[-2:]
+    assert said == f'written: {out}, {least}'
     words = [word for word in shlex.split(line) if word != '--set']
     assert 'contact.model=rigid' in words
     assert not any(word.startswith('contact.stiffness') for word in words)

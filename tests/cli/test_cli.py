@@ -177,6 +177,20 @@ def test_the_summary_gives_way_to_what_is_written_to_standard_output(tmp_path: P
     assert ('exact solver' in out, err) == (False, '')
 
 
+def test_what_was_written_is_said_last(tmp_path: Path, capsys: Capture) -> None:
+    """On standard output, where no result is."""
+    files = [str(tmp_path / name) for name in ('events.csv', 'samples.csv', 'bag', 'receipt.json', 'run.png')]
+    options = [word for name, path in zip(('events', 'samples', 'bag', 'receipt', 'plot'), files)
+               for word in (f'--{name}', path)]
+    assert run(['simulate', 'paper_fig7', '--duration', '0.2', *options]) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == f'written: {", ".join(files)}'
+    table = str(tmp_path / 'states.csv')
+    assert run(['export', files[2], '--csv', table]) == 0
+    assert capsys.readouterr() == (f'written: {table}\n', '')
+    assert run(['export', files[2], '--csv', '-']) == 0
+    assert 'written' not in capsys.readouterr().out
+
+
 def test_special_files_are_written_to_and_stay(capsys: Capture) -> None:
     assert run(['simulate', 'paper_fig7', '--duration', '1', '--events', '/dev/null', '--receipt', '/dev/null']) == 0
     assert Path('/dev/null').is_char_device()

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from . import completion
-from .files import check_distinct, check_file, write_text
+from .files import check_distinct, check_file, say_written, write_text
 from .scene_changes import SceneChanges, scene_changes
 
 if TYPE_CHECKING:
@@ -51,6 +51,7 @@ def advise(scene: str, tolerance: float, duration: float | None, changes: SceneC
         write_text(out, [json.dumps(as_json(advice, overrides), indent=1, allow_nan=False) + '\n'])
     if scene_out is not None:
         _write_scene(scene_out, advice)
+    say_written(out, scene_out)
 
 
 def _check(out: str | None, scene_out: str | None) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from .files import whole, write_text
+from .files import say_written, whole, write_text
 
 _ROUNDS, _QUICK_ROUNDS = 7, 1
 _QUICK_CASES, _QUICK_DURATION = ('A', 'paper_fig8'), 2.0   # s
@@ -46,6 +46,7 @@ def bench(chosen: tuple[str, ...], more: tuple[str, ...], out: str | None, round
     print('\n\n'.join([*map(text_table, data['cases']), *([marks_table(data['ratios'])] if figures else [])]))
     if folder is not None:
         _write(folder, data)
+    say_written(out)
 
 
 def _made(path: str) -> Path:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from . import completion
-from .files import STDOUT, check_distinct, check_file, write_text
+from .files import STDOUT, check_distinct, check_file, say_written, write_text
 from .run_or_scene import is_recorded, recorded_run
 from .scene_changes import SceneChanges, scene_changes
 
@@ -66,6 +66,7 @@ def check(sources: tuple[str, ...], limits_file: str, duration: float | None, ch
         write_text(json_file, [json.dumps(as_json(found), indent=2, allow_nan=False) + '\n'])
     if junit is not None:
         write_text(junit, [junit_text(found)])
+    say_written(json_file, junit)
     if failed:
         raise VerdictError('; '.join(failed))
 

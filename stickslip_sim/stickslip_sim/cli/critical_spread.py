@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .count_words import counted
-from .files import check_new_folder, new_folder, whole, write_text
+from .files import check_new_folder, new_folder, say_written, whole, write_text
 from .progress import progress_bar
 from .uncertainty_lines import Labels, index_lines, law_lines, percent_head
 
@@ -43,8 +43,8 @@ def spread_critical(study: 'CriticalStudy', sample: 'Saltelli', labels: Labels, 
     print(f'critical {over.name} from {over.low:g} to {over.high:g} {over.unit}'.rstrip()
           + f', the highest one, to {ACCURACY:g} of the value')
     print('\n'.join([*law_lines(sample, labels), '', *_percentiles(study, spreads), '',
-                     *index_lines(sample, labels, {_words(start): one.indices for start, one in spreads.items()}), '',
-                     str(Path(out) / _RESULT)]))
+                     *index_lines(sample, labels, {_words(start): one.indices for start, one in spreads.items()}), '']))
+    say_written(str(Path(out) / _RESULT), plot)
 
 
 def _table(study: 'CriticalStudy', values: 'Numbers') -> Iterator[str]:

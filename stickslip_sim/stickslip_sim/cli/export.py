@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from . import completion
-from .files import STDOUT, check_distinct, check_file, whole, write_text
+from .files import STDOUT, check_distinct, check_file, say_written, whole, write_text
 from .run_or_scene import check_run
 
 if TYPE_CHECKING:
@@ -50,6 +50,7 @@ def export(run: str, csv_file: str | None, parquet: str | None, topic: str) -> N
     if csv_file is not None:
         blocks = bag.column_blocks(topic)
         write_text(csv_file, csv_lines({**block, **normal_force(block)} for block in blocks))
+    say_written(csv_file, parquet)
 
 
 def csv_lines(blocks: 'Iterable[dict[str, NDArray[Any]]]') -> Iterator[str]:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from .files import check_file, write_text
+from .files import check_file, say_written, write_text
 
 _FORMATS = ('.json', '.md')
 
@@ -39,6 +39,7 @@ def extremes(only: str | None, quick: bool, out: str | None) -> None:
     if out is not None:
         text = json_text(outcomes, quick) if out.endswith('.json') else markdown_text(outcomes, quick)
         write_text(out, [text])
+        say_written(out)
     missed = [outcome.number for outcome in outcomes if not outcome.passed]
     if missed:
         raise VerdictError(f'{len(missed)} of {len(outcomes)} extremes missed: {", ".join(missed)}')

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from .files import check_distinct, check_file, check_picture, whole, write_text
+from .files import check_distinct, check_file, check_picture, say_written, whole, write_text
 from .friction_lines import curve_lines, fit_lines, law_lines, points_lines
 
 if TYPE_CHECKING:
@@ -63,7 +63,9 @@ def friction(curve: str, speed_unit: str, force_unit: str | None, normal_force: 
         _draw(fits, chosen, curve, plot)
     if out is not None and made is not None:
         write_text(out, [f'# {_summary(curve, law, chosen, scene)}\n', short_text(made)])
-        print('\n'.join([f'written: {out}', *_next_lines(out, made, scene, changes)]))
+    say_written(out, plot)
+    if out is not None and made is not None:
+        print('\n'.join(_next_lines(out, made, scene, changes)))
 
 
 def _check(out: str | None, plot: str | None, scene: str | None, changes: tuple[str, ...]) -> None:

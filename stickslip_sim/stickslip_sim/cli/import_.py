@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from .files import check_new_folder, new_folder
+from .files import check_new_folder, new_folder, say_written
 
 
 @click.command('import', short_help='Make a run folder of a measurement, from a CSV file or a bag.')
@@ -51,6 +51,7 @@ def import_(data: str, columns: tuple[str, ...], unit: tuple[str, ...], stick_ve
     print(f'  {headline(run.summary)}')
     for note in run.notes:
         print(f'  note: {note}')
+    say_written(out)
 
 
 def _joined(pairs: dict[str, str]) -> str:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from . import completion
-from .files import check_picture, whole
+from .files import check_picture, say_written, whole
 from .run_or_scene import is_recorded, recorded_run
 from .scene_changes import SceneChanges, scene_changes
 
@@ -40,7 +40,7 @@ def plot(source: str, window: str | None, out: str | None, duration: float | Non
 
     with progress_bar('drawing'), whole(out) as temporary:
         run.plot(temporary, shown)
-    print(f'written: {out}')
+    say_written(out)
 
 
 def _times(text: str) -> tuple[float, float]:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import click
 
 from . import completion
-from .files import STDOUT, check_distinct, check_file, check_new_folder, check_picture, whole, write_text
+from .files import STDOUT, check_distinct, check_file, check_new_folder, check_picture, say_written, whole, write_text
 from .scene_changes import SceneChanges, scene_changes
 
 if TYPE_CHECKING:
@@ -116,6 +116,7 @@ def _write(wishes: _Wishes, run: 'SimulatedRun') -> None:
             write_text(path, lines)
     if STDOUT not in (wishes.receipt, wishes.events, wishes.samples):
         _print_figures(run)
+    say_written(wishes.events, wishes.samples, wishes.bag, wishes.receipt, wishes.plot)
 
 
 def _write_bag(folder: str, run: 'SimulatedRun') -> None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from . import completion
+from .files import say_written
 from .scene_changes import SceneChanges
 from .sweeping import carry_out, print_failed, study_options, workers_of
 
@@ -32,7 +33,7 @@ def sweep(scene: str, ranges: tuple[str, ...], sobol: int | None, out: str, dura
     study = _study(scene, ranges, sobol, duration, changes)
     folder, swept = carry_out(study, out, members, resume)
     _print_summary(study, swept)
-    print(f'{folder.table}')
+    say_written(str(folder.table))
 
 
 def _study(scene: str, ranges: tuple[str, ...], sobol: int | None, duration: float | None,

@@ -9,7 +9,7 @@ import click
 
 from . import completion
 from .count_words import counted
-from .files import check_picture, whole, write_text
+from .files import check_picture, say_written, whole, write_text
 from .scene_changes import SceneChanges
 from .sweeping import carry_out, print_failed, study_options, workers_of
 from .uncertainty_lines import index_lines, law_lines, percent_head
@@ -73,7 +73,8 @@ def uncertainty(scene: str, file: str, critical: str | None, between: str | None
           f'{swept.ran} run now')
     print_failed(study, swept.columns)
     print('\n'.join((*law_lines(sample, labels), '', *_percentiles(found), '',
-                     *index_lines(sample, labels, found.indices), '', str(result))))
+                     *index_lines(sample, labels, found.indices), '')))
+    say_written(str(result), plot)
 
 
 def _check_options(critical: str | None, between: str | None, duration: float | None, resume: bool) -> None:
