@@ -17,12 +17,14 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from stickslip_sim.core.types import Mode
 from stickslip_sim.plots import plot_run
 from stickslip_sim.plots.drawn_run import DrawnRun, TimeWindow, drawn_run, mode_shares
-from stickslip_sim.plots.run_panels import BINS, band
+from stickslip_sim.plots.run_panels import BINS, band, bin_edges
 from stickslip_sim.plots.style import Numbers, legend_outside, thinned
 from stickslip_sim.rig.marks import Mark
-from stickslip_sim.runs import Run, simulate
+from stickslip_sim.runs import Run, simulate, simulate_events
+from stickslip_sim.runs.picture_samples import sampled
 from stickslip_sim.scene import load_scene
 
+EDGES: Numbers = np.linspace(0.0, 10.0, BINS + 1, dtype=np.float64)
 PNG = b'\x89PNG\r\n\x1a\n'
 
 
@@ -85,12 +87,29 @@ def test_a_band_has_every_extreme(tmp_path: Path) -> None:
     time = np.linspace(0.0, 10.0, 100_001, dtype=np.float64)
     values: Numbers = np.sin(100.0 * time)
     values[70_000] = 5.0
-    middles, low, high = band(time, values, TimeWindow(0.0, 10.0))
+    middles, low, high = band(time, values, EDGES)
     assert len(middles) == len(low) == len(high) == BINS
     assert (high.max(), round(float(middles[high.argmax()]), 1)) == (5.0, 7.0)
     assert low.min() == values.min()
-    middles, low, high = band(np.array([1.0, 9.0]), np.array([2.0, 3.0]), TimeWindow(0.0, 10.0))
+    middles, low, high = band(np.array([1.0, 9.0]), np.array([2.0, 3.0]), EDGES)
     assert (low.tolist(), high.tolist()) == ([2.0, 3.0], [2.0, 3.0])   # nothing between them
+
+
+@pytest.mark.parametrize('duration', [75.0, 100.0, 130.0, 260.0, 1000.0])
+def test_a_settled_run_has_no_beat_in_its_picture(duration: float) -> None:
+    """However the cycles fall into the parts of a picture: behind the first all bands and shares are level."""
+    run = simulate_events(load_scene('paper_fig8'), duration)
+    window = TimeWindow(0.0, duration)
+    samples = sampled(run.scene, run.events, [window])
+    shown = drawn_run('', samples, run.events, run.commands, run.marks)
+    edges = bin_edges(shown, window)
+    assert len(edges) <= BINS + 1
+    for name in ('velocity', 'friction_force'):
+        _, low, high = band(samples['time'], samples[name], edges)
+        size = high.max() - low.min()
+        assert np.ptp(low[5:-1]) < 0.01 * size
+        assert np.ptp(high[5:-1]) < 0.01 * size
+    assert np.ptp(mode_shares(shown.modes, edges)[Mode.STICK][5:-1]) < 0.06
 
 
 def test_the_shares_of_the_modes_are_those_of_the_time() -> None:

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The panels of a run over time, in one window: as lines, or as bands where it has too many transitions for lines."""
 
+import math
 from collections.abc import Mapping
 from itertools import groupby
 
@@ -13,7 +14,7 @@ from .drawn_run import DrawnRun, TimeWindow, mode_shares
 from .style import BLACK, BLUE, GREEN, GREY, MILLI, MODE_COLOURS, ORANGE, PURPLE, RED, Numbers
 from .time_panels import force_unit, line
 
-BINS = 240            # of a band, and of the shares of the modes
+BINS = 240            # of a band, and of the shares of the modes, at most
 CROWDED = 400         # transitions that lines do not show any more
 _MICRO, _FINE = 1e6, 1e-4   # m to µm; m: smaller errors are shown so
 _MANY = 50            # break-aways that are marked smaller
@@ -30,6 +31,7 @@ class WindowPanels:
         self._motion, self._inputs = _part(run.motion, window), _part(run.inputs, window)
         first, last = np.searchsorted(run.event_times, window)
         self.is_crowded = bool(last - first > CROWDED)
+        self._edges = bin_edges(run, window)
 
     def position(self, panel: Axes) -> None:
         """Draw setpoint and position."""
@@ -109,7 +111,7 @@ class WindowPanels:
         _lanes(panel, [_counted(label, marks) for label, marks in lanes.items()])
 
     def _mode_shares(self, panel: Axes) -> None:
-        edges = _edges(self._window)
+        edges = self._edges
         shares = mode_shares(self._run.modes, edges)
         middles = 0.5 * (edges[1:] + edges[:-1])
         panel.stackplot(middles, [100.0 * shares[mode] for mode in MODE_COLOURS], colors=list(MODE_COLOURS.values()),
@@ -123,14 +125,13 @@ class WindowPanels:
             return
         if np.isnan(values).all():   # not measured
             return
-        middles, low, high = band(time, values, self._window)
+        middles, low, high = band(time, values, self._edges)
         panel.fill_between(middles, low, high, facecolor=colour, edgecolor=colour, linewidth=0.5, alpha=0.45,
                            label=label)
 
 
-def band(time: Numbers, values: Numbers, window: TimeWindow) -> tuple[Numbers, Numbers, Numbers]:
-    """Return the middles (s) of equal parts of a window that have values, with the least and the largest in each."""
-    edges = _edges(window)
+def band(time: Numbers, values: Numbers, edges: Numbers) -> tuple[Numbers, Numbers, Numbers]:
+    """Return the middles (s) of the parts between edges that have values, with the least and the largest in each."""
     places = np.searchsorted(time, edges)
     has_any = np.diff(places) > 0
     starts = places[:-1][has_any]
@@ -139,8 +140,18 @@ def band(time: Numbers, values: Numbers, window: TimeWindow) -> tuple[Numbers, N
     return middles, np.minimum.reduceat(values[:end], starts), np.maximum.reduceat(values[:end], starts)
 
 
-def _edges(window: TimeWindow) -> Numbers:
-    return np.asarray(np.linspace(*window, BINS + 1), dtype=np.float64)
+def bin_edges(run: DrawnRun, window: TimeWindow) -> Numbers:
+    """Return the edges (s) of equal parts of a window, each as long as some whole cycles.
+
+    Parts of half a cycle more or less would show a beat that is none of the motion.
+    """
+    begin, end = window
+    starts = run.break_aways[0]
+    inside = starts[(starts >= begin) & (starts <= end)]
+    period = (inside[-1] - inside[0]) / (len(inside) - 1) if len(inside) > 1 else 0.0
+    least = (end - begin) / BINS
+    length = math.ceil(least / period) * period if period > 0.0 else least
+    return np.asarray(np.linspace(begin, end, max(round((end - begin) / length), 1) + 1), dtype=np.float64)
 
 
 def _part(columns: Mapping[str, Numbers], window: TimeWindow) -> dict[str, Numbers]:

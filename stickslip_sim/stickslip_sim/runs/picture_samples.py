@@ -21,8 +21,8 @@ from .simulated import columns_of_rows
 Numbers = NDArray[np.float64]
 
 _IN_STRETCH = 32     # samples between two events
-_MOST = 400          # stretches that are all sampled
-_PARTS = 240         # of a window with more
+_MOST = 6000         # stretches that are all sampled
+_PARTS = 480         # of a window with more: two for each place that a picture has
 _EVEN = 6000         # samples of a window beside those
 _IN_PERIOD = 16      # of them at least in a period of a sinusoid, or none is met at the same phases throughout
 _GOLDEN = 0.618033988749895   # its multiples are nowhere even
