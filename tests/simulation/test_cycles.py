@@ -10,7 +10,17 @@ import pytest
 from stickslip_sim.axis import InitialState
 from stickslip_sim.core.input_profile import table
 from stickslip_sim.core.types import Event, EventKind, Mode
-from stickslip_sim.simulation.cycles import Cycle, EventTally, ModeSpan, cycle_figures, mode_spans, summary
+from stickslip_sim.runs import simulate_events
+from stickslip_sim.scene import load_scene
+from stickslip_sim.simulation.cycles import (
+    SWINGS_ON,
+    Cycle,
+    EventTally,
+    ModeSpan,
+    cycle_figures,
+    mode_spans,
+    summary,
+)
 from tests.support.axes import COMPLIANT, RIGID, Contact, paper_axis, run_events
 
 
@@ -76,6 +86,14 @@ def test_smooth_sliding_has_no_cycles() -> None:
     assert figures.motion == 'smooth sliding'
     assert (figures.cycles, figures.last, figures.mean, figures.settled) == (0, None, None, False)
     assert figures.stick_share < 0.05
+
+
+@pytest.mark.parametrize('changes', [
+    {'drive.velocity': 0.025, 'axis.normal_force': 2300.0, 'initial.velocity': 0.024, 'initial.rest_time': 0.0},
+    {'drive.velocity': 0.2, 'drive.amplitudes': [1e-4], 'drive.frequencies': [20.0]}])
+def test_a_vibration_that_lasts_without_a_stick_has_its_own_name(changes: dict[str, object]) -> None:
+    for duration in (20.0, 60.0):
+        assert simulate_events(load_scene('paper_fig8', changes), duration).summary.motion == SWINGS_ON
 
 
 def test_a_run_that_starts_sliding_counts_from_its_start() -> None:

@@ -25,6 +25,7 @@ _OF_MOTION = (
     'stable limit cycle.  Grey and dashed: at most 30 cycles from the start on, coloured: the last complete one.')
 _OF_FRICTION = ('Friction characteristics as in Fig. 6 of the paper: (a) kinetic friction of both branches over '
                 'velocity; (b) static friction over rest time, with the break-aways of this run.')
+_OWN = ' (own)'   # behind the name of the row with the characteristics of the run itself
 _OF_ROWS = 'forces and velocity over time, friction force over velocity, as in Fig. 4 of the paper.'
 
 
@@ -52,7 +53,8 @@ def draw(runs: Mapping[str, Run], folder: Path, progress: Callable[[float], None
     if len(runs) == 1:
         (alone,) = runs.values()
         motions = _beside(alone)
-        caption = f'The same axis with the conventional characteristics and with acceleration dependence: {_OF_ROWS}'
+        caption = ('The same axis with the conventional characteristics and with acceleration dependence; '
+                   f'(own): those of the run itself; {_OF_ROWS}')
     if motions:
         pictures.append(_drawn(Picture('side_by_side', '', caption), folder,
                                lambda *paths: plot_side_by_side(motions, *paths)))
@@ -75,8 +77,11 @@ def _beside(run: Run) -> dict[str, DrawnMotion]:
     scene = scene_as_run(run)
     if scene is None:
         return {}
-    return {name: drawn_motion(simulate_densely(other, run.duration))
-            for name, other in characteristics_beside(scene).items()}
+    found = {}
+    for name, other in characteristics_beside(scene).items():
+        mark = _OWN if other.axis == scene.axis else ''
+        found[f'{name}{mark}'] = drawn_motion(simulate_densely(other, run.duration))
+    return found
 
 
 def _drawn(picture: Picture, folder: Path, draw_to: Callable[..., None]) -> Picture:

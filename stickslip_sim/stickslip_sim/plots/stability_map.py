@@ -20,11 +20,12 @@ from matplotlib.patheffects import Normal, Stroke
 from matplotlib.ticker import LogLocator
 from numpy.typing import NDArray
 
+from ..simulation.cycles import SWINGS_ON
 from .paper_panels import DrawnMotion, phase_plane
 from .scale import Scale
 from .style import BLACK, DOUBLE_COLUMN, GREY, JOURNAL, RED, SINGLE_COLUMN, Numbers, legend_outside, save
 
-PLAIN = ('smooth sliding', 'sliding that swings on', 'at rest', 'failed', 'undecided')
+PLAIN = ('smooth sliding', SWINGS_ON, 'at rest', 'failed', 'undecided')
 _PLAIN_COLOURS = ('#f2f2f2', '#c4c4c4', '#56B4E9', '#ffffff', '#ffffff')
 _HATCHES = {3: ('xxxxxx', RED), 4: ('//////', BLACK)}   # unknown motions have no colour
 _LOST = (0, (4.0, 2.0))

@@ -15,6 +15,12 @@ from ..core.types import Event, EventKind, Mode
 from ..solvers.exact.many_axes import SETTLED
 
 AVERAGED = 10    # cycles at the end of the run that the means are taken over
+_LOOKED_AT = 20        # speeds of a slip, at the latest transitions and those before: some swings
+_SAME_SWING = 0.999    # of the speeds before: what swings less calms down
+_CALM = 1e-4           # of the highest speed: what swings less is smooth
+
+
+SWINGS_ON = 'sliding that swings on'   # a limit cycle without stick
 
 
 class Cycle(NamedTuple):
@@ -49,7 +55,7 @@ class ModeSpan(NamedTuple):
 class Summary(NamedTuple):
     """What a run amounts to."""
 
-    motion: str                  # 'at rest', 'smooth sliding', 'single slip' or 'stick-slip'
+    motion: str                  # 'at rest', 'smooth sliding', SWINGS_ON, 'single slip' or 'stick-slip'
     events: dict[EventKind, int]
     cycles: int                  # complete ones
     settled: bool                # the last two periods differ by less than SETTLED
@@ -101,6 +107,7 @@ class EventTally:
         self._finder = _CycleFinder()
         self._cycle_count = 0
         self._latest_cycles: deque[Cycle] = deque(maxlen=AVERAGED)
+        self._speeds: deque[float] = deque(maxlen=2 * _LOOKED_AT)   # m/s, of the slip at hand, at its transitions
 
     def add(self, event: Event) -> None:
         """Take the next event."""
@@ -109,6 +116,10 @@ class EventTally:
         self._counts[event.kind] += 1
         if event.mode != self._mode:
             self._enter(event.mode, min(max(self.latest_time, self._since), self._end))
+        if event.mode == Mode.STICK:
+            self._speeds.clear()
+        elif event.kind != EventKind.KNOT:
+            self._speeds.append(event.velocity)
         cycle = self._finder.take(event)
         if cycle is not None:
             self._cycle_count += 1
@@ -140,8 +151,18 @@ class EventTally:
         if self._cycle_count:
             return 'stick-slip'
         if self._mode != Mode.STICK:
-            return 'smooth sliding'
+            return SWINGS_ON if self._swings_on else 'smooth sliding'
         return 'single slip' if self._has_moved else 'at rest'
+
+
+    @property
+    def _swings_on(self) -> bool:
+        """Whether the speed of the slip at hand swings as much as it did before."""
+        speeds = list(self._speeds)
+        if len(speeds) < 2 * _LOOKED_AT:
+            return False
+        before, now = (max(part) - min(part) for part in (speeds[:_LOOKED_AT], speeds[_LOOKED_AT:]))
+        return now > _CALM * max(map(abs, speeds)) and now >= _SAME_SWING * before
 
 
 class _Slip:
