@@ -15,6 +15,7 @@ floor down; each imports only from the floors below it:
     extremes     what breaks other simulators, measured on this one
     compare      the figures and statements of the paper, on any run
     advise       which solver and which parts of a scene are worth their time
+    design       the experiment that would narrow parameters most
     check        a run against limits
     verify       a recorded run again, bit by bit, or as something else had been
     identify     from measurements to a scene: friction curves, and runs from which all parameters are fitted

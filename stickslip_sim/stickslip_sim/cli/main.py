@@ -27,6 +27,7 @@ from .check import check
 from .compare import compare
 from .completion import complete_for_shell
 from .critical import critical
+from .design import design
 from .export import export
 from .extremes import extremes
 from .friction import friction
@@ -46,7 +47,7 @@ _SECTIONS: dict[str, tuple[click.Command, ...]] = {   # each verb by what a read
     'Look': (plot, compare, export),
     'Judge': (check, verify),
     'Study': (critical, sweep, map_, uncertainty),
-    'Identify': (friction, identify),
+    'Identify': (friction, identify, design),
     'Measure the engine': (advise, bench, extremes),
 }
 _INTERRUPTED = 130

@@ -1,0 +1,82 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""`stickslip design`: the experiment that would narrow chosen parameters of a scene most."""
+
+import math
+from pathlib import Path
+
+import click
+
+from . import completion
+from .files import check_new_folder, new_folder
+from .scene_changes import SceneChanges, scene_changes
+
+_SHOWN = 10   # feeds that are printed
+
+
+@click.command(short_help='Propose the feed that would narrow parameters most.')
+@click.argument('scene', metavar='SCENE', shell_complete=completion.complete_scenes)
+@click.option('--for', 'parameters', required=True, metavar='A.B,...', shell_complete=completion.complete_parameters,
+              help='The parameters to narrow, as friction.static.time_constant,friction.static.limit.')
+@click.option('--duration', type=float, default=10.0, show_default=True, metavar='S', help='Of the run, s.')
+@click.option('--speeds', metavar='LOW:HIGH', help="Of the feeds, m/s [default: 1/10 to 10 times the scene's].")
+@click.option('--travel', type=float, default=math.inf, metavar='M', help='How far the drive may go, m.')
+@click.option('--rate', type=float, default=1000.0, show_default=True, metavar='HZ', help='Readings a second.')
+@click.option('--resolution', type=float, default=1e-6, show_default=True, metavar='M', help='Of the position, m.')
+@click.option('--noise', type=float, default=0.0, show_default=True, metavar='M', help='Of the position, m rms.')
+@click.option('--force-noise', type=float, metavar='N', help='The drive force is measured, with this noise, N rms.')
+@click.option('--known', type=float, default=0.3, show_default=True, metavar='SHARE',
+              help='Standard deviation of each parameter before, a share.')
+@click.option('--scatter', type=float, default=0.01, show_default=True, metavar='SHARE',
+              help='How far each parameter scatters from slip to slip, a share.')
+@click.option('--criterion', type=click.Choice(('D', 'A')), default='D', show_default=True,
+              help='What is least: the volume that is left to the parameters, or the sum of their variances.')
+@click.option('--out', metavar='FOLDER', help='New folder for the scene that runs it, and one page.')
+@scene_changes('Change a parameter of the scene.')
+def design(scene: str, parameters: str, duration: float, speeds: str | None, travel: float, rate: float,
+           resolution: float, noise: float, force_noise: float | None, known: float, scatter: float, criterion: str,
+           out: str | None, changes: SceneChanges) -> None:
+    """Propose the feed whose run would narrow parameters of a scene most: constant, steps, ramps, start-stop, sine, ...
+
+    docs/sensitivities.md says how they are judged.
+    """
+    if out is not None:
+        check_new_folder('--out', out)
+    from ..design.candidate_feeds import default_speeds
+    from ..design.design_folder import PAGE, SCENE, conditions, table_heads, table_rows, write_design
+    from ..design.experiments import Wishes, designed
+    from ..design.information import Sensors
+    from .progress import progress_bar
+
+    loaded = changes.load(scene)
+    names = tuple(name.strip() for name in parameters.split(','))
+    between = default_speeds(loaded) if speeds is None else _speeds(speeds)
+    wishes = Wishes(names, duration, between, Sensors(rate, resolution, noise, force_noise), known, scatter, travel,
+                    criterion)
+    with progress_bar('designing') as progress:
+        found = designed(loaded, wishes, progress)
+    print('\n'.join(_lines([table_heads(found), *table_rows(found.experiments[:_SHOWN])])))
+    if len(found.experiments) > _SHOWN:
+        print(f'and {len(found.experiments) - _SHOWN} more')
+    print('\n'.join(conditions(found)))
+    if out is not None:
+        with new_folder('--out', out) as folder:
+            write_design(found, folder)
+        print(f'written: {Path(out) / SCENE}, {Path(out) / PAGE}')
+
+
+def _speeds(text: str) -> tuple[float, float]:
+    """Return the ends of LOW:HIGH; raises InputError."""
+    from ..core.errors import InputError
+
+    low, _, high = text.partition(':')
+    try:
+        return float(low), float(high)
+    except ValueError:
+        raise InputError('--speeds', text, 'LOW:HIGH, two numbers in m/s', 'for example 1e-4:1e-2') from None
+
+
+def _lines(rows: list[list[str]]) -> list[str]:
+    widths = [max(map(len, column)) for column in zip(*rows)]
+    return [row[0].ljust(widths[0]) + ''.join(f'  {cell:>{width}}' for cell, width in zip(row[1:], widths[1:]))
+            for row in rows]
