@@ -50,6 +50,7 @@ CHOICES = [
            'contact.break_away': 'drive_force'}),
     *(Choice('rest time begins', f'ring-down over to {share:g} %', {f'{_STATIC}.delay': ring_down_time(0.01 * share)})
       for share in (10.0, 1.0)),
+    Choice('damper h', 'between slider and slideway', {'axis.damper': 'slideway'}),
     *_numbers('feed v', 'drive.velocity', (0.0005, 0.001, 0.003, 0.004, 0.005, 0.01), ' mm/s', 1e3),
     *_numbers('normal force N', 'axis.normal_force', (0.5 * _WEIGHT, 0.8 * _WEIGHT, 1.25 * _WEIGHT, 2.0 * _WEIGHT),
               ' kN', 1e-3),

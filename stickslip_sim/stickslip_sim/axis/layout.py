@@ -33,6 +33,7 @@ class Parameters:
     mass: float               # kg
     stiffness: float          # N/m, of the drive
     damping: float            # N s/m, of the drive
+    feed_share: float         # of the drive's velocity, at the far end of its damper: 1, or 0 where that is fixed
     normal_force: float       # N
     compliant: float          # 1 in a compliant contact, 0 in a rigid one
     contact_stiffness: float  # N/m
@@ -243,6 +244,6 @@ PARAMETER_FIELDS, SEGMENT_FIELDS = names_of(Parameters), names_of(Segment)
 STATE_PLACES = places_of(State)
 
 # where the numbers of `pack` stand
-(MASS, STIFFNESS, DAMPING, NORMAL, COMPLIANT, CONTACT_STIFFNESS, CONTACT_DAMPING, _, _, STATIC_LAW, STATIC_INITIAL,
- STATIC_LIMIT, STATIC_TAU, STATIC_EXPONENT, _, BRANCHES, END_SLOPE, SEGMENT_COUNT, TABLE) = range(19)
+(MASS, STIFFNESS, DAMPING, _, NORMAL, COMPLIANT, CONTACT_STIFFNESS, CONTACT_DAMPING, _, _, STATIC_LAW, STATIC_INITIAL,
+ STATIC_LIMIT, STATIC_TAU, STATIC_EXPONENT, _, BRANCHES, END_SLOPE, SEGMENT_COUNT, TABLE) = range(20)
 SEGMENT_SIZE = len(SEGMENT_FIELDS)

@@ -11,8 +11,8 @@ Every mode is m y″ + (h + …) y′ + (c + …) y = polynomial of the time, y 
 | slip             | h + N b        | c             | c w₀ + h v + F_e − N (mu − b ẋ₀)      |
 | coasting         | y′ constant    |               |                                       |
 
-with w = s − x, and b the slope of the friction branch on the present segment of the table.  Sines in v and F_e add
-their own answer, see `sinusoids`.
+with w = s − x, and b the slope of the friction branch on the present segment of the table.  With a damper on the
+slideway there is no h v.  Sines in v and F_e add their own answer, see `sinusoids`.
 """
 
 from ..core.hot_path import compiled, inlined
@@ -113,7 +113,7 @@ def begin_motion(p: Parameters, s: State) -> None:
              s.cache.oscillators[k].slow, s.cache.oscillators[k].fast) = oscillator(gamma, omega2)
         s.oscillator.gamma, s.oscillator.omega2, s.oscillator.nu, s.oscillator.slow, s.oscillator.fast = (
             gamma, omega2, s.cache.oscillators[k].nu, s.cache.oscillators[k].slow, s.cache.oscillators[k].fast)
-    force_rate = stiffness * (v - s.velocity) + p.damping * s.inputs.v_rate + s.inputs.f_rate
+    force_rate = stiffness * (v - s.velocity) + feed_damping(p) * s.inputs.v_rate + s.inputs.f_rate
     s.jerk = (force_rate - contact * s.velocity) / p.mass
     s.snap = stiffness * s.inputs.v_rate / p.mass
 
@@ -185,7 +185,8 @@ def _response(p: Parameters, s: State, t: float, g: float, rate: float, first: f
     settled = s.inputs.base_v if s.sinusoid_count != 0.0 else s.inputs.v
     if s.mode == STICK or s.inputs.f_rate != 0.0 or s.inputs.v_rate != 0.0:
         contact = p.contact_stiffness if s.mode == STICK else 0.0
-        settled = (p.stiffness * settled + p.damping * s.inputs.v_rate + s.inputs.f_rate) / (p.stiffness + contact)
+        pushed = p.stiffness * settled + feed_damping(p) * s.inputs.v_rate + s.inputs.f_rate
+        settled = pushed / (p.stiffness + contact)
     free, damping = u - settled, 2.0 * s.oscillator.gamma
     return (settled * t + (free * (g + damping * first) + a * first),
             settled + (free * (rate + damping * g) + a * g), acceleration)
@@ -234,7 +235,7 @@ def spring_after(p: Parameters, s: State, t: float, drive: float, y: float, u: f
     if s.mode == COASTING:
         return s.spring + (0.5 * (s.inputs.v + v) - u) * t
     force = friction_force(p, s, 0.0, u, 0.0) + p.mass * a - (s.inputs.f + s.inputs.f_rate * t)
-    return (force - p.damping * (v - u)) / p.stiffness
+    return (force - p.damping * (p.feed_share * v - u)) / p.stiffness
 
 
 @inlined
@@ -267,8 +268,26 @@ def move_start(p: Parameters, s: State, second: float, fraction: float, t: float
 
 @inlined
 def drive_force(p: Parameters, spring: float, v: float, u: float) -> float:
-    """Return F_d = c (s − x) + h (v − ẋ)."""
-    return p.stiffness * spring + p.damping * (v - u)
+    """Return F_d = c (s − x) + h (v − ẋ); with a damper on the slideway what it gives is in it, too."""
+    return p.stiffness * spring + p.damping * (p.feed_share * v - u)
+
+
+@inlined
+def stated_drive_force(p: Parameters, force: float, u: float) -> float:
+    """Return F_d as it is reported, from that of `drive_force`: a damper on the slideway is no part of it."""
+    return force if p.feed_share != 0.0 else force + p.damping * u
+
+
+@inlined
+def feed_damping(p: Parameters) -> float:
+    """Return the part of h that acts on the drive's velocity, N s/m."""
+    return p.damping * p.feed_share
+
+
+@inlined
+def ground_damping(p: Parameters) -> float:
+    """Return the part of h that acts on the slider's velocity alone, N s/m."""
+    return p.damping - feed_damping(p)
 
 
 @inlined

@@ -56,7 +56,8 @@ class Friction:
 class Axis:
     """m ẍ = c (s − x) + h (v − ẋ) + F_e − F: equation (1) of the paper, signs as in docs/model.md.
 
-    mass kg, drive_stiffness N/m, drive_damping N s/m, normal_force N.  Raises InputError on values without a meaning.
+    mass kg, drive_stiffness N/m, drive_damping N s/m, normal_force N.  With `damper_on_slideway` h is no part of F_d
+    but acts between slider and slideway, −h ẋ.  Raises InputError on values without a meaning.
     """
 
     mass: float
@@ -65,6 +66,7 @@ class Axis:
     normal_force: float
     contact: RigidContact | CompliantContact
     friction: Friction
+    damper_on_slideway: bool = False
 
     def __post_init__(self) -> None:
         ranges.MASS.check_meaning('axis.mass', self.mass, 'kg', 'give the mass of the slider')
@@ -72,6 +74,11 @@ class Axis:
                                    ('drive_damping', ranges.DAMPING, 'N s/m'),
                                    ('normal_force', ranges.NORMAL_FORCE, 'N')):
             within.check_meaning(f'axis.{name}', getattr(self, name), unit, 'use 0 to leave it out')
+
+    @property
+    def feed_share(self) -> float:
+        """The share of the drive's velocity with which the far end of the damper moves."""
+        return 0.0 if self.damper_on_slideway else 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,7 +129,7 @@ def pack(axis: Axis) -> Sequence[float]:
     contact = axis.contact if isinstance(axis.contact, CompliantContact) else None
     static, kinetic, excess = axis.friction.static, axis.friction.kinetic, axis.friction.excess
     breakpoints = merged_breakpoints(kinetic, excess)
-    return [axis.mass, axis.drive_stiffness, axis.drive_damping, axis.normal_force,
+    return [axis.mass, axis.drive_stiffness, axis.drive_damping, axis.feed_share, axis.normal_force,
             float(contact is not None), contact.stiffness if contact else 0.0, contact.damping if contact else 0.0,
             0.0 if contact is not None and contact.undeflected else 1.0,
             float(contact is not None and contact.judges_drive),

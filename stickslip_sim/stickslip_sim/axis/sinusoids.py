@@ -3,8 +3,8 @@
 """Sines in the inputs: v(t) and F_e(t) get A sin(2π f t + phase) each, t being simulation time.
 
 They stand in the state behind its other numbers, one record a sinusoid.  v and f of the state are totals at the segment
-start; `base_v` and `base_f` are what is left of them without the sinusoids.  With α = h A_v + A_F, a sinusoid changes
-F_d + F_e by
+start; `base_v` and `base_f` are what is left of them without the sinusoids.  With α = h A_v + A_F, without h
+where the damper is on the slideway, a sinusoid changes F_d + F_e by
 
     c ∫ v dt + h v + F_e,   whose rate is   c A_v sin φ + α w cos φ = Im[(c A_v + i w α) e^{iφ}];
 
@@ -96,7 +96,7 @@ def begin_sinusoids(p: Parameters, s: State) -> None:
     """Set the force rate of each sinusoid at the segment start."""
     for k in range(int(s.sinusoid_count)):
         re = p.stiffness * s.sinusoids[k].v
-        im = TURN * s.sinusoids[k].frequency * (p.damping * s.sinusoids[k].v + s.sinusoids[k].f)
+        im = TURN * s.sinusoids[k].frequency * (p.damping * p.feed_share * s.sinusoids[k].v + s.sinusoids[k].f)
         sine, cosine = s.sinusoids[k].sine, s.sinusoids[k].cosine
         s.sinusoids[k].force_rate_re = re * cosine - im * sine
         s.sinusoids[k].force_rate_im = re * sine + im * cosine
@@ -145,7 +145,8 @@ def sinusoid_force(p: Parameters, s: State, t: float) -> tuple[float, float, flo
         w = TURN * frequency
         cycle = turns(frequency, t)
         half, middle = 0.5 * cycle, TURN * (s.sinusoids[k].turns + 0.5 * cycle)
-        stiff, damped = p.stiffness * s.sinusoids[k].v, p.damping * s.sinusoids[k].v + s.sinusoids[k].f
+        stiff = p.stiffness * s.sinusoids[k].v
+        damped = p.damping * p.feed_share * s.sinusoids[k].v + s.sinusoids[k].f
         chord = 2.0 * math.sin(TURN * half)
         force += chord * (stiff / w * math.sin(middle) + damped * math.cos(middle))
         size += abs(chord) * (abs(stiff) / w + abs(damped))
@@ -161,8 +162,9 @@ def forced_rate(p: Parameters, s: State) -> tuple[float, float]:
     Both count as 0 within rounding.  A transition asks before `begin_motion` has set the force rates of its instant.
     """
     begin_sinusoids(p, s)
-    base = p.stiffness * (s.inputs.base_v - s.velocity) + p.damping * s.inputs.v_rate + s.inputs.f_rate
-    size = (p.stiffness * (abs(s.inputs.base_v) + abs(s.velocity)) + p.damping * abs(s.inputs.v_rate)
+    damping = p.damping * p.feed_share
+    base = p.stiffness * (s.inputs.base_v - s.velocity) + damping * s.inputs.v_rate + s.inputs.f_rate
+    size = (p.stiffness * (abs(s.inputs.base_v) + abs(s.velocity)) + damping * abs(s.inputs.v_rate)
             + abs(s.inputs.f_rate))
     rate = _rate_of_order(s, 0, base, size)
     ramp = p.stiffness * s.inputs.v_rate

@@ -17,12 +17,14 @@ from .motion import (
     breakpoint_speed,
     contact_force,
     drive_force,
+    feed_damping,
     friction_force,
     friction_line,
     has_branches,
     kinetic_at_rest,
     segment_above,
     segment_below,
+    stated_drive_force,
     static_limit,
 )
 from .rows import Events
@@ -77,7 +79,7 @@ def write_event(p: Parameters, s: State, events: Events, row: int, kind: float, 
     events.rows[row].position = s.origin + s.position
     events.rows[row].velocity = s.velocity
     events.rows[row].drive = s.origin + s.drive
-    events.rows[row].drive_force = drive_force(p, s.spring, s.inputs.v, s.velocity)
+    events.rows[row].drive_force = stated_drive_force(p, drive_force(p, s.spring, s.inputs.v, s.velocity), s.velocity)
     events.rows[row].friction = friction
     events.rows[row].static = limit
     events.rows[row].rest = s.rest
@@ -88,7 +90,7 @@ def force_rate(p: Parameters, s: State) -> tuple[float, float]:
     """Return the rate of F_d + F_e at constant velocity, and the rate's rate; within rounding of 0 the first is 0."""
     if s.sinusoid_count != 0.0:
         return forced_rate(p, s)
-    pushed = p.damping * s.inputs.v_rate + s.inputs.f_rate
+    pushed = feed_damping(p) * s.inputs.v_rate + s.inputs.f_rate
     rate = p.stiffness * (s.inputs.v - s.velocity) + pushed
     if abs(rate) <= _ROUNDING * (p.stiffness * (abs(s.inputs.v) + abs(s.velocity)) + abs(pushed)):
         rate = 0.0

@@ -50,7 +50,7 @@ class BranchCompensation:
     def drive_force(self, measured: Measured) -> float:
         """Return the force of drive spring and damper, N."""
         return (self.axis.drive_stiffness * (measured.drive_position - measured.slider_position)
-                + self.axis.drive_damping * (measured.drive_velocity - measured.slider_velocity))
+                + self.axis.drive_damping * (self.axis.feed_share * measured.drive_velocity - measured.slider_velocity))
 
     def drive_velocity(self, slide: Slide, wanted: float, measured: Measured) -> float:
         """Return the velocity to add to the drive's, m/s, when the slider should move with `wanted` (m/s)."""

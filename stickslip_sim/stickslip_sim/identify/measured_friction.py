@@ -135,8 +135,9 @@ def _force(drawn: Mapping[str, Numbers], found: Identification, velocity: Number
     if 'drive_force' in drawn:
         drive = drawn['drive_force']
     elif 'drive_position' in drawn and 'position' in drawn:
+        feed = axis.feed_share * _smooth(drawn['drive_position'], window, 1) / period
         drive = (axis.drive_stiffness * (drawn['drive_position'] - drawn['position'])
-                 + axis.drive_damping * (_smooth(drawn['drive_position'], window, 1) / period - velocity))
+                 + axis.drive_damping * (feed - velocity))
     else:
         return None
     return np.asarray(drive + drawn.get('external_force', 0.0) - axis.mass * acceleration)

@@ -36,12 +36,13 @@ class Physics:
     # ---- forces -------------------------------------------------------------------------------
 
     def drive_force(self, state: State) -> mpf:
-        """F_d = c w + h (v - u)."""
-        return self.axis.stiffness * state.stretch + self.axis.damping * (state.drive.value - state.velocity)
+        """F_d = c w + h (v - u), and c w alone where the damper is on the slideway."""
+        return self.axis.stiffness * state.stretch + self.axis.feed_damping * (state.drive.value - state.velocity)
 
     def net_force(self, state: State) -> mpf:
-        """F_d + F_e."""
-        return self.drive_force(state) + state.force.value
+        """F_d + F_e, and what a damper on the slideway adds."""
+        on_slideway = self.axis.damping - self.axis.feed_damping
+        return self.drive_force(state) - on_slideway * state.velocity + state.force.value
 
     def net_series(self, state: State, series: Expansion) -> Series:
         """F_d + F_e as a power series."""
@@ -49,7 +50,7 @@ class Physics:
         net = combine(
             (c, series.drive_travel),
             (-c, series.travel),
-            (h, series.drive),
+            (self.axis.feed_damping, series.drive),
             (-h, series.velocity),
             (_ONE, series.force),
         )
@@ -143,7 +144,7 @@ class Physics:
         a, time = self.axis, self.time_scale(state)
         drive = state.drive.series(_TIE_ORDER)
         slip = [drive[0] - state.velocity, *drive[1:]]
-        rates = combine((a.stiffness, integral(slip)), (a.damping, drive), (_ONE, state.force.series(_TIE_ORDER)))
+        rates = combine((a.stiffness, integral(slip)), (a.feed_damping, drive), (_ONE, state.force.series(_TIE_ORDER)))
         limit = self.tiny(state)
         for rate in rates[1:]:
             limit = limit / time
@@ -199,4 +200,4 @@ class Physics:
     def _free(self, damping: mpf, stiffness: mpf, constant: mpf) -> Flow:
         a = self.axis
         gamma, omega2 = damping / a.mass, stiffness / a.mass
-        return Flow(sqrt(omega2) + abs(gamma), a.mass, a.stiffness, a.damping, gamma, omega2, constant, free=True)
+        return Flow(sqrt(omega2) + abs(gamma), a.mass, a.stiffness, a.feed_damping, gamma, omega2, constant, free=True)

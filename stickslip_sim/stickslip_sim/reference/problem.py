@@ -57,6 +57,7 @@ class Problem:
     mass: mpf
     stiffness: mpf
     damping: mpf
+    feed_damping: mpf
     normal: mpf
     contact: str
     contact_stiffness: mpf
@@ -97,6 +98,7 @@ def problem(axis: product.Axis, initial: product.InitialState, drive: profiles.I
         mass=mpf(axis.mass),
         stiffness=mpf(axis.drive_stiffness),
         damping=mpf(axis.drive_damping),
+        feed_damping=mpf(0 if axis.damper_on_slideway else axis.drive_damping),
         normal=mpf(normal_force.value_at(0.0) if normal_force else axis.normal_force),
         contact='compliant' if contact else 'rigid',
         contact_stiffness=mpf(contact.stiffness if contact else 0.0),

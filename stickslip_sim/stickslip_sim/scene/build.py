@@ -125,7 +125,10 @@ def _axis(values: Mapping[str, Any]) -> Axis:
     model, arrest, judged = (contact.pop(name, None) for name in ('model', 'arrest', 'break_away'))
     compliant = model == 'compliant' and CompliantContact(**contact, undeflected=arrest == 'undeflected',
                                                           judges_drive=judged == 'drive_force')
-    axis = Axis(**_section(values, 'axis'), friction=_friction(values), contact=compliant or RigidContact())
+    given = _section(values, 'axis')
+    on_slideway = given.pop('damper', None) == 'slideway'
+    axis = Axis(**given, friction=_friction(values), contact=compliant or RigidContact(),
+                damper_on_slideway=on_slideway)
     return with_friction_scaled(axis, values.get('friction.scale', 1.0))
 
 

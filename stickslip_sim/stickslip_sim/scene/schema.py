@@ -45,6 +45,9 @@ PARAMETERS: tuple[Parameter, ...] = (
            live=True),
     number('axis.drive_damping', 4000.0, 'N s/m', "drive damper h; default: the paper's", within=ranges.DAMPING,
            live=True),
+    Parameter('axis.damper', 'string', None, '', 'where the far end of this damper is (docs/paper.md): drive, F_d ='
+              ' c (s − x) + h (v − ẋ); or slideway, F_d = c (s − x), with −h ẋ beside it; left out: drive',
+              choices=('drive', 'slideway')),
     number('axis.normal_force', 3432.3275, 'N', 'normal force N, friction = coefficient times N; not in the paper,'
            ' default: the weight of its 350 kg (it does not follow axis.mass)', within=ranges.NORMAL_FORCE, live=True),
 

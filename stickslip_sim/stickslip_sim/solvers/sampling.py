@@ -3,7 +3,7 @@
 """The row of a sample, for every solver."""
 
 from ..axis.layout import Parameters, State
-from ..axis.motion import STICK
+from ..axis.motion import STICK, stated_drive_force
 from ..axis.rows import SampleRow
 from ..core.hot_path import inlined
 
@@ -22,7 +22,7 @@ def write_sample(p: Parameters, s: State, second: float, fraction: float, t: flo
     out.acceleration = a
     out.drive = s.origin + (s.drive + drive)
     out.drive_velocity = v
-    out.drive_force = drive_force
+    out.drive_force = stated_drive_force(p, drive_force, u)
     out.external = force
     out.friction = friction
     out.coefficient = abs(friction) / p.normal_force if p.normal_force > 0.0 else 0.0

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from stickslip_sim.axis import Axis, CompliantContact, InitialState
-from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant
+from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant, steps
 from stickslip_sim.core.types import Event, EventKind
 from stickslip_sim.extremes.shared_axes import random_profiles, with_static
 from stickslip_sim.friction import StaticLawKind
@@ -19,7 +19,7 @@ from stickslip_sim.reference import simulate as simulate_reference
 from stickslip_sim.scene import load_scene
 from stickslip_sim.simulation.simulator import Simulator
 from stickslip_sim.solvers import Solver, adaptive, exact, fixed_step
-from tests.support.axes import COMPLIANT, RIGID, instant, make, paper_axis, random_axis, run_events
+from tests.support.axes import COMPLIANT, RIGID, Contact, instant, make, paper_axis, random_axis, run_events
 from tests.support.tool import Capture, answered
 from tests.support.verify_tool import verified
 
@@ -28,6 +28,7 @@ CLOSURES: Mapping[str, Mapping[str, object]] = {   # of a scene
     'undeflected': {'contact.arrest': 'undeflected'},
     'drive_force': {'contact.break_away': 'drive_force'},
     'delay': {'friction.static.delay': DELAY},
+    'slideway': {'axis.damper': 'slideway'},
 }
 FEED, SHORT = 0.002, 2.0   # m/s, s
 START = InitialState(rest_time=3.0)
@@ -36,6 +37,8 @@ SINES = Sinusoid(0.003, 3.0, 0.4), Sinusoid(150.0, 41.0, 0.0)
 
 def closed(axis: Axis, closure: str) -> Axis:
     """Return an axis with another closure."""
+    if closure == 'slideway':
+        return replace(axis, damper_on_slideway=True)
     if closure == 'delay':
         return with_static(axis, replace(axis.friction.static, delay=DELAY))
     assert isinstance(axis.contact, CompliantContact)
@@ -47,7 +50,7 @@ def closed(axis: Axis, closure: str) -> Axis:
 def random_problem(closure: str, seed: int) -> tuple[Axis, InputProfile, InputProfile]:
     rng = random.Random(seed)
     axis = random_axis(rng)
-    while closure != 'delay' and not isinstance(axis.contact, CompliantContact):
+    while closure in ('undeflected', 'drive_force') and not isinstance(axis.contact, CompliantContact):
         axis = random_axis(rng)
     if closure == 'delay':   # any law, and another delay
         kind, exponent = rng.choice(tuple(StaticLawKind)), rng.choice((0.5, 1.0, 2.0))
@@ -171,3 +174,18 @@ def test_static_friction_waits_for_its_growth() -> None:
         assert first.static_coefficient == pytest.approx(grown, rel=1e-14)
         assert first.static_coefficient == law.coefficient(first.rest_time)
         assert (first.static_coefficient == 0.12) == (delay > 0.3365)
+
+
+@pytest.mark.parametrize('contact', [RIGID, COMPLIANT])
+def test_a_damper_on_the_slideway_is_one_on_the_drive_and_a_force(contact: Contact) -> None:
+    """−h ẋ = h (v − ẋ) − h v."""
+    axis = paper_axis(contact)
+    drive = steps('drive', (0.0, 1.1, 1.5), (FEED, 4.0 * FEED, -FEED))
+    force = steps('force', drive.starts, [-axis.drive_damping * value for value in drive.values])
+    found = run_events(closed(axis, 'slideway'), drive, SHORT)
+    same = run_events(axis, drive, SHORT, force)
+    assert [event.kind for event in found] == [event.kind for event in same]
+    for event, other in zip(found, same, strict=True):
+        assert event.time == pytest.approx(other.time, abs=1e-13)
+        stretch = event.drive_position - event.position
+        assert event.drive_force == pytest.approx(axis.drive_stiffness * stretch, abs=1e-9)   # the spring's alone

@@ -110,7 +110,7 @@ class ModeMotion:
         self._p, self._law = p, law
         self.inputs, self.load = ModeInputs(s), ModeLoad(p.normal_force, s, normal_force)
         self._mass = p.mass
-        self._stiffness, self._damping = p.stiffness, p.damping
+        self._stiffness, self._damping, self._feed_share = p.stiffness, p.damping, p.feed_share
         self._contact = (p.contact_stiffness, p.contact_damping)
         self._spring, self._u, self._deflection = s.spring, s.velocity, s.deflection
         self._mode, self._direction, self._rest = s.mode, s.direction, s.rest
@@ -166,7 +166,8 @@ class ModeMotion:
 
     def _applied(self, t: float, y: float, u: float) -> float:
         v, f = self.inputs.at(t)
-        return self._stiffness * (self._spring + self.inputs.travel(t) - y) + self._damping * (v - u) + f
+        stretch = self._spring + self.inputs.travel(t) - y
+        return self._stiffness * stretch + self._damping * (self._feed_share * v - u) + f
 
     def _contact_force(self, y: float, u: float) -> float:
         return self._contact[0] * (self._deflection + y) + self._contact[1] * u

@@ -9,7 +9,7 @@ the free motion y.
 from typing import NamedTuple
 
 from ...axis.layout import Parameters, State
-from ...axis.motion import drive_travel, static_limit, travel
+from ...axis.motion import drive_force, drive_travel, feed_damping, static_limit, travel
 from ...core.hot_path import compiled, inlined
 from ...linear.oscillator import Oscillator, amplitude, impulse
 from ...linear.root_steps import EPSILON
@@ -49,7 +49,7 @@ def contact_motion(p: Parameters, s: State, osc: Oscillator) -> ContactMotion:
     u = s.velocity
     y2 = s.snap / omega2
     # u + JERK/ω² without the difference: 0 to the last bit while the drive rests
-    force_rate = p.stiffness * s.inputs.v + p.damping * s.inputs.v_rate + s.inputs.f_rate
+    force_rate = p.stiffness * s.inputs.v + feed_damping(p) * s.inputs.v_rate + s.inputs.f_rate
     y1 = force_rate / (p.stiffness + stiffness) - 2.0 * gamma * y2 / omega2
     y0 = (s.acceleration + 2.0 * gamma * (u - y1) - y2) / omega2
     steady = stiffness * (s.deflection + y0) + damping * y1
@@ -104,9 +104,9 @@ def judged_force(p: Parameters, s: State, t: float, y: float, u: float, a: float
     if p.judges_drive == 0.0:
         return stiffness * (s.deflection + y) + damping * u, stiffness * u + damping * a
     v = s.inputs.v + s.inputs.v_rate * t
-    held = p.stiffness * (s.spring + (drive_travel(s, t) - y)) + p.damping * (v - u)
+    held = drive_force(p, s.spring + (drive_travel(s, t) - y), v, u)
     return (held + (s.inputs.f + s.inputs.f_rate * t),
-            p.stiffness * (v - u) + p.damping * (s.inputs.v_rate - a) + s.inputs.f_rate)
+            p.stiffness * (v - u) + p.damping * (p.feed_share * s.inputs.v_rate - a) + s.inputs.f_rate)
 
 
 @inlined

@@ -53,8 +53,8 @@ def panels(p: Parameters, s: State, t: float, rate: float) -> Works:
 def _powers(p: Parameters, s: State, t: float) -> Works:
     y, u, _ = travel(p, s, t)
     v, force = inputs_at(s, s.second, s.fraction + t, t)
-    ahead = v - u
-    drive_force = p.stiffness * (s.spring + (drive_travel(s, t) - y)) + p.damping * ahead
+    ahead = p.feed_share * v - u
+    drive_force = p.stiffness * (s.spring + (drive_travel(s, t) - y)) + p.feed_share * p.damping * ahead
     friction, contact = 0.0, 0.0
     if s.mode == STICK:
         contact = p.contact_damping * u * u

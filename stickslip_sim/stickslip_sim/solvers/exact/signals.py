@@ -16,7 +16,7 @@ import math
 from typing import NamedTuple
 
 from ...axis.layout import Parameters, State
-from ...axis.motion import ACCELERATING, COASTING, STICK
+from ...axis.motion import ACCELERATING, COASTING, STICK, feed_damping
 from ...axis.transitions import applied_force
 from ...core.hot_path import compiled, inlined
 from ...linear.oscillator import Oscillator
@@ -80,7 +80,8 @@ def _force_signal(p: Parameters, s: State) -> GuardSignal:
         swing += size / w
         curvature += size * w
         fastest = max(fastest, w)
-    rate = sense * (p.stiffness * (s.inputs.base_v - s.velocity) + p.damping * s.inputs.v_rate + s.inputs.f_rate)
+    feed = feed_damping(p)
+    rate = sense * (p.stiffness * (s.inputs.base_v - s.velocity) + feed * s.inputs.v_rate + s.inputs.f_rate)
     second = sense * p.stiffness * s.inputs.v_rate
     return GuardSignal(sense=sense, start=start, rate=rate, second=second, y0=0.0, free_u=0.0,
                        mean=start + sense * mean, amplitude=swing, free=0.0, free_rate=0.0, z=0.0, z_rate=0.0,

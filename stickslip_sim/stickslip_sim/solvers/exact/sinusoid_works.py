@@ -15,7 +15,7 @@ import math
 from typing import NamedTuple
 
 from ...axis.layout import Parameters, State
-from ...axis.motion import COASTING, STICK, oscillator_of, slip_friction
+from ...axis.motion import COASTING, STICK, feed_damping, ground_damping, oscillator_of, slip_friction
 from ...axis.sinusoids import fastest_sinusoid
 from ...core.hot_path import compiled, inlined
 from ...linear.moments import moments
@@ -116,7 +116,9 @@ def still_works(p: Parameters, s: State, t: float) -> Works:
             apart, joint = phase_products(phase, phase_j, j == k)
             square += (0.5 if j == k else 1.0) * v * v_j * (apart * same - joint * sum_).real
     stiffness, damping = p.stiffness, p.damping
-    drive = stiffness * ((s.spring + 0.5 * lead) * lead + u * stretch) + damping * (square + u * lead)
+    drive = stiffness * ((s.spring + 0.5 * lead) * lead + u * stretch) + feed_damping(p) * (square + u * lead)
+    if p.feed_share == 0.0:
+        lead, square = -u * t, u * u * t
     friction = u * (stiffness * stretch + damping * lead + push)
     return Works(drive, u * push, friction, damping * square, 0.0)
 
@@ -171,12 +173,13 @@ def _closed(p: Parameters, s: State, osc: Oscillator, t: float, shift: float) ->
             other = _answer(p, s, osc, j, t, shift, slope)
             products = _with_two(one, other, j == k, wave, zero, products, t)
     v_x, v_v, xx = products.v_x, products.v_v, products.xx
+    apart = v_v - 2.0 * v_x + xx    # ∫ of the square of the other velocity, the slider's or the drive's lead
     if s.mode == STICK:
-        return Works(p.stiffness * products.v_w + p.damping * (v_v - v_x), products.f_x, 0.0,
-                     p.damping * (v_v - 2.0 * v_x + xx), p.contact_damping * xx)
-    friction = p.normal_force * (s.direction * steady * products.path + slope * (v_v - 2.0 * v_x + xx))
-    return Works(p.stiffness * products.v_w + p.damping * v_x, products.f_v - products.f_x, friction,
-                 p.damping * xx, 0.0)
+        return Works(p.stiffness * products.v_w + feed_damping(p) * (v_v - v_x), products.f_x, 0.0,
+                     p.damping * (apart if p.feed_share != 0.0 else xx), p.contact_damping * xx)
+    friction = p.normal_force * (s.direction * steady * products.path + slope * apart)
+    return Works(p.stiffness * products.v_w + feed_damping(p) * v_x, products.f_v - products.f_x, friction,
+                 p.damping * (xx if p.feed_share != 0.0 else apart), 0.0)
 
 
 @compiled
@@ -185,10 +188,10 @@ def _rest_of(p: Parameters, s: State, osc: Oscillator, t: float, shift: float, s
     stuck = s.mode == STICK
     v0, v1, f1 = s.inputs.base_v, s.inputs.v_rate, s.inputs.f_rate
     if stuck:
-        k0, k1 = (p.stiffness * v0 + p.damping * v1 + f1) / p.mass, p.stiffness * v1 / p.mass
+        k0, k1 = (p.stiffness * v0 + feed_damping(p) * v1 + f1) / p.mass, p.stiffness * v1 / p.mass
         x, rate = s.velocity, s.acceleration
     else:
-        k0, k1 = (p.normal_force * slope * v1 - f1) / p.mass, 0.0
+        k0, k1 = ((p.normal_force * slope + ground_damping(p)) * v1 - f1) / p.mass, 0.0
         x, rate = s.inputs.v - s.velocity, v1 - s.acceleration
     for k in range(int(s.sinusoid_count)):
         one = _answer(p, s, osc, k, t, shift, slope)
@@ -297,11 +300,15 @@ def _answer(p: Parameters, s: State, osc: Oscillator, k: int, t: float, shift: f
     if near_resonance:
         cycle = (math.atan2(math.sin(nu * t), math.cos(nu * t)) + apart * t) / TURN
     w = TURN * frequency
+    feed = p.damping * p.feed_share
+    resisting = p.damping - feed    # what acts on the slider's velocity alone
     divisor = complex(gamma, apart) * complex(gamma, w + nu) if nu > 0.0 else complex(-near, w) * complex(-far, w)
     against = mirrored(divisor)
     if s.mode == STICK:
-        at_x = over(complex(p.stiffness * v, (p.damping * v + f) * w), p.mass * divisor)
-        lead = complex((p.contact_stiffness - p.mass * w * w) * v, (p.contact_damping * v - f) * w)
+        at_x = over(complex(p.stiffness * v, (feed * v + f) * w), p.mass * divisor)
+        resisting += p.contact_damping
+        lead = complex((p.contact_stiffness - p.mass * w * w) * v, (resisting * v - f) * w)
         return SinusoidAnswer(frequency, cycle, phase, v, f, at_x, over(lead, p.mass * divisor), against)
-    lead = over(complex(-p.mass * w * w * v, (p.normal_force * slope * v - f) * w), p.mass * divisor)
+    resisting += p.normal_force * slope
+    lead = over(complex(-p.mass * w * w * v, (resisting * v - f) * w), p.mass * divisor)
     return SinusoidAnswer(frequency, cycle, phase, v, f, lead, lead, against)

@@ -13,7 +13,17 @@ slips under a fast drive, and of a contact so weak that it holds little.  `sinus
 from typing import NamedTuple
 
 from ...axis.layout import Parameters, State
-from ...axis.motion import COASTING, STICK, drive_travel, is_rigid_stick, oscillator_of, slip_friction, travel
+from ...axis.motion import (
+    COASTING,
+    STICK,
+    drive_travel,
+    feed_damping,
+    ground_damping,
+    is_rigid_stick,
+    oscillator_of,
+    slip_friction,
+    travel,
+)
 from ...core.hot_path import compiled, inlined
 from ...linear.moments import moments
 from .panels import Works
@@ -50,7 +60,7 @@ def works(p: Parameters, s: State, t: float) -> Works:
 def _rigid_hold(p: Parameters, s: State, t: float) -> Works:
     v, rate = s.inputs.v, s.inputs.v_rate
     path = (v + 0.5 * rate * t) * t
-    damper = p.damping * _square(v, rate, t)
+    damper = feed_damping(p) * _square(v, rate, t)
     return Works(p.stiffness * (s.spring + 0.5 * path) * path + damper, 0.0, 0.0, damper, 0.0)
 
 
@@ -62,10 +72,11 @@ def _coasting(p: Parameters, s: State, t: float) -> Works:
     stretch = s.spring * t + (0.5 * ahead + rate * t / 6.0) * t * t
     stretch1 = (0.5 * s.spring + (ahead / 3.0 + 0.125 * rate * t) * t) * t * t
     lead1 = (0.5 * ahead + rate * t / 3.0) * t * t
-    damper = p.damping * _square(ahead, rate, t)
-    drive = (p.stiffness * (v * stretch + rate * stretch1) + p.damping * (v * lead + rate * lead1))
+    drive = (p.stiffness * (v * stretch + rate * stretch1) + feed_damping(p) * (v * lead + rate * lead1))
     external = u * (s.inputs.f + 0.5 * s.inputs.f_rate * t) * t
-    return Works(drive, external, u * (p.stiffness * stretch + p.damping * lead) + external, damper, 0.0)
+    damper = p.damping * (_square(ahead, rate, t) if p.feed_share != 0.0 else u * u * t)
+    damped = p.damping * (lead if p.feed_share != 0.0 else -u * t)
+    return Works(drive, external, u * (p.stiffness * stretch + damped) + external, damper, 0.0)
 
 
 @inlined
@@ -77,16 +88,17 @@ def _moving(p: Parameters, s: State, t: float) -> Works:
     contact, damping = (0.0, p.normal_force * slope) if slips else (p.contact_stiffness, p.contact_damping)
     path = (v + 0.5 * rate * t) * t
     if slips:
-        of = _from_lead(p, s, t, contact, damping)
+        of = _from_lead(p, s, t, contact, damping + ground_damping(p))
         if abs(of.travel) < _FEW * abs(path):
             of = _from_slider(p, s, t)
     else:
         of = _from_slider(p, s, t)
         if abs(path - of.travel) < _FEW * abs(path):
-            of = _from_lead(p, s, t, contact, damping)
-    drive = p.stiffness * (v * of.stretch + rate * of.stretch1) + p.damping * of.v_lead
+            of = _from_lead(p, s, t, contact, damping + ground_damping(p))
+    drive = p.stiffness * (v * of.stretch + rate * of.stretch1) + feed_damping(p) * of.v_lead
     external = s.inputs.f * of.travel + s.inputs.f_rate * of.moment
-    damper, lost = p.damping * of.lead_square, damping * of.square
+    damper = p.damping * (of.lead_square if p.feed_share != 0.0 else of.square)
+    lost = damping * of.square
     if slips:
         return Works(drive, external, p.normal_force * s.direction * steady * of.travel + lost, damper, 0.0)
     return Works(drive, external, 0.0, damper, lost)
@@ -96,7 +108,7 @@ def _moving(p: Parameters, s: State, t: float) -> Works:
 def _from_slider(p: Parameters, s: State, t: float) -> MotionIntegrals:
     """Return the integrals from the moments of ẋ."""
     v, rate = s.inputs.v, s.inputs.v_rate
-    push = (p.stiffness * v + p.damping * rate + s.inputs.f_rate) / p.mass
+    push = (p.stiffness * v + feed_damping(p) * rate + s.inputs.f_rate) / p.mass
     _, _, y, once, twice, square = moments(oscillator_of(s), s.velocity, s.acceleration, push,
                                            p.stiffness * rate / p.mass, t)
     u1 = t * y - once
