@@ -122,6 +122,13 @@ def test_no_derivative_where_a_sample_stands_at_an_event() -> None:
     assert change.what == 'event 1 is breakaway forwards here, none there'
 
 
+def test_no_derivative_at_the_value_of_the_scene_itself() -> None:
+    """A slider that moves backwards at the start comes to rest first."""
+    (change,) = sensitivities('paper_fig7', ['event.1.time'], ['initial.velocity']).changes
+    assert change.value == 0.0
+    assert change.what == 'event 1 is breakaway forwards here, stick backwards there'
+
+
 def test_no_derivative_where_a_slip_grazes_a_breakpoint() -> None:
     """The peak speed of the slip is that of a breakpoint at a static coefficient that is known."""
     given = numbers(constant_friction())

@@ -9,6 +9,7 @@ it is between −1 and 1, with changing sign below 0, and at once where it is 0.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -60,7 +61,7 @@ def multiplier_of(scene: Scene) -> Multiplier:
     assert settled is not None
     places = break_aways(trace.events)
     first, last = places[settled.number + 1 - settled.size], places[settled.number + 1]
-    arrest = next(event for event in reversed(trace.events[:first]) if _is_arrest(event))
+    arrest = _last_arrest(trace.events[:first])
     return _slope(scene, arrest, trace.events[first:last + 1], settled.size)
 
 
@@ -77,6 +78,8 @@ def _slope(scene: Scene, arrest: Event, group: list[Event], size: int) -> Multip
         if [_kind(event) for event in events] != [_kind(event) for event in group[:len(events)]]:
             return _none('the sequence of events changes beside the limit cycle', size, period)
         found.append(_stretch(scene, events[-1]))
+    if not abs(found[1] + found[2] - 2.0 * _stretch(scene, _last_arrest(group))) <= _STEP * way:
+        return _none('more than the stretch of the spring is left of the state at an arrest', size, period)
     value, error = CENTRAL.derivative(np.array(found), _STEP * way, abs(begin), max(map(abs, stretches)))
     return Multiplier(float(value), float(error), size, period)
 
@@ -98,6 +101,10 @@ def _deflection(scene: Scene, arrest: Event) -> float:
         return 0.0
     held = scene.axis.normal_force * scene.axis.friction.kinetic.coefficients[0]
     return arrest.direction * held / contact.stiffness
+
+
+def _last_arrest(events: Sequence[Event]) -> Event:
+    return next(event for event in reversed(events) if _is_arrest(event))
 
 
 def _is_arrest(event: Event) -> bool:

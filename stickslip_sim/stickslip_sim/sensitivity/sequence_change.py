@@ -48,8 +48,11 @@ def _first_unlike(figure: Figure, moved: MovedNumber, base: Trace, run: Callable
 
 def _bisected(figure: Figure, base: Trace, run: Callable[[float], Trace | None], same: float, other: float
               ) -> tuple[float, Trace | None]:
-    """Return the value next to the change, between one of the same sequence and one of another, and the run there."""
-    found = run(other)
+    """Return the value at the change, between one of the same sequence and one of another, and the run beyond.
+
+    It is that of the scene itself where the change is so near that no value in between has the same sequence.
+    """
+    found, own = run(other), same
     for _ in range(_HALVINGS):
         middle = 0.5 * (same + other)
         if middle in (same, other):
@@ -59,7 +62,7 @@ def _bisected(figure: Figure, base: Trace, run: Callable[[float], Trace | None],
             same = middle
         else:
             other, found = middle, trace
-    return other, found
+    return own if same == own else other, found
 
 
 def _steps(figure: Figure, trace: Trace) -> Sequence[Step]:
