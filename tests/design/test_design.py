@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from stickslip_sim.design.candidate_feeds import default_speeds, feeds
-from stickslip_sim.design.design_folder import table_heads, table_rows
+from stickslip_sim.design.design_folder import scene_file, table_heads, table_rows
 from stickslip_sim.design.experiments import Wishes, designed
 from stickslip_sim.design.information import Sensors, covariance_after, run_slopes
 from stickslip_sim.runs import simulate_events
@@ -96,6 +96,12 @@ def test_every_feed_is_a_scene_that_runs() -> None:
     assert len({feed.name for feed in found}) == len(found)
     for feed in found:
         simulate_events(feed.scene(SCENE), 2.0)
+
+
+def test_the_experiment_keeps_the_solver_of_the_scene() -> None:
+    stepped = changed(SCENE, {'solver.name': 'fixed_step', 'solver.step': 1e-4})
+    found = designed(stepped, wishes(duration=1.0))
+    assert 'name: fixed_step' in scene_file(found)
 
 
 def test_the_way_of_the_drive_is_kept() -> None:

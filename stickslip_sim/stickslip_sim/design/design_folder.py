@@ -41,7 +41,7 @@ def scene_file(design: Design) -> str:
     wishes = design.wishes
     lines = textwrap.wrap(f'{design.best.feed.name}: {wishes.duration:g} s of it would narrow '
                           f'{", ".join(wishes.parameters)} most.', 110)
-    return ''.join(f'# {line}\n' for line in lines) + design.best.scene.text
+    return ''.join(f'# {line}\n' for line in lines) + design.best.feed.scene(design.scene).text
 
 
 def table_rows(experiments: Sequence[Experiment]) -> Iterator[list[str]]:

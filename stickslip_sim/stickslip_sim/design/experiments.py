@@ -46,13 +46,12 @@ class Wishes:
 
 @dataclass(frozen=True)
 class Experiment:
-    """A feed and its run: the `scene`, the covariance (k, k) of the logarithms after it, and the way of the drive, m.
+    """A feed and its run: its derivatives, the covariance (k, k) of the logarithms after it, and the drive's way, m.
 
     `score` is the deviation that the criterion stands for, a share: the lower the better.
     """
 
     feed: Feed
-    scene: Scene
     slopes: Slopes
     covariance: Numbers
     travel: float
@@ -110,7 +109,7 @@ def designed(scene: Scene, wishes: Wishes, progress: Progress = None) -> Design:
     if not found:
         reasons = '; '.join(sorted({reason for _, reason in left_out}))
         raise InputError('--travel', wishes.travel, f'such that a feed is left ({reasons})', 'allow more')
-    return Design(exact, wishes, tuple(sorted(found, key=lambda one: one.score)), tuple(left_out))
+    return Design(scene, wishes, tuple(sorted(found, key=lambda one: one.score)), tuple(left_out))
 
 
 def _experiment(feed: Feed, scene: Scene, wishes: Wishes, times: Numbers) -> Experiment:
@@ -119,7 +118,7 @@ def _experiment(feed: Feed, scene: Scene, wishes: Wishes, times: Numbers) -> Exp
     slopes = run_slopes(moved, list(wishes.parameters), times, list(deviations))
     covariance = covariance_after(slopes, deviations, wishes.known, wishes.scatter)
     way = np.append(0.0, slopes.samples['drive_position'] - moved.initial.position)
-    return Experiment(feed, moved, slopes, covariance, float(np.ptp(way)), _score(covariance, wishes.criterion))
+    return Experiment(feed, slopes, covariance, float(np.ptp(way)), _score(covariance, wishes.criterion))
 
 
 def _score(covariance: Numbers, criterion: str) -> float:
