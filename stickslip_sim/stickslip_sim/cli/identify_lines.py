@@ -25,6 +25,7 @@ def result_lines(found: 'Identification', run: str) -> Iterator[str]:
     yield from _estimates(found)
     for together in found.combinations:
         yield f'not separated: {together.statement}'
+    yield from _slips(found)
     yield from _laws(found)
     yield from _starts(found)
     yield 'the model fits: no test of the residuals rejects it' if found.fits else 'THE MODEL DOES NOT FIT this run:'
@@ -42,6 +43,20 @@ def _estimates(found: 'Identification') -> Iterator[str]:
         kind = '' if one.kind == FOUND else f', {one.kind}'
         yield (f'{one.name:{_NAME}}{number_words(one.start, one.unit):>{_NUMBER}}'
                f'{number_words(one.value, one.unit):>{_NUMBER}}   {interval_words(one)}{kind}')
+
+
+def _slips(found: 'Identification') -> Iterator[str]:
+    """Yield how far slips are apart, in the median of those that both motions have."""
+    import numpy as np
+
+    apart = []
+    for words, of in (('break-away force', 'break_away_force'), ('time at rest before', 'stick_time')):
+        pairs = np.array([(getattr(slip, of), getattr(slip, f'fitted_{of}')) for slip in found.slips]).reshape(-1, 2)
+        both = pairs[np.isfinite(pairs).all(axis=1) & (pairs[:, 0] != 0.0)]
+        if len(both):
+            apart.append(f'{words} {100.0 * np.median(np.abs(both[:, 1] / both[:, 0] - 1.0)):.2g} %')
+    if apart:
+        yield f'{len(found.slips)} slips, fitted beside measured, apart in the median: {", ".join(apart)}'
 
 
 def _laws(found: 'Identification') -> Iterator[str]:

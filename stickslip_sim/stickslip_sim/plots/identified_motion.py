@@ -60,7 +60,7 @@ class FittedChannel(NamedTuple):
 
 def plot_fit(channels: Sequence[FittedChannel], window: tuple[float, float], path: Path | str) -> None:
     """Draw a row for each channel: the whole run, and a `window` of it (s); thin on top what was fitted."""
-    with _figure(len(channels)) as (figure, rows):
+    with _figure(len(channels), share=False) as (figure, rows):
         for panels, channel in zip(rows, channels):
             _motion(panels[0], channel, (channel.times[0], channel.times[-1]))
             _motion(panels[1], channel, window)
@@ -74,7 +74,7 @@ def plot_residuals(channels: Sequence[FittedChannel], slip_share: float, path: P
 
     `slip_share` is the share of a cycle after which its slip has ended.
     """
-    with _figure(len(channels)) as (figure, rows):
+    with _figure(len(channels), share=True) as (figure, rows):
         for panels, channel in zip(rows, channels):
             _over_time(panels[0], channel)
             _over_phase(panels[1], channel, slip_share)
@@ -82,12 +82,13 @@ def plot_residuals(channels: Sequence[FittedChannel], slip_share: float, path: P
 
 
 @contextmanager
-def _figure(count: int) -> Iterator[tuple[Figure, Sequence[Sequence[Axes]]]]:
-    """Yield a figure with two panels for each channel, in the style of a journal."""
+def _figure(count: int, share: bool) -> Iterator[tuple[Figure, Sequence[Sequence[Axes]]]]:
+    """Yield a figure with two panels for each channel, which `share` the upright axis or not."""
     with rc_context(JOURNAL):
         figure = Figure(figsize=(DOUBLE_COLUMN, _ROW * count + _LEGEND),
                         layout=ConstrainedLayoutEngine(w_pad=0.05, h_pad=0.05))
-        panels = figure.subplots(count, 2, squeeze=False, sharex='col', sharey='row', width_ratios=(3, 2))
+        panels = figure.subplots(count, 2, squeeze=False, sharex='col', sharey='row' if share else 'none',
+                                 width_ratios=(3, 2))
         yield figure, panels.tolist()
 
 

@@ -1,0 +1,157 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Run the examples of docs/identification.md: `python3 -m benchmarks.identification` puts there what they print.
+
+`python3 -m benchmarks.identification data` makes examples/identify/axis.csv anew; the measured axes stand in the
+repository, so that the page needs no more than the tool.
+"""
+
+import csv
+import json
+import math
+import pathlib
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip_sim.identify.cycle_phases import slip_share, usual_cycles
+from stickslip_sim.identify.fit import identify
+from stickslip_sim.identify.report_friction import known_friction
+from stickslip_sim.identify.result_folder import fitted_channels
+from stickslip_sim.inputs import load_scene
+from stickslip_sim.plots.identified_motion import plot_fit, plot_residuals
+from stickslip_sim.plots.known_friction import plot_known_friction
+from stickslip_sim.recording import read_run
+from stickslip_sim.runs import simulate
+from stickslip_sim.scene.load import changed
+
+from .page import replace_generated
+
+Numbers = NDArray[np.float64]
+
+PAGE = pathlib.Path('docs/identification.md')
+EXAMPLES, RUNS, IMAGES = pathlib.Path('examples/identify'), pathlib.Path('runs/identify'), pathlib.Path('docs/images')
+COMMANDS: Mapping[str, tuple[str, ...]] = {   # by the name of the part of the page
+    'synthetic': (
+        'import examples/identify/axis.csv --columns time=time,position=position,drive_force=drive_force'
+        ' --out runs/identify/axis',
+        'identify runs/identify/axis --scene examples/identify/start.yaml --free examples/identify/free.yaml'
+        ' --out runs/identify/axis_found'),
+    'check': (
+        'compare runs/identify/axis runs/identify/axis_found/identified.yaml --duration 8'
+        ' --out runs/identify/axis_beside',),
+    'posterior': (
+        'uncertainty runs/identify/axis_found/identified.yaml --with runs/identify/axis_found/posterior.yaml'
+        ' --set drive.course=constant --set drive.velocity=0.002 --samples 64 --out runs/identify/axis_spread',),
+    'lugre': (
+        'import examples/identify/lugre.csv --columns time=time,position=position,drive_force=drive_force'
+        ' --out runs/identify/lugre',
+        'identify runs/identify/lugre --scene examples/identify/lugre_start.yaml'
+        ' --free examples/identify/lugre_free.yaml --out runs/identify/lugre_found'),
+}
+FAILS = 'lugre'            # the part whose last command ends with exit code 3
+TRUTH = {                  # of examples/identify/axis.csv, where it is not as in start.yaml
+    'axis.drive_stiffness': 4.2e5, 'axis.drive_damping': 2500.0, 'friction.static.limit': 0.2,
+    'friction.static.time_constant': 0.15, 'friction.kinetic.initial': 0.115, 'friction.kinetic.limit': 0.06,
+    'friction.kinetic.stribeck_velocity': 0.008, 'friction.kinetic.viscous': 0.2,
+}
+DURATION, RATE = 8.0, 500.0              # s, Hz
+ENCODER, FORCE_NOISE = 1e-6, 0.01        # m; of the root mean square
+
+
+def main() -> None:
+    """Write the parts that are asked for, or those of the page."""
+    for part in sys.argv[1:] or ('commands', 'pictures'):
+        {'data': data, 'commands': commands, 'pictures': pictures}[part]()
+
+
+def data() -> None:
+    """Make the measured axis whose truth is known; that of LuGre was integrated by SciPy, with the same sensors."""
+    truth = changed(load_scene(str(EXAMPLES / 'start.yaml')), TRUTH)
+    _write(EXAMPLES / 'axis.csv', simulate(truth, DURATION, 1.0 / RATE).samples)
+
+
+def commands() -> None:
+    """Run the commands of the page, and quote them with what they print."""
+    shutil.rmtree(RUNS, ignore_errors=True)
+    for name, given in COMMANDS.items():
+        parts = [f'{shown(command)}\n\n{quoted(said(command, 3 if name == FAILS and k else 0))}'
+                 for k, command in enumerate(given)]
+        replace_generated(PAGE, '\n'.join(parts), name)
+    report = json.loads((RUNS / 'axis_found/report.json').read_text(encoding='utf-8'))
+    replace_generated(PAGE, truth_table(report), 'truth')
+    replace_generated(PAGE, f'```yaml\n{(EXAMPLES / "free.yaml").read_text(encoding="utf-8")}```\n', 'free')
+
+
+def truth_table(report: Mapping[str, Any]) -> str:
+    """Return what was found of the axis that is known, beside the truth."""
+    rows = ['| parameter | start | truth | found | off | in standard deviations |', '|---|---|---|---|---|---|']
+    for one in report['estimates']:
+        truth, value = TRUTH[one['name']], one['value']
+        scores = math.log(value / truth) / one['standard_deviation']
+        off = 100.0 * (value / truth - 1.0)
+        rows.append(f'| `{one["name"]}` | {one["start"]:g} | {truth:g} | {value:.6g} | {off:+.3f} % | {scores:+.1f} |')
+    return '\n'.join(rows) + '\n'
+
+
+def pictures() -> None:
+    """Draw pictures of the reports."""
+    for name, start, free in (('axis', 'start', 'free'), ('lugre', 'lugre_start', 'lugre_free')):
+        run = read_run(RUNS / name)
+        found = identify(run, load_scene(str(EXAMPLES / f'{start}.yaml')), EXAMPLES / f'{free}.yaml')
+        channels = fitted_channels(found)
+        if name == 'lugre':
+            plot_residuals(channels, slip_share(found), IMAGES / 'identified_lugre.png')
+        else:
+            plot_fit(channels, usual_cycles(found), IMAGES / 'identified_fit.png')
+            plot_known_friction(known_friction(run, found), IMAGES / 'identified_friction.png')
+
+
+def shown(command: str) -> str:
+    """Return a command as a user gives it, folded to the width of the page."""
+    rows = ['    stickslip']
+    for word in command.replace(' --', '\n--').split('\n'):   # an option stays with its value
+        if len(rows[-1]) + len(word) > 116:
+            rows[-1] += ' \\'
+            rows.append('       ')
+        rows[-1] += f' {word}'
+    return '\n'.join(rows)
+
+
+def quoted(text: str) -> str:
+    """Return what a command printed as a part of the page, without the time that it took."""
+    lines = re.sub(r'( simulations) in \S+ s$', r'\1', text, flags=re.MULTILINE).splitlines()
+    return ''.join(f'    {line}'.rstrip() + '\n' for line in lines)
+
+
+def said(command: str, code: int) -> str:
+    """Return what a command prints, its line on standard error at the end; it must end with this exit code."""
+    print(command, flush=True)
+    done = subprocess.run([sys.executable, '-m', 'stickslip_sim', *shlex.split(command)], check=False, text=True,
+                          capture_output=True)
+    if done.returncode != code:
+        raise SystemExit(f'exit code {done.returncode}: {done.stderr}')
+    return done.stdout + done.stderr
+
+
+def _write(path: pathlib.Path, samples: Mapping[str, Numbers]) -> None:
+    """Write what the sensors show of a motion."""
+    force = samples['drive_force']
+    noise = FORCE_NOISE * np.sqrt(np.mean(force**2)) * np.random.default_rng(0).standard_normal(len(force))
+    counts = np.round(samples['position'] / ENCODER)
+    with path.open('w', encoding='utf-8', newline='') as file:
+        rows = csv.writer(file, lineterminator='\n')
+        rows.writerow(('time', 'position', 'drive_force'))
+        for time, count, measured in zip(samples['time'], counts, force + noise, strict=True):
+            rows.writerow((f'{time:.3f}', f'{count * ENCODER:.6f}', f'{measured:.2f}'))
+
+
+if __name__ == '__main__':
+    main()

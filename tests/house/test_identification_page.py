@@ -1,0 +1,65 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""docs/identification.md: its commands run as they stand there, and find what it says."""
+
+import re
+import shlex
+from collections.abc import Mapping
+from pathlib import Path
+
+import pytest
+
+from benchmarks.identification import COMMANDS, EXAMPLES, FAILS, PAGE, TRUTH, shown
+from stickslip_sim.inputs import load_scene
+from tests.support.repository import ROOT
+from tests.support.tool import Capture, answered
+
+ROW = re.compile(r'^ *([a-z]\w*(?:\.\w+)+(?:\[\d\])?) +'                                 # name
+                 r'([\d.e+-]+)(?: (?:N s|[^\d ]+))?(?:/m)? +([\d.e+-]+)', re.MULTILINE)   # start and found
+
+
+@pytest.fixture(scope='module')
+def page() -> str:
+    return PAGE.read_text(encoding='utf-8')
+
+
+def found_in(text: str) -> Mapping[str, tuple[float, float]]:
+    """Return start and found value of each parameter, in the unit that is printed."""
+    return {row[1]: (float(row[2]), float(row[3])) for row in ROW.finditer(text)}
+
+
+def part(page: str, name: str) -> str:
+    return page.partition(f'<!-- {name}: begin -->')[2].partition(f'<!-- {name}: end -->')[0]
+
+
+def test_its_commands_find_what_it_says(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capture
+                                        ) -> None:
+    (tmp_path / 'examples').symlink_to(ROOT / 'examples')
+    monkeypatch.chdir(tmp_path)
+    for name, commands in COMMANDS.items():
+        quoted = part(page, name)
+        for k, command in enumerate(commands):
+            code, said, error = answered(capsys, *shlex.split(command))
+            assert code == (3 if name == FAILS and k else 0), error
+            assert shown(command) in quoted
+        verdict = 'THE MODEL DOES NOT FIT' if name == FAILS else ''
+        assert verdict in said
+        assert verdict in quoted
+        if name == 'synthetic':
+            printed, here = found_in(quoted), found_in(said)
+            assert set(printed) == set(here) == set(TRUTH)
+            for parameter, numbers in here.items():
+                assert numbers == pytest.approx(printed[parameter], rel=2e-3), parameter
+
+
+def test_the_file_of_what_is_free_is_the_one_of_the_page(page: str) -> None:
+    assert f'```yaml\n{(ROOT / EXAMPLES / "free.yaml").read_text(encoding="utf-8")}```\n' in page
+
+
+def test_what_it_finds_is_the_truth(page: str) -> None:
+    """In the unit that is printed: the ratio of what was found to the start."""
+    start = load_scene(str(ROOT / EXAMPLES / 'start.yaml')).values
+    for name, (begun, found) in found_in(part(page, 'synthetic')).items():
+        before = start[name]
+        assert isinstance(before, float)
+        assert found / begun == pytest.approx(TRUTH[name] / before, rel=0.005), name
