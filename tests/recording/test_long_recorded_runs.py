@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from stickslip_sim.cli.main import run as tool
+from stickslip_sim.compare import run_part
 from stickslip_sim.compare.report_folder import write_report
 from stickslip_sim.core.errors import RecordingError, RecordingWarning
 from stickslip_sim.recording import RecordedRun, paired_steps, read_run, recorded_run, records, run_outline
