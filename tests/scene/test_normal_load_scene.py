@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from stickslip_sim.advise.advice import advise
-from stickslip_sim.compare.drawn import steady_inputs
+from stickslip_sim.compare.look import look_at
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.input_profile import InputProfile, Sinusoid, table
 from stickslip_sim.inputs import load_scene
@@ -70,8 +70,8 @@ def test_what_has_no_meaning_is_refused(changes: dict[str, Any], name: str, hint
 
 def test_statements_on_constant_inputs_say_nothing_of_it() -> None:
     """They run the axis anew, without its load."""
-    assert steady_inputs(simulate(load_scene('paper_fig8'), 0.5)) is not None
-    assert steady_inputs(simulate(scene_with(STEPS), 0.4)) is None
+    assert look_at(simulate(load_scene('paper_fig8'), 0.5)).steady is not None
+    assert look_at(simulate(scene_with(STEPS), 0.4)).steady is None
 
 
 def test_studies_of_constant_inputs_refuse_it() -> None:

@@ -28,7 +28,7 @@ class RunLook(NamedTuple):
     """What a look through a run left."""
 
     first: dict[str, float]                    # sample, with APPLIED
-    steady: SteadyInputs | None                # of all of it
+    steady: SteadyInputs | None                # of all of it; None under a load, which is no part of the axis
     before: Columns                            # the state just before each event
     ranges: Mapping[str, tuple[float, float]]  # the lowest and the highest value of RANGED
     drawn: Columns                             # samples of the stretches that are drawn
@@ -65,7 +65,8 @@ def watched(run: Run, watches: Mapping[str, Watch]) -> RunLook:
     ranges.take(before.columns)
     if watches:
         _watch(cutter.under_way, watches, found)
-    _LOOKS[run] = RunLook(first, inputs.steady, before.columns, ranges.found, drawn.columns, found)
+    steady = inputs.steady if run.scene.normal_load is None else None
+    _LOOKS[run] = RunLook(first, steady, before.columns, ranges.found, drawn.columns, found)
     return _LOOKS[run]
 
 
