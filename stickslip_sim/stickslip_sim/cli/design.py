@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from . import completion
-from .files import check_new_folder, new_folder
+from .files import check_new_folder, new_folder, say_written
 from .scene_changes import SceneChanges, scene_changes
 
 _SHOWN = 10   # feeds that are printed
@@ -62,7 +62,7 @@ def design(scene: str, parameters: str, duration: float, speeds: str | None, tra
     if out is not None:
         with new_folder('--out', out) as folder:
             write_design(found, folder)
-        print(f'written: {Path(out) / SCENE}, {Path(out) / PAGE}')
+        say_written(str(Path(out) / SCENE), str(Path(out) / PAGE))
 
 
 def _speeds(text: str) -> tuple[float, float]:
