@@ -133,7 +133,9 @@ def test_numbers_that_were_not_found_are_uniform_or_fall_from_their_end(found: I
     entry = distributions(posterior_text(at_end, 'measured'))[STATIC]
     assert entry == {'distribution': 'triangular', 'low': 0.15, 'mode': 0.15, 'high': pytest.approx(
         0.15 * math.exp(0.02))}
-    for each in (unknown, at_end):
+    far = with_estimate(found, STATIC, kind=AT_BOUND, value=0.15, standard_deviation=1e3)   # beyond what exp() does
+    assert distributions(posterior_text(far, 'measured'))[STATIC]['high'] == 0.3
+    for each in (unknown, at_end, far):
         uncertain_of(read_yaml(posterior_text(each, 'measured')))
 
 

@@ -15,7 +15,9 @@ import numpy as np
 
 from ..core.errors import InputError
 from ..scene import Scene, scene_from_values
+from ..study.distribution import LAWS, Distribution
 from ..study.study import MOST_VARIATIONS
+from ..study.uncertain_file import LEAST_KEPT
 from ..study.variation import changes_at, parameter_of
 from .identification import FOUND, NOT_IDENTIFIABLE, Estimate, Identification, Numbers
 from .identified_scene import OF_SENSORS, rounded_scene
@@ -83,13 +85,16 @@ def _entry(one: Estimate, tails: float) -> _Entry:
     if one.kind != FOUND:
         return _one_sided(one, spread)
     if one.logarithmic:
+        law, numbers = 'lognormal', (one.value, math.exp(spread))
         low, high = one.value * math.exp(-tails * spread), one.value * math.exp(tails * spread)
-        words = f'lognormal, median: {one.value!r}, geometric_standard_deviation: {math.exp(spread)!r}'
     else:
+        law, numbers = 'normal', (one.value, spread)
         low, high = one.value - tails * spread, one.value + tails * spread
-        words = f'normal, mean: {one.value!r}, standard_deviation: {spread!r}'
     low, high = _allowed(one.name, low, high)
-    return _Entry(f'distribution: {words}, between: [{low!r}, {high!r}]', low, high)
+    if Distribution(one.name, law, numbers, low, high).kept < LEAST_KEPT:
+        return _one_sided(one, spread)
+    words = ', '.join(f'{name}: {number!r}' for name, number in zip(LAWS[law].numbers, numbers, strict=True))
+    return _Entry(f'distribution: {law}, {words}, between: [{low!r}, {high!r}]', low, high)
 
 
 def _one_sided(one: Estimate, spread: float) -> _Entry:
@@ -101,9 +106,10 @@ def _one_sided(one: Estimate, spread: float) -> _Entry:
 
 
 def _spread(one: Estimate) -> float:
-    """Return the standard deviation: of the logarithm where the fit took it; never that of rounding alone."""
+    """Return the standard deviation, of the logarithm where the fit took it, between that of rounding and the range."""
+    width = math.log(one.high / one.low) if one.logarithmic else one.high - one.low
     known = one.standard_deviation if math.isfinite(one.standard_deviation) else 0.0
-    return max(known, _NARROWEST * (1.0 if one.logarithmic else _size(one)))
+    return max(min(known, width), _NARROWEST * (1.0 if one.logarithmic else _size(one)))
 
 
 def _size(one: Estimate) -> float:

@@ -27,7 +27,7 @@ from .variation import parameter_of
 _PAGE = 'docs/maps.md'
 _SEED = Parameter('seed', 'integer', 0, '', 'of the sample', low=0, high=2**31 - 1)
 _LARGEST = 1e15    # as far as any parameter goes
-_LEAST_KEPT = 0.5   # of the probability: of a law cut further little is left
+LEAST_KEPT = 0.5   # of the probability: of a law cut further little is left
 
 
 ParameterOf = Callable[[str], tuple[Parameter, int | None]]
@@ -109,8 +109,8 @@ def _check_ends(entry: Parameter, index: int | None, ends: tuple[float, float]) 
 
 
 def _kept(found: Distribution) -> Distribution:
-    if found.kept < _LEAST_KEPT:
-        raise InputError(f'{found.name}.between', [found.low, found.high], f'a range that keeps {_LEAST_KEPT:g} or '
+    if found.kept < LEAST_KEPT:
+        raise InputError(f'{found.name}.between', [found.low, found.high], f'a range that keeps {LEAST_KEPT:g} or '
                          f'more of the probability; it keeps {found.kept:.2g}', 'widen it')
     return found
 
