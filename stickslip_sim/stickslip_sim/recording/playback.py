@@ -3,18 +3,22 @@
 """Recordings to be played: any MCAP bag of ROS 2, from any time on, without reading all that comes before."""
 
 from collections.abc import Collection, Iterator
+from contextlib import suppress
+from functools import cached_property
 from heapq import heappop, heappush
 from itertools import count
 from pathlib import Path
 from typing import NamedTuple
 
-from mcap.records import Channel, ChunkIndex, Footer, Message, Schema
+from mcap.records import Attachment, Channel, ChunkIndex, Footer, Message, Schema
 from rosbags.rosbag2 import ReaderError
 from rosbags.rosbag2.metadata import parse_qos
 
-from ..core.errors import RecordingError
+from ..core.errors import InputError, RecordingError
+from ..scene import Scene, parse_scene
 from .opening import files_of
 from .records import CUT_OFF, chunk_at, records, summary_of
+from .run import SCENE_FILE
 from .topic_columns import RecordedMessage
 from .topics import QosProfile
 
@@ -52,6 +56,17 @@ class Recording:
         self.begin, self.end = min(begin for begin, _ in spans), max(end for _, end in spans)
         for file in self._files:
             file.begin = self.begin
+
+    @cached_property
+    def scene(self) -> Scene | None:
+        """The scene that travels in it, before its first message; None without one that this version can read."""
+        for record in records(self._files[0].path):
+            if isinstance(record, Attachment) and record.name == SCENE_FILE:
+                with suppress(InputError):
+                    return parse_scene(record.data.decode(errors='replace'))
+            if isinstance(record, Message):
+                break
+        return None
 
     @property
     def length(self) -> float:

@@ -53,10 +53,12 @@ def replaying(folder: Path, *arguments: str) -> AbstractContextManager[NodeProce
     return running('-p', f'bag:={folder}', '-p', 'mode:=commands', *arguments, program='replay_node')
 
 
-def ended(process: NodeProcess) -> None:
+def ended(process: NodeProcess) -> str:
+    """Wait until a replay has ended well; return what it said."""
     code, errors = process.wait()
     assert code == 0, errors
     assert 'Traceback' not in errors
+    return errors
 
 
 def assert_same(one: Bag, other: Bag) -> None:
@@ -74,7 +76,7 @@ class TestLockStep:
         scene.write_bytes(open_bag(recorded).attachments['scene.yaml'])
         arguments = ['--params-file', str(scene), *LOCKSTEP, *recording_into(again)]
         with running(*arguments) as axis, replaying(recorded, '-p', 'rate:=50') as process:
-            ended(process)
+            assert 'another scene' not in ended(process)
             assert_clean(*axis.end())
         assert_same(open_bag(recorded), open_bag(again))
         for topic in ('/drive_velocity', '/external_force', '/parameter_events'):
@@ -211,7 +213,8 @@ class TestRealTime:
             viewer.connect()
             part = ('-p', f'start_offset:={begin:.9f}', '-p', 'playback_duration:=0.0')
             with replaying(recorded, *part) as process:
-                ended(process)
+                said = ended(process)
+            assert '/feed_axis has another scene than the recorded one: drive.velocity is 0.0, not 0.002; it' in said
             viewer.next('slider_state', lambda state: state.drive_velocity == -0.003)
             assert_clean(*axis.end())
 

@@ -16,6 +16,7 @@ from .orders import COMMANDS, order_topics
 from .player import Act, Script
 from .realtime import InRealTime
 from .replay_settings import Settings
+from .scene_difference import compared_names, difference_between
 from .span import PlayedSpan, chosen_topics
 
 _STRIDE = 0.02    # s of the steady clock that pass with one call of ~/step
@@ -35,6 +36,7 @@ class Commands:
         """Ask the axis for its clock the first time; raises InputError when it is not there or goes its own way."""
         if self._script is None:
             self._script = self._make_script(*self._axis.parameters('time.mode', 'time.rate'))
+            self._compare_scenes()
         self._script.prepare()
 
     def acts(self) -> Iterator[Act]:
@@ -51,6 +53,17 @@ class Commands:
             raise InputError('start_offset', self._settings.start_offset, '0 in lock-step', 'a run has its begin')
         return InLockStep(self._node, self._axis, self._recording, self._orders, self._span, rate,
                           _STRIDE * max(1.0, self._settings.rate))
+
+    def _compare_scenes(self) -> None:
+        """Warn where the axis is not the one that was recorded: it will move in another way."""
+        scene = self._recording.scene
+        if scene is None:
+            return
+        names = compared_names(scene)
+        if difference := difference_between(scene, dict(zip(names, self._axis.parameters(*names)))):
+            self._node.get_logger().warning(
+                f'{self._axis.name} has another scene than the recorded one: {difference}; it will not do what it did'
+                ' then (docs/replay.md has how to start it with the recorded scene)')
 
     def _recorded_axis(self) -> str:
         command = next(name for name, kind in self._orders.items() if kind in COMMANDS)

@@ -12,6 +12,7 @@ from typing import Any
 from rcl_interfaces.srv import GetParameters, SetParametersAtomically
 from rclpy.exceptions import NameValidationException
 from rclpy.node import Node
+from rclpy.parameter import parameter_value_to_python
 from std_srvs.srv import Trigger
 
 from stickslip_msgs.msg import StepTiming
@@ -84,11 +85,11 @@ class LiveAxis:
         future.add_done_callback(lambda done: take(done.result()))
 
     def parameters(self, *names: str) -> list[Any]:
-        """Return the values of parameters that are texts or numbers; raises InputError when the node lacks one."""
+        """Return the values of parameters, None of those without one; raises InputError when the node lacks one."""
         values = self.ask('get_parameters', names=list(names)).values
         if len(values) != len(names):
             raise InputError('axis', self.name, f'a sim_node; this node has no {" or ".join(names)}', 'give its name')
-        return [value.string_value or value.double_value for value in values]
+        return [parameter_value_to_python(value) for value in values]
 
     def rewind(self) -> None:
         """Bring the axis to step 0; one that records, and so is not reset, must be there already."""
