@@ -10,11 +10,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from stickslip_sim.axis import Axis, CompliantContact, InitialState
+from stickslip_sim.axis import Axis, CompliantContact, Friction, InitialState
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.types import Event, EventKind, Mode
-from stickslip_sim.friction import StaticLaw, StaticLawKind
-from stickslip_sim.runs.batch import COLUMNS, BatchFigures, run_batch
+from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind, kinetic_table
+from stickslip_sim.friction.kinetic import default_excess
+from stickslip_sim.friction.shapes import Decay
+from stickslip_sim.runs.batch import BatchFigures, run_batch
+from stickslip_sim.runs.batch_columns import COLUMNS
+from stickslip_sim.scene import load_scene
 from stickslip_sim.simulation.cycles import Summary, summary
 from tests.conftest import Program
 from tests.support.axes import COMPLIANT, RIGID, instant, make, paper_axis, random_axis
@@ -83,13 +87,48 @@ def test_every_column_goes_where_its_name_says() -> None:
     axis = replace(axis, friction=replace(axis.friction, static=static))
     values: dict[str, Any] = {'mass': 300.0, 'drive_stiffness': 5e5, 'drive_damping': 3000.0, 'normal_force': 3000.0,
               'contact_stiffness': 4e6, 'contact_damping': 1e4, 'static_initial': 0.13, 'static_limit': 0.3,
-              'static_time_constant': 0.5, 'static_exponent': 0.7}
-    assert values.keys() == COLUMNS.keys()
-    changed = Axis(300.0, 5e5, 3000.0, 3000.0, CompliantContact(4e6, 1e4), replace(
-        axis.friction, static=StaticLaw(StaticLawKind.KATO, 0.13, 0.3, 0.5, 0.7)))
-    figures = run_batch(axis, 5.0, drive_velocity=0.002, **values)
-    assert figures.cycles[0] > 1
-    assert_same(figures, 0, one_by_one(changed, 0.002, 0.0, InitialState(), 5.0))
+              'static_time_constant': 0.5, 'static_exponent': 0.7, 'static_backward_initial': 0.14,
+              'static_backward_limit': 0.2, 'static_backward_time_constant': 0.1, 'static_backward_exponent': 1.5,
+              'kinetic_velocities': [[0.0, 0.02]], 'kinetic_coefficients': [[0.125, 0.06]], 'kinetic_end_slope': 0.1,
+              'kinetic_backward_velocities': [[0.0, 0.01, 0.03]], 'kinetic_backward_coefficients': [[0.11, 0.08, 0.04]],
+              'kinetic_backward_end_slope': 0.2}
+    of_a_law = {f'kinetic_{side}{name}' for side in ('', 'backward_')
+                for name in ('initial', 'limit', 'stribeck_velocity', 'exponent', 'viscous')}
+    assert values.keys() == COLUMNS.keys() - of_a_law
+    tables = KineticTable((0.0, 0.02), (0.125, 0.06), 0.1), KineticTable((0.0, 0.01, 0.03), (0.11, 0.08, 0.04), 0.2)
+    laws = (StaticLaw(StaticLawKind.KATO, 0.13, 0.3, 0.5, 0.7), StaticLaw(StaticLawKind.KATO, 0.14, 0.2, 0.1, 1.5))
+    ahead, back = (Friction(law, table, default_excess(table)) for law, table in zip(laws, tables))
+    changed = Axis(300.0, 5e5, 3000.0, 3000.0, CompliantContact(4e6, 1e4), replace(ahead, backward=back))
+    feeds = [0.002, -0.002]
+    figures = run_batch(axis, 5.0, drive_velocity=feeds, **values)
+    for k, feed in enumerate(feeds):
+        assert figures.cycles[k] > 1
+        assert_same(figures, k, one_by_one(changed, feed, 0.0, InitialState(), 5.0))
+
+
+def test_a_smooth_law_may_differ_from_axis_to_axis() -> None:
+    axis, count = load_scene('stribeck').axis, 4
+    law, tolerance = axis.friction.kinetic.law, axis.friction.kinetic.tolerance
+    assert law is not None
+    speeds, exponents = np.geomspace(0.005, 0.02, count), np.linspace(0.8, 2.0, count)
+    figures = run_batch(axis, 4.0, drive_velocity=0.002, kinetic_stribeck_velocity=speeds, kinetic_exponent=exponents)
+    for k in range(count):
+        table = kinetic_table(replace(law, stribeck_velocity=float(speeds[k]), shape=Decay(float(exponents[k]))),
+                              tolerance)
+        friction = replace(axis.friction, kinetic=table, excess=default_excess(table))   # which follows v_gr
+        assert_same(figures, k, one_by_one(replace(axis, friction=friction), 0.002, 0.0, InitialState(), 4.0))
+
+
+def test_friction_of_one_direction_changes_alone_or_with_the_other() -> None:
+    both = paper_axis(RIGID)
+    back = replace(both.friction, static=replace(both.friction.static, limit=0.3))
+    sided = replace(both, friction=replace(both.friction, backward=back))
+    for axis, limits in ((both, (0.2, 0.2)), (sided, (0.2, 0.3))):   # one friction for both, or one for each
+        figures = run_batch(axis, 3.0, drive_velocity=[0.002, -0.002], static_limit=0.2)
+        assert figures.break_away_force[0] < 0.2 * 3432.3275
+        first = run_batch(axis, 1.2, drive_velocity=[0.002, -0.002], static_limit=0.2).first_break_away
+        load = [limit * 3432.3275 - 4000.0 * 0.002 for limit in limits]
+        assert first == pytest.approx([force / 6e5 / 0.002 for force in load], rel=1e-12)
 
 
 @pytest.mark.parametrize('threads', [1, 2, 3, 7])
@@ -126,6 +165,14 @@ def test_a_number_stands_for_all_axes() -> None:
     ({'static_initial': [0.12, 0.1]}, 'static_initial', '0.1'),
     ({'static_limit': 0.11}, 'static_limit', '0.11'),
     ({'contact_stiffness': 5e6}, 'contact_stiffness', 'given'),
+    ({'kinetic_coefficients': [0.12, 0.05]}, 'kinetic_coefficients', 'shape (2,)'),
+    ({'kinetic_coefficients': [[0.12, 0.05], [0.12, -0.1]]}, 'kinetic_coefficients', '-0.1'),
+    ({'kinetic_coefficients': [[0.12, 0.05, 0.01]]}, 'kinetic_coefficients', '3'),
+    ({'kinetic_velocities': [[0.0, 0.01], [0.0, 0.0]]}, 'kinetic_velocities', 'index 1'),
+    ({'kinetic_coefficients': [[0.13, 0.05]]}, 'static_initial', '0.12'),
+    ({'kinetic_backward_coefficients': [[0.13, 0.05]]}, 'static_backward_initial', '0.12'),
+    ({'static_backward_limit': [0.2, 0.1]}, 'static_backward_limit', '0.1'),
+    ({'kinetic_stribeck_velocity': 0.01}, 'kinetic_stribeck_velocity', 'table'),
     ({'weight': 1.0}, 'weight', 'given')])
 def test_what_has_no_meaning_is_refused_by_name(changes: dict[str, Any], name: str, value: str) -> None:
     with pytest.raises(InputError) as refused:

@@ -240,7 +240,7 @@ def test_a_smooth_law_decides_by_its_own_slope() -> None:
 def test_beyond_the_last_breakpoint_the_segment_has_no_end() -> None:
     changes = {'friction.kinetic.end_slope': 0.5, 'drive.velocity': 0.05, 'axis.drive_damping': 0.0}
     [fact] = [table_fact(load_scene('paper_fig7', changes).values, 'axis.normal_force', 1e3, 1e-9, from_sliding=True)]
-    assert fact == (True, 1e3, None, 0.035, math.inf)
+    assert fact == (True, 1e3, None, 0.035, math.inf, 'friction.kinetic.velocities')
 
 
 def test_the_tool_names_breakpoint_and_segment(capsys: Capture) -> None:

@@ -142,9 +142,8 @@ def _tabulated(scene: Scene) -> Scene:
     """Return a scene whose adaptive solver takes the table of mu_k as the others do: solvers are compared, not laws."""
     if scene.solver.name != 'adaptive':
         return scene
-    friction = scene.axis.friction
-    return replace(scene, axis=replace(scene.axis, friction=replace(friction, kinetic=replace(friction.kinetic,
-                                                                                            law=None))))
+    friction = scene.axis.friction.with_tables(lambda table: replace(table, law=None))
+    return replace(scene, axis=replace(scene.axis, friction=friction))
 
 
 def _prepared(scene: Scene, duration: float) -> Callable[[], Outcome]:

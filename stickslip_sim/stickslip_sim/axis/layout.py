@@ -17,9 +17,10 @@ from .fields import RowOf, filled, names_of, numbers_in, places_of, record_field
 
 @dataclass(slots=True)
 class Segment:
-    """A segment of the friction tables: from its breakpoint up to the next one."""
+    """A segment of the friction tables of one direction: from its breakpoint up to the next one."""
 
     speed: float = 0.0       # m/s, of the breakpoint
+    end: float = 0.0         # m/s, of the next one, infinite where there is none
     friction: float = 0.0    # mu_k there
     psi: float = 0.0         # and the share of the excess E
     slope: float = 0.0       # s/m, of mu_k
@@ -28,7 +29,11 @@ class Segment:
 
 @dataclass(slots=True, init=False)
 class Parameters:
-    """The parameters of an axis, from the numbers of `pack`: these fields, then those of each segment."""
+    """The parameters of an axis, from the numbers of `pack`: these fields, then those of each segment.
+
+    The segments forwards come first, each breakpoint from standstill on; where friction depends on the direction those
+    backwards follow.  A segment's index so says the direction, too.
+    """
 
     mass: float               # kg
     stiffness: float          # N/m, of the drive
@@ -41,14 +46,20 @@ class Parameters:
     arrest_share: float       # of the friction force, that a compliant contact carries as stick begins: 1, or 0
     judges_drive: float       # 1 where such a stick ends by the drive's force, 0 where by that of the contact
     static_law: float         # `friction.StaticLawKind`
-    static_initial: float     # mu_s at rest time 0
+    static_initial: float     # mu_s at rest time 0, forwards: against a force along +x
     static_limit: float       # mu_s at infinite rest time
     static_tau: float         # s
     static_exponent: float    # of Kato's law
     static_delay: float       # s of rest before mu_s begins to grow
     branches: float           # 1 where friction depends on the sign of the acceleration, 0 elsewhere
-    end_slope: float          # s/m, of mu_k beyond the last breakpoint
-    segment_count: float
+    end_slope: float          # s/m, of mu_k forwards beyond the last breakpoint
+    segment_count: float      # of both directions
+    sided: float              # 1 where friction depends on the direction, 0 elsewhere
+    backward_initial: float   # mu_s backwards, as the four numbers above
+    backward_limit: float
+    backward_tau: float
+    backward_exponent: float
+    backward_segment: float   # index of the first segment backwards; 0: the same table
     segments: list[Segment]
 
     def __init__(self, numbers: Sequence[float]) -> None:
@@ -186,7 +197,7 @@ class State:
     fraction: float           # s
     mode: float               # `types.Mode`
     direction: float          # of the slip: 1, −1, in stick 0
-    segment: float            # of the friction tables, its index
+    segment: float            # of the friction tables, its index among those of both directions
     position: float           # m, from `origin`
     drive: float              # m, position of the drive from `origin`
     spring: float             # m, drive position − position
@@ -245,5 +256,6 @@ STATE_PLACES = places_of(State)
 
 # where the numbers of `pack` stand
 (MASS, STIFFNESS, DAMPING, _, NORMAL, COMPLIANT, CONTACT_STIFFNESS, CONTACT_DAMPING, _, _, STATIC_LAW, STATIC_INITIAL,
- STATIC_LIMIT, STATIC_TAU, STATIC_EXPONENT, _, BRANCHES, END_SLOPE, SEGMENT_COUNT, TABLE) = range(20)
+ STATIC_LIMIT, STATIC_TAU, STATIC_EXPONENT, _, BRANCHES, END_SLOPE, SEGMENT_COUNT, SIDED, BACKWARD_INITIAL,
+ BACKWARD_LIMIT, BACKWARD_TAU, BACKWARD_EXPONENT, BACKWARD_SEGMENT, TABLE) = range(26)
 SEGMENT_SIZE = len(SEGMENT_FIELDS)

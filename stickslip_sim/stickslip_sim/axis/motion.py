@@ -15,6 +15,9 @@ with w = s − x, and b the slope of the friction branch on the present segment 
 slideway there is no h v.  Sines in v and F_e add their own answer, see `sinusoids`.
 """
 
+import math
+from typing import NamedTuple
+
 from ..core.hot_path import compiled, inlined
 from ..core.types import Mode
 from ..friction.static import static_coefficient
@@ -36,34 +39,82 @@ _LONG_RING = 1e10      # (ω t)², beyond which the third power of the distance 
 _SPLIT = 131073.0      # splits off the upper 36 bits of a number (Dekker 1971)
 
 
+class StaticNumbers(NamedTuple):
+    """The numbers of the static law in one direction: mu_0, mu_inf, tau in s, Kato's exponent."""
+
+    initial: float
+    limit: float
+    tau: float
+    exponent: float
+
+
 @inlined
-def static_limit(p: Parameters, rest: float) -> float:
-    """Return mu_s after the rest time."""
-    return static_coefficient(p.static_law, p.static_initial, p.static_limit, p.static_tau, p.static_exponent,
+def static_numbers(p: Parameters, side: float) -> StaticNumbers:
+    """Return the numbers of the static law against a force of this sign."""
+    if side < 0.0 and p.sided != 0.0:
+        return StaticNumbers(p.backward_initial, p.backward_limit, p.backward_tau, p.backward_exponent)
+    return StaticNumbers(p.static_initial, p.static_limit, p.static_tau, p.static_exponent)
+
+
+@inlined
+def static_limit(p: Parameters, rest: float, side: float) -> float:
+    """Return mu_s after the rest time, against a force of this sign."""
+    of = static_numbers(p, side)
+    return static_coefficient(p.static_law, of.initial, of.limit, of.tau, of.exponent,
                               max(rest - p.static_delay, 0.0))
 
 
 @inlined
-def segment_above(p: Parameters, speed: float) -> int:
+def limit_backwards(p: Parameters, rest: float, forwards: float) -> float:
+    """Return mu_s backwards after the rest time, given that forwards: the same, where there is no difference."""
+    return static_limit(p, rest, -1.0) if p.sided != 0.0 else forwards
+
+
+@inlined
+def lower_limit(p: Parameters, rest: float) -> float:
+    """Return mu_s after the rest time, the smaller one of both directions."""
+    limit = static_limit(p, rest, 1.0)
+    return min(limit, limit_backwards(p, rest, limit))
+
+
+@inlined
+def static_at_once(p: Parameters, side: float) -> float:
+    """Return mu_s at rest time 0 against a force of this sign."""
+    return p.backward_initial if side < 0.0 else p.static_initial
+
+
+@inlined
+def first_segment(p: Parameters, direction: float) -> int:
+    """Return the index of the segment of the tables at standstill, for motion in a direction."""
+    return int(p.backward_segment) if direction < 0.0 else 0
+
+
+@inlined
+def segment_above(p: Parameters, direction: float, speed: float) -> int:
     """Return the index of the table's segment that goes up from a speed: a breakpoint belongs to the one above it."""
-    segment = 0
-    for i in range(1, int(p.segment_count)):
-        if p.segments[i].speed <= speed:
-            segment = i
+    segment = first_segment(p, direction)
+    while p.segments[segment].end <= speed < math.inf:
+        segment += 1
     return segment
 
 
 @inlined
-def segment_below(p: Parameters, speed: float) -> int:
+def segment_below(p: Parameters, direction: float, speed: float) -> int:
     """Return the index of the table's segment that goes down from a speed: a breakpoint belongs to the one below it."""
-    segment = segment_above(p, speed)
-    return segment - 1 if segment > 0 and p.segments[segment].speed == speed else segment
+    segment = segment_above(p, direction, speed)
+    return segment - 1 if speed > 0.0 and p.segments[segment].speed == speed else segment
 
 
 @inlined
 def breakpoint_speed(p: Parameters, segment: int) -> float:
-    """Return the speed of a breakpoint."""
+    """Return the speed at which a segment begins: 0 at standstill."""
     return p.segments[segment].speed
+
+
+@inlined
+def segment_end(p: Parameters, segment: int) -> float:
+    """Return the speed of the breakpoint at which a segment ends, infinity for the last one of its direction."""
+    return p.segments[segment].end
 
 
 @inlined
@@ -81,9 +132,9 @@ def is_rigid_stick(p: Parameters, s: State) -> bool:
 
 
 @inlined
-def kinetic_at_rest(p: Parameters) -> float:
-    """Return mu_k(0)."""
-    return p.segments[0].friction
+def kinetic_at_rest(p: Parameters, direction: float) -> float:
+    """Return mu_k(0) in a direction."""
+    return p.segments[first_segment(p, direction)].friction
 
 
 @inlined

@@ -3,8 +3,8 @@
 """One feed axis: its parameters, checked, and as the flat array that the compiled code reads."""
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 from ..core import ranges
 from ..core.errors import InputError
@@ -38,18 +38,61 @@ class CompliantContact:
 
 @dataclass(frozen=True, slots=True)
 class Friction:
-    """Static law, kinetic table, and the acceleration dependence (`excess`, or None for the conventional Fig. 3)."""
+    """Static law, kinetic table, and the acceleration dependence (`excess`, or None for the conventional Fig. 3).
+
+    `backward` is the friction of motion along −x where that differs, None where both directions have the same.  The law
+    of static friction, and whether friction depends on the acceleration, must be the same both ways.
+    """
 
     static: StaticLaw
     kinetic: KineticTable
     excess: ExcessTable | None
+    backward: 'Friction | None' = None
 
     def __post_init__(self) -> None:
-        at_rest = self.kinetic.coefficients[0]
-        if at_rest > self.static.initial:
-            raise InputError('friction.kinetic.' + ('initial' if self.kinetic.law else 'coefficients[0]'), at_rest,
-                             f'<= friction.static.initial ({self.static.initial!r})',
-                             'kinetic friction at rest cannot exceed static friction: lower it or raise static.initial')
+        _check_at_rest(self, '')
+        back = self.backward
+        if back is None:
+            return
+        if back.backward is not None:
+            raise InputError('friction.backward', 'friction of two directions', 'the friction of one direction',
+                             'give it without a backward of its own')
+        if back.static.kind != self.static.kind:
+            raise InputError('friction.static.backward', back.static.kind.name.lower(),
+                             f'the same law as forwards, {self.static.kind.name.lower()}', 'its numbers may differ')
+        if (back.excess is None) != (self.excess is None):
+            raise InputError('friction.excess.backward', back.excess, 'given in both directions or in none',
+                             'friction.acceleration_dependence is for both')
+        _check_at_rest(back, 'backward.')
+
+    def along(self, direction: float) -> 'Friction':
+        """Return the friction of motion, or against a force, in a direction: its sign, 0 as forwards."""
+        return self.backward if direction < 0.0 and self.backward is not None else self
+
+    @property
+    def sides(self) -> 'tuple[Friction, ...]':
+        """The friction of each direction, forwards first: one where both have the same."""
+        return (self,) if self.backward is None else (replace(self, backward=None), self.backward)
+
+    def with_tables(self, change: Callable[[KineticTable], KineticTable]) -> 'Friction':
+        """Return this friction with another table of mu_k in each direction."""
+        return replace(self, kinetic=change(self.kinetic),
+                       backward=self.backward and self.backward.with_tables(change))
+
+    @property
+    def mirrored(self) -> 'Friction':
+        """The friction of the same axis with x turned round."""
+        return self if self.backward is None else replace(self.backward, backward=replace(self, backward=None))
+
+
+def _check_at_rest(friction: Friction, side: str) -> None:
+    """Raise InputError when the friction of a side ('' or 'backward.') falls as motion stops."""
+    kinetic, static = friction.kinetic, friction.static
+    if kinetic.coefficients[0] > static.initial:
+        raise InputError(f'friction.kinetic.{side}' + ('initial' if kinetic.law else 'coefficients[0]'),
+                         kinetic.coefficients[0], f'<= friction.static.{side}initial ({static.initial!r})',
+                         f'kinetic friction at rest cannot exceed static friction: lower it or raise '
+                         f'static.{side}initial')
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,7 +160,8 @@ def check_start(axis: Axis, initial: InitialState, load: float = 0.0) -> None:
         raise InputError('initial.deflection', initial.deflection, '0 with a rigid contact',
                          'leave it out, or use contact.type: compliant')
     force = axis.contact.stiffness * initial.deflection + axis.contact.damping * initial.velocity
-    limit = (axis.normal_force + load) * axis.friction.static.coefficient(initial.rest_time)
+    static = axis.friction.along(force).static
+    limit = (axis.normal_force + load) * static.coefficient(initial.rest_time)
     if not abs(force) <= limit:
         raise InputError('initial.deflection', initial.deflection,
                          f'such that the contact carries at most N mu_s = {limit:g} N; it would carry {force:g} N',
@@ -127,13 +171,16 @@ def check_start(axis: Axis, initial: InitialState, load: float = 0.0) -> None:
 def pack(axis: Axis) -> Sequence[float]:
     """Return the parameters in the order of `layout`."""
     contact = axis.contact if isinstance(axis.contact, CompliantContact) else None
-    static, kinetic, excess = axis.friction.static, axis.friction.kinetic, axis.friction.excess
-    breakpoints = merged_breakpoints(kinetic, excess)
+    friction = axis.friction
+    static, back = friction.static, friction.along(-1.0).static
+    tables = [merged_breakpoints(side.kinetic, side.excess) for side in friction.sides]
     return [axis.mass, axis.drive_stiffness, axis.drive_damping, axis.feed_share, axis.normal_force,
             float(contact is not None), contact.stiffness if contact else 0.0, contact.damping if contact else 0.0,
             0.0 if contact is not None and contact.undeflected else 1.0,
             float(contact is not None and contact.judges_drive),
             float(static.kind), static.initial, static.limit, static.time_constant, static.exponent,
             static.delay,
-            float(excess is not None), kinetic.end_slope, float(len(breakpoints)),
-            *(number for breakpoint in breakpoints for number in breakpoint)]
+            float(friction.excess is not None), friction.kinetic.end_slope, float(sum(map(len, tables))),
+            float(friction.backward is not None), back.initial, back.limit, back.time_constant, back.exponent,
+            float(len(tables[0])) if friction.backward is not None else 0.0,
+            *(number for table in tables for breakpoint in table for number in breakpoint)]

@@ -25,6 +25,7 @@ from .motion import (
     segment_above,
     segment_below,
     stated_drive_force,
+    static_at_once,
     static_limit,
 )
 from .rows import Events
@@ -113,12 +114,12 @@ def choose_slip(p: Parameters, s: State, residual: float, lower: float, toleranc
         residual = 0.0
     if residual > 0.0 or (residual == 0.0 and (rate > 0.0 or (rate == 0.0 and second_rate > 0.0))):
         s.mode = ACCELERATING
-        s.segment = segment_above(p, speed)
+        s.segment = segment_above(p, direction, speed)
         s.acceleration = direction * residual / p.mass
         return True
     if speed == 0.0:
         return False
-    segment = segment_above(p, speed)
+    segment = segment_above(p, direction, speed)
     coefficient, _, psi, _ = friction_line(p, segment, speed)
     band = p.normal_force * s.excess * psi
     if abs(lower) <= min(tolerance, force_rounding(p, s, coefficient)):
@@ -131,7 +132,7 @@ def choose_slip(p: Parameters, s: State, residual: float, lower: float, toleranc
         s.acceleration = 0.0
         return True
     s.mode = DECELERATING
-    s.segment = segment_below(p, speed)
+    s.segment = segment_below(p, direction, speed)
     s.acceleration = direction * lower / p.mass
     return True
 
@@ -151,7 +152,7 @@ def break_away(p: Parameters, s: State, direction: float, limit: float, margin: 
     ended, friction drops to mu_k at once.
     """
     speed = abs(s.velocity)
-    coefficient, _, psi, _ = friction_line(p, segment_above(p, speed), speed)
+    coefficient, _, psi, _ = friction_line(p, segment_above(p, direction, speed), speed)
     s.excess = 0.0
     s.direction = direction
     tolerance = force_rounding(p, s, limit)
@@ -177,7 +178,7 @@ def rest(p: Parameters, s: State) -> None:
     s.acceleration = 0.0
     s.deflection = 0.0
     if p.compliant != 0.0:
-        friction = s.direction * p.normal_force * kinetic_at_rest(p) * p.arrest_share
+        friction = s.direction * p.normal_force * kinetic_at_rest(p, s.direction) * p.arrest_share
         s.deflection = friction / p.contact_stiffness
         s.acceleration = (applied_force(p, s) - friction) / p.mass
     s.direction = 0.0
@@ -187,16 +188,16 @@ def rest(p: Parameters, s: State) -> None:
 def arrest(p: Parameters, s: State, events: Events, row: int) -> None:
     """End a slip at standstill: stick, or reverse at once where a rigid contact cannot hold the force."""
     s.velocity = 0.0
-    friction = s.direction * p.normal_force * kinetic_at_rest(p)
+    friction = s.direction * p.normal_force * kinetic_at_rest(p, s.direction)
     force = applied_force(p, s)
-    limit = static_limit(p, 0.0)
+    direction = 1.0 if force > 0.0 else -1.0
+    limit = static_at_once(p, direction)
     margin = abs(force) - p.normal_force * limit
     if holds_by_drive(p) and margin > force_rounding(p, s, limit):
-        direction = 1.0 if force > 0.0 else -1.0
         write_event(p, s, events, row, REVERSE, direction, friction, limit)
         break_away(p, s, direction, limit, margin)
     else:
-        write_event(p, s, events, row, ARREST, s.direction, friction, limit)
+        write_event(p, s, events, row, ARREST, s.direction, friction, static_at_once(p, s.direction))
         rest(p, s)
     events.rows[row].mode = s.mode
 
@@ -205,9 +206,9 @@ def arrest(p: Parameters, s: State, events: Events, row: int) -> None:
 def release(p: Parameters, s: State, events: Events, row: int) -> None:
     """Begin a slip from stick, where |F| has reached N mu_s(t⁻)."""
     force = stick_force(p, s)
-    limit = static_limit(p, s.rest)
     direction = _direction_out(p, s, force)
-    margin = abs(force) - p.normal_force * limit
+    limit = static_limit(p, s.rest, direction)
+    margin = direction * force - p.normal_force * limit
     if margin <= force_rounding(p, s, limit):
         margin = 0.0
     friction = direction * p.normal_force * limit
@@ -221,8 +222,13 @@ def release(p: Parameters, s: State, events: Events, row: int) -> None:
 
 @compiled
 def _direction_out(p: Parameters, s: State, force: float) -> float:
-    """Return the direction in which stick breaks; where nothing acts yet, that of the next derivative."""
+    """Return the direction in which stick breaks: of the nearer limit; where nothing acts yet, of the next derivative.
+
+    The force is nearer to the limit of its own side of the middle between both, which is 0 where they are equal.
+    """
     rate, second_rate = force_rate(p, s)
+    if p.sided != 0.0:
+        force -= 0.5 * p.normal_force * (static_limit(p, s.rest, 1.0) - static_limit(p, s.rest, -1.0))
     push = force if abs(force) > force_rounding(p, s, 0.0) else 0.0
     if push == 0.0 and p.compliant != 0.0:
         push = s.velocity if s.velocity != 0.0 else s.acceleration
@@ -253,7 +259,7 @@ def turn(p: Parameters, s: State, events: Events, row: int) -> None:
     else:
         enter_branch(p, s, ACCELERATING)
         kind = ACCELERATE
-    write_event(p, s, events, row, kind, direction, friction, p.static_initial)
+    write_event(p, s, events, row, kind, direction, friction, static_at_once(p, direction))
     events.rows[row].mode = s.mode
 
 
@@ -262,14 +268,15 @@ def enter_branch(p: Parameters, s: State, mode: float) -> None:
     """Begin to accelerate or decelerate with no acceleration yet."""
     s.mode = mode
     speed = abs(s.velocity)
-    s.segment = segment_above(p, speed) if mode == ACCELERATING else segment_below(p, speed)
+    s.segment = (segment_above(p, s.direction, speed) if mode == ACCELERATING
+                 else segment_below(p, s.direction, speed))
     s.acceleration = 0.0
 
 
 @inlined
 def leave_coast(p: Parameters, s: State, events: Events, row: int, kind: float) -> None:
     """Leave the coasting band: upwards to accelerate, downwards to decelerate."""
-    write_event(p, s, events, row, kind, s.direction, applied_force(p, s), p.static_initial)
+    write_event(p, s, events, row, kind, s.direction, applied_force(p, s), static_at_once(p, s.direction))
     enter_branch(p, s, ACCELERATING if kind == ACCELERATE else DECELERATING)
     events.rows[row].mode = s.mode
 
@@ -290,7 +297,7 @@ def cross_breakpoint(p: Parameters, s: State, events: Events, row: int, before: 
         coefficient += s.excess * psi
     friction = s.direction * p.normal_force * coefficient
     s.velocity = s.direction * speed
-    write_event(p, s, events, row, KNOT, s.direction, friction, p.static_initial)
+    write_event(p, s, events, row, KNOT, s.direction, friction, static_at_once(p, s.direction))
     s.segment += step
     if lost > _MUCH * p.normal_force * coefficient and _ROUNDING * lost > _MUCH * force_rounding(p, s, coefficient):
         s.acceleration = (applied_force(p, s) - friction) / p.mass
@@ -309,7 +316,7 @@ def apply_inputs(p: Parameters, s: State, events: Events, row: int) -> bool:
     if direction * s.velocity < 0.0:   # standstill is due, and passed by rounding alone
         s.velocity = 0.0
     speed = abs(s.velocity)
-    coefficient, _, psi, _ = friction_line(p, segment_above(p, speed), speed)
+    coefficient, _, psi, _ = friction_line(p, segment_above(p, direction, speed), speed)
     upper = coefficient + s.excess * psi
     push = direction * applied_force(p, s)
     residual, lower = push - p.normal_force * upper, push - p.normal_force * coefficient
@@ -320,7 +327,7 @@ def apply_inputs(p: Parameters, s: State, events: Events, row: int) -> bool:
         return False
     kind = COAST if s.mode == COASTING else (ACCELERATE if s.mode == ACCELERATING else DECELERATE)
     friction = friction_force(p, s, 0.0, s.velocity, applied_force(p, s))
-    write_event(p, s, events, row, kind, direction, friction, p.static_initial)
+    write_event(p, s, events, row, kind, direction, friction, static_at_once(p, direction))
     events.rows[row].mode = s.mode
     return True
 
@@ -330,9 +337,9 @@ def _press_stick(p: Parameters, s: State, events: Events, row: int) -> bool:
     force = stick_force(p, s)
     if p.compliant != 0.0:
         s.acceleration = (applied_force(p, s) - contact_force(p, s.deflection, s.velocity)) / p.mass
-    if abs(force) <= p.normal_force * p.static_initial:
+    if abs(force) <= p.normal_force * static_at_once(p, force):
         return False
-    limit = static_limit(p, s.rest)
+    limit = static_limit(p, s.rest, force)
     if abs(force) - p.normal_force * limit <= force_rounding(p, s, limit):
         return False
     release(p, s, events, row)

@@ -80,7 +80,7 @@ def _table_lines(scene: 'Scene', found: 'Critical', unit: str, digits: int) -> l
         start = 'sliding' if fact.from_sliding else 'rest'
         which = f'{"by the table":14} {fact.value:.{digits}g}{unit} from {start}: '
         if fact.breakpoint is not None:
-            lines.append(f'{which}the feed is a breakpoint, friction.kinetic.velocities[{fact.breakpoint}]; '
+            lines.append(f'{which}the feed is a breakpoint, {fact.table}[{fact.breakpoint}]; '
                          'there the slope of mu_k jumps')
         else:
             end = 'm/s on' if math.isinf(fact.high) else f'to {fact.high:g} m/s'

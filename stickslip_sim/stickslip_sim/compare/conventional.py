@@ -7,6 +7,7 @@ from contextlib import suppress
 from ..core.errors import InputError
 from ..runs import Run
 from ..scene import Scene, changed
+from ..scene.friction_schema import BACKWARD
 from ..scene.load import unscaled
 from .look import look_at
 
@@ -30,9 +31,14 @@ def characteristics_beside(scene: Scene) -> dict[str, Scene]:
     What the scene cannot have is left out: one without a falling branch has no limit velocity for the others.
     """
     conventional = {'friction.acceleration_dependence': False}
-    kinetic = unscaled(scene).axis.friction.kinetic
-    constant = {f'{_KINETIC}.law': 'table', f'{_KINETIC}.velocities': (0.0,),
-                f'{_KINETIC}.coefficients': (kinetic.coefficients[0],), f'{_KINETIC}.end_slope': 0.0}
+    friction = unscaled(scene).axis.friction
+    kinetic, back = friction.kinetic, friction.along(-1.0).kinetic
+    constant: dict[str, object] = {
+        f'{_KINETIC}.law': 'table', f'{_KINETIC}.velocities': (0.0,),
+        f'{_KINETIC}.coefficients': (kinetic.coefficients[0],), f'{_KINETIC}.end_slope': 0.0}
+    if friction.backward is not None:
+        constant |= dict.fromkeys(name for name in scene.values if name.startswith(f'{_KINETIC}.{BACKWARD}.'))
+        constant[f'{_KINETIC}.{BACKWARD}.coefficients'] = (back.coefficients[0],)
     found = {'constant kinetic friction': changed(scene, {**conventional, **constant})}
     if len(set(kinetic.coefficients)) > 1:
         found['falling kinetic friction'] = changed(scene, conventional)

@@ -15,11 +15,11 @@ _EQUAL = 1e-3   # relative; the exact solver has rounding only, others their ste
 def judge(run: Run, _: Sequence[object]) -> Finding:
     """Compare the first break-away of a run that begins after prolonged rest with those that follow."""
     axis = run.scene.axis
-    law = axis.friction.static
     break_aways = [event for event in run.events if _is_break_away(event)]
     if not break_aways:
         return not_applicable('no break-away')
     first, *later = break_aways
+    law = axis.friction.along(first.friction_force).static
     if not math.isinf(first.rest_time):
         return not_applicable(f'the first break-away follows a rest of {first.rest_time:.4g} s, not a prolonged one')
     if law.coefficient(math.inf) == law.initial or axis.normal_force == 0.0:

@@ -27,8 +27,9 @@ def judge(run: Run, _: Sequence[object]) -> Finding:
     axis = run.scene.axis
     spring = axis.drive_stiffness * (first['drive_position'] - first['position'])
     outside = first[APPLIED]
-    limit = run.scene.normal_force.value_at(0.0) * axis.friction.static.coefficient(first['rest_time'])
     held = first['friction_force'] if isinstance(axis.contact, CompliantContact) else spring + outside
+    static = axis.friction.along(held).static
+    limit = run.scene.normal_force.value_at(0.0) * static.coefficient(first['rest_time'])
     open_by = abs(spring + outside - held)
     text = f'drive spring {spring:.6g} N, outside {outside:.6g} N, contact {held:.6g} N of at most {limit:.6g} N'
     balanced = open_by <= _EQUAL * max(abs(spring), abs(outside), limit) and abs(held) <= (1.0 + _EQUAL) * limit

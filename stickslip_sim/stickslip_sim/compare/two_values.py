@@ -49,7 +49,7 @@ def judge(run: Run, found_gaps: Sequence[list[_Gap]]) -> Finding:
 
 def _is_raised(part: RunPart, begin: Event, _: Event) -> bool:
     """Whether static friction at the break-away is above kinetic friction, so that there is a second branch."""
-    kinetic = part.scene.axis.friction.kinetic.coefficient(abs(begin.velocity))
+    kinetic = part.scene.axis.friction.along(begin.direction).kinetic.coefficient(abs(begin.velocity))
     return begin.kind == EventKind.BREAKAWAY and begin.static_coefficient > (1.0 + _GAP) * kinetic
 
 

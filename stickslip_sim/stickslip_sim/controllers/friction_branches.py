@@ -64,7 +64,8 @@ class BranchCompensation:
     def _missing_force(self, slide: Slide, speed_up: bool, measured: Measured) -> float:
         """Return by how much the force must change along the slide to get to the other branch, N."""
         force = slide.direction * self.drive_force(measured)
-        friction = self.axis.friction.kinetic.coefficient(abs(measured.slider_velocity))
+        of_slide = self.axis.friction.along(slide.direction)
+        friction = of_slide.kinetic.coefficient(abs(measured.slider_velocity))
         lower = self.axis.normal_force * friction
         gap = max(slide.peak_force - lower, 0.0)
         if speed_up:

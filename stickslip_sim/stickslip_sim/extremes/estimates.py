@@ -71,9 +71,8 @@ def _scenes(setup: Setup) -> Iterator[Scene]:
 
 def _with_table(scene: Scene) -> Scene:
     """Return the scene with the table for all solvers, which is what the reference knows, also where it has a law."""
-    friction = scene.axis.friction
-    return replace(scene, axis=replace(scene.axis, friction=replace(friction, kinetic=replace(friction.kinetic,
-                                                                                              law=None))))
+    friction = scene.axis.friction.with_tables(lambda table: replace(table, law=None))
+    return replace(scene, axis=replace(scene.axis, friction=friction))
 
 
 def _settings(setup: Setup) -> Iterator[SolverSettings]:

@@ -23,8 +23,8 @@ MAX_BREAKPOINTS = 1000   # a table is walked at every break-away, within a step
 class KineticTable:
     """mu_k(|ẋ|): breakpoints `velocities` in m/s and `coefficients`; `end_slope` in s/m beyond the last breakpoint.
 
-    A table made by `tables.kinetic_table` carries the smooth `law` that it stands for, and its `error`, the largest
-    difference to that law at any speed.
+    A table made by `tables.kinetic_table` carries the smooth `law` that it stands for, its `error`, the largest
+    difference to that law at any speed, and the `tolerance` that was asked for.
     """
 
     velocities: tuple[float, ...]
@@ -32,6 +32,7 @@ class KineticTable:
     end_slope: float = 0.0
     law: SmoothKinetic | None = None
     error: float = 0.0
+    tolerance: float = 0.0
 
     def __post_init__(self) -> None:
         name = 'friction.kinetic'
@@ -89,16 +90,18 @@ class ExcessTable:
 
 def merged_breakpoints(
     kinetic: KineticTable, excess: ExcessTable | None
-) -> list[tuple[float, float, float, float, float]]:
-    """Return (velocity, mu_k, psi) at every breakpoint of the two tables, and the slopes of mu_k and psi above, s/m.
+) -> list[tuple[float, float, float, float, float, float]]:
+    """Return (velocity, the next one, mu_k, psi) at every breakpoint of the two tables, and both slopes above, s/m.
 
-    The slopes are those of the given tables: between breakpoints of both, close together, the difference of two rounded
-    coefficients would have few digits.  psi is 0 without an excess.
+    Behind the last breakpoint the next velocity is infinite.  The slopes are those of the given tables: between
+    breakpoints of both, close together, the difference of two rounded coefficients would have few digits.  psi is 0
+    without an excess.
     """
     speeds = sorted({*kinetic.velocities, *(excess.velocities if excess else ())})
-    return [(v, kinetic.coefficient(v), excess.fraction(v) if excess else 0.0,
+    return [(v, end, kinetic.coefficient(v), excess.fraction(v) if excess else 0.0,
              _slope_above(kinetic.velocities, kinetic.coefficients, v, kinetic.end_slope),
-             _slope_above(excess.velocities, excess.fractions, v, 0.0) if excess else 0.0) for v in speeds]
+             _slope_above(excess.velocities, excess.fractions, v, 0.0) if excess else 0.0)
+            for v, end in pairwise((*speeds, math.inf))]
 
 
 def default_excess(kinetic: KineticTable) -> ExcessTable:

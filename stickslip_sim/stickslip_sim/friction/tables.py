@@ -27,8 +27,8 @@ def kinetic_table(law: SmoothKinetic, tolerance: float) -> KineticTable:
     values[0] = law.initial
     error = table_error(law.coefficient, law.slope, law.inflection, list(zip(speeds, values)))
     tail = abs(scale) * law.shape.value(breakpoints[-1][0]) if scale else 0.0
-    return KineticTable(tuple(speeds), tuple(values), law.viscous, law,
-                        _checked(name, tolerance, max(error, tail)))
+    return KineticTable(tuple(speeds), tuple(values), law.viscous, law, _checked(name, tolerance, max(error, tail)),
+                        tolerance)
 
 
 def excess_table(law: SmoothExcess, tolerance: float) -> ExcessTable:

@@ -219,21 +219,21 @@ class _Automaton:
         slip = self._slip()
         if slip.phase == COAST:
             return ACCELERATE if upward else DECELERATE
-        if self.physics.band(slip.excess, abs(self.state.velocity)) > self.physics.tiny(self.state):
+        if self.physics.band(slip.direction, slip.excess, abs(self.state.velocity)) > self.physics.tiny(self.state):
             return COAST
         return ACCELERATE if upward else DECELERATE
 
     def _change_phase(self, phase: str) -> None:
         old = self._slip()
-        segment = self.physics.locate(abs(self.state.velocity), phase == ACCELERATE)
+        segment = self.physics.side(old.direction).locate(abs(self.state.velocity), phase == ACCELERATE)
         self.mode = replace(old, phase=phase, segment=segment, silent=False)
         if not (old.silent and phase == ACCELERATE):
             self._emit(phase, old.direction, self.physics.friction(self.mode, self.state))
 
     def _cross_breakpoint(self, sense: int) -> None:
         slip = self._slip()
-        bound_of = self.physics.upper_breakpoint if sense > 0 else self.physics.lower_breakpoint
-        bound = bound_of(slip.segment)
+        side = self.physics.side(slip.direction)
+        bound = (side.upper_breakpoint if sense > 0 else side.lower_breakpoint)(slip.segment)
         assert bound is not None
         self.state = self.state._replace(velocity=slip.direction * bound)
         self.mode = replace(slip, segment=slip.segment + sense)
@@ -241,22 +241,21 @@ class _Automaton:
 
     def _enter_slip(self, direction: int, excess: mpf) -> None:
         phase = self.physics.phase(direction, excess, self.state)
-        segment = self.physics.locate(abs(self.state.velocity), phase == ACCELERATE)
+        segment = self.physics.side(direction).locate(abs(self.state.velocity), phase == ACCELERATE)
         self.state = self.state._replace(deflection=mpf(0))
         self.mode = Slip(direction, phase, excess, segment)
 
     def _break_away(self, sign: int) -> None:
-        """Leave the rest at |F| = N mu_s, in the direction of F (of the motion where the slider moves)."""
+        """Leave the rest at |F| = N mu_s on a side, in the direction of F (of the motion where the slider moves)."""
         assert isinstance(self.mode, Stick)
         age = self.mode.rest_time(self.t)
-        static = self.axis.static.value(age)
+        static = self.physics.side(sign).static.value(age)
         direction = self._direction(sign)
-        speed = abs(self.state.velocity)
-        above = self.physics.kinetic_line(self.physics.locate(speed, True)).at(speed) > static
-        self.result.disputed += direction != sign or bool(above)
-        self._enter_slip(direction, self.physics.excess_at(static, speed))
+        speed, side = abs(self.state.velocity), self.physics.side(direction)
+        self.result.disputed += direction != sign or bool(side.kinetic_at(speed) > static)
+        self._enter_slip(direction, side.excess_at(static, speed))
         self._hide_short_coast(static)
-        self._emit('breakaway', direction, sign * self.axis.normal * static, age)
+        self._emit('breakaway', direction, sign * self.axis.normal * static, static, age)
 
     def _direction(self, sign: int) -> int:
         """σ = sign(ẋ); at rest the sign of the force."""
@@ -271,7 +270,7 @@ class _Automaton:
         if slip.phase != COAST or self.axis.by_drive:
             return
         gap = self.physics.surplus(slip.direction, self.state) - self.physics.band(
-            slip.excess, abs(self.state.velocity)
+            slip.direction, slip.excess, abs(self.state.velocity)
         )
         if (
             abs(gap) <= UNSEEN_COAST * self.axis.normal * static
@@ -280,13 +279,14 @@ class _Automaton:
             self.mode = replace(slip, silent=True)
 
     def _arrest(self) -> None:
-        """End a slip at ẋ = 0: reverse at once (|F_d + F_e| > N mu_s(0), where that is judged) or stick."""
+        """End a slip at ẋ = 0: reverse at once (F_d + F_e beyond N mu_s(0) of the other way, if judged) or stick."""
         sigma = self._slip().direction
         self.state = self.state._replace(velocity=mpf(0))
-        static = self.axis.static.value(mpf(0))
-        friction = sigma * self.axis.normal * self.axis.kinetic.values[0]
+        back = self.physics.side(-sigma)
+        static = back.static.value(mpf(0))
+        friction = sigma * self.axis.normal * self.physics.side(sigma).at_rest
         if self.axis.by_drive and self._pulled_back(sigma, static):
-            self._enter_slip(-sigma, self.physics.excess_at(static, mpf(0)))
+            self._enter_slip(-sigma, back.excess_at(static, mpf(0)))
             self._emit('reverse', -sigma, friction)
             return
         if self.axis.contact == 'compliant':
@@ -299,7 +299,8 @@ class _Automaton:
         excess = -sigma * self.physics.net_force(self.state) - self.axis.normal * static
         return bool(excess > self.physics.tiny(self.state))
 
-    def _emit(self, kind: str, direction: int, friction: mpf, rest: mpf = _ZERO) -> None:
+    def _emit(self, kind: str, direction: int, friction: mpf, static: mpf | None = None, rest: mpf = _ZERO) -> None:
+        """List an event; its static coefficient is that of its direction at no rest, if none is given."""
         if len(self.result) >= MOST_EVENTS:
             raise SolverError(f'{MOST_EVENTS} events up to t = {mpmath.nstr(self.t, 17)} s: check the scene')
         self.result.append(
@@ -313,7 +314,7 @@ class _Automaton:
                 self.state.position + self.state.stretch,
                 self.physics.drive_force(self.state),
                 friction,
-                self.axis.static.value(rest),
+                self.physics.side(direction).static.value(_ZERO) if static is None else static,
                 rest,
             )
         )

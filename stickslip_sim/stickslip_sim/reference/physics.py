@@ -18,6 +18,7 @@ from .flow import Expansion, Flow, State
 from .modes import ACCELERATE, COAST, DECELERATE, Mode, Slip, Stick
 from .problem import Line, Problem
 from .series import Series, combine, integral
+from .side import Side
 
 _ONE = mpf(1)
 _TIE_ORDER = 6  # derivatives that may decide a tie under sinusoids
@@ -28,10 +29,10 @@ class Physics:
     """The equations of one axis."""
 
     axis: Problem
-    breakpoints: list[mpf] = field(init=False)
+    sides: tuple[Side, Side] = field(init=False)
 
     def __post_init__(self) -> None:
-        self.breakpoints = self.axis.breakpoints()
+        self.sides = Side(self.axis.forward), Side(self.axis.backward)
 
     # ---- forces -------------------------------------------------------------------------------
 
@@ -78,61 +79,33 @@ class Physics:
     def force_scale(self, state: State) -> mpf:
         """Return a force against which rounding is judged."""
         a = self.axis
-        top = max(max(a.kinetic.values), a.static.initial, a.static.limit)
+        top = max(side.highest for side in self.sides)
         inputs = state.force.reach + a.damping * state.drive.reach
         return a.normal * top + abs(a.stiffness * state.stretch) + inputs
 
-    # ---- friction segments ----------------------------------------------------------------------
+    # ---- friction -------------------------------------------------------------------------------
 
-    def lower_breakpoint(self, segment: int) -> mpf:
-        """Return the speed at which a segment begins."""
-        return self.breakpoints[segment - 1] if segment else mpf(0)
-
-    def upper_breakpoint(self, segment: int) -> mpf | None:
-        """Return the speed at which a segment ends; None for the last one."""
-        return self.breakpoints[segment] if segment < len(self.breakpoints) else None
-
-    def locate(self, speed: mpf, rising: bool) -> int:
-        """Return the segment of a speed; on a breakpoint the sign of the acceleration decides."""
-        tiny = mpf(10) ** (18 - mp.dps)
-        side = tiny if rising else -tiny
-        return sum(1 for k in self.breakpoints if speed >= k * (1 - side))
-
-    def kinetic_line(self, segment: int) -> Line:
-        """Return mu_k(w) on a segment."""
-        return self.axis.kinetic.segment_above(self.lower_breakpoint(segment))
-
-    def psi_line(self, segment: int) -> Line:
-        """Return psi(w) on a segment."""
-        if self.axis.excess is None:
-            return Line(mpf(0), mpf(0))
-        return self.axis.excess.segment_above(self.lower_breakpoint(segment))
+    def side(self, direction: int) -> Side:
+        """Return the friction of motion, or against a force, in a direction."""
+        return self.sides[0 if direction > 0 else 1]
 
     def branch(self, slip: Slip) -> Line:
         """mu(w) of the accelerating or decelerating branch on the slip's segment."""
-        kinetic = self.kinetic_line(slip.segment)
+        side = self.side(slip.direction)
+        kinetic = side.kinetic_line(slip.segment)
         if slip.phase != ACCELERATE or not slip.excess:
             return kinetic
-        psi = self.psi_line(slip.segment)
+        psi = side.psi_line(slip.segment)
         return Line(kinetic.offset + slip.excess * psi.offset, kinetic.slope + slip.excess * psi.slope)
 
     def surplus(self, direction: int, state: State) -> mpf:
         """R = σ (F_d + F_e) - N mu_k(|u|)."""
-        w = abs(state.velocity)
-        mu = self.kinetic_line(self.locate(w, True)).at(w)
+        mu = self.side(direction).kinetic_at(abs(state.velocity))
         return direction * self.net_force(state) - self.axis.normal * mu
 
-    def band(self, excess: mpf, speed: mpf) -> mpf:
+    def band(self, direction: int, excess: mpf, speed: mpf) -> mpf:
         """B = N E psi(w)."""
-        return self.axis.normal * excess * self.psi_line(self.locate(speed, True)).at(speed)
-
-    def excess_at(self, static: mpf, speed: mpf) -> mpf:
-        """E with mu_k(w) + E psi(w) = mu_b; 0 where psi = 0; never negative."""
-        segment = self.locate(speed, True)
-        psi = self.psi_line(segment).at(speed)
-        if not psi > 0:
-            return mpf(0)
-        return max(mpf(0), (static - self.kinetic_line(segment).at(speed)) / psi)
+        return self.axis.normal * excess * self.side(direction).psi_at(speed)
 
     # ---- classification -----------------------------------------------------------------------
 
@@ -166,7 +139,7 @@ class Physics:
     def phase(self, direction: int, excess: mpf, state: State) -> str:
         """Return the sub-mode of a slip; on a border the way R moves decides."""
         surplus, tiny = self.surplus(direction, state), self.tiny(state)
-        band = self.band(excess, abs(state.velocity))
+        band = self.band(direction, excess, abs(state.velocity))
         if surplus > band + tiny:
             return ACCELERATE
         if surplus < -tiny:

@@ -48,6 +48,20 @@ class Table:
 
 
 @dataclass(frozen=True)
+class SideOfProblem:
+    """The friction of one direction; names as in docs/model.md."""
+
+    static: StaticLaw
+    kinetic: Table
+    excess: Table | None
+
+    def breakpoints(self) -> list[mpf]:
+        """Return the speeds above zero at which a friction table bends."""
+        speeds = set(self.kinetic.speeds) | set(self.excess.speeds if self.excess else ())
+        return sorted(k for k in speeds if k > 0)
+
+
+@dataclass(frozen=True)
 class Problem:
     """Everything the automaton needs; names as in docs/model.md.
 
@@ -64,9 +78,8 @@ class Problem:
     contact_damping: mpf
     undeflected: bool
     by_drive: bool
-    static: StaticLaw
-    kinetic: Table
-    excess: Table | None
+    forward: SideOfProblem
+    backward: SideOfProblem
     drive: profiles.InputProfile
     force: profiles.InputProfile
     position: mpf
@@ -75,11 +88,6 @@ class Problem:
     stretch: mpf
     deflection: mpf
     load: profiles.InputProfile | None
-
-    def breakpoints(self) -> list[mpf]:
-        """Return the speeds above zero at which a friction table bends."""
-        speeds = set(self.kinetic.speeds) | set(self.excess.speeds if self.excess else ())
-        return sorted(k for k in speeds if k > 0)
 
 
 def problem(axis: product.Axis, initial: product.InitialState, drive: profiles.InputProfile,
@@ -93,7 +101,6 @@ def problem(axis: product.Axis, initial: product.InitialState, drive: profiles.I
     if normal_force and not normal_force.is_stepwise:
         raise InputError('load', 'one that varies smoothly', 'constant but for jumps', 'the reference knows no other')
     contact = axis.contact if isinstance(axis.contact, product.CompliantContact) else None
-    static = axis.friction.static
     return Problem(
         mass=mpf(axis.mass),
         stiffness=mpf(axis.drive_stiffness),
@@ -105,16 +112,8 @@ def problem(axis: product.Axis, initial: product.InitialState, drive: profiles.I
         contact_damping=mpf(contact.damping if contact else 0.0),
         undeflected=contact is not None and contact.undeflected,
         by_drive=contact is None or contact.judges_drive,
-        static=StaticLaw(
-            static.kind.name.lower(),
-            mpf(static.initial),
-            mpf(static.limit),
-            mpf(static.time_constant),
-            mpf(static.exponent),
-            mpf(static.delay),
-        ),
-        kinetic=_kinetic(axis.friction.kinetic),
-        excess=_excess(axis.friction.excess),
+        forward=_side(axis.friction),
+        backward=_side(axis.friction.backward or axis.friction),
         drive=drive,
         force=force,
         position=mpf(initial.position),
@@ -124,6 +123,13 @@ def problem(axis: product.Axis, initial: product.InitialState, drive: profiles.I
         deflection=mpf(initial.deflection),
         load=normal_force,
     )
+
+
+def _side(friction: product.Friction) -> SideOfProblem:
+    static = friction.static
+    law = StaticLaw(static.kind.name.lower(), mpf(static.initial), mpf(static.limit), mpf(static.time_constant),
+                    mpf(static.exponent), mpf(static.delay))
+    return SideOfProblem(law, _kinetic(friction.kinetic), _excess(friction.excess))
 
 
 def _kinetic(table: KineticTable) -> Table:

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from mpmath import mp, mpf
@@ -57,9 +58,9 @@ def _coast_guards(physics: Physics, slip: Slip, state: State, series: Expansion)
     """0 <= R <= B while u is constant."""
     speed, scale = abs(state.velocity), physics.force_scale(state)
     net = physics.net_series(state, series)
-    friction = physics.axis.normal * physics.kinetic_line(physics.locate(speed, True)).at(speed)
+    friction = physics.axis.normal * physics.side(slip.direction).kinetic_at(speed)
     surplus = combine((mpf(slip.direction), net), (-friction, [mpf(1)]))
-    room = combine((physics.band(slip.excess, speed), [mpf(1)]), (mpf(-1), surplus))
+    room = combine((physics.band(slip.direction, slip.excess, speed), [mpf(1)]), (mpf(-1), surplus))
     return [(SURPLUS_UP, room, scale), (SURPLUS_DOWN, surplus, scale)]
 
 
@@ -70,7 +71,8 @@ def _moving_guards(physics: Physics, slip: Slip, state: State, series: Expansion
     acceleration = [sense * slip.direction * c for c in derivative(series.velocity)]
     scale = physics.force_scale(state) / physics.axis.mass
     guards = [(SURPLUS_DOWN if rising else SURPLUS_UP, acceleration, scale)]
-    bound = physics.upper_breakpoint(slip.segment) if rising else physics.lower_breakpoint(slip.segment)
+    side = physics.side(slip.direction)
+    bound = side.upper_breakpoint(slip.segment) if rising else side.lower_breakpoint(slip.segment)
     if bound is not None:
         distance = combine((sense * bound, [mpf(1)]), (-sense * slip.direction, series.velocity))
         guards.append((SPEED_UP if rising else SPEED_DOWN, distance, max(bound, abs(state.velocity))))
@@ -78,32 +80,36 @@ def _moving_guards(physics: Physics, slip: Slip, state: State, series: Expansion
 
 
 def stick_step(physics: Physics, stick: Stick, flow: Flow, state: State, t: mpf, h: mpf) -> Step:
-    """Advance a rest by at most h, or to the first break-away |F| = N mu_s.
+    """Advance a rest by at most h, or to the first break-away: F = N mu_s forwards, or -F = N mu_s backwards.
 
-    mu_s never falls, so an interval is clear when |F| stays below N mu_s at its start; where that does
+    mu_s never falls, so an interval is clear when F stays below N mu_s at its start, either way; where that does
     not prove it, the interval is shortened until mu_s is a power series on it and the guards are solved.
     """
     series = flow.expand(state, h)
     force = physics.stick_force_series(state, series)
-    law, normal, age = physics.axis.static, physics.axis.normal, stick.rest_time(t)
-    lowest, span = normal * law.value(age), law.span(age)
+    normal, age = physics.axis.normal, stick.rest_time(t)
+    laws = [side.static for side in physics.sides]
+    lowest, span = [normal * law.value(age) for law in laws], min(law.span(age) for law in laws)
     if not normal:
         return _out(state, flow, series, h, _unheld(force))
     scale, time = physics.force_scale(state), _time_scale(flow, state, h)
     while True:
-        if abs(force[0]) + reach(scaled(force, h)) < lowest * (1 - mpf(10) ** -9):
+        way = reach(scaled(force, h))
+        if all(sign * force[0] + way < low * (1 - mpf(10) ** -9) for sign, low in zip(_SIDES, lowest)):
             return Step(h, after(state, flow, series, h), None)
         if h <= span:
-            return _out(state, flow, series, h, _over([normal * c for c in law.series(age)], force, h, scale, time))
-        found = _over([lowest], force, h, scale, time)
+            limits = [[normal * c for c in law.series(age)] for law in laws]
+            return _out(state, flow, series, h, _over(limits, force, h, scale, time))
+        found = _over([[low] for low in lowest], force, h, scale, time)
         if found is None:
             return Step(h, after(state, flow, series, h), None)
-        if h < mpf(10) ** -30 * law.time_constant:
+        if h < mpf(10) ** -30 * min(law.time_constant for law in laws):
             return _out(state, flow, series, h, _at_once(physics, stick, force, t, h, found))
         h = max(span, h / 8)
 
 
 Found = tuple[mpf, int]
+_SIDES = 1, -1   # of physics.sides
 
 
 def _unheld(force: Series) -> Found | None:
@@ -115,10 +121,10 @@ def _unheld(force: Series) -> Found | None:
     return None if first is None else (mpf(0), 1 if first > 0 else -1)
 
 
-def _over(limit: Series, force: Series, h: mpf, scale: mpf, time: mpf) -> Found | None:
-    """Return when and on which side N mu_s ∓ F falls below 0 on [0, h], N mu_s being a power series."""
+def _over(limits: Iterable[Series], force: Series, h: mpf, scale: mpf, time: mpf) -> Found | None:
+    """Return when and on which side N mu_s ∓ F falls below 0 on [0, h], N mu_s being a power series for each."""
     best = None
-    for side in (1, -1):
+    for side, limit in zip(_SIDES, limits):
         root = first_root(combine((mpf(1), limit), (mpf(-side), force)), h, scale, time)
         if root is not None and (best is None or root < best[0]):
             best = root, side
@@ -126,10 +132,14 @@ def _over(limit: Series, force: Series, h: mpf, scale: mpf, time: mpf) -> Found 
 
 
 def _at_once(physics: Physics, stick: Stick, force: Series, t: mpf, h: mpf, found: Found) -> Found | None:
-    """Decide a rest of no age whose law has no power series there (Kato): pass if mu_s outruns |F|."""
-    law, normal, age = physics.axis.static, physics.axis.normal, stick.rest_time(t)
-    inside = abs(force[0]) <= normal * law.value(age) * (1 + mpf(10) ** (18 - mp.dps))
-    if inside and abs(value(force, h)) <= normal * law.value(age + h):
+    """Decide a rest of no age whose law has no power series there (Kato): pass if mu_s outruns F, either way."""
+    age = stick.rest_time(t)
+
+    def holds(pull: mpf, age: mpf, slack: mpf) -> bool:
+        return all(sign * pull <= physics.axis.normal * side.static.value(age) * (1 + slack)
+                   for sign, side in zip(_SIDES, physics.sides))
+
+    if holds(force[0], age, mpf(10) ** (18 - mp.dps)) and holds(value(force, h), age + h, mpf(0)):
         return None
     return mpf(0), found[1]
 

@@ -4,22 +4,24 @@
 
 from dataclasses import replace
 
-from ..axis import Axis
+from ..axis import Axis, Friction
 from ..friction import SmoothKinetic
 
 
 def with_friction_scaled(axis: Axis, factor: float) -> Axis:
     """Return the axis with all its friction coefficients times a factor."""
-    if factor == 1.0:
-        return axis
-    static, kinetic, law = axis.friction.static, axis.friction.kinetic, axis.friction.kinetic.law
-    return replace(axis, friction=replace(
-        axis.friction,
-        static=replace(static, initial=factor * static.initial, limit=factor * static.limit),
+    return axis if factor == 1.0 else replace(axis, friction=_scaled(axis.friction, factor))
+
+
+def _scaled(friction: Friction, factor: float) -> Friction:
+    static, kinetic, law = friction.static, friction.kinetic, friction.kinetic.law
+    return replace(
+        friction, static=replace(static, initial=factor * static.initial, limit=factor * static.limit),
         kinetic=replace(kinetic, coefficients=tuple(factor * value for value in kinetic.coefficients),
-                        end_slope=factor * kinetic.end_slope, law=law and _scaled(law, factor),
-                        error=factor * kinetic.error)))
+                        end_slope=factor * kinetic.end_slope, law=law and _scaled_law(law, factor),
+                        error=factor * kinetic.error, tolerance=factor * kinetic.tolerance),
+        backward=friction.backward and _scaled(friction.backward, factor))
 
 
-def _scaled(law: SmoothKinetic, factor: float) -> SmoothKinetic:
+def _scaled_law(law: SmoothKinetic, factor: float) -> SmoothKinetic:
     return replace(law, initial=factor * law.initial, limit=factor * law.limit, viscous=factor * law.viscous)

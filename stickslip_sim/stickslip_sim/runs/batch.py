@@ -13,57 +13,22 @@ import os
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import astuple, dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..axis import Axis, InitialState, check_start, pack
-from ..axis.layout import (
-    COMPLIANT,
-    CONTACT_DAMPING,
-    CONTACT_STIFFNESS,
-    DAMPING,
-    MASS,
-    NORMAL,
-    STATIC_EXPONENT,
-    STATIC_INITIAL,
-    STATIC_LIMIT,
-    STATIC_TAU,
-    STIFFNESS,
-    TABLE,
-)
+from ..axis import Axis, InitialState, check_start
 from ..core.errors import InputError
-from ..scene import PARAMETERS
 from ..solvers import exact
 from ..solvers.exact.axis_figures import FIGURE_NAMES, ROUND_SIZE, AxisFigures
 from ..solvers.exact.many_axes import SETTLED
+from .batch_columns import array_of, check_range, common_length, parameter_rows
 
 Numbers = NDArray[np.float64]
 
 _ROWS = 64          # of the event table
 _AT_A_TIME = 250    # axes that a thread takes
-
-
-class _Column(NamedTuple):
-    """A number that may differ from axis to axis: the parameter of a scene that it is, and where it stands."""
-
-    parameter: str
-    at: int
-
-
-COLUMNS: Mapping[str, _Column] = {
-    'mass': _Column('axis.mass', MASS),
-    'drive_stiffness': _Column('axis.drive_stiffness', STIFFNESS),
-    'drive_damping': _Column('axis.drive_damping', DAMPING),
-    'normal_force': _Column('axis.normal_force', NORMAL),
-    'contact_stiffness': _Column('contact.stiffness', CONTACT_STIFFNESS),
-    'contact_damping': _Column('contact.damping', CONTACT_DAMPING),
-    'static_initial': _Column('friction.static.initial', STATIC_INITIAL),
-    'static_limit': _Column('friction.static.limit', STATIC_LIMIT),
-    'static_time_constant': _Column('friction.static.time_constant', STATIC_TAU),
-    'static_exponent': _Column('friction.static.exponent', STATIC_EXPONENT),
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,9 +86,10 @@ def run_batch(axis: Axis, duration: float, *, drive_velocity: ArrayLike, externa
               initial: InitialState | None = None, threads: int | None = None, **changes: ArrayLike) -> BatchFigures:
     """Run an axis for `duration` s under every `drive_velocity` (m/s) and `external_force` (N), with `changes` to it.
 
-    `changes` are arrays (or numbers) by the names in `COLUMNS`; all arrays have one length n, or 1.  `threads` is the
-    number of cores to use (default: all).  Raises InputError on unknown names, lengths that do not match, and values
-    without a meaning; nothing runs then.
+    `changes` are arrays (or numbers) by the names in `batch_columns.COLUMNS`; all arrays have one length n, or 1.
+    Those of velocities and coefficients have a row for each axis, or one for all.  `threads` is the number of cores to
+    use (default: all).  Raises InputError on unknown names, lengths that do not match, and values without a meaning;
+    nothing runs then.
     """
     return figures_in(_rows_of(axis, duration, 0, drive_velocity, external_force, initial, threads, changes))
 
@@ -157,14 +123,9 @@ def _rows_of(axis: Axis, duration: float, window: int, drive_velocity: ArrayLike
         raise InputError('duration', duration, 'finite and > 0 s', 'give the seconds to simulate')
     velocity = _in_range('drive.velocity', 'drive_velocity', drive_velocity)
     force = _in_range('force.constant', 'external_force', external_force)
-    arrays = {name: np.atleast_1d(np.asarray(values, dtype=np.float64)) for name, values in changes.items()}
-    count = _common_length({'drive_velocity': velocity, 'external_force': force, **arrays})
-    parameters = np.tile(np.array(pack(axis)), (count, 1))
-    for name, values in arrays.items():
-        column = _column(name, axis)
-        _check_range(column.parameter, name, values)
-        parameters[:, column.at] = values
-    _check_friction(parameters)
+    arrays = {name: array_of(name, values) for name, values in changes.items()}
+    count = common_length({'drive_velocity': velocity, 'external_force': force, **arrays})
+    parameters = parameter_rows(axis, count, arrays)
     inputs = np.stack([np.broadcast_to(velocity, count), np.broadcast_to(force, count)], axis=1)
     starts = np.tile(astuple(initial), (count, 1))
     return _run(parameters, inputs, starts, float(duration), window, threads or os.cpu_count() or 1)
@@ -210,49 +171,6 @@ def _figure(out: Numbers, name: str) -> Numbers:
 
 
 def _in_range(parameter: str, name: str, values: ArrayLike) -> Numbers:
-    numbers = np.atleast_1d(np.asarray(values, dtype=np.float64))
-    _check_range(parameter, name, numbers)
+    numbers = array_of(name, values)
+    check_range(parameter, name, numbers)
     return numbers
-
-
-def _check_range(parameter: str, name: str, values: Numbers) -> None:
-    """Raise InputError, under a name of the batch, unless all values are such as a scene may have for a parameter."""
-    known = next(known for known in PARAMETERS if known.name == parameter)
-    low, high = -np.inf if known.low is None else known.low, np.inf if known.high is None else known.high
-    good = np.isfinite(values) & ((values > low) if known.low_open else (values >= low)) & (values <= high)
-    if not good.all():
-        index = int(np.flatnonzero(~good.reshape(-1))[0])
-        raise InputError(name, float(values.reshape(-1)[index]), f'finite and {known.range} {known.unit}'.rstrip(),
-                         f'look at index {index} of the array')
-
-
-def _common_length(arrays: Mapping[str, Numbers]) -> int:
-    for name, values in arrays.items():
-        if values.ndim != 1 or len(values) == 0:
-            raise InputError(name, f'shape {values.shape}', 'a number or an array of one dimension', 'flatten it')
-    count = max(map(len, arrays.values()))
-    for name, values in arrays.items():
-        if len(values) not in (1, count):
-            raise InputError(name, f'{len(values)} values', f'1 or {count}, as many as the longest array',
-                             'arrays belong together index by index')
-    return count
-
-
-def _column(name: str, axis: Axis) -> _Column:
-    if name not in COLUMNS:
-        raise InputError(name, 'given', 'one of drive_velocity, external_force, ' + ', '.join(COLUMNS),
-                         'rename it, or leave it out')
-    if name.startswith('contact_') and not pack(axis)[COMPLIANT]:
-        raise InputError(name, 'given', 'left out with a rigid contact', 'give the axis a compliant contact')
-    return COLUMNS[name]
-
-
-def _check_friction(parameters: Numbers) -> None:
-    initial, limit = parameters[:, STATIC_INITIAL], parameters[:, STATIC_LIMIT]
-    at_rest = parameters[:, TABLE + 1]
-    for bad, name, allowed in ((at_rest > initial, 'static_initial', '>= the kinetic coefficient at rest'),
-                               (limit < initial, 'static_limit', '>= static_initial')):
-        if bad.any():
-            index = int(np.flatnonzero(bad)[0])
-            value = float((initial if name == 'static_initial' else limit)[index])
-            raise InputError(name, value, allowed, f'look at index {index} of the array')

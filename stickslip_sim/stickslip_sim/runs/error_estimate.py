@@ -169,14 +169,18 @@ def _pace(scene: Scene) -> float:
 
 def _integrates_the_law(scene: Scene) -> bool:
     """Whether a run takes the smooth law of mu_k itself, where all others take its table."""
-    return scene.solver.name == 'adaptive' and scene.axis.friction.kinetic.law is not None
+    return scene.solver.name == 'adaptive' and _has_law(scene)
+
+
+def _has_law(scene: Scene) -> bool:
+    """Whether kinetic friction follows a smooth law, in a direction at least."""
+    return any(side.kinetic.law is not None for side in scene.axis.friction.sides)
 
 
 def _with_table(scene: Scene, coarser: float) -> Scene:
     """Return the scene with another table for its smooth law: one as fine as can be had, or `coarser` than that."""
-    friction = scene.axis.friction
-    kinetic = dataclasses.replace(friction, kinetic=_table(friction.kinetic, coarser))
-    return dataclasses.replace(scene, axis=dataclasses.replace(scene.axis, friction=kinetic))
+    friction = scene.axis.friction.with_tables(lambda table: _table(table, coarser))
+    return dataclasses.replace(scene, axis=dataclasses.replace(scene.axis, friction=friction))
 
 
 def _table(table: KineticTable, coarser: float) -> KineticTable:
@@ -191,7 +195,7 @@ def _table(table: KineticTable, coarser: float) -> KineticTable:
 
 def _shift(run: SimulatedRun, judge: SimulatedRun, until: float) -> _Shift:
     """Return how far the events of two runs are apart before a time; events of kind knot count where both have them."""
-    with_knots = run.scene.solver.name != 'fixed_step' and run.scene.axis.friction.kinetic.law is None
+    with_knots = run.scene.solver.name != 'fixed_step' and not _has_law(run.scene)
 
     def compared(events: Sequence[Event]) -> list[Event]:
         return [event for event in _lasting(events)

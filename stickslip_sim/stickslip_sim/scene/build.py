@@ -8,36 +8,21 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any, NamedTuple
 
-from ..axis import Axis, CompliantContact, Friction, InitialState, RigidContact, check_start
+from ..axis import Axis, CompliantContact, InitialState, RigidContact, check_start
 from ..core.errors import InputError
 from ..core.input_profile import InputProfile, Sinusoid, constant, ramp, sinusoids, steps, table
 from ..core.position_profile import check_first_position, positions
-from ..friction import (
-    ExcessTable,
-    KineticTable,
-    SmoothExcess,
-    SmoothKinetic,
-    StaticLaw,
-    StaticLawKind,
-    excess_table,
-    kinetic_table,
-    smooth,
-)
-from ..friction.kinetic import default_excess
 from ..rig.friction import with_friction_scaled
 from ..solvers.normal_load import under_load
+from .friction import friction_of
 from .model import CommandSettings, RecordSettings, Scene, TimingSettings
 from .profile_schema import FILE_SETTINGS, PROFILES
 from .rig_settings import rig_settings, time_settings
 from .scaled_friction import check_scaled_friction
 from .solver import SolverSettings, method_of
 from .text import scene_text
-from .values import effective_values
+from .values import effective_values, section_of
 
-_KINETIC: dict[str, Callable[..., SmoothKinetic]] = {
-    'stribeck': smooth.stribeck, 'exponential': smooth.exponential, 'hyperbolic': smooth.hyperbolic,
-}
-_EXCESS: dict[str, Callable[..., SmoothExcess]] = {'cosine': smooth.cosine, 'power': smooth.power}
 _BREAKPOINTS: dict[str, Callable[..., InputProfile]] = {'steps': steps, 'table': table}
 
 
@@ -58,7 +43,7 @@ def build_scene(given: Mapping[str, object], summary: str = '') -> Scene:
     axis, initial, drive, force, load = dynamics_of(values)
     if 'solver.method' not in values and (method := method_of(values)):
         values['solver.method'] = method
-    solver = SolverSettings(**_section(values, 'solver'))
+    solver = SolverSettings(**section_of(values, 'solver'))
     solver.check(axis)
     if load is not None:
         _check_load(axis, solver, load)
@@ -75,9 +60,9 @@ def build_scene(given: Mapping[str, object], summary: str = '') -> Scene:
         solver=solver,
         time=time_settings(values),
         command=CommandSettings(*(values[f'command.{name}'] for name in ('max_velocity', 'max_force', 'timeout'))),
-        timing=TimingSettings(**_section(values, 'timing')),
+        timing=TimingSettings(**section_of(values, 'timing')),
         rig=rig,
-        record=RecordSettings(**_section(values, 'record')),
+        record=RecordSettings(**section_of(values, 'record')),
         seed=values['seed'],
         values=values,
         text=text,
@@ -89,7 +74,7 @@ def build_scene(given: Mapping[str, object], summary: str = '') -> Scene:
 def dynamics_of(values: Mapping[str, Any]) -> Dynamics:
     """Return what decides the motion, from effective values; raises InputError where they contradict each other."""
     axis = _axis(values)
-    initial = InitialState(**_section(values, 'initial'))
+    initial = InitialState(**section_of(values, 'initial'))
     load = _profile(values, 'normal_load', 'constant', 'rate', 'forces') if 'normal_load.course' in values else None
     check_start(axis, initial, load.value_at(0.0) if load else 0.0)
     if values['drive.course'] == 'position':
@@ -115,58 +100,20 @@ def _check_load(axis: Axis, solver: SolverSettings, load: InputProfile) -> None:
         solver.check(replace(axis, normal_force=normal))
 
 
-def _section(values: Mapping[str, Any], section: str) -> dict[str, Any]:
-    start = len(section) + 1
-    return {name[start:]: value for name, value in values.items() if name.startswith(f'{section}.')}
-
-
 def _axis(values: Mapping[str, Any]) -> Axis:
-    contact = _section(values, 'contact')
+    contact = section_of(values, 'contact')
     model, arrest, judged = (contact.pop(name, None) for name in ('model', 'arrest', 'break_away'))
     compliant = model == 'compliant' and CompliantContact(**contact, undeflected=arrest == 'undeflected',
                                                           judges_drive=judged == 'drive_force')
-    given = _section(values, 'axis')
+    given = section_of(values, 'axis')
     on_slideway = given.pop('damper', None) == 'slideway'
-    axis = Axis(**given, friction=_friction(values), contact=compliant or RigidContact(),
+    axis = Axis(**given, friction=friction_of(values), contact=compliant or RigidContact(),
                 damper_on_slideway=on_slideway)
     return with_friction_scaled(axis, values.get('friction.scale', 1.0))
 
 
-def _friction(values: Mapping[str, Any]) -> Friction:
-    static = _section(values, 'friction.static')
-    law = StaticLawKind[static.pop('law').upper()]
-    static.setdefault('limit', static['initial'])
-    kinetic = _kinetic(_section(values, 'friction.kinetic'))
-    return Friction(StaticLaw(law, **static), kinetic, _excess(values, kinetic))
-
-
-def _kinetic(given: dict[str, Any]) -> KineticTable:
-    law = given.pop('law')
-    if law == 'table':
-        return KineticTable(**given)
-    tolerance = given.pop('tolerance')
-    return kinetic_table(_KINETIC[law](**given), tolerance)
-
-
-def _excess(values: Mapping[str, Any], kinetic: KineticTable) -> ExcessTable | None:
-    if not values['friction.acceleration_dependence']:
-        return None
-    excess = _section(values, 'friction.excess')
-    law = excess.pop('law')
-    if law != 'table':
-        tolerance = excess.pop('tolerance')
-        if 'limit_velocity' not in excess:
-            excess['limit_velocity'] = default_excess(kinetic).velocities[-1]
-        return excess_table(_EXCESS[law](**excess), tolerance)
-    if len(excess) == 1:
-        (given,) = excess
-        raise InputError(f'friction.excess.{given}', excess[given], 'given with both velocities and fractions',
-                         'add the other, or leave both out')
-    return ExcessTable(**excess) if excess else default_excess(kinetic)
-
-
 def _profile(values: Mapping[str, Any], section: str, value: str, rate: str, breakpoints: str) -> InputProfile:
-    given = _section(values, section)
+    given = section_of(values, section)
     profile = _pieces(given, section, value, rate, breakpoints)
     return replace(profile, sinusoids=_sinusoids(given, section))
 

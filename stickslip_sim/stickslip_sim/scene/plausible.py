@@ -12,6 +12,7 @@ from collections.abc import Collection, Iterator, Mapping
 from typing import NamedTuple
 
 from ..core.errors import InputError
+from .friction_schema import backward_name
 
 MEANT = '--meant'          # the option of the tool
 FASTEST = 3.0              # m/s: 180 m/min, above the rapid traverse of linear motors
@@ -28,13 +29,16 @@ class Plausible(NamedTuple):
 
 
 _SPEED, _COEFFICIENT = Plausible(FASTEST, 'm/s', _SPEED_FIX), Plausible(ROUGHEST, '', _COEFFICIENT_FIX)
-PLAUSIBLE: Mapping[str, Plausible] = {
+_FORWARDS: Mapping[str, Plausible] = {
     **dict.fromkeys(('drive.velocity', 'drive.velocities', 'drive.slopes', 'drive.amplitude', 'drive.amplitudes',
                      'initial.velocity', 'friction.kinetic.velocities', 'friction.kinetic.stribeck_velocity',
                      'friction.excess.velocities', 'friction.excess.limit_velocity'), _SPEED),
     **dict.fromkeys(('friction.static.initial', 'friction.static.limit', 'friction.kinetic.initial',
                      'friction.kinetic.limit', 'friction.kinetic.coefficients'), _COEFFICIENT),
 }
+PLAUSIBLE: Mapping[str, Plausible] = {
+    **_FORWARDS,
+    **{backward_name(name): limit for name, limit in _FORWARDS.items() if name.startswith('friction.')}}
 
 
 def check_plausible(values: Mapping[str, object], meant: Collection[str]) -> None:

@@ -52,7 +52,8 @@ class SolverSettings:
         if self.name == 'fixed_step':
             return fixed_step.solver(**self.settings)
         if self.name == 'adaptive':
-            return adaptive.solver(**self.settings, kinetic=axis.friction.kinetic.law)
+            ahead, back = (axis.friction.along(direction).kinetic.law for direction in (1.0, -1.0))
+            return adaptive.solver(**self.settings, kinetic=ahead, backward=back)
         return exact.SOLVER
 
 

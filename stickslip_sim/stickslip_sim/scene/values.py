@@ -4,6 +4,7 @@
 
 import difflib
 from collections.abc import Mapping
+from typing import Any
 
 from ..config.parameter import Parameter, When, yaml_word
 from ..core.errors import InputError
@@ -29,6 +30,12 @@ def effective_values(given: Mapping[str, object]) -> dict[str, object]:
         elif entry.when is None or entry.when.holds(values):
             _leave_out(entry, values)
     return values
+
+
+def section_of(values: Mapping[str, Any], section: str) -> dict[str, Any]:
+    """Return the values of a section (`friction.static`) by their names in it, those of sections inside it too."""
+    start = len(section) + 1
+    return {name[start:]: value for name, value in values.items() if name.startswith(f'{section}.')}
 
 
 def stated(values: Mapping[str, object]) -> dict[str, object]:

@@ -48,7 +48,7 @@ def bifurcation(study: Study, figures: Figures, progress: Callable[[float], None
                 scene, float(figures.duration[k]), int(figures.cycles[k]))]
         feed = scene.drive.values[0]
         if study.works_in_batches:
-            friction = scene.axis.normal_force * scene.axis.friction.kinetic.coefficient(abs(feed))
+            friction = scene.axis.normal_force * scene.axis.friction.along(feed).kinetic.coefficient(abs(feed))
             slope = sliding_slope(scene.axis, {'drive_velocity': np.array([feed])})[0]
             force = np.copysign(friction, feed) - scene.force.values[0] if feed else np.nan
             sliding.append((value, force, float(slope >= 0.0)))

@@ -16,6 +16,7 @@ from ..friction import StaticLawKind
 from ..runs import SimulatedRun, simulate_events
 from ..runs.batch import figures_in, rounds_in
 from ..scene import Scene, scene_from_values
+from ..scene.friction_schema import BACKWARD
 from ..scene.values import overridden
 from ..solvers.exact import many_axes
 from ..solvers.exact.axis_figures import AxisFigures
@@ -28,9 +29,14 @@ _OF_THE_BATCH = {
     'axis.normal_force': 'normal_force', 'contact.stiffness': 'contact_stiffness',
     'contact.damping': 'contact_damping', 'friction.static.initial': 'static_initial',
     'friction.static.limit': 'static_limit', 'friction.static.time_constant': 'static_time_constant',
-    'friction.static.exponent': 'static_exponent', 'drive.velocity': 'drive_velocity',
+    'friction.static.exponent': 'static_exponent', 'friction.static.backward.initial': 'static_backward_initial',
+    'friction.static.backward.limit': 'static_backward_limit',
+    'friction.static.backward.time_constant': 'static_backward_time_constant',
+    'friction.static.backward.exponent': 'static_backward_exponent', 'drive.velocity': 'drive_velocity',
     'force.constant': 'external_force',
 }
+_OF_STATIC = ('initial', 'limit', 'time_constant', 'exponent')
+_COEFFICIENTS = frozenset({'static_initial', 'static_limit', 'static_backward_initial', 'static_backward_limit'})
 Values = Mapping[str, object]
 
 
@@ -93,12 +99,27 @@ def runs_of_run(run: SimulatedRun) -> Runs:
     return found
 
 
+def _backwards(scene: Scene, columns: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the columns of static friction backwards for those forwards: what a scene leaves out is as forwards."""
+    found = {}
+    for name in _OF_STATIC:
+        ahead, back = f'static_{name}', f'static_backward_{name}'
+        if ahead in columns and back not in columns:
+            given: Any = scene.values.get(f'friction.static.{BACKWARD}.{name}')
+            scale: Any = scene.values.get('friction.scale', 1.0) if back in _COEFFICIENTS else 1.0
+            found[back] = columns[ahead] if given is None else scale * given
+    return found
+
+
 def _inputs(scene: Scene, names: Sequence[str], points: Numbers) -> dict[str, Numbers]:
     """Return the arrays for `batch.run_batch`, all of one length."""
     columns: dict[str, Any] = {'drive_velocity': scene.drive.values[0], 'external_force': scene.force.values[0]}
     columns |= {_OF_THE_BATCH[name]: points[:, k] for k, name in enumerate(names) if name in _OF_THE_BATCH}
-    for name in {'static_initial', 'static_limit'} & set(columns):
+    for name in _COEFFICIENTS & set(columns):
         columns[name] = scene.values.get('friction.scale', 1.0) * columns[name]   # the axis of the scene has it already
-    if scene.axis.friction.static.kind == StaticLawKind.CONSTANT and 'static_initial' in columns:
-        columns['static_limit'] = columns['static_initial']   # as a scene has it
+    if any(f'.{BACKWARD}.' in name for name in scene.values):
+        columns |= _backwards(scene, columns)
+    if scene.axis.friction.static.kind == StaticLawKind.CONSTANT:
+        columns |= {f'{side}limit': columns[f'{side}initial'] for side in ('static_', 'static_backward_')
+                    if f'{side}initial' in columns}   # as a scene has it
     return {name: np.array(np.broadcast_to(values, len(points)), dtype=float) for name, values in columns.items()}

@@ -172,8 +172,11 @@ _SHORTEST, _LONGEST = 1e-9, 1e15   # s
 
 def _static_force(axis: Axis, inputs: Mapping[str, Numbers]) -> Numbers:
     """Return the largest force that static friction can hold, N."""
-    force: Numbers = _number(axis, inputs, 'normal_force') * np.maximum(
-        _number(axis, inputs, 'static_limit'), _number(axis, inputs, 'static_initial'))
+    most = np.maximum(_number(axis, inputs, 'static_limit'), _number(axis, inputs, 'static_initial'))
+    for name in ('static_backward_limit', 'static_backward_initial'):
+        if axis.friction.backward is not None or name in inputs:
+            most = np.maximum(most, _number(axis, inputs, name))
+    force: Numbers = _number(axis, inputs, 'normal_force') * most
     return np.broadcast_to(force, len(inputs['drive_velocity']))
 
 
@@ -181,9 +184,10 @@ def _number(axis: Axis, inputs: Mapping[str, Numbers], name: str) -> Numbers:
     """Return a number of each axis; it may be among the inputs."""
     if name in inputs:
         return inputs[name]
-    static = axis.friction.static
-    return np.array(getattr(static, name.removeprefix('static_')) if name.startswith('static_')
-                    else getattr(axis, name))
+    if not name.startswith('static_'):
+        return np.array(getattr(axis, name))
+    static = axis.friction.along(-1.0 if '_backward_' in name else 1.0).static
+    return np.array(getattr(static, name.removeprefix('static_').removeprefix('backward_')))
 
 
 def runs_of(figures: BatchFigures, rounds: Rounds, duration: float) -> Runs:

@@ -19,12 +19,12 @@ from .point_figures import Numbers
 
 
 def sliding_slope(axis: Axis, inputs: Mapping[str, Numbers]) -> Numbers:
-    """Return h + N mu_k′(|v|), N s/m, for each of `inputs` as of `batch.run_batch`; NaN where the drive rests."""
+    """Return h + N mu_k′(v), N s/m, for each of `inputs` as of `batch.run_batch`; NaN where the drive rests."""
     def given(name: str) -> Numbers:
         return inputs.get(name, np.array(getattr(axis, name)))
 
-    below, above = np.array([*map(axis.friction.kinetic.slopes, np.abs(inputs['drive_velocity']).tolist())]).reshape(
-        -1, 2).T
+    below, above = np.array([axis.friction.along(v).kinetic.slopes(abs(v))
+                             for v in inputs['drive_velocity'].tolist()]).reshape(-1, 2).T
     low, high = (given('drive_damping') + given('normal_force') * side
                  for side in (np.minimum(below, above), np.maximum(below, above)))
     swings = 2.0 * np.sqrt(given('drive_stiffness') * given('mass'))

@@ -72,11 +72,13 @@ def feed_of_theory(axis: Axis) -> float | None:
     """Return the critical feed (m/s, perhaps infinite or 0) of an axis, None where no closed form is known.
 
     It is known for a rigid contact without acceleration dependence whose kinetic friction is constant or rises
-    linearly: with constant static friction, where a damper N mu_k′ stands beside the drive's; and without any damping,
-    where static friction begins at the kinetic one and its growth is concave.
+    linearly, the same both ways: with constant static friction, where a damper N mu_k′ stands beside the drive's; and
+    without any damping, where static friction begins at the kinetic one and its growth is concave.
     """
     friction, kinetic = axis.friction, axis.friction.kinetic
     if not isinstance(axis.contact, RigidContact) or friction.excess or len(kinetic.velocities) > 1 or kinetic.law:
+        return None
+    if friction.backward is not None:
         return None
     damped = SliderOnDrive(axis.mass, axis.drive_stiffness, axis.drive_damping + axis.normal_force * kinetic.end_slope)
     if damped.stiffness == 0.0:

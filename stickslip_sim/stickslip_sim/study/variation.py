@@ -14,6 +14,7 @@ from ..config.parameter import Parameter
 from ..core.did_you_mean import suggestion
 from ..core.errors import InputError
 from ..runs.wording import quantity
+from ..scene.friction_schema import forward_name
 from ..scene.profile_schema import PROFILES
 from ..scene.schema import BY_NAME
 
@@ -23,6 +24,8 @@ MOTION_SECTIONS = ('axis', 'contact', 'friction', *PROFILES, 'initial', 'solver'
 _ALONG = {   # where an element of a list is
     'friction.kinetic.coefficients': 'friction.kinetic.velocities',
     'friction.excess.fractions': 'friction.excess.velocities',
+    'friction.kinetic.backward.coefficients': 'friction.kinetic.backward.velocities',
+    'friction.excess.backward.fractions': 'friction.excess.backward.velocities',
     'drive.velocities': 'drive.times', 'drive.positions': 'drive.times', 'drive.slopes': 'drive.times',
     'drive.amplitudes': 'drive.frequencies',
     'force.forces': 'force.times', 'force.amplitudes': 'force.frequencies',
@@ -132,7 +135,7 @@ def place_of(values: Mapping[str, object], name: str) -> str:
     """Return where the element of a list that a variation names is in a scene (`values`): '35 mm/s'; else nothing."""
     entry, index = parameter_of(name)
     along = _ALONG.get(entry.name, '')
-    places = values.get(along)
+    places = values.get(along, values.get(forward_name(along)))
     if index is None or not isinstance(places, tuple) or index >= len(places):
         return ''
     return quantity(places[index], BY_NAME[along].unit, 4)
@@ -147,7 +150,7 @@ def with_place(values: Mapping[str, object], name: str) -> str:
 def changes_at(base: Mapping[str, object], names: Sequence[str], point: Numbers) -> dict[str, object]:
     """Return the changes to the values of a scene that make a point; raises InputError.
 
-    An element of a list must be there.
+    An element of a list must be there; a list backwards that is left out is that forwards.
     """
     changes: dict[str, object] = {}
     for name, number in zip(names, point.tolist(), strict=True):
@@ -155,7 +158,7 @@ def changes_at(base: Mapping[str, object], names: Sequence[str], point: Numbers)
         if index is None:
             changes[name] = number
             continue
-        items = changes.get(entry.name, base.get(entry.name, ()))
+        items = changes.get(entry.name, base.get(entry.name, base.get(forward_name(entry.name), ())))
         if not isinstance(items, tuple) or index >= len(items):
             count = len(items) if isinstance(items, tuple) else 0
             raise InputError('parameter', name, f'an element of {entry.name}, of which this scene has {count}',

@@ -31,13 +31,15 @@ from .engine import Engine
 
 METHODS = ('RK45', 'DOP853', 'Radau', 'BDF', 'LSODA')
 MIN_RTOL = 2.3e-14   # scipy takes none below 100 roundings
+_SAME = object()     # as forwards
 
 
-def solver(method: str = 'DOP853', rtol: float = 1e-8, atol: float = 1e-10, kinetic: Any = None) -> Solver:
+def solver(method: str = 'DOP853', rtol: float = 1e-8, atol: float = 1e-10, kinetic: Any = None,
+           backward: Any = _SAME) -> Solver:
     """Return the solver with the tolerances of a step: `rtol` relative, `atol` in m and m/s.
 
-    `kinetic` is a smooth law with coefficient(speed) that replaces the table of mu_k.  Raises InputError on an unknown
-    method and on tolerances out of range.
+    `kinetic` is a smooth law with coefficient(speed) that replaces the table of mu_k, and `backward` that of motion
+    along −x, left out: the same.  Raises InputError on an unknown method and on tolerances out of range.
     """
     if method not in METHODS:
         raise InputError('solver.method', method, 'one of ' + ', '.join(METHODS) + ' with solver.name: adaptive',
@@ -46,7 +48,7 @@ def solver(method: str = 'DOP853', rtol: float = 1e-8, atol: float = 1e-10, kine
         raise InputError('solver.rtol', rtol, f'>= {MIN_RTOL:g} and <= 0.01', '1e-8 is the default')
     if not 1e-300 <= atol <= 1.0:
         raise InputError('solver.atol', atol, '>= 1e-300 and <= 1 m, m/s', '1e-10 is the default')
-    return Engine(method, rtol, atol, kinetic)
+    return Engine(method, rtol, atol, (kinetic, kinetic if backward is _SAME else backward))
 
 
 __all__ = ['METHODS', 'MIN_RTOL', 'solver']

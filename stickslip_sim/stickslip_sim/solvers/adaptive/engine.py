@@ -9,7 +9,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from ...axis.layout import Parameters, State
-from ...axis.motion import ACCELERATING, COASTING, STICK, drive_force, friction_line, segment_above
+from ...axis.motion import ACCELERATING, COASTING, STICK, drive_force, friction_line, segment_above, static_at_once
 from ...axis.records import PLAIN
 from ...axis.rows import EventRow, Events, SampleRow, Sinusoids
 from ...axis.transitions import (
@@ -53,7 +53,7 @@ class _Reached(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Engine:
-    """The solver; `law` is a smooth mu_k, or None for the table in the parameters.
+    """The solver; `laws` are the smooth mu_k forwards and backwards, each None for the table in the parameters.
 
     `normal_force` is N where it varies; the normal force of the parameters is then that at the state.
     """
@@ -61,7 +61,7 @@ class Engine:
     method: str
     rtol: float
     atol: float
-    law: SmoothLaw | None
+    laws: tuple[SmoothLaw | None, SmoothLaw | None]
     normal_force: InputProfile | None = None
 
     name: ClassVar[str] = 'adaptive'
@@ -153,9 +153,6 @@ class Engine:
                      drive_force(p, s.spring, v, now[1]), f,
                      motion.friction(0.0, now), out)
 
-    def _motion(self, p: Parameters, s: State) -> ModeMotion:
-        return ModeMotion(p, s, self.law, self.normal_force)
-
     def _integrate(self, motion: ModeMotion, t: float, u: float) -> _Reached | None:
         """Return the next event up to t, or t; None where the integration fails."""
         from scipy.integrate import solve_ivp  # a second that a user of the other solvers need not wait
@@ -207,7 +204,7 @@ class Engine:
         if s.mode == mode:
             return row
         kind = COAST if s.mode == COASTING else (ACCELERATE if s.mode == ACCELERATING else DECELERATE)
-        write_event(p, s, events, row, kind, s.direction, self._friction(p, s), p.static_initial)
+        write_event(p, s, events, row, kind, s.direction, self._friction(p, s), static_at_once(p, s.direction))
         events.rows[row].mode = s.mode
         return row + 1
 
@@ -227,13 +224,20 @@ class Engine:
         return s.direction * p.normal_force * (coefficient + (s.excess * psi if s.mode == ACCELERATING else 0.0))
 
     def _coefficients(self, p: Parameters, s: State) -> tuple[float, float]:
-        speed = abs(s.velocity)
-        coefficient, _, psi, _ = friction_line(p, segment_above(p, speed), speed)
-        return (coefficient if self.law is None else self.law.coefficient(speed)), psi
+        speed, law = abs(s.velocity), self._law(s)
+        coefficient, _, psi, _ = friction_line(p, segment_above(p, s.direction, speed), speed)
+        return (coefficient if law is None else law.coefficient(speed)), psi
+
+    def _law(self, s: State) -> SmoothLaw | None:
+        """Return the smooth mu_k of the present direction, if there is one."""
+        return self.laws[1 if s.direction < 0.0 else 0]
+
+    def _motion(self, p: Parameters, s: State) -> ModeMotion:
+        return ModeMotion(p, s, self._law(s), self.normal_force)
 
     def _correct_excess(self, p: Parameters, s: State, event: EventRow) -> None:
         """Let E make friction continuous with the smooth law, where the transition took its table."""
-        if self.law is None or s.mode == STICK or s.excess == 0.0:
+        if self._law(s) is None or s.mode == STICK or s.excess == 0.0:
             return
         coefficient, psi = self._coefficients(p, s)
         limit = abs(event.friction) / p.normal_force if p.normal_force > 0.0 else event.static
@@ -241,8 +245,8 @@ class Engine:
 
     def _find_segment(self, p: Parameters, s: State) -> None:
         """Set the segment for psi, which no breakpoint keeps up to date with a smooth law."""
-        if self.law is not None:
-            s.segment = float(segment_above(p, abs(s.velocity)))
+        if self._law(s) is not None:
+            s.segment = float(segment_above(p, s.direction, abs(s.velocity)))
 
 
 def _move(p: Parameters, s: State, motion: ModeMotion, second: float, fraction: float, t: float,

@@ -20,6 +20,7 @@ from ...axis.motion import (
     friction_line,
     is_rigid_stick,
     segment_above,
+    segment_end,
     static_limit,
 )
 from ...axis.transitions import ACCELERATE, ARREST, BREAKAWAY, COAST, DECELERATE, KNOT, holds_by_drive
@@ -156,11 +157,12 @@ class ModeMotion:
             found = [(ACCELERATE, self._below_upper), (DECELERATE, self.coasting_residual)]
         elif self._mode == ACCELERATING:
             found = [(COAST, self._pull)]
-            if self._law is None and self._segment + 1 < self._p.segment_count:
+            if self._law is None and segment_end(self._p, self._segment) < math.inf:
                 found.append((KNOT, self._below_breakpoint))
         else:
             found = [(COAST, self._brake)]
-            found.append((ARREST if self._law is not None or self._segment == 0 else KNOT, self._above_breakpoint))
+            is_last = self._law is not None or breakpoint_speed(self._p, self._segment) == 0.0
+            found.append((ARREST if is_last else KNOT, self._above_breakpoint))
         stays = _ABOVE if self.load.at(0.0) == 0.0 else 0.0
         return [(kind, _falling(guard, (0.0, self._u), stays)) for kind, guard in found]
 
@@ -186,12 +188,12 @@ class ModeMotion:
         speed = self._direction * u
         psi = self._line[2] + self._line[3] * speed
         if self._law is not None:
-            _, _, psi, _ = friction_line(self._p, segment_above(self._p, speed), speed)
+            _, _, psi, _ = friction_line(self._p, segment_above(self._p, self._direction, speed), speed)
         return self.load.at(t) * self._excess * psi
 
     def _hold(self, t: float, state: Sequence[float]) -> float:
         force = self._applied(t, *state) if self._by_drive else self._contact_force(*state)
-        return self.load.at(t) * static_limit(self._p, self._rest + t) - abs(force)
+        return self.load.at(t) * static_limit(self._p, self._rest + t, force) - abs(force)
 
     def _below_upper(self, t: float, state: Sequence[float]) -> float:
         return self._band(t, self._u) - self.coasting_residual(t, state)
@@ -203,7 +205,7 @@ class ModeMotion:
         return -self._residual_of(t, *state)
 
     def _below_breakpoint(self, _: float, state: Sequence[float]) -> float:
-        return breakpoint_speed(self._p, self._segment + 1) - self._direction * state[1]
+        return segment_end(self._p, self._segment) - self._direction * state[1]
 
     def _above_breakpoint(self, _: float, state: Sequence[float]) -> float:
         return self._direction * state[1] - (breakpoint_speed(self._p, self._segment) if self._law is None else 0.0)

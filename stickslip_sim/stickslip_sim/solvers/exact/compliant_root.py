@@ -5,11 +5,11 @@
 import math
 
 from ...axis.layout import Parameters, State
-from ...axis.motion import static_limit, travel, travel_at
+from ...axis.motion import static_numbers, travel, travel_at
 from ...core.hot_path import compiled, inlined
 from ...linear.oscillator import Oscillator, amplitude, short_integrals
 from ...linear.root_steps import EPSILON, halley, halley_settles
-from .contact_force import ContactForce, ContactMotion, judged_force, judged_part
+from .contact_force import ContactForce, ContactMotion, envelope_room, judged_force, judged_part
 from .static_guards import STEPS, law
 
 _DIRECT_STEPS = 8
@@ -26,10 +26,10 @@ def direct_root(p: Parameters, s: State, osc: Oscillator, motion: ContactMotion,
     sag, rate, free, free_rate, free_second, _ = contact
     side = 1.0 if rate > 0.0 else -1.0
     size, decay = amplitude(osc, free, free_rate)
-    room = p.normal_force * static_limit(p, s.rest + begin) - abs(sag) - size
+    room = envelope_room(p, s.rest + begin, sag, size)
     if not room > 0.0 or rate == 0.0:
         return 0.0
-    frequency = math.sqrt(osc.omega2) + 1.0 / p.static_tau
+    frequency = math.sqrt(osc.omega2) + 1.0 / static_numbers(p, side).tau
     t = s.cache.last[0]
     if t <= begin:
         t = begin + room / abs(rate)
@@ -51,7 +51,7 @@ def direct_root(p: Parameters, s: State, osc: Oscillator, motion: ContactMotion,
     if before <= begin:
         return 0.0
     fading = math.exp(-decay * (before - begin))
-    limit, growth, _ = law(p, s.rest + before)
+    limit, growth, _ = law(p, s.rest + before, side)
     clear = p.normal_force * limit - side * sag - abs(rate) * (before - begin) - size * fading
     rise, _ = amplitude(osc, free_rate, free_second)
     falls = p.normal_force * growth - abs(rate) + rise * fading
@@ -73,7 +73,7 @@ def _guard_at(p: Parameters, s: State, osc: Oscillator, t: float, side: float) -
     second_rate = stiffness * a + damping * jerk
     if p.judges_drive != 0.0:
         second_rate += p.stiffness * s.inputs.v_rate
-    limit, growth, curvature = law(p, s.rest + t)
+    limit, growth, curvature = law(p, s.rest + t, side)
     return (p.normal_force * limit - side * force, p.normal_force * growth - side * rate,
             -p.normal_force * curvature - side * second_rate)
 
@@ -84,7 +84,7 @@ def bracketed_root(p: Parameters, s: State, osc: Oscillator, side: float, low: f
 
     Its error after a step d is about d (d (f″/f′ + frequency))²; the last step is the one that makes it rounding.
     """
-    frequency = math.sqrt(osc.omega2) + 1.0 / p.static_tau
+    frequency = math.sqrt(osc.omega2) + 1.0 / static_numbers(p, side).tau
     t, before = low, high - low
     for _ in range(STEPS):
         s.iterations += 1.0

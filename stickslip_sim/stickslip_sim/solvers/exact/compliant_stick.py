@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""When the force of a compliant stick reaches N mu_s(t⁻).
+"""When the force of a compliant stick reaches N mu_s(t⁻) of its direction.
 
 It is F_c, or F_d + F_e where that is judged (`contact_force`), and P(t) + H(t): P is linear (quadratic under a ramp of
 the drive), H a decaying free motion with |H| <= A exp(−d t).
@@ -25,7 +25,7 @@ guard is P alone.
 import math
 
 from ...axis.layout import Parameters, State
-from ...axis.motion import TICK, oscillator_of, static_limit
+from ...axis.motion import TICK, limit_backwards, oscillator_of, static_at_once, static_limit
 from ...axis.transitions import force_rounding
 from ...core.hot_path import compiled, inlined
 from ...linear.oscillator import Oscillator, amplitude, bound
@@ -37,7 +37,9 @@ from .contact_force import (
     contact_at,
     contact_motion,
     contact_rounding,
+    envelope_room,
     force_at,
+    gives_way,
     moves,
     rings_within,
 )
@@ -49,19 +51,26 @@ _GO_ON, _IS_ROOT, _IN_BRACKET = 0.0, 1.0, 2.0
 
 @compiled
 def compliant_stick(p: Parameters, s: State, horizon: float) -> float:
-    """Return when |F_c| reaches N mu_s, infinity when that is behind the horizon, or GAVE_UP."""
+    """Return when F_c reaches N mu_s of its direction, infinity when that is behind the horizon, or GAVE_UP."""
     osc = oscillator_of(s)
     if horizon < TICK and p.judges_drive == 0.0 and _keeps_off(p, s, osc, horizon):
         return math.inf
-    if p.normal_force * p.static_limit == 0.0:
+    if p.normal_force * max(p.static_limit, p.backward_limit) == 0.0:
         return 0.0 if moves(s) else math.inf
+    if p.sided != 0.0 and gives_way(p, s, osc):
+        return 0.0
     motion = contact_motion(p, s, osc)
-    rounding = 0.5 * force_rounding(p, s, static_limit(p, s.rest))
-    if motion.rate == 0.0 and motion.second == 0.0 and rings_within(p, s, osc, motion, rounding):
+    limit = static_limit(p, s.rest, 1.0)
+    back = limit_backwards(p, s.rest, limit)
+    rounding = 0.5 * force_rounding(p, s, limit)
+    rounding_back = 0.5 * force_rounding(p, s, back) if p.sided != 0.0 else rounding
+    if motion.rate == 0.0 and motion.second == 0.0 and rings_within(
+            p, s, osc, motion, p.normal_force * limit + 2.0 * rounding, p.normal_force * back + 2.0 * rounding_back):
         s.next.searched = math.inf
         return math.inf
     if p.judges_drive == 0.0:
-        rounding = min(rounding, contact_rounding(p, s, motion))
+        rounding = min(rounding, contact_rounding(p, s, motion, limit))
+        rounding_back = min(rounding_back, contact_rounding(p, s, motion, back)) if p.sided != 0.0 else rounding
     may_leap = leaps_far = motion.second == 0.0 and is_concave(p)
     pace = math.sqrt(osc.omega2)
     t = 0.0
@@ -86,7 +95,7 @@ def compliant_stick(p: Parameters, s: State, horizon: float) -> float:
                 if t <= horizon:
                     continue
         if t <= horizon:
-            step, found, side = _step(p, s, osc, contact, motion.second, t, rounding)
+            step, found, side = _step(p, s, osc, contact, motion.second, t, rounding, rounding_back)
             if found == _IN_BRACKET:
                 return bracketed_root(p, s, osc, side, t, t + step)
             t += step
@@ -107,8 +116,10 @@ def _keeps_off(p: Parameters, s: State, osc: Oscillator, t: float) -> bool:
     sag_second = stiffness * s.snap / osc.omega2
     second_rate = bound(osc, stiffness * a + damping * jerk - sag_second, stiffness * jerk + damping * snap)
     second_rate += abs(sag_second)
-    force = abs(stiffness * s.deflection + damping * u) + (rate + 0.5 * second_rate * t) * t
-    return force < p.normal_force * p.static_initial
+    force, way = stiffness * s.deflection + damping * u, (rate + 0.5 * second_rate * t) * t
+    side = 1.0 if force > 0.0 else -1.0
+    return (abs(force) + way < p.normal_force * static_at_once(p, side)
+            and way - abs(force) < p.normal_force * static_at_once(p, -side))
 
 
 @compiled
@@ -117,12 +128,12 @@ def _leap(p: Parameters, s: State, osc: Oscillator, contact: ContactForce, t: fl
     """Return how long the envelope keeps off the limit for certain; 0 when there is no room yet."""
     sag, rate, free, free_rate, _, _ = contact
     size, decay = amplitude(osc, free, free_rate)
-    rest = s.rest + t
-    if p.normal_force * static_limit(p, rest) - abs(sag) - size <= 0.0:
+    rest, side = s.rest + t, math.copysign(1.0, rate)
+    if envelope_room(p, rest, sag, size) <= 0.0:
         return 0.0
     if rate == 0.0:
         return math.inf
-    return concave_root(p, s, rest, math.copysign(1.0, rate) * sag, abs(rate), size, decay, 0.0, horizon)
+    return concave_root(p, s, rest, side, side * sag, abs(rate), size, decay, 0.0, horizon)
 
 
 @compiled
@@ -134,39 +145,63 @@ def _frozen_leap(p: Parameters, s: State, osc: Oscillator, sag_second: float,
     """
     sag, rate, free, free_rate, _, _ = contact
     size, _ = amplitude(osc, free, free_rate)
-    room = p.normal_force * static_limit(p, s.rest + t) - size
-    if room <= abs(sag):
+    limit = static_limit(p, s.rest + t, 1.0)
+    room = p.normal_force * limit - size
+    room_back = p.normal_force * limit_backwards(p, s.rest + t, limit) - size
+    if room <= sag or room_back <= -sag:
         return 0.0
-    return min(first_crossing(room - sag, -rate, -sag_second), first_crossing(room + sag, rate, sag_second))
+    return min(first_crossing(room - sag, -rate, -sag_second), first_crossing(room_back + sag, rate, sag_second))
 
 
 @compiled
 def _step(p: Parameters, s: State, osc: Oscillator, contact: ContactForce,
-          sag_second: float, t: float, rounding: float) -> tuple[float, float, float]:
+          sag_second: float, t: float, rounding: float, rounding_back: float) -> tuple[float, float, float]:
     """Return a step, what is at its end (nothing yet, the root, the upper end of a bracket around it), and the side."""
     _, _, _, _, free_second, free_third = contact
     force, rate = force_at(p, s, t)
-    limit, growth, curvature = law(p, s.rest + t)
-    top, top_rate = p.normal_force * limit, p.normal_force * growth
     swing = bound(osc, free_second, free_third) + abs(sag_second)
     side = 1.0 if force > 0.0 or (force == 0.0 and rate > 0.0) else -1.0
+    limit, growth, curvature = law(p, s.rest + t, side)
+    back, back_growth, back_curvature = limit, growth, curvature
+    if p.sided != 0.0:
+        back, back_growth, back_curvature = law(p, s.rest + t, -side)
+        if _is_nearer(p.normal_force * back + side * force, p.normal_force * back_growth + side * rate,
+                      p.normal_force * limit - side * force, p.normal_force * growth - side * rate):
+            side = -side
+            limit, growth, curvature, back, back_growth, back_curvature = (
+                back, back_growth, back_curvature, limit, growth, curvature)
+    top, top_rate = p.normal_force * limit, p.normal_force * growth
     value, fall = max(top - side * force, 0.0), top_rate - side * rate
+    other, other_fall = p.normal_force * back + side * force, p.normal_force * back_growth + side * rate
+    if back_curvature == math.inf:
+        far = steep_start(p, -side, max(other, 0.0), abs(rate), swing) if p.sided != 0.0 else math.inf
+    else:
+        far = safe_step(max(other, 0.0), other_fall, swing + p.normal_force * back_curvature)
     if curvature == math.inf:
-        step = steep_start(p, value, abs(rate), swing)
+        step = min(steep_start(p, side, value, abs(rate), swing), far)
         return step, (_GO_ON if step > 0.0 else _IS_ROOT), side
     second_rate = swing + p.normal_force * curvature
-    near, far = safe_step(value, fall, second_rate), safe_step(top + side * force, top_rate + side * rate, second_rate)
-    if value <= rounding and fall < 0.0:
+    near = safe_step(value, fall, second_rate)
+    if value <= (rounding if side > 0.0 else rounding_back) and fall < 0.0:
         return (0.0 if t == 0.0 else min(value / -fall, near)), _IS_ROOT, side
     step = min(near, far)
     if step <= 2.0 * EPSILON * t:
-        if fall != 0.0 or side * (sag_second + free_second) > 0.0 or (top == 0.0 and sag_second + free_second != 0.0):
+        bend = side * (sag_second + free_second)
+        if fall != 0.0 or bend > 0.0 or (bend != 0.0 and top == 0.0 and back == 0.0 and other_fall == 0.0):
             return 0.0, _IS_ROOT, side
+        if bend == 0.0 and p.sided != 0.0:
+            return min(_late_nudge(osc, free_second, free_third), far), _GO_ON, side
         return min(_nudge(osc, free_second, free_third), far), _GO_ON, side
     # a law that is not concave may second_rate the guard up more than `second_rate`: no upper end then
     if step == near and fall < 0.0 and fall * fall > 2.0 * second_rate * value and is_concave(p):
         return 2.0 * value / (math.sqrt(fall * fall - 2.0 * second_rate * value) - fall), _IN_BRACKET, side
     return step, _GO_ON, side
+
+
+@inlined
+def _is_nearer(value: float, fall: float, than: float, than_fall: float) -> bool:
+    """Whether a gap is the smaller one, or as small and closes faster."""
+    return value < than or (value == than and fall < than_fall)
 
 
 @compiled
@@ -175,3 +210,11 @@ def _nudge(osc: Oscillator, free_second: float, free_third: float) -> float:
     free_fourth = -2.0 * osc.gamma * free_third - osc.omega2 * free_second
     third = bound(osc, free_third, free_fourth)
     return 3.0 * abs(free_second) / third if third > 0.0 else 0.0
+
+
+@compiled
+def _late_nudge(osc: Oscillator, free_second: float, free_third: float) -> float:
+    """Return a step off a guard with value = slope = curvature = 0 and f‴ > 0, as under a ramp from a rest."""
+    free_fourth = -2.0 * osc.gamma * free_third - osc.omega2 * free_second
+    fourth = bound(osc, free_fourth, -2.0 * osc.gamma * free_fourth - osc.omega2 * free_third)
+    return 4.0 * abs(free_third) / fourth if fourth > 0.0 else 0.0

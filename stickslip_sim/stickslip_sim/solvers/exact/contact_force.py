@@ -6,10 +6,11 @@ It is F_c = c_c δ + h_c ẋ.  Where a stick is judged by the drive it is F_d + 
 the free motion y.
 """
 
+import math
 from typing import NamedTuple
 
 from ...axis.layout import Parameters, State
-from ...axis.motion import drive_force, drive_travel, feed_damping, static_limit, travel
+from ...axis.motion import drive_force, drive_travel, feed_damping, limit_backwards, static_limit, travel
 from ...core.hot_path import compiled, inlined
 from ...linear.oscillator import Oscillator, amplitude, impulse
 from ...linear.root_steps import EPSILON
@@ -110,12 +111,20 @@ def judged_force(p: Parameters, s: State, t: float, y: float, u: float, a: float
 
 
 @inlined
-def contact_rounding(p: Parameters, s: State, motion: ContactMotion) -> float:
-    """Return the rounding of the contact force: the mass and the drive's damper take all that is beyond it."""
+def contact_rounding(p: Parameters, s: State, motion: ContactMotion, limit: float) -> float:
+    """Return the rounding of the contact force and its limit: the mass and the drive's damper take what is beyond."""
     stiffness, damping = p.contact_stiffness, p.contact_damping
     return 4.0 * EPSILON * (abs(motion.steady) + stiffness * (abs(s.deflection) + abs(motion.y0))
                             + damping * (abs(s.velocity) + abs(motion.free_u))
-                            + p.normal_force * static_limit(p, s.rest))
+                            + p.normal_force * limit)
+
+
+@inlined
+def envelope_room(p: Parameters, rest: float, sag: float, size: float) -> float:
+    """Return how far P = `sag` and a free motion of that size keep off the limits of both directions, N."""
+    limit = static_limit(p, rest, 1.0)
+    back = limit_backwards(p, rest, limit)
+    return min(p.normal_force * limit - sag, p.normal_force * back + sag) - size
 
 
 @compiled
@@ -126,11 +135,35 @@ def moves(s: State) -> bool:
 
 
 @compiled
-def rings_within(p: Parameters, s: State, osc: Oscillator, motion: ContactMotion, rounding: float) -> bool:
-    """Whether a contact that the drive does not load any further stays within the limit of now, which never falls.
+def gives_way(p: Parameters, s: State, osc: Oscillator) -> bool:
+    """Whether a contact without a force is pushed in a direction in which static friction never holds anything.
+
+    The first derivative of its force that is not 0 says which way it is pushed.
+    """
+    stiffness, damping = judged_part(p)
+    u, a = s.velocity, s.acceleration
+    force, push = judged_force(p, s, 0.0, 0.0, u, a)
+    if force != 0.0:
+        return False
+    jerk = s.jerk - 2.0 * osc.gamma * a
+    snap = s.snap - 2.0 * osc.gamma * jerk - osc.omega2 * a
+    if push == 0.0:
+        push = stiffness * a + damping * jerk + (p.stiffness * s.inputs.v_rate if p.judges_drive != 0.0 else 0.0)
+    if push == 0.0:
+        push = stiffness * jerk + damping * snap
+    if push == 0.0 and p.judges_drive == 0.0:
+        push = snap
+    return push != 0.0 and p.normal_force * static_limit(p, math.inf, push) == 0.0
+
+
+@compiled
+def rings_within(p: Parameters, s: State, osc: Oscillator, motion: ContactMotion, top: float, bottom: float) -> bool:
+    """Whether a contact that the drive does not load any further stays within the limits of now, which never fall.
+
+    `top` and `bottom` are those limits forwards and backwards, N, with room for rounding.
 
     Without a damper it may come back to the limit in every period, and touch it: no break-away, with any rounding.
     """
     _, _, free, free_rate, _, _ = contact_at(p, osc, motion, 0.0)
     size, _ = amplitude(osc, free, free_rate)
-    return abs(motion.steady) + size <= p.normal_force * static_limit(p, s.rest) + 2.0 * rounding
+    return motion.steady + size <= top and size - motion.steady <= bottom

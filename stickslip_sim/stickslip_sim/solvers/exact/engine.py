@@ -79,7 +79,7 @@ def start(p: Parameters, s: State, position: float, velocity: float, rest: float
         s.rest = 0.0
         s.direction = 1.0 if velocity > 0.0 else -1.0
         speed = abs(velocity)
-        coefficient, _, _, _ = friction_line(p, segment_above(p, speed), speed)
+        coefficient, _, _, _ = friction_line(p, segment_above(p, s.direction, speed), speed)
         residual = s.direction * applied_force(p, s) - p.normal_force * coefficient
         choose_slip(p, s, residual, residual, force_rounding(p, s, coefficient))
     _begin(p, s)

@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The first event of any mode under sines.
 
-Every guard says that a signal f (see `signals`) stays between a floor and a top: ∓N mu_s(t⁻) in stick, 0 and the band
-while coasting, 0 and nothing in a slip.  The search marches in safe steps, and no root can be missed:
+Every guard says that a signal f (see `signals`) stays between a floor and a top: ∓N mu_s(t⁻) in stick, each with the
+mu_s of its direction, 0 and the band while coasting, 0 and nothing in a slip.  The search marches in safe steps, and no
+root can be missed:
 
 1. At t the signal gives f, f′ and a bound M on |f″| over its reach.  The gap to a limit, G = top − f or f − floor, is
    at least G + G′ d − (M + N |mu_s″|) d²/2 for every d within reach, so that a step to the positive root of that never
@@ -29,7 +30,16 @@ import math
 from typing import NamedTuple
 
 from ...axis.layout import Parameters, State
-from ...axis.motion import ACCELERATING, COASTING, STICK, breakpoint_speed, friction_line, oscillator_of, static_limit
+from ...axis.motion import (
+    ACCELERATING,
+    COASTING,
+    STICK,
+    breakpoint_speed,
+    friction_line,
+    lower_limit,
+    oscillator_of,
+    segment_end,
+)
 from ...axis.transitions import ACCELERATE, ARREST, BREAKAWAY, COAST, DECELERATE, KNOT, band_of, force_rounding
 from ...core.hot_path import compiled, inlined
 from ...friction.static import CONSTANT
@@ -39,7 +49,7 @@ from ...linear.root_steps import EPSILON, ITERATIONS
 from ...linear.zeros import finite_horizon
 from .signal_readings import Reading, read_signal
 from .signals import GuardSignal, signal_of
-from .static_guards import GAVE_UP, concave_root, is_concave, law, steep_start
+from .static_guards import GAVE_UP, concave_root, grown, is_concave, law, steep_start
 
 _STEPS = 10_000_000
 _WORTH_A_LEAP = 1e-6   # room between envelope and limit, as a part of what lies between the limits
@@ -78,7 +88,7 @@ def forced_event(p: Parameters, s: State, due: float) -> None:
     last = finite_horizon(osc, math.inf) if slips else math.inf
     s.next.time = math.inf
     if gap <= 0.0:
-        _set_event(s, 0.0, _passed_kind(s))
+        _set_event(s, 0.0, _passed_kind(p, s))
         return
     t = before = s.next.progress
     value_before = 0.0
@@ -86,7 +96,7 @@ def forced_event(p: Parameters, s: State, due: float) -> None:
         s.iterations += 1.0
         now = read_signal(p, s, osc, signal, t)
         if now.gained >= gap:
-            _set_event(s, _root(p, s, osc, signal, 0.0, gap, t, before, t), _passed_kind(s))
+            _set_event(s, _root(p, s, osc, signal, 0.0, gap, t, before, t), _passed_kind(p, s))
             return
         limits = _limits(p, s, t)
         if _holds_nothing(s, limits):
@@ -144,12 +154,38 @@ def _guard_at(p: Parameters, now: Reading, limits: GuardLimits, rounding: float,
     up, up_rate = limits.top - now.value, limits.top_rate - now.rate
     down, down_rate = now.value - limits.floor, now.rate - limits.floor_rate
     swing = now.curvature + limits.bow
+    if swing == math.inf and p.sided != 0.0:
+        return _steep_guard(p, now, limits, now.noise + rounding)
     noise = max(now.noise + rounding, swing * (1e-15 / fastest) ** 2)
     side, value, fall, step = _nearer(up, up_rate, down, down_rate, swing, noise)
     exact = _exact_step(up, up_rate, down, down_rate, swing)
     if swing == math.inf:   # Kato's law right after the arrest
-        step = exact = steep_start(p, max(value, 0.0), abs(now.rate), now.curvature) if value >= -noise else 0.0
+        step = exact = steep_start(p, side, max(value, 0.0), abs(now.rate), now.curvature) if value >= -noise else 0.0
     return Guard(side, value, fall, swing, noise, min(step, now.reach), min(exact, now.reach))
+
+
+@compiled
+def _steep_guard(p: Parameters, now: Reading, limits: GuardLimits, noise: float) -> Guard:
+    """Return the guard at rest time 0, where Kato's law lets the limit of one direction, or of both, rise steeply."""
+    up, down = limits.top - now.value, now.value - limits.floor
+    up_rate, down_rate = limits.top_rate - now.rate, now.rate - limits.floor_rate
+    above = _side_step(p, now, 1.0, up + 2.0 * noise, up_rate)
+    below = _side_step(p, now, -1.0, down + 2.0 * noise, down_rate)
+    exact = min(_side_step(p, now, 1.0, up, up_rate), _side_step(p, now, -1.0, down, down_rate), now.reach)
+    if above < below:
+        return Guard(1.0, up, up_rate, now.curvature + p.normal_force * grown(p, 0.0, 1.0).curvature, noise,
+                     min(above, now.reach), exact)
+    return Guard(-1.0, down, down_rate, now.curvature + p.normal_force * grown(p, 0.0, -1.0).curvature, noise,
+                 min(below, now.reach), exact)
+
+
+@compiled
+def _side_step(p: Parameters, now: Reading, side: float, gap: float, gap_rate: float) -> float:
+    """Return a step from rest time 0 within which the gap to the limit of a direction does not vanish."""
+    curvature = grown(p, 0.0, side).curvature
+    if curvature == math.inf:
+        return steep_start(p, side, max(gap, 0.0), abs(now.rate), now.curvature)
+    return safe_step(max(gap, 0.0), gap_rate, now.curvature + p.normal_force * curvature)
 
 
 @compiled
@@ -164,19 +200,19 @@ def _speed_gap(p: Parameters, s: State) -> float:
     speed, segment = abs(s.velocity), int(s.segment)
     if s.mode != ACCELERATING:
         return speed - breakpoint_speed(p, segment)
-    return breakpoint_speed(p, segment + 1) - speed if segment + 1 < p.segment_count else math.inf
+    return segment_end(p, segment) - speed
 
 
 @compiled
-def _passed_kind(s: State) -> float:
-    return KNOT if s.mode == ACCELERATING or s.segment > 0.0 else ARREST
+def _passed_kind(p: Parameters, s: State) -> float:
+    return KNOT if s.mode == ACCELERATING or breakpoint_speed(p, int(s.segment)) > 0.0 else ARREST
 
 
 @compiled
 def _rounding(p: Parameters, s: State, slips: bool) -> float:
     """Return the size of rounding of the signal at the segment start, N or m/s²."""
     if not slips:
-        return force_rounding(p, s, static_limit(p, s.rest) if s.mode == STICK else 0.0)
+        return force_rounding(p, s, lower_limit(p, s.rest) if s.mode == STICK else 0.0)
     coefficient, _, _, _ = friction_line(p, int(s.segment), abs(s.velocity))
     return force_rounding(p, s, coefficient) / p.mass
 
@@ -185,11 +221,15 @@ def _rounding(p: Parameters, s: State, slips: bool) -> float:
 def _limits(p: Parameters, s: State, t: float) -> GuardLimits:
     """Return the limits of the signal at t."""
     if s.mode == STICK:
-        limit, growth, curvature = law(p, s.rest + t)
         normal = p.normal_force
         if normal == 0.0:
             return GuardLimits(0.0, 0.0, 0.0, 0.0, 0.0)
-        return GuardLimits(normal * limit, normal * growth, normal * curvature, -normal * limit, -normal * growth)
+        limit, growth, curvature = law(p, s.rest + t, 1.0)
+        back, back_growth, bow = limit, growth, curvature
+        if p.sided != 0.0:
+            back, back_growth, bow = law(p, s.rest + t, -1.0)
+            bow = max(curvature, bow)
+        return GuardLimits(normal * limit, normal * growth, normal * bow, -normal * back, -normal * back_growth)
     if s.mode == COASTING:
         return GuardLimits(band_of(p, s), 0.0, 0.0, 0.0, 0.0)
     return GuardLimits(math.inf, 0.0, 0.0, 0.0, 0.0)
@@ -213,8 +253,9 @@ def _leap(p: Parameters, s: State, signal: GuardSignal, now: Reading, limits: Gu
     if not room > _WORTH_A_LEAP * (top - floor) or horizon <= 0.0:
         return 0.0
     rate += second_rate * t
-    leap = min(_envelope_root(p, s, t, top - mean - swing, mean + swing, rate, second_rate, size, decay, horizon),
-               _envelope_root(p, s, t, mean - floor - swing, swing - mean, -rate, -second_rate, size, decay, horizon))
+    leap = min(
+        _envelope_root(p, s, t, 1.0, top - mean - swing, mean + swing, rate, second_rate, size, decay, horizon),
+        _envelope_root(p, s, t, -1.0, mean - floor - swing, swing - mean, -rate, -second_rate, size, decay, horizon))
     if leap > horizon:
         s.next.searched = t + horizon
         return math.inf
@@ -222,14 +263,17 @@ def _leap(p: Parameters, s: State, signal: GuardSignal, now: Reading, limits: Gu
 
 
 @compiled
-def _envelope_root(p: Parameters, s: State, t: float, room: float, force: float, rate: float, second_rate: float,
-                   size: float, decay: float, horizon: float) -> float:
-    """Return when force + rate d + second_rate d²/2 + size exp(−decay d) may reach a limit, now `room` off."""
+def _envelope_root(p: Parameters, s: State, t: float, side: float, room: float, force: float, rate: float,
+                   second_rate: float, size: float, decay: float, horizon: float) -> float:
+    """Return when force + rate d + second_rate d²/2 + size exp(−decay d) may reach a limit, now `room` off.
+
+    `side` is the sign of the force at that limit in stick.
+    """
     second_rate = max(second_rate, 0.0)
     if rate <= 0.0 and second_rate == 0.0:
         return math.inf
     if s.mode == STICK and p.static_law != CONSTANT and is_concave(p):
-        return concave_root(p, s, s.rest + t, force, rate, size, decay, second_rate, horizon)
+        return concave_root(p, s, s.rest + t, side, force, rate, size, decay, second_rate, horizon)
     return first_crossing(room - size, -rate, -second_rate)
 
 
@@ -324,6 +368,6 @@ def _conclude(p: Parameters, s: State, osc: Oscillator, signal: GuardSignal, sli
         return
     gained = read_signal(p, s, osc, signal, root).gained
     if gained >= gap:
-        _set_event(s, _root(p, s, osc, signal, 0.0, gap, root, min(low, root), root), _passed_kind(s))
+        _set_event(s, _root(p, s, osc, signal, 0.0, gap, root, min(low, root), root), _passed_kind(p, s))
     else:
         _set_event(s, root, COAST)

@@ -20,7 +20,10 @@ from ...axis.motion import (
     drive_force,
     drive_travel,
     friction_line,
+    limit_backwards,
+    segment_end,
     spring_after,
+    static_at_once,
     static_limit,
     travel,
 )
@@ -69,14 +72,15 @@ def is_sound(p: Parameters, s: State, second: float, fraction: float) -> bool:
 @inlined
 def _holds(p: Parameters, s: State, t: float, spring: float, deflection: float, u: float, a: float, v: float,
            force: float, rest: float, share: float) -> bool:
-    """Whether the force in stick is at most N mu_s, and at least `share` of that."""
+    """Whether the force in stick is at most N mu_s of its direction, and at least `share` of that, either way."""
     held = drive_force(p, spring, v, u) + force
-    top = p.normal_force * static_limit(p, rest)
-    slack = ALLOWED * _forces(p, spring, v, u, force, top)
+    limit = static_limit(p, rest, 1.0)
+    top, bottom = p.normal_force * limit, p.normal_force * limit_backwards(p, rest, limit)
+    slack = ALLOWED * _forces(p, spring, v, u, force, max(top, bottom))
     if not holds_by_drive(p):   # what a stiff one does within the rounding of the time
         held = contact_force(p, deflection, u)
         slack += _TIME * t * (p.contact_stiffness * abs(u) + p.contact_damping * abs(a))
-    return share * top - slack <= abs(held) <= top + slack
+    return -bottom - slack <= held <= top + slack and (share * top - slack <= held or share * bottom - slack <= -held)
 
 
 @inlined
@@ -88,7 +92,7 @@ def _coasts(p: Parameters, s: State, t: float, spring: float, v: float, force: f
     u = s.velocity
     friction = p.normal_force * friction_line(p, int(s.segment), abs(u))[0]
     residual = s.direction * (drive_force(p, spring, v, u) + force) - friction
-    slack = ALLOWED * _forces(p, spring, v, u, force, p.normal_force * p.static_initial)
+    slack = ALLOWED * _forces(p, spring, v, u, force, p.normal_force * static_at_once(p, s.direction))
     slack += _ROUNDING * p.stiffness * _path(s, t, v, u)
     return low - slack <= residual <= high + slack
 
@@ -100,10 +104,9 @@ def _slips(p: Parameters, s: State, u: float, begin: float, at_an_end: bool) -> 
     slack = ALLOWED * (abs(u) + abs(begin) + abs(s.inputs.v))
     low = breakpoint_speed(p, segment)
     if at_an_end:
-        end = breakpoint_speed(p, segment + 1) if s.mode == ACCELERATING else low
+        end = segment_end(p, segment) if s.mode == ACCELERATING else low
         return abs(speed - end) <= slack
-    return low - slack <= speed and (segment + 1.0 >= p.segment_count
-                                     or speed <= breakpoint_speed(p, segment + 1) + slack)
+    return low - slack <= speed <= segment_end(p, segment) + slack
 
 
 @inlined
@@ -115,7 +118,7 @@ def _balances(p: Parameters, s: State, t: float, spring: float, v: float, u: flo
     What rounding leaves of the forces at the velocity `begin`, where the motion began, is lost along its whole path.
     """
     left, scale = balance(p, s, t)
-    top = p.normal_force * p.static_limit
+    top = p.normal_force * max(p.static_limit, p.backward_limit)
     if p.stiffness > 0.0:
         scale = max(scale, 0.5 * top * top / p.stiffness)
     fastest = max(abs(u), abs(begin))

@@ -25,6 +25,7 @@ from ...axis.motion import (
     TICK,
     breakpoint_speed,
     oscillator_of,
+    segment_end,
     tick_integrals,
     travel_at,
 )
@@ -117,7 +118,7 @@ def _slipping(p: Parameters, s: State, horizon: float) -> None:
     speed = abs(s.velocity)
     segment = int(s.segment)
     if accelerating:
-        gap = breakpoint_speed(p, segment + 1) - speed if segment + 1 < p.segment_count else math.inf
+        gap = segment_end(p, segment) - speed
         sign = s.direction
     else:
         gap = speed - breakpoint_speed(p, segment)
@@ -134,7 +135,7 @@ def _slipping(p: Parameters, s: State, horizon: float) -> None:
     if not passed:
         s.next.kind = COAST
     else:
-        s.next.kind = KNOT if accelerating or segment > 0 else ARREST
+        s.next.kind = KNOT if accelerating or breakpoint_speed(p, segment) > 0.0 else ARREST
 
 
 @inlined

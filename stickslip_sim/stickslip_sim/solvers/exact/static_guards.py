@@ -13,7 +13,7 @@ grows or dies out but exp(−t/τ), and where that is 0 the guard is a straight 
 import math
 
 from ...axis.layout import Parameters, State
-from ...axis.motion import static_limit
+from ...axis.motion import static_at_once, static_limit, static_numbers
 from ...axis.transitions import applied_force, force_rate
 from ...core.hot_path import compiled, inlined
 from ...friction.static import CONSTANT, EXPONENTIAL, KATO, LOGARITHMIC, StaticGrowth, static_growth
@@ -28,47 +28,50 @@ _SAME_TIME = 2.0 ** -50   # s, and of a time: more than rounding of the time of 
 
 @inlined
 def rigid_stick(p: Parameters, s: State, horizon: float) -> float:
-    """Return when |F_d + F_e| reaches N mu_s; both are known in closed form."""
+    """Return when F_d + F_e reaches N mu_s of its direction; both are known in closed form."""
     force = applied_force(p, s)
     rate, second_rate = force_rate(p, s)
     if second_rate == 0.0:
         if rate == 0.0:
             return math.inf
         if p.static_law == EXPONENTIAL and p.static_delay <= s.rest < math.inf:
-            t = _exponential_root(p, s, force if rate > 0.0 else -force, abs(rate), horizon)
+            side = 1.0 if rate > 0.0 else -1.0
+            t = _exponential_root(p, s, force if rate > 0.0 else -force, abs(rate), side, horizon)
             if t >= 0.0:
                 return t if t <= horizon else math.inf
-    return min(_one_side(p, s, force, rate, second_rate, horizon),
-               _one_side(p, s, -force, -rate, -second_rate, horizon))
+    return min(_one_side(p, s, force, rate, second_rate, 1.0, horizon),
+               _one_side(p, s, -force, -rate, -second_rate, -1.0, horizon))
 
 
 @compiled
-def _one_side(p: Parameters, s: State, force: float, rate: float, second_rate: float, horizon: float) -> float:
-    """Return when N mu_s − force comes down to 0."""
+def _one_side(p: Parameters, s: State, force: float, rate: float, second_rate: float, side: float,
+              horizon: float) -> float:
+    """Return when N mu_s − force comes down to 0; `side` is the sign of the force against which mu_s holds."""
     normal, rest = p.normal_force, s.rest
     if p.static_law == CONSTANT or rest == math.inf:
-        t = first_crossing(max(normal * static_limit(p, rest) - force, 0.0), -rate, -second_rate)
+        t = first_crossing(max(normal * static_limit(p, rest, side) - force, 0.0), -rate, -second_rate)
         return t if t <= horizon else math.inf
     if rate <= 0.0 and second_rate <= 0.0:
         return math.inf
     if second_rate >= 0.0 and is_concave(p):
-        return concave_root(p, s, rest, force, rate, 0.0, 0.0, second_rate, horizon)
-    return _stepped_side(p, s, force, rate, second_rate, horizon)
+        return concave_root(p, s, rest, side, force, rate, 0.0, 0.0, second_rate, horizon)
+    return _stepped_side(p, s, force, rate, second_rate, side, horizon)
 
 
 @inlined
-def _exponential_root(p: Parameters, s: State, force: float, rate: float, horizon: float) -> float:
+def _exponential_root(p: Parameters, s: State, force: float, rate: float, side: float, horizon: float) -> float:
     """Return when force + rate t, rate > 0, reaches N mu_s of the exponential law; −1 where the steps do not settle.
 
     With z = t/τ the guard is a − d (exp(−z) − 1) − b z: concave and not negative at 0, so that of its zeros after 0
     there is but one at which it falls.  Householder's step, from the last stick's time or else from above: 1 − exp(−z)
     is less than 2z/(2 + z), with which the guard is a quadratic.
     """
-    normal, rest, tau = p.normal_force, s.rest - p.static_delay, p.static_tau
-    gap = max(normal * static_limit(p, s.rest) - force, 0.0)
+    normal, rest, of = p.normal_force, s.rest - p.static_delay, static_numbers(p, side)
+    tau = of.tau
+    gap = max(normal * static_limit(p, s.rest, side) - force, 0.0)
     if rate * horizon < gap:
         return math.inf   # even the limit of now is out of reach
-    d = normal * (p.static_limit - p.static_initial)
+    d = normal * (of.limit - of.initial)
     if rest > 0.0:
         d *= math.exp(-rest / tau)
     b = rate * tau
@@ -98,17 +101,18 @@ def _exponential_root(p: Parameters, s: State, force: float, rate: float, horizo
 
 
 @inlined
-def law(p: Parameters, rest: float) -> StaticGrowth:
-    """Return mu_s, its rate and a bound on −mu_s″ after a rest time."""
+def law(p: Parameters, rest: float, side: float) -> StaticGrowth:
+    """Return mu_s, its rate and a bound on −mu_s″ after a rest time, against a force of this sign."""
     if rest < p.static_delay:
-        return StaticGrowth(p.static_initial, 0.0, 0.0)
-    return _grown(p, rest - p.static_delay)
+        return StaticGrowth(static_at_once(p, side), 0.0, 0.0)
+    return grown(p, rest - p.static_delay, side)
 
 
 @inlined
-def _grown(p: Parameters, age: float) -> StaticGrowth:
+def grown(p: Parameters, age: float, side: float) -> StaticGrowth:
     """Return the same at a time after the growth began."""
-    return static_growth(p.static_law, p.static_initial, p.static_limit, p.static_tau, p.static_exponent, age)
+    of = static_numbers(p, side)
+    return static_growth(p.static_law, of.initial, of.limit, of.tau, of.exponent, age)
 
 
 @inlined
@@ -125,30 +129,30 @@ def delay_left(p: Parameters, s: State) -> float:
 
 @compiled
 def is_concave(p: Parameters) -> bool:
-    """Whether mu_s rises ever more slowly from the start."""
-    return p.static_law != KATO or p.static_exponent <= 1.0
+    """Whether mu_s rises ever more slowly from the start, in both directions."""
+    return p.static_law != KATO or (p.static_exponent <= 1.0 and p.backward_exponent <= 1.0)
 
 
 @compiled
-def concave_root(p: Parameters, s: State, rest: float, force: float, rate: float, size: float, decay: float,
-                 second_rate: float, horizon: float) -> float:
+def concave_root(p: Parameters, s: State, rest: float, side: float, force: float, rate: float, size: float,
+                 decay: float, second_rate: float, horizon: float) -> float:
     """Return the root of N mu_s(rest + t) − force − rate t − second_rate t²/2 − size exp(−decay t), concave in t.
 
     It is not negative at 0, or within rounding of it, so it has one root at the most where it comes down; infinity when
     that lies behind the horizon.  Halley's step inside a shrinking bracket, whose end does not depend on the horizon.
     """
-    normal = p.normal_force
-    limit, growth, _ = law(p, rest)
+    normal, tau = p.normal_force, static_numbers(p, side).tau
+    limit, growth, _ = law(p, rest, side)
     if normal * limit - force - size <= 0.0 and normal * growth < rate - decay * size:
         return 0.0
     fading = size * math.exp(-decay * horizon) if size > 0.0 else 0.0
-    if horizon == 0.0 or normal * static_limit(p, rest + horizon) - force - (
+    if horizon == 0.0 or normal * static_limit(p, rest + horizon, side) - force - (
             rate + 0.5 * second_rate * horizon) * horizon - fading > 0.0:
         return math.inf
     low = 0.0
-    t = high = _time_to_pass(p, rest, force, rate, second_rate)
+    t = high = _time_to_pass(p, rest, side, force, rate, second_rate)
     for _ in range(STEPS):
-        value, slope, bow = _concave_guard(p, rest, force, rate, size, decay, second_rate, t)
+        value, slope, bow = _concave_guard(p, rest, side, force, rate, size, decay, second_rate, t)
         if value > 0.0:
             low = t
         else:
@@ -159,7 +163,7 @@ def concave_root(p: Parameters, s: State, rest: float, force: float, rate: float
         step = halley(value, slope, bow) if slope < 0.0 else math.inf
         guess = t - step if slope < 0.0 else math.inf
         if low <= guess <= high:
-            sharpness = bow / slope + 1.0 / p.static_tau + 3.0 / (rest - p.static_delay + guess) + decay
+            sharpness = bow / slope + 1.0 / tau + 3.0 / (rest - p.static_delay + guess) + decay
             if abs(step) <= 2.0 * EPSILON * t or abs(step) * (step * sharpness) ** 2 <= 0.1 * EPSILON * guess:
                 return guess
         else:
@@ -171,10 +175,10 @@ def concave_root(p: Parameters, s: State, rest: float, force: float, rate: float
 
 
 @inlined
-def _concave_guard(p: Parameters, rest: float, force: float, rate: float, size: float, decay: float,
+def _concave_guard(p: Parameters, rest: float, side: float, force: float, rate: float, size: float, decay: float,
                    second_rate: float, t: float) -> tuple[float, float, float]:
     """Return the concave function of `concave_root` at t, its rate and its second rate."""
-    limit, growth, curvature = law(p, rest + t)
+    limit, growth, curvature = law(p, rest + t, side)
     fading = size * math.exp(-decay * t) if size > 0.0 else 0.0
     return (p.normal_force * limit - force - (rate + 0.5 * second_rate * t) * t - fading,
             p.normal_force * growth - rate - second_rate * t + decay * fading,
@@ -182,28 +186,29 @@ def _concave_guard(p: Parameters, rest: float, force: float, rate: float, size: 
 
 
 @compiled
-def _time_to_pass(p: Parameters, rest: float, force: float, rate: float, second_rate: float) -> float:
+def _time_to_pass(p: Parameters, rest: float, side: float, force: float, rate: float, second_rate: float) -> float:
     """Return a time by which force + rate t + second_rate t²/2 has passed N mu_s(rest + t), given that it does."""
     if p.static_law != LOGARITHMIC:
-        return first_crossing(max(p.normal_force * static_limit(p, math.inf) - force, 0.0), -rate, -second_rate)
-    t = p.static_tau
-    while p.normal_force * static_limit(p, rest + t) > force + (rate + 0.5 * second_rate * t) * t:
+        return first_crossing(max(p.normal_force * static_limit(p, math.inf, side) - force, 0.0), -rate, -second_rate)
+    t = static_numbers(p, side).tau
+    while p.normal_force * static_limit(p, rest + t, side) > force + (rate + 0.5 * second_rate * t) * t:
         t *= 2.0
     return t
 
 
 @compiled
-def _stepped_side(p: Parameters, s: State, force: float, rate: float, second_rate: float, horizon: float) -> float:
+def _stepped_side(p: Parameters, s: State, force: float, rate: float, second_rate: float, side: float,
+                  horizon: float) -> float:
     normal, rest = p.normal_force, s.rest
     t = 0.0
     for _ in range(STEPS):
-        limit, growth, curvature = law(p, rest + t)
+        limit, growth, curvature = law(p, rest + t, side)
         now = force + (rate + 0.5 * second_rate * t) * t
         value = max(normal * limit - now, 0.0)
         slope = normal * growth - rate - second_rate * t
         step = safe_step(value, slope, normal * curvature + max(second_rate, 0.0))
         if curvature == math.inf:
-            step = steep_start(p, value, abs(rate), abs(second_rate))
+            step = steep_start(p, side, value, abs(rate), abs(second_rate))
         s.iterations += 1.0
         if step <= 2.0 * EPSILON * t or (value <= 4.0 * EPSILON * normal * limit and slope < 0.0):
             return t
@@ -214,13 +219,13 @@ def _stepped_side(p: Parameters, s: State, force: float, rate: float, second_rat
 
 
 @compiled
-def steep_start(p: Parameters, value: float, rate: float, second_rate: float) -> float:
+def steep_start(p: Parameters, side: float, value: float, rate: float, second_rate: float) -> float:
     """Return a safe step from rest time 0 under Kato's law with n < 1, whose rate is infinite there.
 
     The law is concave: on [0, d] it rises at least as fast as at d, so that it stays above a force that rises less.
     It never falls, so a force that is off the limit by `value` takes its time as well.
     """
-    step = p.static_tau
-    while p.normal_force * _grown(p, step).rate < rate + second_rate * step and step > 0.0:
+    step = static_numbers(p, side).tau
+    while p.normal_force * grown(p, step, side).rate < rate + second_rate * step and step > 0.0:
         step *= 0.125
     return max(step, safe_step(value, -rate, second_rate))

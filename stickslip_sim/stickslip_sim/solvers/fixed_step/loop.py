@@ -15,7 +15,9 @@ from ...axis.motion import (
     DECELERATING,
     STICK,
     drive_force,
+    first_segment,
     friction_line,
+    static_at_once,
     static_limit,
 )
 from ...axis.rows import Events, SampleRow, Sinusoids
@@ -53,6 +55,7 @@ def start(p: Parameters, s: State, position: float, velocity: float, rest: float
     refresh_inputs(s)
     if s.mode == STICK:
         return _look(p, s, events, row)
+    s.segment = float(first_segment(p, s.direction))
     residual, _, tolerance = _residual(p, s)
     s.mode = _sub_mode(s.mode, residual, 0.0, tolerance)
     return row
@@ -96,7 +99,7 @@ def set_parameters(p: Parameters, new: Parameters, s: State, second: float, frac
     """Let the axis have other parameters from a time on, up to which the state was advanced with the old ones."""
     _catch_up(p, s, second, fraction)
     change_contact(new, s, friction_at(p, s, applied_force(p, s), s.velocity, s.deflection))
-    s.segment = 0.0
+    s.segment = float(first_segment(new, s.direction))
     return _look(new, s, events, row)
 
 
@@ -166,7 +169,7 @@ def _look(p: Parameters, s: State, events: Events, row: int) -> int:
     applied = applied_force(p, s)
     kind = ACCELERATE if mode == ACCELERATING else (COAST if mode == COASTING else DECELERATE)
     friction = friction_at(p, s, applied, s.velocity, 0.0)
-    write_event(p, s, events, row, kind, s.direction, friction, p.static_initial)
+    write_event(p, s, events, row, kind, s.direction, friction, static_at_once(p, s.direction))
     s.mode = mode
     events.rows[row].mode = mode
     return row + 1
@@ -176,7 +179,7 @@ def _look(p: Parameters, s: State, events: Events, row: int) -> int:
 def _look_at_stick(p: Parameters, s: State, events: Events, row: int) -> int:
     applied = applied_force(p, s)
     force = stick_force(p, s)
-    limit = static_limit(p, s.rest)
+    limit = static_limit(p, s.rest, force)
     margin = abs(force) - p.normal_force * limit
     if margin <= 0.0 or margin <= force_rounding(p, s, limit):
         return row
@@ -202,9 +205,9 @@ def _has_stopped(p: Parameters, s: State, residual: float) -> bool:
     speed = s.direction * s.velocity
     if speed < 0.0:
         return True
-    holds = p.normal_force * static_limit(p, 0.0)
-    band = _BAND * s.grid.step_ticks / s.grid.second_ticks * holds / p.mass
     at_rest = drive_force(p, s.spring, s.inputs.v, 0.0) + s.inputs.f
+    holds = p.normal_force * static_at_once(p, at_rest)
+    band = _BAND * s.grid.step_ticks / s.grid.second_ticks * holds / p.mass
     return residual < 0.0 and speed < band and abs(at_rest) <= holds
 
 

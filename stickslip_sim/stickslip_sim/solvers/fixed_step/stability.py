@@ -11,7 +11,7 @@ import math
 from collections.abc import Iterator
 from itertools import pairwise
 
-from ...axis import Axis, CompliantContact
+from ...axis import Axis, CompliantContact, Friction
 from ...core.errors import InputError
 
 _REACH = 4.0      # RK4 is stable nowhere beyond |z| = 3
@@ -31,14 +31,18 @@ def check_step(axis: Axis, method: str, step: float) -> None:
 
 def _modes(axis: Axis) -> Iterator[tuple[str, float, float]]:
     """Yield name, γ and ω² of the modes that move; of slip with the steepest rise of friction in its table."""
-    kinetic = axis.friction.kinetic
-    breakpoints = list(zip(kinetic.velocities, kinetic.coefficients, strict=True))
-    slopes = [(mu1 - mu0) / (v1 - v0) for (v0, mu0), (v1, mu1) in pairwise(breakpoints)]
-    rise = max(0.0, kinetic.end_slope, *slopes)
+    rise = max(map(_steepest_rise, axis.friction.sides))
     yield 'slip', 0.5 * (axis.drive_damping + axis.normal_force * rise) / axis.mass, axis.drive_stiffness / axis.mass
     if isinstance(axis.contact, CompliantContact):
         yield ('stick', 0.5 * (axis.drive_damping + axis.contact.damping) / axis.mass,
                (axis.drive_stiffness + axis.contact.stiffness) / axis.mass)
+
+
+def _steepest_rise(friction: Friction) -> float:
+    kinetic = friction.kinetic
+    breakpoints = list(zip(kinetic.velocities, kinetic.coefficients, strict=True))
+    slopes = [(mu1 - mu0) / (v1 - v0) for (v0, mu0), (v1, mu1) in pairwise(breakpoints)]
+    return max(0.0, kinetic.end_slope, *slopes)
 
 
 def _longest_euler(gamma: float, omega2: float) -> float:

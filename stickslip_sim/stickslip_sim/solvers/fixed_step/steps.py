@@ -8,8 +8,18 @@ acceleration instead chatters where the branches lie apart, and converges to ano
 step the first segment of the table is continued.
 """
 
+import math
+
 from ...axis.layout import Parameters, State
-from ...axis.motion import STICK, breakpoint_speed, contact_force, drive_force, friction_line, is_rigid_stick
+from ...axis.motion import (
+    STICK,
+    breakpoint_speed,
+    contact_force,
+    drive_force,
+    friction_line,
+    is_rigid_stick,
+    segment_end,
+)
 from ...core.hot_path import compiled
 from ..inputs import given_inputs_at
 
@@ -18,10 +28,10 @@ EULER, RK4 = 0.0, 1.0
 
 @compiled
 def segment_near(p: Parameters, segment: int, speed: float) -> int:
-    """Return `motion.segment_above` of a speed, looking around from a segment."""
-    while segment + 1 < p.segment_count and breakpoint_speed(p, segment + 1) <= speed:
+    """Return `motion.segment_above` of a speed, looking around from a segment of the same direction."""
+    while segment_end(p, segment) <= speed < math.inf:
         segment += 1
-    while segment > 0 and breakpoint_speed(p, segment) > speed:
+    while breakpoint_speed(p, segment) > max(speed, 0.0):
         segment -= 1
     return segment
 
