@@ -7,6 +7,7 @@ import math
 from stickslip_sim.axis import Axis
 from stickslip_sim.core.input_profile import InputProfile
 from stickslip_sim.core.types import Event, Sample
+from stickslip_sim.friction import KineticTable
 
 from ..case import Find, Run
 
@@ -32,7 +33,7 @@ def judge(run: Run) -> None:
 def _energy(run: Run) -> float:
     """Return the throughput, or what a spring at the limit stores: a drive that comes back leaves no work."""
     axis, energy = run.parts.heaviest, run.energy
-    limit = axis.normal_force * axis.friction.static.initial
+    limit = axis.normal_force * max(side.static.initial for side in axis.friction.sides)
     return max(energy.throughput, energy.stored, energy.stored_at_start,
                limit * limit / axis.drive_stiffness if axis.drive_stiffness > 0.0 else 0.0)
 
@@ -41,12 +42,15 @@ def _forces(run: Run) -> float:
     axis, end = run.parts.heaviest, run.parts.duration
     fastest = _most(run.parts.drive, end) + max(abs(state.velocity) for state in _states(run))
     stretch = max((abs(e.drive_force) for e in run.events), default=0.0)
-    table = axis.friction.kinetic
-    slopes = [abs((b - a) / (w - v)) for a, b, v, w in zip(table.coefficients, table.coefficients[1:], table.velocities,
-                                                          table.velocities[1:])]
-    steepest = axis.normal_force * max([abs(table.end_slope), *slopes])
+    steepest = axis.normal_force * max(_steepest(side.kinetic) for side in axis.friction.sides)
     return (2.0 * (axis.drive_damping + steepest) * fastest + stretch + _most(run.parts.force, end)
             + axis.normal_force * max(_coefficients(axis, run)))
+
+
+def _steepest(table: KineticTable) -> float:
+    slopes = [abs((b - a) / (w - v)) for a, b, v, w in zip(table.coefficients, table.coefficients[1:], table.velocities,
+                                                          table.velocities[1:])]
+    return max([abs(table.end_slope), *slopes])
 
 
 def _way(run: Run) -> float:
@@ -77,7 +81,7 @@ def speed_bound(run: Run) -> float:
 
 
 def _coefficients(axis: Axis, run: Run) -> list[float]:
-    return [*axis.friction.kinetic.coefficients, axis.friction.static.initial,
+    return [*(mu for side in axis.friction.sides for mu in (*side.kinetic.coefficients, side.static.initial)),
             *(event.static_coefficient for event in run.events)]
 
 

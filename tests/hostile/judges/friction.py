@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stickslip_sim.axis import Axis
+from stickslip_sim.axis import Axis, Friction
 from stickslip_sim.friction import StaticLaw, StaticLawKind
 
 Long = np.longdouble
@@ -27,10 +27,10 @@ class Line(NamedTuple):
 
 
 class Table:
-    """Breakpoints of mu_k and psi together, in extended precision."""
+    """Breakpoints of mu_k and psi of one direction together, in extended precision."""
 
-    def __init__(self, axis: Axis) -> None:
-        kinetic, excess = axis.friction.kinetic, axis.friction.excess
+    def __init__(self, friction: Friction) -> None:
+        kinetic, excess = friction.kinetic, friction.excess
         self.has_branches = excess is not None
         self.breakpoints = sorted({*kinetic.velocities, *(excess.velocities if excess else ())})
         self._kinetic = kinetic.velocities, kinetic.coefficients, kinetic.end_slope
@@ -48,6 +48,17 @@ class Table:
     def psi(self, segment: int) -> Line:
         """Return psi on a segment."""
         return _line(*self._excess, self.breakpoints[segment])
+
+
+class Tables:
+    """The table of each direction."""
+
+    def __init__(self, axis: Axis) -> None:
+        self._ahead, self._back = (Table(axis.friction.along(direction)) for direction in (1.0, -1.0))
+
+    def along(self, direction: float) -> Table:
+        """Return the table of motion in a direction."""
+        return self._back if direction < 0.0 else self._ahead
 
 
 def _line(speeds: Any, values: Any, end_slope: float, speed: float) -> Line:

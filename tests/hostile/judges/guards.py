@@ -7,6 +7,7 @@ The bounds are those of rounding: of the state that the event reports, carried a
 times, and of this judge's own arithmetic.
 """
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, NamedTuple
 
@@ -101,10 +102,11 @@ def _guards(some: list[Segment], times: Any, states: Any, rates: Any, noise: Any
     slack = MARGIN * (np.matmul(noise, np.abs(turned)) + np.stack([s.slack for s in some])[:, None])
     for i, segment in enumerate(some):
         if segment.begin.mode == Mode.STICK:
-            limit, growth = limit_along(segment, times[i])
-            values[i] += limit[:, None]
-            slopes[i] += growth[:, None]
-            slack[i] += MARGIN * 4.0 * EPSILON * limit[:, None]
+            for row, side in ((LOWER, 1.0), (UPPER, -1.0)):
+                limit, growth = limit_along(segment, times[i], side)
+                values[i, :, row] += limit
+                slopes[i, :, row] += growth
+                slack[i, :, row] += MARGIN * 4.0 * EPSILON * limit
     values = np.where(free[:, None], Long('inf'), values)
     return Guards(values, np.where(free[:, None], 0, slopes), slack)
 
@@ -226,7 +228,8 @@ def _wrong_limit(segment: Segment) -> Iterable[str]:
     event = segment.end.event
     if event is None or event.kind != EventKind.BREAKAWAY or segment.end.new_force:
         return
-    limit, growth = limit_along(segment, np.array([segment.length], dtype=Long))
+    side = math.copysign(1.0, event.friction_force)   # also of a limit of 0
+    limit, growth = limit_along(segment, np.array([segment.length], dtype=Long), side)
     normal = Long(segment.axis.normal_force)
     off = abs(Long(event.static_coefficient) * normal - limit[0])
     if off > 1e-12 * abs(limit[0]) + MARGIN * _TIME * growth[0]:

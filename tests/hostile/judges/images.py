@@ -7,11 +7,11 @@ import random
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 
-from stickslip_sim.axis import Axis, CompliantContact, InitialState
+from stickslip_sim.axis import Axis, CompliantContact, Friction, InitialState
 from stickslip_sim.core.errors import SolverError
 from stickslip_sim.core.input_profile import FREQUENCIES, InputProfile
 from stickslip_sim.core.types import Event
-from stickslip_sim.friction import ExcessTable, KineticTable, StaticLaw
+from stickslip_sim.friction import ExcessTable, KineticTable
 
 from ..case import Find, LastBits, Parts, Run, all_events
 
@@ -63,7 +63,9 @@ def _brief(event: Event) -> str:
 def _mirrored(parts: Parts) -> Parts:
     initial = InitialState(-parts.initial.position, -parts.initial.velocity, parts.initial.rest_time,
                            -parts.initial.stretch, -parts.initial.deflection)
-    return parts._replace(initial=initial, drive=_scaled(parts.drive, -1.0), force=_scaled(parts.force, -1.0))
+    axis = replace(parts.axis, friction=parts.axis.friction.mirrored)
+    return parts._replace(axis=axis, initial=initial, drive=_scaled(parts.drive, -1.0),
+                          force=_scaled(parts.force, -1.0))
 
 
 def _mirror(event: Event) -> Event:
@@ -88,9 +90,7 @@ def _length_unit(parts: Parts, k: float) -> Parts:
 def _time_unit(parts: Parts, events: Sequence[Event], k: float) -> None:
     end = min(parts.duration, _LIMIT)
     axis = _faster(_stiffened(parts.axis, 1.0 / (k * k), 1.0 / k), 1.0 / k)
-    law = axis.friction.static
-    law = StaticLaw(law.kind, law.initial, law.limit, k * law.time_constant, law.exponent)
-    axis = replace(axis, normal_force=axis.normal_force / (k * k), friction=replace(axis.friction, static=law))
+    axis = replace(axis, normal_force=axis.normal_force / (k * k), friction=_slower(axis.friction, k))
     initial = replace(parts.initial, velocity=parts.initial.velocity / k, rest_time=k * parts.initial.rest_time)
     image = Parts(axis, initial, _quicker(parts.drive, k, 1.0 / k), _quicker(parts.force, k, 1.0 / (k * k)), k * end,
                   parts.load and _quicker(parts.load, k, 1.0 / (k * k)))
@@ -109,11 +109,21 @@ def _stiffened(axis: Axis, stiffer: float, damper: float) -> Axis:
 
 
 def _faster(axis: Axis, k: float) -> Axis:
-    kinetic, excess = axis.friction.kinetic, axis.friction.excess
+    return replace(axis, friction=_faster_friction(axis.friction, k))
+
+
+def _faster_friction(friction: Friction, k: float) -> Friction:
+    kinetic, excess = friction.kinetic, friction.excess
     kinetic = KineticTable(tuple(k * v for v in kinetic.velocities), kinetic.coefficients, kinetic.end_slope / k)
     if excess is not None:
         excess = ExcessTable(tuple(k * v for v in excess.velocities), excess.fractions)
-    return replace(axis, friction=replace(axis.friction, kinetic=kinetic, excess=excess))
+    return replace(friction, kinetic=kinetic, excess=excess,
+                   backward=friction.backward and _faster_friction(friction.backward, k))
+
+
+def _slower(friction: Friction, k: float) -> Friction:
+    static = replace(friction.static, time_constant=k * friction.static.time_constant)
+    return replace(friction, static=static, backward=friction.backward and _slower(friction.backward, k))
 
 
 def _scaled(profile: InputProfile, factor: float) -> InputProfile:

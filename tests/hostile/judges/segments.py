@@ -19,7 +19,7 @@ from stickslip_sim.core.input_profile import InputProfile, Piece
 from stickslip_sim.core.types import Event, EventKind, Instant, Mode, Sample
 
 from ..case import Parts, Run, borders, instant
-from .friction import Table, static
+from .friction import Tables, static
 
 Long = np.longdouble
 EPSILON = 2.0 ** -52
@@ -75,17 +75,17 @@ class Segment:
 
 def segments(run: Run) -> Iterator[Segment]:
     """Return the segments of a run."""
-    parts, table = run.parts, Table(run.parts.axis)
-    nodes = list(_nodes(run, table))
+    parts, tables = run.parts, Tables(run.parts.axis)
+    nodes = list(_nodes(run, tables))
     came = 0.0
     for begin, end in pairwise(nodes):
         length = (Long(end.at.second) - Long(begin.at.second)) + (Long(end.at.fraction) - Long(begin.at.fraction))
         if length > 0:
-            yield _segment(parts, table, begin, end, length, came)
+            yield _segment(parts, tables, begin, end, length, came)
             came = abs(end.position - begin.position)
 
 
-def _nodes(run: Run, table: Table) -> Iterator[Node]:
+def _nodes(run: Run, tables: Tables) -> Iterator[Node]:
     parts = run.parts
     jumps = {Instant(0.0, 0.0)}
     for border in borders(parts):     # the end, too: an input may jump there
@@ -94,16 +94,16 @@ def _nodes(run: Run, table: Table) -> Iterator[Node]:
     stretches = [(run.at_start, run.start), *run.stretches]
     for events, sample in stretches:
         for event in events:
-            excess = _excess(event, excess, table)
+            excess = _excess(event, excess, tables)
             yield _node_of_event(event, *excess, event.instant in jumps, parts)
         yield _node_of_sample(sample, *excess)
 
 
-def _excess(event: Event, excess: tuple[Any, Any], table: Table) -> tuple[Any, Any]:
+def _excess(event: Event, excess: tuple[Any, Any], tables: Tables) -> tuple[Any, Any]:
     """Return E from this event on, and its rounding."""
     if event.kind not in (EventKind.BREAKAWAY, EventKind.REVERSE):
         return excess
-    speed = abs(event.velocity)
+    speed, table = abs(event.velocity), tables.along(event.direction)
     segment = table.segment(speed, True)
     psi, coefficient = table.psi(segment).of(Long(speed)), table.kinetic(segment).of(Long(speed))
     limit = Long(event.static_coefficient)
@@ -116,7 +116,7 @@ def _excess(event: Event, excess: tuple[Any, Any], table: Table) -> tuple[Any, A
 
 def _node_of_event(event: Event, excess: Any, excess_noise: Any, jumped: bool, parts: Parts) -> Node:
     axis = _axis_at(parts, event.instant)
-    contact, kinetic = axis.contact, axis.friction.kinetic
+    contact, kinetic = axis.contact, axis.friction.along(event.direction).kinetic
     deflection = 0.0
     if isinstance(contact, CompliantContact) and event.mode == Mode.STICK:
         deflection = event.direction * axis.normal_force * kinetic.coefficients[0] / contact.stiffness
@@ -130,9 +130,9 @@ def _node_of_sample(sample: Sample, excess: Any, excess_noise: Any) -> Node:
                 excess_noise, True)
 
 
-def _segment(parts: Parts, table: Table, begin: Node, end: Node, length: Any, came: float) -> Segment:
+def _segment(parts: Parts, tables: Tables, begin: Node, end: Node, length: Any, came: float) -> Segment:
     """Return the segment; the slider `came` so far (m) in the one before, and the spring knows that no better."""
-    axis = _axis_at(parts, begin.at)
+    axis, table = _axis_at(parts, begin.at), tables.along(begin.direction)
     m, c, h, normal = (Long(x) for x in (axis.mass, axis.drive_stiffness, axis.drive_damping, axis.normal_force))
     sinusoids = [(w, 0) for w in parts.drive.sinusoids] + [(w, 1) for w in parts.force.sinusoids]
     d = WAVE + 2 * len(sinusoids)
@@ -191,7 +191,8 @@ def _segment(parts: Parts, table: Table, begin: Node, end: Node, length: Any, ca
     if contact is not None and mode == Mode.STICK:
         held = Long(contact.stiffness) * Long(begin.deflection) + Long(contact.damping) * u
     against = held if mode == Mode.STICK else sigma * normal * friction
-    sizes.append(abs(against) + normal * axis.friction.static.initial * (1 if mode == Mode.STICK else 0.1))
+    most = max(side.static.initial for side in axis.friction.sides)
+    sizes.append(abs(against) + normal * most * (1 if mode == Mode.STICK else 0.1))
     rounding = FORCES * sum(sizes) + EPSILON * c * Long(came)
     start = np.zeros(d, dtype=Long)
     noise = np.zeros(d, dtype=Long)
@@ -317,7 +318,7 @@ def _force_at(parts: Parts, begin: Node, end: Node) -> Any:
                        Long(0))
 
 
-def limit_along(segment: Segment, times: Any) -> tuple[Any, Any]:
-    """Return N mu_s and its rate at times after the start of a stick."""
-    values, rates = static(segment.axis.friction.static, Long(segment.begin.rest_time) + times)
+def limit_along(segment: Segment, times: Any, side: float) -> tuple[Any, Any]:
+    """Return N mu_s against a force of this sign, and its rate, at times after the start of a stick."""
+    values, rates = static(segment.axis.friction.along(side).static, Long(segment.begin.rest_time) + times)
     return Long(segment.axis.normal_force) * values, Long(segment.axis.normal_force) * rates

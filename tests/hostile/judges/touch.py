@@ -27,7 +27,7 @@ def judge(run: Run) -> None:
     if any(drive.values) or any(drive.rates) or drive.sinusoids or force.sinusoids or any(force.rates) \
             or len(force.values) > 1 or run.parts.load is not None:
         return
-    if friction.static.initial != friction.kinetic.coefficients[0]:
+    if any(side.static.initial != side.kinetic.coefficients[0] for side in friction.sides):
         return
     period = 2.0 * math.pi / math.sqrt((axis.drive_stiffness + contact.stiffness) / axis.mass)
     for before, event in pairwise(run.events):
