@@ -123,6 +123,11 @@ class Axis:
         """The share of the drive's velocity with which the far end of the damper moves."""
         return 0.0 if self.damper_on_slideway else 1.0
 
+    @property
+    def slideway_damping(self) -> float:
+        """What is h beside F_d in the balance of forces, N s/m: m ẍ = F_d + F_e − F − this ẋ."""
+        return self.drive_damping if self.damper_on_slideway else 0.0
+
 
 @dataclass(frozen=True, slots=True)
 class InitialState:

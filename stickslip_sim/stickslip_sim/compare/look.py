@@ -52,6 +52,7 @@ def watched(run: Run, watches: Mapping[str, Watch]) -> RunLook:
     mass = run.scene.axis.mass
     for columns in run.sample_blocks():
         applied = mass * columns['acceleration'] + columns['friction_force'] - columns['drive_force']
+        applied += run.scene.axis.slideway_damping * columns['velocity']
         block = {name: applied if name == APPLIED else columns[name] for name in SEEN}
         first = first or {name: float(column[0]) for name, column in {**columns, APPLIED: applied}.items()}
         before.take(block)
@@ -102,7 +103,7 @@ class _BeforeEvents:
         self.columns['acceleration'] = np.full(len(events), np.nan)
         self.columns['mode'] = np.array([Mode.STICK, *(event.mode for event in events[:-1])][:len(events)],
                                         dtype=np.float64)
-        self._mass = run.scene.axis.mass
+        self._mass, self._damping = run.scene.axis.mass, run.scene.axis.slideway_damping
         self._done = 0
         self._latest: tuple[list[float], list[float]] = [], []   # the last sample: its time and its external force
 
@@ -122,6 +123,7 @@ class _BeforeEvents:
     def _fill(self, end: int, time: Numbers, applied: Numbers) -> None:
         events = slice(self._done, end)
         at_events = np.interp(self.columns['time'][events], time, applied)
-        self.columns['acceleration'][events] = (self.columns['drive_force'][events] + at_events
-                                                - self.columns['friction_force'][events]) / self._mass
+        force = self.columns['drive_force'][events] + at_events - self.columns['friction_force'][events]
+        force -= self._damping * self.columns['velocity'][events]
+        self.columns['acceleration'][events] = force / self._mass
         self._done = end

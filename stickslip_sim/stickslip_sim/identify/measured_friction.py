@@ -133,7 +133,7 @@ def _force(drawn: Mapping[str, Numbers], found: Identification, velocity: Number
     if 'friction_force' in drawn:
         return drawn['friction_force']
     if 'drive_force' in drawn:
-        drive = drawn['drive_force']
+        drive = drawn['drive_force'] - axis.slideway_damping * velocity
     elif 'drive_position' in drawn and 'position' in drawn:
         feed = axis.feed_share * _smooth(drawn['drive_position'], window, 1) / period
         drive = (axis.drive_stiffness * (drawn['drive_position'] - drawn['position'])

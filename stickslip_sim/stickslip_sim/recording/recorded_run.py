@@ -144,7 +144,9 @@ class RecordedRun(Views):
 
         And the normal force, where it varies.
         """
-        force = self.scene.axis.mass * columns['acceleration'] + columns['friction_force'] - columns['drive_force']
+        axis = self.scene.axis
+        force = axis.mass * columns['acceleration'] + columns['friction_force'] - columns['drive_force']
+        force += axis.slideway_damping * columns['velocity']
         columns = {**columns, 'external_force': np.where(np.abs(force) > _NO_FORCE * largest, force, 0.0)}
         return {**columns, **recorded_normal_force(self.scene, columns, self.is_changed)}
 

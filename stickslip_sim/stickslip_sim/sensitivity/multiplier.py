@@ -118,7 +118,8 @@ def _kind(event: Event) -> tuple[EventKind, Mode, int]:
 def _stretch(scene: Scene, event: Event) -> float:
     """Return the stretch of the drive spring at an event, m."""
     axis = scene.axis
-    return (event.drive_force - axis.drive_damping * (scene.drive.values[0] - event.velocity)) / axis.drive_stiffness
+    damping = axis.drive_damping - axis.slideway_damping
+    return (event.drive_force - damping * (scene.drive.values[0] - event.velocity)) / axis.drive_stiffness
 
 
 def _none(note: str, size: int = 0, period: float = math.nan) -> Multiplier:

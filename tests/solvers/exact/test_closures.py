@@ -11,10 +11,15 @@ from pathlib import Path
 import pytest
 
 from stickslip_sim.axis import Axis, CompliantContact, InitialState
+from stickslip_sim.compare.continuity import CONTINUITY
+from stickslip_sim.compare.fresh import simulate_densely
+from stickslip_sim.compare.statement import StatementOutcome
+from stickslip_sim.compare.statements import judged
 from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant, steps
 from stickslip_sim.core.types import Event, EventKind
 from stickslip_sim.extremes.shared_axes import random_profiles, with_static
 from stickslip_sim.friction import StaticLawKind
+from stickslip_sim.recording import read_run
 from stickslip_sim.reference import simulate as simulate_reference
 from stickslip_sim.scene import load_scene
 from stickslip_sim.simulation.simulator import Simulator
@@ -130,6 +135,16 @@ def test_a_recorded_run_is_verified(closure: str, tmp_path: Path, capsys: Captur
     answered(capsys, 'simulate', 'paper_fig8', '--duration', '1', *changes, '--bag', tmp_path / 'run')
     code, out, _ = verified(capsys, tmp_path / 'run')
     assert (code, 'identical' in out) == (0, True)
+    assert not read_run(tmp_path / 'run').samples['external_force'].any()   # nothing is left of the balance of forces
+
+
+@pytest.mark.parametrize('closure', CLOSURES)
+def test_the_statements_of_the_paper_are_judged(closure: str) -> None:
+    """The balance of forces that they go by leaves a constant drive constant."""
+    run = simulate_densely(load_scene('paper_fig8', CLOSURES[closure]), 5.0)
+    found = {statement.name: finding.outcome for statement, finding in judged(run)}
+    assert StatementOutcome.NOT_APPLICABLE not in found.values()
+    assert (found[CONTINUITY.name] == StatementOutcome.FAILS) == (closure == 'undeflected')
 
 
 def test_an_undeflected_contact_begins_without_a_force_and_gains_no_energy() -> None:
