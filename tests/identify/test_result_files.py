@@ -32,7 +32,7 @@ from stickslip_sim.identify.measured_friction import binned, friction_points
 from stickslip_sim.identify.posterior import posterior_text
 from stickslip_sim.identify.result_folder import PAGE, POSTERIOR, SCENE, VALUES, write_results
 from stickslip_sim.recording.measured_run import MeasuredRun
-from stickslip_sim.scene import load_scene
+from stickslip_sim.scene import load_scene, scene_from_values
 from stickslip_sim.scene.load import parse_scene
 from stickslip_sim.study import Saltelli, Study
 from stickslip_sim.study.uncertain_file import uncertain_of
@@ -177,6 +177,21 @@ def test_friction_straight_from_the_measurement_is_that_of_the_axis(run: Measure
     inside = (bins.speeds > 2e-3) & (bins.speeds < 0.018)
     assert inside.sum() > 5
     assert bins.medians[inside] == pytest.approx(truth[inside], abs=0.006)
+
+
+@pytest.mark.parametrize('changes', [
+    {'axis.damper': 'slideway'},
+    {'normal_load.course': 'steps', 'normal_load.times': (0.0, 2.0), 'normal_load.forces': (0.0, 400.0)}])
+def test_a_damper_on_the_slideway_and_a_load_are_no_friction(changes: dict[str, object], found: Identification,
+                                                             tmp_path: Path) -> None:
+    values = {**TRUTH, **changes}
+    other = replace(found, scene=scene_from_values(values))
+    points = friction_points(readings(values).as_run(tmp_path / 'other'), other)
+    inside = (points.speeds > 5e-3) & (points.speeds < 0.018)
+    assert inside.sum() > 20
+    left = points.coefficients[inside] - (0.12 - 2.0 * points.speeds[inside])
+    assert np.median(left) == pytest.approx(0.0, abs=0.002)
+    assert np.percentile(np.abs(left), 80) < 0.012
 
 
 def test_without_a_force_no_friction_is_measured(found: Identification, tmp_path: Path) -> None:

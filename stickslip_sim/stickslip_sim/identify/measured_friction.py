@@ -50,9 +50,8 @@ NOTHING = FrictionPoints(np.empty(0), np.empty(0))
 
 def friction_points(run: Run, found: Identification) -> FrictionPoints:
     """Return the friction at each reading within a slip; nothing where no force is known."""
-    columns, axis = corrected(run, found), found.scene.axis
-    times, drawn = _even(columns)
-    if axis.normal_force == 0.0 or len(times) < 2 * _FEWEST:
+    times, drawn = _even(corrected(run, found))
+    if len(times) < 2 * _FEWEST:
         return NOTHING
     period = times[1] - times[0]
     rough = _smooth(drawn['position'], _FEWEST, 1) / period if 'position' in drawn else drawn['velocity']
@@ -65,8 +64,17 @@ def friction_points(run: Run, found: Identification) -> FrictionPoints:
     if force is None:
         return NOTHING
     rows = np.concatenate([np.arange(slip.first + window // 2, slip.end - window // 2) for slip in slips])
-    ways = np.sign(velocity[rows])
-    return FrictionPoints(np.abs(velocity[rows]), ways * force[rows] / axis.normal_force)
+    loads = loads_at(found, times[rows])
+    rows, loads = rows[loads > 0.0], loads[loads > 0.0]
+    return FrictionPoints(np.abs(velocity[rows]), np.sign(velocity[rows]) * force[rows] / loads)
+
+
+def loads_at(found: Identification, times: Numbers) -> Numbers:
+    """Return the normal force on the slideway at times (n,), N."""
+    if found.scene.normal_load is None:
+        return np.full(len(times), found.scene.axis.normal_force)
+    profile = found.scene.normal_force
+    return np.array([profile.value_at(time) for time in times.tolist()])
 
 
 def binned(points: FrictionPoints) -> FrictionBins:

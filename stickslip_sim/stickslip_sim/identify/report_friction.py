@@ -11,7 +11,7 @@ from ..plots.known_friction import Band, Bins, KnownFriction, Scatter
 from ..runs import Run
 from .friction_band import accelerating_of, half_width, kinetic_of, static_of
 from .identification import Identification
-from .measured_friction import binned, friction_points
+from .measured_friction import binned, friction_points, loads_at
 
 Numbers = NDArray[np.float64]
 
@@ -51,9 +51,9 @@ def _fastest(run: Run) -> float:
 
 def _break_aways(found: Identification) -> tuple[Numbers, Numbers]:
     """Return times at rest and coefficients of the measured break-aways that have both."""
-    load = found.scene.axis.normal_force
-    rows = [(slip.stick_time, abs(slip.break_away_force) / load) for slip in found.slips
-            if load and math.isfinite(slip.stick_time) and math.isfinite(slip.break_away_force)]
+    slips = [slip for slip in found.slips if math.isfinite(slip.stick_time) and math.isfinite(slip.break_away_force)]
+    loads = loads_at(found, np.array([slip.time for slip in slips], dtype=np.float64))
+    rows = [(slip.stick_time, abs(slip.break_away_force) / load) for slip, load in zip(slips, loads) if load > 0.0]
     rests, forces = np.array(rows, dtype=np.float64).reshape(-1, 2).T
     return rests, forces
 
