@@ -15,13 +15,14 @@ depends on is taken together in a tuple `q`, which machine code keeps in registe
 import math
 
 from ...axis.layout import (
-    CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, END_SLOPE, SEGMENT_SIZE, SEGMENT_COUNT, MASS, NORMAL, STATIC_EXPONENT,
-    STATIC_INITIAL, STATIC_LAW, STATIC_LIMIT, STATIC_TAU, STIFFNESS, TABLE,
+    CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, END_SLOPE, MASS, NORMAL, SEGMENT_COUNT, SEGMENT_FIELDS, SEGMENT_SIZE,
+    STATIC_EXPONENT, STATIC_INITIAL, STATIC_LAW, STATIC_LIMIT, STATIC_TAU, STIFFNESS, TABLE,
 )
 from .always_compiled import always_compiled
 from ...friction.static import CONSTANT, EXPONENTIAL, HYPERBOLIC, KATO
 from ...core.types import Mode
 
+_MU, _PSI = SEGMENT_FIELDS.index('friction'), SEGMENT_FIELDS.index('psi')
 TIME, MODE, DIRECTION, SEGMENT, EXCESS = range(5)
 X, U, S, DEFLECTION, REST = range(5, 10)      # at the reset; S: drive position
 V, V_RATE, F, F_RATE = range(10, 14)          # the inputs from the reset on, sinusoids apart
@@ -62,6 +63,12 @@ def static_coefficient(law, low, limit, tau, exponent, rest):
 
 
 @always_compiled
+def kinetic_at_rest(p):
+    """Return mu_k as motion stops."""
+    return p[TABLE + _MU]
+
+
+@always_compiled
 def breakpoint_at(p, segment):
     """Return the speed at which a segment of the friction table begins."""
     return p[TABLE + SEGMENT_SIZE * int(segment)]
@@ -83,11 +90,11 @@ def friction_lines(p, segment):
     """Return mu_k, its slope, psi and its slope as lines through speed 0, along a segment of the table."""
     at = TABLE + SEGMENT_SIZE * int(segment)
     if segment + 1.0 >= p[SEGMENT_COUNT]:
-        return p[at + 1] - p[END_SLOPE] * p[at], p[END_SLOPE], p[at + 2], 0.0
+        return p[at + _MU] - p[END_SLOPE] * p[at], p[END_SLOPE], p[at + _PSI], 0.0
     width = p[at + SEGMENT_SIZE] - p[at]
-    mu_slope = (p[at + SEGMENT_SIZE + 1] - p[at + 1]) / width
-    psi_slope = (p[at + SEGMENT_SIZE + 2] - p[at + 2]) / width
-    return p[at + 1] - mu_slope * p[at], mu_slope, p[at + 2] - psi_slope * p[at], psi_slope
+    mu_slope = (p[at + SEGMENT_SIZE + _MU] - p[at + _MU]) / width
+    psi_slope = (p[at + SEGMENT_SIZE + _PSI] - p[at + _PSI]) / width
+    return p[at + _MU] - mu_slope * p[at], mu_slope, p[at + _PSI] - psi_slope * p[at], psi_slope
 
 
 @always_compiled

@@ -6,14 +6,14 @@ import math
 
 from ...axis.layout import (
     BRANCHES, COMPLIANT, CONTACT_STIFFNESS, DAMPING, NORMAL, STATIC_EXPONENT, STATIC_INITIAL, STATIC_LAW, STATIC_LIMIT,
-    STATIC_TAU, STIFFNESS, TABLE,
+    STATIC_TAU, STIFFNESS,
 )
 from .always_compiled import always_compiled
 from ...core.types import EventKind
 from .automaton import (
-    ACCELERATING, COASTING, DECELERATING, DEFLECTION, DIRECTION, EXCESS, F, F_RATE, MODE, REST, ROUNDING, S, SEGMENT,
-    STICK, TIME, TURN, U, V, V_RATE, X, applied, breakpoint_at, contact, friction_lines, inputs, is_compliant,
-    motion_of, segment_of, static_coefficient, static_margin,
+    ACCELERATING, COASTING, DECELERATING, DEFLECTION, DIRECTION, EXCESS, F, F_RATE, MODE, REST, ROUNDING, S,
+    SEGMENT, STICK, TIME, TURN, U, V, V_RATE, X, applied, breakpoint_at, contact, friction_lines, inputs,
+    is_compliant, kinetic_at_rest, motion_of, segment_of, static_coefficient, static_margin,
 )
 
 BREAKAWAY, COAST, ACCELERATE = float(EventKind.BREAKAWAY), float(EventKind.COAST), float(EventKind.ACCELERATE)
@@ -115,7 +115,7 @@ def _stick(p, m):
     m[REST] = m[U] = 0.0
     m[DEFLECTION] = 0.0
     if p[COMPLIANT] != 0.0:
-        m[DEFLECTION] = m[DIRECTION] * p[NORMAL] * p[TABLE + 1] / p[CONTACT_STIFFNESS]
+        m[DEFLECTION] = m[DIRECTION] * p[NORMAL] * kinetic_at_rest(p) / p[CONTACT_STIFFNESS]
     m[DIRECTION] = 0.0
 
 
