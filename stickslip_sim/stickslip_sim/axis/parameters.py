@@ -60,6 +60,9 @@ class Friction:
         if back.static.kind != self.static.kind:
             raise InputError('friction.static.backward', back.static.kind.name.lower(),
                              f'the same law as forwards, {self.static.kind.name.lower()}', 'its numbers may differ')
+        if back.static.delay != self.static.delay:
+            raise InputError('friction.static.backward.delay', back.static.delay,
+                             f'{self.static.delay!r} s, as forwards', 'the rest of a contact has no direction')
         if (back.excess is None) != (self.excess is None):
             raise InputError('friction.excess.backward', back.excess, 'given in both directions or in none',
                              'friction.acceleration_dependence is for both')
