@@ -42,6 +42,7 @@ from .contact_force import (
     gives_way,
     moves,
     rings_within,
+    second_at_start,
 )
 from .static_guards import GAVE_UP, STEPS, concave_root, is_concave, law, steep_start
 
@@ -187,6 +188,8 @@ def _step(p: Parameters, s: State, osc: Oscillator, contact: ContactForce,
     step = min(near, far)
     if step <= 2.0 * EPSILON * t:
         bend = side * (sag_second + free_second)
+        if t == 0.0 and p.sided != 0.0:   # of P + H, which may cancel, as under a ramp from a rest
+            bend = side * second_at_start(p, s, osc)
         if fall != 0.0 or bend > 0.0 or (bend != 0.0 and top == 0.0 and back == 0.0 and other_fall == 0.0):
             return 0.0, _IS_ROOT, side
         if bend == 0.0 and p.sided != 0.0:

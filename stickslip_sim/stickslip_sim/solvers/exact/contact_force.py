@@ -134,6 +134,14 @@ def moves(s: State) -> bool:
                 and s.snap == 0.0)
 
 
+@inlined
+def second_at_start(p: Parameters, s: State, osc: Oscillator) -> float:
+    """Return the second derivative of the force at the segment start."""
+    stiffness, damping = judged_part(p)
+    of_drive = p.stiffness * s.inputs.v_rate if p.judges_drive != 0.0 else 0.0
+    return stiffness * s.acceleration + damping * (s.jerk - 2.0 * osc.gamma * s.acceleration) + of_drive
+
+
 @compiled
 def gives_way(p: Parameters, s: State, osc: Oscillator) -> bool:
     """Whether a contact without a force is pushed in a direction in which static friction never holds anything.
@@ -148,7 +156,7 @@ def gives_way(p: Parameters, s: State, osc: Oscillator) -> bool:
     jerk = s.jerk - 2.0 * osc.gamma * a
     snap = s.snap - 2.0 * osc.gamma * jerk - osc.omega2 * a
     if push == 0.0:
-        push = stiffness * a + damping * jerk + (p.stiffness * s.inputs.v_rate if p.judges_drive != 0.0 else 0.0)
+        push = second_at_start(p, s, osc)
     if push == 0.0:
         push = stiffness * jerk + damping * snap
     if push == 0.0 and p.judges_drive == 0.0:
