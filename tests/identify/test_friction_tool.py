@@ -65,6 +65,23 @@ def test_forces_of_both_directions(tmp_path: Path, capsys: Capture) -> None:
     assert 'the directions differ' in out
 
 
+def test_each_direction_gets_its_own_curve(tmp_path: Path, capsys: Capture) -> None:
+    both = tmp_path / 'both.csv'
+    lines = [line.split(',') for line in CURVE.read_text().splitlines()[2:]]
+    both.write_text(''.join(f'{sign * float(v)},{c * float(mu)}\n' for sign, c in ((1, 1.0), (-1, 0.8))
+                            for v, mu in lines))
+    given = ('friction', both, '--speed-unit', 'mm/s', '--law', 'points')
+    ahead, made = tmp_path / 'ahead.yaml', tmp_path / 'made.yaml'
+    assert answered(capsys, *given, '--direction', 'forward', '--out', ahead)[0] == 0
+    assert answered(capsys, *given, '--backward', '--scene', ahead, '--out', made)[0] == 0
+    forwards, backwards = load_scene(str(made)).axis.friction.sides
+    assert forwards == load_scene(str(ahead)).axis.friction
+    assert backwards.kinetic.coefficients == pytest.approx([0.8 * mu for mu in forwards.kinetic.coefficients], rel=1e-5)
+    smooth = (*given[:-1], 'stribeck', '--backward', '--scene', ahead, '--out', tmp_path / 'other.yaml')
+    assert '--law = ' in answered(capsys, *smooth)[2]
+    assert '--scene' in answered(capsys, *given, '--backward', '--out', tmp_path / 'other.yaml')[2]
+
+
 @pytest.mark.parametrize(('arguments', 'said'), [
     (('--speed-unit', 'furlong'), '--speed-unit = '),
     (('--speed-unit', 'm/s'), 'must be mm/s, as the heading says'),

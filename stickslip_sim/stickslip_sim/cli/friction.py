@@ -29,6 +29,8 @@ _LAWS = ('table', 'gaussian', 'stribeck', 'exponential', 'hyperbolic')
 @click.option('--normal-force', type=float, metavar='N', help='The normal force under which it was measured, N.')
 @click.option('--direction', type=click.Choice(('both', 'forward', 'backward')), default='both', show_default=True,
               help='Which points to fit; backward ones have a negative speed.')
+@click.option('--backward', is_flag=True,
+              help='Write it as the friction of motion backwards of --scene, which keeps its own forwards.')
 @click.option('--law', type=click.Choice((_BEST, *_LAWS, _POINTS)), default=_BEST, show_default=True,
               help='Which to write; points: the measured points as a table.')
 @click.option('--scene', metavar='SCENE', help="The axis that gets this friction [default: the paper's].")
@@ -37,25 +39,27 @@ _LAWS = ('table', 'gaussian', 'stribeck', 'exponential', 'hyperbolic')
 @click.option('--plot', metavar='FILE.png', help='Draw points, laws and residuals (.png, .pdf or .svg).')
 @click.option('--meant', multiple=True, type=click.Choice(('speed', 'friction')),
               help='Its highest value is meant, however unusual.')
-def friction(curve: str, speed_unit: str, force_unit: str | None, normal_force: float | None, direction: str, law: str,
-             scene: str | None, changes: tuple[str, ...], out: str | None, plot: str | None,
+def friction(curve: str, speed_unit: str, force_unit: str | None, normal_force: float | None, direction: str,
+             backward: bool, law: str, scene: str | None, changes: tuple[str, ...], out: str | None, plot: str | None,
              meant: tuple[str, ...]) -> None:
     """Fit the friction laws of the engine to a measured curve: speed, then coefficient or force, in each line.
 
     The best is the one with the lowest AICc.  docs/friction_curve.md says more.
     """
     _check(out, plot, scene, changes)
+    if backward and (scene is None or direction == 'forward'):
+        raise click.UsageError('--backward writes backward points into a scene: give --scene, no --direction forward.')
     from ..identify.curve_laws import fit_laws
     from ..identify.curve_scene import origin_of, short_text
     from ..identify.friction_curve import load_curve, units_of
     from ..identify.table_fit import points_table
 
     units = units_of(speed_unit, force_unit, normal_force)
-    measured = load_curve(curve, units, direction, meant)
+    measured = load_curve(curve, units, 'backward' if backward else direction, meant)
     fits = fit_laws(measured)
     chosen = _chosen(law, fits)
     kinetic = points_table(measured) if law == _POINTS else chosen.scene
-    made = None if out is None else _scene(kinetic, scene, changes,
+    made = None if out is None else _scene(kinetic, scene, changes, backward,
                                            origin_of(measured, Path(curve).stem, normal_force))
     printed = points_lines(kinetic, measured) if law == _POINTS else law_lines(chosen)
     print('\n'.join([*curve_lines(curve, measured, units), '', *fit_lines(fits), '', *printed]))
@@ -99,14 +103,17 @@ def _chosen(law: str, fits: 'Fits') -> 'Fit':
     return next(fit for fit in fits.by_rank if fit.name == law)
 
 
-def _scene(kinetic: Mapping[str, object], scene: str | None, changes: tuple[str, ...], origin: 'Origin') -> 'Scene':
+def _scene(kinetic: Mapping[str, object], scene: str | None, changes: tuple[str, ...], backward: bool,
+           origin: 'Origin') -> 'Scene':
     """Return the scene with a law; raises InputError."""
-    from ..identify.curve_scene import scene_with_friction
+    from ..identify.curve_scene import scene_with_friction, scene_with_friction_backwards
     from ..inputs import load_scene
     from ..scene import parse_override
 
-    return scene_with_friction(kinetic, None if scene is None else load_scene(scene),
-                               dict(parse_override(change) for change in changes), origin)
+    given = dict(parse_override(change) for change in changes)
+    if backward and scene is not None:
+        return scene_with_friction_backwards(kinetic, load_scene(scene), given, origin)
+    return scene_with_friction(kinetic, None if scene is None else load_scene(scene), given, origin)
 
 
 def _summary(curve: str, law: str, chosen: 'Fit', scene: str | None) -> str:

@@ -76,7 +76,8 @@ def law_lines(fit: 'Fit') -> list[str]:
     lines += [f'{side.name:22} {side.ratio:.4f} ± {side.error:.4f} of the curve, mean of {side.points} points'
               for side in both]
     if any(abs(side.ratio - 1.0) > _DIFFER * side.error for side in both):
-        lines.append('the directions differ, and a scene has one curve for both: --direction fits one of them')
+        lines.append('the directions differ: fit them one by one, --direction forward --out SCENE.yaml, then '
+                     '--backward --scene SCENE.yaml')
     return lines + _rest_lines(fit) + _miss_lines(fit)
 
 

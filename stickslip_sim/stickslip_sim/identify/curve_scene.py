@@ -9,6 +9,7 @@ import numpy as np
 
 from ..core.errors import InputError
 from ..scene import Scene, scene_from_values
+from ..scene.friction_schema import BACKWARD
 from ..scene.schema import BY_NAME
 from ..scene.text import scene_text
 from ..scene.values import overridden
@@ -34,6 +35,22 @@ def origin_of(curve: FrictionCurve, name: str, normal_force: float | None) -> Or
     """Return the origin of a scene: its feed is the geometric mean of slowest and fastest point, to one digit."""
     moving = curve.speeds[curve.speeds > 0.0]
     return Origin(name, float(f'{np.sqrt(moving.min() * moving.max()):.1g}'), normal_force)
+
+
+def scene_with_friction_backwards(kinetic: Mapping[str, object], base: Scene, changes: Mapping[str, object],
+                                  origin: Origin) -> Scene:
+    """Return a scene with this section friction.kinetic of motion along -x, as `scene_with_friction` rounds it.
+
+    Raises InputError, also on another law than that of the scene, which is for both directions.
+    """
+    law, own = kinetic['law'], base.values['friction.kinetic.law']
+    if law != own:
+        raise InputError('--law', law, f'the law that the scene has forwards, {own}',
+                         'fit the same law both ways, or --law points and a table')
+    _check_load(base, changes, origin.normal_force)
+    section = f'friction.kinetic.{BACKWARD}'
+    friction = {f'{section}.{key}': _rounded(value) for key, value in kinetic.items() if key != 'law'}
+    return scene_from_values(overridden(overridden(base.values, friction), changes))
 
 
 def scene_with_friction(kinetic: Mapping[str, object], base: Scene | None, changes: Mapping[str, object],
