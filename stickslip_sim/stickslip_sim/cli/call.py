@@ -24,12 +24,16 @@ def call(context: click.Context) -> None:
         context.exit(2)
 
 
-def _of_node(command: _Command) -> _Command:
-    """Add the options that every call has."""
+def _of(node: str) -> Callable[[_Command], _Command]:
+    """Return what adds the options that every call has, with the name of the node where none is given."""
     timeout = click.option('--timeout', type=click.FloatRange(0.1, 3600.0), default=10.0, show_default=True,
                            metavar='S', help='Time to wait for the node, and for its answer, s.')
-    return click.option('--node', default='feed_axis', show_default=True, metavar='NAME',
-                        help='Name of the node, with its namespace: /cell/feed_axis.')(timeout(command))
+    name = click.option('--node', default=node, show_default=True, metavar='NAME',
+                        help=f'Name of the node, with its namespace: /cell/{node}.')
+    return lambda command: name(timeout(command))
+
+
+_of_node = _of('feed_axis')
 
 
 @call.command('record')
@@ -111,9 +115,48 @@ def _clear_faults(ids: tuple[str, ...], node: str, timeout: float) -> None:
         print(_answered('inject_fault', {'id': fault, 'kind': 'clear'}, node, timeout).message)
 
 
+@call.command('restart', short_help='Let a controller begin its moves anew.')
+@_of('cascade_controller')
+def _restart(node: str, timeout: float) -> None:
+    """Let an example controller begin its moves anew."""
+    print(_answered('restart', {}, node, timeout).message)
+
+
+@call.command('play-next', short_help='Let a paused replay send one message.')
+@_of('replay')
+def _play_next(node: str, timeout: float) -> None:
+    """Let a paused replay send its next message."""
+    print(_answered('play_next', {}, node, timeout).message)
+
+
+@call.command('set', short_help='Change parameters of a node while it runs.')
+@click.argument('changes', metavar='A.B=VALUE...', nargs=-1, required=True)
+@_of_node
+def _set(changes: tuple[str, ...], node: str, timeout: float) -> None:
+    """Change parameters of a running node, all of them or none: gains of a controller, axis.mass, rate of a replay."""
+    from ..core.errors import RefusedError
+    from ..scene import parse_override
+
+    values = dict(parse_override(change) for change in changes)
+    result = _answer('set_parameters_atomically', values, node, timeout, 0.0).result
+    if not result.successful:
+        raise RefusedError(result.reason)
+    print('set: ' + ', '.join(values))
+
+
 def _answered(service: str, request: Mapping[str, object], node: str, timeout: float, duration: float = 0.0) -> Any:
     """Return the answer of a node; raises RefusedError when it refuses, StickslipError when nobody answers."""
-    from ..core.errors import InputError, RefusedError
+    from ..core.errors import RefusedError
+
+    answer = _answer(service, request, node, timeout, duration)
+    if not answer.success:
+        raise RefusedError(answer.message)
+    return answer
+
+
+def _answer(service: str, request: Mapping[str, object], node: str, timeout: float, duration: float) -> Any:
+    """Return the answer of a node, a refusal too; raises StickslipError when nobody answers."""
+    from ..core.errors import InputError
     from ..ros.process.environment import check_environment
 
     check_environment()
@@ -122,7 +165,4 @@ def _answered(service: str, request: Mapping[str, object], node: str, timeout: f
     except ImportError as error:
         raise InputError('AMENT_PREFIX_PATH', os.environ.get('AMENT_PREFIX_PATH', ''),
                          f'that of a workspace with {error.name}', 'source its setup.bash') from None
-    answer = answer_of(service, request, node, timeout, duration)
-    if not answer.success:
-        raise RefusedError(answer.message)
-    return answer
+    return answer_of(service, request, node, timeout, duration)

@@ -20,12 +20,12 @@ from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.types import EventKind
 from tests.support.busy_machine import judged_by_time
 from tests.support.ros_nodes import Client, assert_clean, client, executable, running
+from tests.support.tool import Capture, answered
 from tests.support.waiting import DEADLINE, wait_for
 
 from rcl_interfaces.msg import Log  # isort: skip  # after tests.support.ros_nodes, which skips without ROS
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy  # isort: skip
 from sensor_msgs.msg import JointState  # isort: skip
-from std_srvs.srv import Trigger  # isort: skip
 
 from stickslip_msgs.srv import Step
 from stickslip_sim.ros.controllers.controller_node import measurement
@@ -172,17 +172,20 @@ def test_over_dds_the_compensated_one_sticks_less() -> None:
         assert compensated <= plain / 2    # none on a machine that keeps up
 
 
-def test_parameters_and_restart_while_it_runs() -> None:
+def test_parameters_and_restart_while_it_runs(capsys: Capture) -> None:
     with driven('compensated') as (axis, controller):
         name = NAMES['compensated']
         assert axis.set_parameters(name, velocity_gain=6.0).successful
         assert axis.set_parameters(name, integral_time=math.inf).successful
+        assert answered(capsys, 'call', 'set', 'velocity_gain=5', 'integral_time=.inf', '--node', name) == (
+            0, 'set: velocity_gain, integral_time\n', '')
         assert 'compensation.share = 1.5' in axis.set_parameters(name, compensation__share=1.5).reason
         assert 'cannot change while the node runs' in axis.set_parameters(name, moves__feed=0.01).reason
         unknown = axis.set_parameters(name, moves__fee=0.01).reason
         assert 'moves.fee = 0.01 is refused: must be one of' in unknown
         assert 'did you mean moves.feed?' in unknown
-        assert axis.call(Trigger, 'restart', name).success
+        assert answered(capsys, 'call', 'restart', '--node', name) == (
+            0, 'the moves begin anew with the next measurement\n', '')
         code, errors = controller.end()
     assert code == 0, errors
     assert errors.count('the moves begin') >= 2

@@ -19,6 +19,7 @@ from stickslip_sim.recording.topics import CLOCK, PARAMETER_EVENTS, RECORDED, SL
 from tests.support.busy_machine import judged_by_time
 from tests.support.recorded_runs import FACTS, damage, events, samples
 from tests.support.ros_nodes import Client, assert_clean, client, executable, running
+from tests.support.tool import Capture, answered
 from tests.support.waiting import wait_for
 
 from rcl_interfaces.srv import DescribeParameters  # isort: skip
@@ -168,7 +169,7 @@ class TestTime:
         assert clocks == sorted(clocks)
         assert clocks[-1] < start + SECOND
 
-    def test_paused_message_by_message(self, bag: Path) -> None:
+    def test_paused_message_by_message(self, bag: Path, capsys: Capture) -> None:
         slowly = ('-p', 'rate:=0.02', '-p', 'topics:=[/slider_state]')   # 15 s
         with client() as viewer, replaying(bag, *PAUSED, *slowly) as process:
             ears = Ears(viewer, SLIDER_STATE.resolved())
@@ -176,6 +177,8 @@ class TestTime:
             for count in range(1, 4):
                 assert call(viewer, 'play_next').success
                 ears.wait_for('/slider_state', wanted[:count])
+            assert answered(capsys, 'call', 'play-next') == (0, 'the next message goes out\n', '')
+            ears.wait_for('/slider_state', wanted[:4])
             assert call(viewer, 'resume').success
             assert call(viewer, 'pause').message.startswith('paused at 0.')
             assert call(viewer, 'is_paused').success

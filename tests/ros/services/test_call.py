@@ -71,6 +71,14 @@ def test_faults(folder: Path, capsys: Capture) -> None:
     assert "kind = 'friction' is refused" in refused(capsys, 'call', 'inject-fault', 'friction', '--node', AXIS)
 
 
+def test_parameters(folder: Path, capsys: Capture) -> None:
+    assert said(capsys, 'set', 'axis.mass=300', 'command.max_velocity=0.5') == 'set: axis.mass, command.max_velocity\n'
+    assert 'axis.mass = -1' in refused(capsys, 'call', 'set', 'axis.mass=-1', '--node', AXIS)
+    assert 'solver.name' in refused(capsys, 'call', 'set', 'axis.mass=350', 'solver.name=fixed_step', '--node', AXIS)
+    assert 'must be A.B=VALUE' in refused(capsys, 'call', 'set', 'axis.mass', '--node', AXIS)
+    assert said(capsys, 'set', 'axis.mass=350', 'command.max_velocity=1') == 'set: axis.mass, command.max_velocity\n'
+
+
 def test_a_fault_without_the_value_that_its_kind_needs(capsys: Capture) -> None:
     """0 would be a friction that is gone."""
     assert refused(capsys, 'call', 'inject-fault', 'friction_scale') == (

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from typing import Any
 
 import rclpy
-from rcl_interfaces.srv import GetParameters
+from rcl_interfaces.srv import GetParameters, SetParametersAtomically
 from rclpy.client import Client
 from rclpy.context import Context
 from rclpy.exceptions import InvalidServiceNameException
@@ -24,8 +24,9 @@ from stickslip_msgs.srv import InjectFault, Step
 from ...core.errors import InputError, StickslipError
 from ..process.environment import refusing, variables
 
+_SET = 'set_parameters_atomically'
 _TYPES = {'record': SetBool, 'set_paused': SetBool, 'reset': Trigger, 'clear_faults': Trigger, 'step': Step,
-          'inject_fault': InjectFault}
+          'inject_fault': InjectFault, 'restart': Trigger, 'play_next': Trigger, _SET: SetParametersAtomically}
 _GREETING = 1.0    # s until a node is greeted again
 _POLL = 0.05       # s
 
@@ -33,13 +34,17 @@ _POLL = 0.05       # s
 def answer_of(service: str, request: Mapping[str, object], node: str, patience: float, duration: float = 0.0) -> Any:
     """Return the answer of a node to a request; `patience` and `duration` (s): to find it, and what it works on it.
 
+    The request to set parameters is their values by name.
+
     Raises InputError on a name that is none, StickslipError when nobody answers.
     """
     name = f'/{node.strip("/")}'
     with _session() as session:
         client = session.client(_TYPES[service], f'{name}/{service}', node)
         session.meet(client, name, service, patience)
-        answer = client.call_async(_TYPES[service].Request(**request))
+        fields = {'parameters': [Parameter(each, value=value).to_parameter_msg() for each, value in request.items()]
+                  } if service == _SET else request
+        answer = client.call_async(_TYPES[service].Request(**fields))
         session.spin_until(lambda: answer.done() or not client.service_is_ready(), patience + duration)
         if not answer.done():
             raise StickslipError(f'{name} has not answered to {service} within {patience + duration:g} s: is it busy,'
