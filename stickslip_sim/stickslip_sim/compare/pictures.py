@@ -14,7 +14,7 @@ from ..runs import Run
 from .characteristics import characteristics_of
 from .conventional import characteristics_beside, scene_as_run
 from .drawn_motion import drawn_motion
-from .fresh import simulate_densely
+from .fresh import MAX_EVENTS, simulate_densely
 
 KINDS = ('png', 'svg')
 _OF_MOTION = (
@@ -77,10 +77,11 @@ def _beside(run: Run) -> dict[str, DrawnMotion]:
     scene = scene_as_run(run)
     if scene is None:
         return {}
+    duration = run.duration * min(1.0, 0.5 * MAX_EVENTS / max(len(run.events), 1))   # the last cycle is like others
     found = {}
     for name, other in characteristics_beside(scene).items():
         mark = _OWN if other.axis == scene.axis else ''
-        found[f'{name}{mark}'] = drawn_motion(simulate_densely(other, run.duration))
+        found[f'{name}{mark}'] = drawn_motion(simulate_densely(other, duration))
     return found
 
 

@@ -35,6 +35,10 @@ class RingDown(NamedTuple):
     decay: float              # 1/s, of the envelope
 
 
+class Unseen:
+    """A stick that shows no ring-down."""
+
+
 def closed_form(axis: Axis) -> RingDown | None:
     """Return √((c + c_c)/m)/2π and (h + h_c)/(2 √((c + c_c) m)); None without a compliant contact."""
     if not isinstance(axis.contact, CompliantContact):
@@ -43,8 +47,8 @@ def closed_form(axis: Axis) -> RingDown | None:
     return _ring_down(stiffness / axis.mass, (axis.drive_damping + axis.contact.damping) / axis.mass)
 
 
-def latest_ringing(part: RunPart) -> Columns | None:
-    """Return the motion at the start of the last complete stick of a part with constant inputs; None without any."""
+def latest_ringing(part: RunPart) -> RingDown | Unseen | None:
+    """Return the ring-down of the last complete stick of a part with constant inputs; None without such a stick."""
     form = closed_form(part.scene.axis)
     if form is None:
         return None
@@ -52,14 +56,15 @@ def latest_ringing(part: RunPart) -> Columns | None:
         until = min(end.time, begin.time + _PERIODS / form.frequency)
         if steady_inputs(part, begin.time, until):
             first, last = np.searchsorted(part.samples['time'], (begin.time, until))
-            return {name: part.samples[name][first:last].copy() for name in _OF_FIT}
+            motion = {name: part.samples[name][first:last] for name in _OF_FIT}
+            return (_fitted(motion) if last - first >= _LEAST_SAMPLES else None) or Unseen()
     return None
 
 
-def identified(found: Sequence[Columns | None]) -> RingDown | None:
-    """Return the ring-down of the latest motion that was found, None when there is none to see."""
-    latest = next((motion for motion in reversed(found) if motion is not None), None)
-    return None if latest is None or len(latest['time']) < _LEAST_SAMPLES else _fitted(latest)
+def identified(found: Sequence[RingDown | Unseen | None]) -> RingDown | None:
+    """Return the latest ring-down that was looked for, None when there is none to see."""
+    latest = next((ring for ring in reversed(found) if ring is not None), None)
+    return latest if isinstance(latest, RingDown) else None
 
 
 def _fitted(motion: Columns) -> RingDown | None:
