@@ -6,10 +6,12 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import stickslip_sim as stickslip
 from stickslip_sim.identify.identification import AT_BOUND, FOUND, NOT_IDENTIFIABLE, Identification
+from stickslip_sim.recording import write_measured
 from tests.identify.measured_axis import between, measure
 
 RIGID = stickslip.load_scene('paper_fig7', {'drive.course': 'steps', 'drive.times': (0.0, 2.0, 4.0),
@@ -162,3 +164,36 @@ def test_too_few_samples(tmp_path: Path) -> None:
     run = measure(tmp_path / 'run', RIGID, 1.0, rate=25.0, force=False)
     with pytest.raises(stickslip.InputError, match='5 or more for each of the 6 free parameters'):
         stickslip.identify(run, RIGID, {**OF_DRIVE, **OF_FRICTION})
+
+
+def test_a_run_that_starts_elsewhere(tmp_path: Path) -> None:
+    """The encoder counts from somewhere, and the spring is stretched already."""
+    there = changed(RIGID, {'initial.position': 0.05, 'initial.stretch': 4e-4})
+    run = measure(tmp_path / 'run', there, 4.0)
+    found = stickslip.identify(run, changed(RIGID, OFF), OF_FRICTION)
+    assert found.fits, found.misfits
+    assert found.values['initial.stretch'] == pytest.approx(4e-4, rel=0.01)
+    assert found.values['friction.static.limit'] == pytest.approx(0.24, rel=0.01)
+    assert found.scene.initial.position == pytest.approx(0.05, abs=1e-6)
+    assert len(found.notes) == 2
+
+
+def test_a_motor_force_drives_an_axis_without_a_spring(tmp_path: Path) -> None:
+    axis = stickslip.load_scene('paper_fig7', {
+        'axis.drive_stiffness': 0.0, 'axis.drive_damping': 0.0, 'axis.mass': 95.0, 'axis.normal_force': 100.0,
+        'friction.static.law': 'constant', 'friction.static.initial': 0.2, 'friction.acceleration_dependence': False,
+        'friction.kinetic.velocities': (0.0,), 'friction.kinetic.coefficients': (0.2,),
+        'friction.kinetic.end_slope': 2.0, 'drive.velocity': 0.0, 'force.course': 'sine', 'force.amplitude': 60.0,
+        'force.frequency': 1.0})
+    samples = stickslip.simulate(axis, 3.0).samples
+    noise = np.random.default_rng(2).normal(0.0, 0.3, len(samples['time']))
+    write_measured(tmp_path / 'run', samples['time'], {
+        'position': np.round(samples['position'], 6), 'drive_force': samples['external_force'] + noise}, {})
+    start = changed(axis, {'axis.mass': 130.0, 'friction.kinetic.end_slope': 1.4, 'force.course': 'constant',
+                           'friction.static.initial': 0.3, 'friction.kinetic.coefficients': (0.27,)})
+    found = stickslip.identify(stickslip.read_run(tmp_path / 'run'), start, {
+        'axis.mass': between(50.0, 200.0), 'friction.kinetic.coefficients[0]': between(0.05, 0.3),
+        'friction.static.initial': between(0.05, 0.5), 'friction.kinetic.end_slope': between(0.5, 5.0)})
+    assert found.values['axis.mass'] == pytest.approx(95.0, rel=0.01)
+    assert found.values['friction.kinetic.coefficients[0]'] == pytest.approx(0.2, rel=0.02)
+    assert found.values['friction.kinetic.end_slope'] == pytest.approx(2.0, rel=0.02)

@@ -43,6 +43,7 @@ class AxisModel:
         self._names = [parameters[k].name for k in self._own]
         self._profiles: dict[object, Any] = {}
         self._keeps_drive = measurement.drive is not None or not any(name.startswith('drive.') for name in self._names)
+        self._keeps_force = not any(one.name.startswith(('force.', 'sensor.external_force.')) for one in parameters)
         self._tables = SameTables(scene, self._names)
         self.runs = 0
 
@@ -68,7 +69,7 @@ class AxisModel:
         except StickslipError:
             return None
         force = self._measurement.force
-        if force is not None:
+        if force is not None and not self._keeps_force:
             offset, scale = self.gain(values, 'external_force')
             force = InputProfile(force.starts, tuple((value - offset) / scale for value in force.values),
                                  tuple(rate / scale for rate in force.rates))
@@ -135,7 +136,7 @@ class AxisModel:
         """Return a profile from a time on; kept, where no free parameter changes it."""
         if begin == 0.0:
             return profile
-        kept = self._keeps_drive if which == 'drive' else self._measurement.force is None
+        kept = self._keeps_drive if which == 'drive' else self._keeps_force
         if not kept:
             return shifted(profile, begin, duration)
         key = which, begin, duration

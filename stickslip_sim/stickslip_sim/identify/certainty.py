@@ -12,14 +12,14 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import chi2
+from scipy.special import gammaincinv
 
 from .free_parameters import FreeParameter
 from .identification import LEVEL, Combination
 
 Numbers = NDArray[np.float64]
 
-QUANTILE = float(chi2.ppf(LEVEL, 1))   # of the rise of the sum of squares at the ends of an interval
+QUANTILE = 2.0 * float(gammaincinv(0.5, LEVEL))   # of the rise of the sum of squares at the ends of an interval
 _LOST = 0.3      # of the range of a parameter: a standard deviation so large says nothing
 _PART = 0.1      # of the largest weight: below, a parameter has no part in a combination
 

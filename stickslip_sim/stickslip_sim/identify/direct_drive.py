@@ -33,7 +33,7 @@ def direct_drive(model: AxisModel, values: Numbers, measurement: SensorReadings)
     speed = np.gradient(gone, track.times) - track.velocity / scale
     zero, gain = model.gain(values, 'drive_force')
     measured = np.interp(track.times, measurement.times, force.values) - zero
-    slopes = gain * np.stack([stretch, speed], axis=1)
+    slopes = np.stack([gain * stretch, gain * speed, np.ones(len(speed))], axis=1)   # the start may be another one
     found, *_ = np.linalg.lstsq(slopes, measured, rcond=None)
     left = measured - slopes @ found
     errors = np.sqrt(np.diag(np.linalg.pinv(slopes.T @ slopes)) * float(left @ left) / len(left))

@@ -6,6 +6,7 @@ import os
 import time
 from collections.abc import Mapping
 from contextlib import closing
+from dataclasses import replace
 from pathlib import Path
 
 from ..inputs import load_scene
@@ -21,6 +22,7 @@ from .many_fits import Keeper, fits_from
 from .motions import motions_of, track_of
 from .problem import FitProblem
 from .readings import readings_of
+from .run_start import from_measured_start
 from .stages import Progress, best_fit, starts_of
 
 
@@ -33,7 +35,7 @@ def identify(run: Run | str | os.PathLike[str], start: SceneOrName, free: str | 
     scene `sensor.CHANNEL.offset` and `sensor.CHANNEL.scale`.  `resolutions` are standard deviations of the noise by
     channel, in its unit, where they are known.  `progress` is called with a stage and the share of it that is done.
     Fits from several starts are shared out to `workers` processes, and kept by a `keeper`, if there is one.
-    Raises InputError and RecordingError.
+    What is not known of the start of the run is taken from it, and noted.  Raises InputError and RecordingError.
     """
     began = time.perf_counter()
     scene = start if isinstance(start, Scene) else load_scene(start)
@@ -43,6 +45,8 @@ def identify(run: Run | str | os.PathLike[str], start: SceneOrName, free: str | 
     motions = motions_of(track_of(measurement, measurement.drive or scene.drive))
     check_parameters(parameters, measurement)
     check_data(parameters, measurement, motions, scene)
+    scene, parameters, notes = from_measured_start(scene, parameters, measurement)
+    measurement = replace(measurement, notes=(*measurement.notes, *notes))
     model = AxisModel(scene, parameters, measurement)
     problem = FitProblem(model, parameters, measurement, motions)
     with closing(fits_from(problem, starts_of(problem, seed), workers, keeper)) as fits:

@@ -3,6 +3,7 @@
 """Inputs as they were measured, as profiles for the engine; and profiles from a later time on."""
 
 import math
+from bisect import bisect_right
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +35,19 @@ def profile_through(times: Numbers, values: Numbers, held: bool = False) -> Inpu
 
 def shifted(profile: InputProfile, begin: float, duration: float) -> InputProfile:
     """Return a profile as it is from a time on, s, which becomes 0, for a duration."""
+    full = 2.0 * math.pi
+    waves = tuple(Sinusoid(one.amplitude, one.frequency, math.fmod(one.phase + full * one.frequency * begin, full))
+                  for one in profile.sinusoids)
+    if profile.period < math.inf:
+        return _unrolled(profile, begin, duration, waves)
+    value, rate, _ = profile.pieces_at(begin)
+    first, last = bisect_right(profile.starts, begin), bisect_right(profile.starts, begin + duration)
+    return InputProfile((0.0, *(start - begin for start in profile.starts[first:last])),
+                        (value, *profile.values[first:last]), (rate, *profile.rates[first:last]), sinusoids=waves)
+
+
+def _unrolled(profile: InputProfile, begin: float, duration: float, waves: tuple[Sinusoid, ...]) -> InputProfile:
+    """Return the pieces of a profile that repeats itself, one after the other."""
     starts, values, rates = [], [], []
     time = begin
     while time <= begin + duration:
@@ -42,9 +56,6 @@ def shifted(profile: InputProfile, begin: float, duration: float) -> InputProfil
         values.append(value)
         rates.append(rate)
         time = end
-    full = 2.0 * math.pi
-    waves = tuple(Sinusoid(one.amplitude, one.frequency, math.fmod(one.phase + full * one.frequency * begin, full))
-                  for one in profile.sinusoids)
     return InputProfile(tuple(starts), tuple(values), tuple(rates), sinusoids=waves)
 
 

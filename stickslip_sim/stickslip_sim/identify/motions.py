@@ -14,7 +14,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import savgol_filter
 
 from ..core.input_profile import InputProfile
 from .measured_inputs import travelled
@@ -102,7 +101,9 @@ def _slope(readings: Numbers, period: float, resolution: float, driven: Numbers)
         if noise <= min(_NOISE * float(np.abs(slope).max()), _OF_DRIVE * slowest) or length + 2 > most:
             return np.asarray(slope, dtype=np.float64), noise
         length += 2
-        slope = savgol_filter(readings, length, 2, deriv=1, delta=period)
+        half = length // 2
+        weights = np.arange(half, -half - 1.0, -1.0) / (np.sum(np.arange(-half, half + 1.0)**2) * period)
+        slope = np.convolve(np.pad(readings, half, 'edge'), weights, 'valid')
 
 
 def motions_of(track: Track) -> list[MeasuredMotion]:

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import chi2
+from scipy.special import gammaincinv
 
 from .identification import Misfit
 from .problem import MeasuredStretch
@@ -55,7 +55,7 @@ def _size(channel: Channel, squares: Numbers, times: Numbers, rows: NDArray[np.i
           ) -> Misfit | None:
     count = float(channel.weights[rows].sum())
     mean = float(squares[rows].sum()) / count
-    limit = _SLACK * float(chi2.ppf(1.0 - _CHANCE / tests, count)) / count
+    limit = _SLACK * 2.0 * float(gammaincinv(0.5 * count, 1.0 - _CHANCE / tests)) / count
     if mean <= limit:
         return None
     begin, end = float(times[rows[0]]), float(times[rows[-1]])

@@ -13,7 +13,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import qmc
 
 from .least_squares import Solution, minimise
 from .problem import FitProblem
@@ -50,6 +49,8 @@ def starts_of(problem: FitProblem, seed: int) -> Iterator[Numbers]:
     chosen = [problem.clear_slips[k] for k in _spread(len(problem.clear_slips), _SLIPS)]
     first = _coarse(problem, problem.with_direct(problem.start), chosen)
     yield first.point
+    from scipy.stats import qmc  # takes half a second, and most runs need no other start
+
     few = [problem.clear_slips[k] for k in _spread(len(problem.clear_slips), _TRIAL_SLIPS)]
     shares = qmc.Sobol(len(problem.start), seed=seed).random(_STARTS)
     trials = [problem.with_direct(trial) for trial in problem.low + shares * (problem.high - problem.low)]
