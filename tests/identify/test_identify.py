@@ -112,6 +112,8 @@ def test_a_model_that_does_not_fit_is_rejected(rigid: stickslip.Run) -> None:
     found = stickslip.identify(rigid, start, OF_FRICTION)
     assert not found.fits
     assert {misfit.test for misfit in found.misfits} >= {'mean square', 'mean square of a stretch'}
+    assert 'single slips' in found.notes[-1]
+    assert all('single slips' in estimate.derivation for estimate in found.estimates)
     assert all(misfit.statistic > misfit.limit for misfit in found.misfits)
     assert all(0.0 <= misfit.from_time < misfit.to_time <= 6.0 for misfit in found.misfits)
     assert all('off by' in misfit.statement or 'go together' in misfit.statement for misfit in found.misfits)

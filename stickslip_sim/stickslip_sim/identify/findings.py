@@ -32,6 +32,9 @@ Numbers = NDArray[np.float64]
 _SCORE = float(np.sqrt(QUANTILE))
 _AT_END = 1e-6       # of a range
 _UNSETTLED = 'the fit has not come to rest: the best point so far, whose intervals may be too narrow'
+_OF_SLIPS = ('the model does not follow the whole run: single slips are fitted, each from a measured arrest, and shown'
+             ' from there')
+_WHOLE, _SINGLE = 'fit of the whole run', 'fit of single slips, each from a measured arrest'
 CRITERION = 'BIC'
 
 
@@ -40,13 +43,14 @@ def identification_of(problem: FitProblem, scene: Scene, ends: Sequence[Ended], 
     best = ends[0]
     point = best.solution.point
     problem.model.take_tables_of(problem.values(point))
-    whole = problem.stretches()
+    whole = problem.stretches(None if best.of_slips is None else 0)
     fitted = problem.fitted(point, whole)
     assert fitted is not None
     channels = _channels(problem, fitted)
     count = len(problem.parameters)
     information = best.solution.information
-    known = certainty_of(information, _inflation(problem, fitted), problem.parameters)
+    inflation = _inflation(problem, fitted) if best.of_slips is None else max(best.of_slips, 1.0)
+    known = certainty_of(information, inflation, problem.parameters)
     values = problem.values(point)
     stretches = problem.stretches(0).parts
     misfits = [misfit for k, channel in enumerate(problem.measurement.channels) for misfit in misfits_of(
@@ -54,7 +58,8 @@ def identification_of(problem: FitProblem, scene: Scene, ends: Sequence[Ended], 
     criterion = best.solution.cost + count * float(np.log(effective_count(problem)))
     return Identification(
         start=scene, scene=changed(scene, problem.model.changes(values)),
-        estimates=_estimates(problem, values, known), correlation=known.correlation, channels=channels,
+        estimates=_estimates(problem, values, known, _WHOLE if best.of_slips is None else _SINGLE),
+        correlation=known.correlation, channels=channels,
         misfits=tuple(misfits),
         combinations=combinations_of(information - problem.information_beforehand(), problem.parameters),
         starts=tuple(_start_end(problem, end, end is best) for end in ends),
@@ -62,7 +67,8 @@ def identification_of(problem: FitProblem, scene: Scene, ends: Sequence[Ended], 
                      count, best.solution.cost, True),),
         slips=_slips(problem, values), criterion=CRITERION, cost=best.solution.cost,
         n_residuals=len(whole.rows) * len(channels), runs=problem.model.runs, seconds=time.perf_counter() - began,
-        notes=(*problem.measurement.notes, *([] if best.solution.is_settled else [_UNSETTLED])))
+        notes=(*problem.measurement.notes, *([] if best.solution.is_settled else [_UNSETTLED]),
+               *([] if best.of_slips is None else [_OF_SLIPS])))
 
 
 def _channels(problem: FitProblem, fitted: Sequence[Numbers]) -> tuple[ChannelFit, ...]:
@@ -89,12 +95,13 @@ def _inflation(problem: FitProblem, fitted: Sequence[Numbers]) -> float:
 _TOGETHER = 1.5   # samples: below, the correlation is that of chance
 
 
-def _estimates(problem: FitProblem, values: Numbers, known: Certainty) -> tuple[Estimate, ...]:
-    return tuple(_estimate(one, float(value), float(deviation), bool(is_known)) for one, value, deviation, is_known
+def _estimates(problem: FitProblem, values: Numbers, known: Certainty, derivation: str) -> tuple[Estimate, ...]:
+    return tuple(_estimate(one, float(value), float(deviation), bool(is_known), derivation)
+                 for one, value, deviation, is_known
                  in zip(problem.parameters, values, known.deviations, known.known, strict=True))
 
 
-def _estimate(one: FreeParameter, value: float, deviation: float, is_known: bool) -> Estimate:
+def _estimate(one: FreeParameter, value: float, deviation: float, is_known: bool, derivation: str) -> Estimate:
     inner = one.inner(value)
     ends = one.outer(inner - _SCORE * deviation), one.outer(inner + _SCORE * deviation)
     margin = _AT_END * (one.inner(one.high) - one.inner(one.low))
@@ -105,7 +112,7 @@ def _estimate(one: FreeParameter, value: float, deviation: float, is_known: bool
         return Estimate(one.name, one.unit, value, one.start, one.low, one.high, one.logarithmic, own,
                         (one.low, one.high), None, kind, 'the data do not determine it by itself')
     return Estimate(one.name, one.unit, value, one.start, one.low, one.high, one.logarithmic, own, ends, None, kind,
-                    'fit of the whole run')
+                    derivation)
 
 
 def _start_end(problem: FitProblem, end: Ended, is_best: bool) -> StartEnd:

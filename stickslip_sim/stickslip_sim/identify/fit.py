@@ -23,7 +23,7 @@ from .motions import motions_of, track_of
 from .problem import FitProblem
 from .readings import readings_of
 from .run_start import from_measured_start
-from .stages import Progress, best_fit, starts_of
+from .stages import Progress, best_fit, best_of_slips, starts_of
 
 
 def identify(run: Run | str | os.PathLike[str], start: SceneOrName, free: str | Path | Mapping[str, object], *,
@@ -51,4 +51,4 @@ def identify(run: Run | str | os.PathLike[str], start: SceneOrName, free: str | 
     problem = FitProblem(model, parameters, measurement, motions)
     with closing(fits_from(problem, starts_of(problem, seed), workers, keeper)) as fits:
         ends = best_fit(fits, progress or (lambda stage, share: None))
-    return identification_of(problem, scene, ends, began)
+    return identification_of(problem, scene, best_of_slips(problem, ends), began)

@@ -29,6 +29,8 @@ _SAMPLES = 4000         # about so many are enough until the last stage
 _FIRST_SLIPS = 0, 1, 3, 8, 20, 50   # that are fitted as one, before the whole run
 _GOOD = 1.5             # a mean square up to that, and no other start is tried
 _COARSE_STEP = 1e-5
+_LOST = 100.0           # a mean square from which on the whole run is not followed
+_FEWEST_SLIPS, _MOST_SLIPS = 3, 30
 _TABLES = 4             # times at most that tables of smooth laws are made anew
 _STEEPEST = 1e4         # figures of slips over a logarithm: a hundred times in proportion
 _KEPT = 0.5, 0.8        # of the slips, in turn; in the last also those whose cost is not far above the median
@@ -37,11 +39,15 @@ _ROBUST = 3.0           # figures of slips: beyond, a coarse fit counts their si
 
 
 class Ended(NamedTuple):
-    """A start, where the fit from it ended, and the mean square of the residuals of the whole run there."""
+    """A start, where the fit from it ended, and the mean square of the residuals of the whole run there.
+
+    `of_slips` has the mean square of the figures of single slips where these alone were fitted (`best_of_slips`).
+    """
 
     start: Numbers
     solution: Solution
     mean_square: float
+    of_slips: float | None = None
 
 
 def starts_of(problem: FitProblem, seed: int) -> Iterator[Numbers]:
@@ -112,6 +118,28 @@ def best_fit(ends: Iterator[Ended], progress: Progress) -> list[Ended]:
         if end.mean_square < _GOOD:
             break
     return sorted(ended, key=lambda end: end.solution.cost)
+
+
+def best_of_slips(problem: FitProblem, ends: Sequence[Ended]) -> list[Ended]:
+    """Return the ends, before them the best fit of single slips where no fit of the whole run is near the data.
+
+    A model that is not that of the axis still has the right rests and break-aways, each from a measured arrest; in the
+    whole run its slips come ever more too late or too early, and the least sum of squares means nothing.
+    """
+    slips = [problem.clear_slips[k] for k in _spread(len(problem.clear_slips), _MOST_SLIPS)]
+    if ends[0].mean_square < _LOST or len(slips) < _FEWEST_SLIPS:
+        return [*ends]
+    residuals = partial(problem.of_slips, slips=slips)
+    found = [minimise(residuals, point, problem.low, problem.high, most=20, tolerance=1e-2, share=1e-4, robust=_ROBUST,
+                      step=_COARSE_STEP, steepest=_STEEPEST) for point in (ends[0].start, ends[0].solution.point)]
+    best = min(found, key=lambda solution: solution.cost)
+    whole = problem.of_stretches(best.point, problem.stretches())
+    if not np.isfinite(whole).all():
+        return [*ends]
+    figures = residuals(best.point)
+    cost = float(whole @ whole)
+    return [Ended(ends[0].start, best._replace(cost=cost), cost / effective_count(problem),
+                  float(figures @ figures) / len(figures)), *ends]
 
 
 def _cost(residuals: Numbers) -> float:
