@@ -13,7 +13,7 @@ SHELL := /bin/bash
 HERE := ros2_ws/on_this_machine
 TOOLS := ros2_ws/.venv/bin
 
-.PHONY: help build run test check extremes bench hil soak fuzz hostile pictures docs clean
+.PHONY: help build run test check extremes bench identify hil soak fuzz hostile pictures docs clean
 
 help:  ## list the targets
 	@sed -nE 's/^([a-z]+):.*## (.*)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 14
@@ -48,6 +48,9 @@ bench: build  ## measure every solver beside its peers, and the loop of the node
 	@$(HERE) --own-domain python3 -m benchmarks.budget
 	@$(HERE) python3 -m benchmarks.paper
 	@$(HERE) python3 -m benchmarks.controllers
+
+identify: build  ## what stickslip identify finds on 100 axes whose truth is known, beside others; writes docs/ (15 minutes)
+	@OPENBLAS_NUM_THREADS=1 $(HERE) python3 -m benchmarks.identify
 
 hil: build  ## the node with a controller beside it: against a bare rclpy node, and the highest rate; writes docs/
 	@$(HERE) --own-domain python3 -m benchmarks.hil

@@ -1,0 +1,73 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""What sensors show of a motion: an encoder of some resolution, and a force with noise."""
+
+import csv
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.random import Generator
+from numpy.typing import NDArray
+
+from stickslip_sim.recording import read_run, write_measured
+from stickslip_sim.recording.measured_run import MeasuredRun
+from stickslip_sim.runs import Columns, simulate
+from stickslip_sim.scene import Scene
+
+Numbers = NDArray[np.float64]
+
+
+class Sensors(NamedTuple):
+    """How an axis is measured: samples a second, resolution of the encoder (m), noise of the force.
+
+    `force_noise` is a standard deviation, as a share of the root mean square of the force.
+    """
+
+    rate: float = 1000.0
+    resolution: float = 1e-6
+    force_noise: float = 0.01
+
+
+USUAL = Sensors()
+
+
+class Measurement(NamedTuple):
+    """Columns over `times` (s, rising), in SI, by the names of `stickslip import`; `noise` is what is on each.
+
+    `noise`: the standard deviation of the error of each column, in its unit.
+    """
+
+    times: Numbers
+    columns: dict[str, Numbers]
+    noise: dict[str, float]
+
+    def as_run(self, folder: Path) -> MeasuredRun:
+        """Return it as the run that an import makes of it, in a new folder."""
+        write_measured(folder, self.times, self.columns, {'file': folder.name})
+        run = read_run(folder)
+        assert isinstance(run, MeasuredRun)
+        return run
+
+    def write_csv(self, path: Path) -> None:
+        """Write it as a file for `stickslip import`."""
+        with path.open('w', encoding='utf-8', newline='') as file:
+            rows = csv.writer(file)
+            rows.writerow(['time', *self.columns])
+            rows.writerows(zip(*(column.tolist() for column in (self.times, *self.columns.values()))))
+
+
+def measure(scene: Scene, duration: float, rng: Generator, sensors: Sensors = USUAL) -> Measurement:
+    """Return what sensors show of a scene's motion."""
+    return shown(simulate(scene, duration, 1.0 / sensors.rate).samples, rng, sensors)
+
+
+def shown(samples: Columns, rng: Generator, sensors: Sensors = USUAL) -> Measurement:
+    """Return what sensors show of the slider's position and the drive's force, of true samples at their rate."""
+    force = samples['drive_force']
+    noise = sensors.force_noise * float(np.sqrt(np.mean(force**2)))
+    return Measurement(
+        samples['time'],
+        {'position': np.round(samples['position'] / sensors.resolution) * sensors.resolution,
+         'drive_force': force + noise * rng.standard_normal(len(force))},
+        {'position': sensors.resolution / np.sqrt(12.0), 'drive_force': noise})

@@ -1,0 +1,91 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The page with the figures of identification: docs/identification_figures.md."""
+
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
+from statistics import median
+
+from .axes import FARTHEST, FREE, LEAST_SLIPS, NEAREST
+from .foreign import ForeignOutcome
+from .measuring import USUAL
+from .outcomes import CLOSE, Outcome, ParameterOutcome, all_parameters
+from .page_beside import beside, foreign_data, share
+from .rivals import RivalOutcome
+
+FOUND_MARK, TIME_MARK = 95, 10.0   # % of parameters, s
+COVERAGE_MARK = 92, 98             # %
+
+
+def page(outcomes: Sequence[Outcome], rivals: Mapping[str, Sequence[RivalOutcome]], foreign: ForeignOutcome,
+         machine: str, seed: int) -> str:
+    """Return the page for what was measured."""
+    return '\n'.join([
+        '# Identification, measured', '',
+        'See here how near to the truth `stickslip identify` comes, how true its intervals are, and how long it takes.',
+        f'`python3 -m benchmarks.identify --axes {len(outcomes)} --seed {seed}` wrote this page on', f'{machine}.', '',
+        '## Synthetic axes', '',
+        f'{len(outcomes)} axes, drawn at random: rigid and compliant contacts, five laws of static and four of kinetic',
+        f'friction in turn, {FREE[0]} to {FREE[1]} free parameters.  Each is {NEAREST:.0%} to {FARTHEST:.0%} off at the'
+        ' start, up or down, and its',
+        'range goes from half to twice the start.  The feed has six steps of known velocity: four with stick-slip, a',
+        f'fast one, and one back.  An axis with fewer than {LEAST_SLIPS} break-aways is drawn again.  For 10 s at'
+        f' {USUAL.rate:g} Hz an encoder of',
+        f'{USUAL.resolution * 1e6:g} µm shows the position, and a sensor the force of the drive, with noise of'
+        f' {USUAL.force_noise:.0%} of its root mean square.', '',
+        *_marks(outcomes), '',
+        '* Found: within 1 % of the truth, or the truth within the 95 % interval that is given with it.',
+        '* Covered: the truth lies within that interval.', '',
+        '### By model', '', *_by_model(outcomes), '',
+        '### By parameter', '', *_by_parameter(outcomes), '', *_failures(outcomes),
+        *beside(rivals), *foreign_data(foreign), ''])
+
+
+def _marks(outcomes: Sequence[Outcome]) -> list[str]:
+    parameters = all_parameters(outcomes)
+    low, high = COVERAGE_MARK
+    return [
+        '| figure | measured | mark |', '|---|---|---|',
+        f'| parameters found | {_percent(each.is_found for each in parameters)} | {FOUND_MARK} % |',
+        f'| axes of which all is found | {sum(each.is_found for each in outcomes)} of {len(outcomes)} | – |',
+        f'| parameters within {CLOSE:.0%} | {_percent(each.error <= CLOSE for each in parameters)} | – |',
+        f'| parameters covered | {_percent(each.is_covered for each in parameters)} | {low} to {high} % |',
+        f'| half of the interval, median | {share(median(each.width for each in parameters))} | – |',
+        f'| error, median | {share(median(each.error for each in parameters))} | – |',
+        f'| axes whose model is said to fit | {sum(each.fits for each in outcomes)} of {len(outcomes)} | – |',
+        f'| processor time, median | {median(each.seconds for each in outcomes):.1f} s | {TIME_MARK:g} s |',
+        f'| processor time, longest | {max(each.seconds for each in outcomes):.1f} s | – |',
+        f'| simulations, median | {median(each.runs for each in outcomes):,.0f} | – |']
+
+
+def _by_model(outcomes: Sequence[Outcome]) -> list[str]:
+    groups: defaultdict[str, list[Outcome]] = defaultdict(list)
+    for outcome in outcomes:
+        for model in zip(('contact', 'static', 'kinetic'), outcome.models, strict=True):
+            groups[': '.join(model)].append(outcome)
+    rows = [f'| {name} | {len(of)} | {sum(each.is_found for each in of)} | '
+            f'{_percent(each.is_covered for each in all_parameters(of))} | '
+            f'{median(each.seconds for each in of):.1f} s |' for name, of in sorted(groups.items())]
+    return ['| model | axes | of which all is found | parameters covered | processor time, median |',
+            '|---|---|---|---|---|', *rows]
+
+
+def _by_parameter(outcomes: Sequence[Outcome]) -> list[str]:
+    groups: defaultdict[str, list[ParameterOutcome]] = defaultdict(list)
+    for parameter in all_parameters(outcomes):
+        groups[parameter.name].append(parameter)
+    rows = [f'| `{name}` | {len(of)} | {_percent(each.is_found for each in of)} | '
+            f'{_percent(each.is_covered for each in of)} | {share(median(each.error for each in of))} | '
+            f'{share(median(each.width for each in of))} |' for name, of in sorted(groups.items())]
+    return ['| parameter | times | found | covered | error, median | half of the interval, median |',
+            '|---|---|---|---|---|---|', *rows]
+
+
+def _failures(outcomes: Sequence[Outcome]) -> list[str]:
+    failed = [f'* {each.axis} ({", ".join(each.models)}): {each.failure}' for each in outcomes if each.failure]
+    return ['Refused or failed:', '', *failed, ''] if failed else []
+
+
+def _percent(holds: Iterable[bool]) -> str:
+    flags = list(holds)
+    return f'{100.0 * sum(flags) / len(flags):.1f} %' if flags else '–'

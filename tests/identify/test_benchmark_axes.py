@@ -1,0 +1,77 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""benchmarks/identify: the axes are what its page says of them, and so is the foreign one."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from benchmarks.identify.axes import FARTHEST, FREE, NEAREST, SyntheticAxis, axes, value_of
+from benchmarks.identify.lugre import LuGreAxis
+from benchmarks.identify.measuring import Sensors, measure
+from benchmarks.identify.outcomes import Outcome, ParameterOutcome, load, models_of, save
+from stickslip_sim.inputs.measurement import load_measurement
+from stickslip_sim.runs import simulate
+from stickslip_sim.study.uncertain_file import uncertain_of
+
+FEW = axes(8, seed=3)
+
+
+def test_axes_come_from_the_seed_alone() -> None:
+    assert [axis.truth.values for axis in axes(8, seed=3)] == [axis.truth.values for axis in FEW]
+    assert axes(1, seed=4)[0].truth.values != FEW[0].truth.values
+
+
+def test_forty_axes_have_each_model_once() -> None:
+    assert len({models_of(axis) for axis in axes(40)}) == 40
+
+
+@pytest.mark.parametrize('axis', FEW, ids=lambda axis: axis.name)
+def test_starts_are_off_as_far_as_stated_and_the_truth_is_in_range(axis: SyntheticAxis) -> None:
+    assert FREE[0] <= len(axis.free) <= FREE[1]
+    for free in uncertain_of(axis.free_file()).distributions:
+        true, start = value_of(axis.truth, free.name), value_of(axis.start, free.name)
+        assert NEAREST - 1e-9 <= abs(start / true - 1.0) <= FARTHEST + 1e-9
+        assert free.low < true < free.high
+    fixed = {name for name in axis.truth.values if name not in {name.partition('[')[0] for name in axis.free}}
+    assert all(axis.start.values[name] == axis.truth.values[name] for name in fixed)
+
+
+def test_sensors_count_in_steps_and_have_noise(tmp_path: Path) -> None:
+    truth = FEW[0].truth
+    shown = measure(truth, 2.0, np.random.default_rng(0), Sensors(rate=500.0))
+    true = simulate(truth, 2.0, 0.002).samples
+    assert np.abs(shown.columns['position'] - true['position']).max() <= 0.5e-6 * (1.0 + 1e-9)
+    noise = shown.columns['drive_force'] - true['drive_force']
+    assert noise.std() / np.sqrt(np.mean(true['drive_force']**2)) == pytest.approx(0.01, rel=0.1)
+    shown.write_csv(tmp_path / 'axis.csv')
+    names = {name: name for name in ('time', 'position', 'drive_force')}
+    read = load_measurement(tmp_path / 'axis.csv', names, {})
+    assert (read.times == shown.times).all()
+    assert all((read.columns[name] == shown.columns[name]).all() for name in shown.columns)
+
+
+def test_the_foreign_axis_sticks_slips_and_keeps_the_balance_of_forces() -> None:
+    axis = LuGreAxis()
+    samples = axis.samples((0.0, 0.8), (0.003, -0.001), 1.0, 2000.0)
+    peak = np.abs(samples['velocity']).max()
+    assert peak > 0.01
+    before = samples['time'] < samples['time'][np.argmax(samples['velocity'] > 0.1 * peak)]
+    assert samples['friction_force'][before].max() == pytest.approx(axis.static_force, rel=0.05)
+    force = samples['drive_force'] - samples['friction_force']
+    smooth = slice(600, 700)
+    by_velocity = axis.mass * np.gradient(samples['velocity'], samples['time'])
+    assert by_velocity[smooth] == pytest.approx(force[smooth], abs=0.02 * np.abs(force).max())
+
+
+def test_outcomes_are_kept(tmp_path: Path) -> None:
+    found = [Outcome('axis 0', ('rigid', 'kato', 'table'), (
+        ParameterOutcome('axis.mass', 100.0, 80.0, 102.0, 99.0, 104.0, 'found'),
+        ParameterOutcome('axis.drive_damping', 100.0, 80.0, 103.0, 102.0, 104.0, 'found')), True, 1.5, 700)]
+    save(found, tmp_path / 'kept' / 'axes.json')
+    assert load(tmp_path / 'kept' / 'axes.json') == found
+    near, wrong = found[0].parameters
+    assert (near.is_covered, near.is_found, wrong.is_covered, wrong.is_found) == (True, True, False, False)
+    assert near.error == pytest.approx(0.02)
+    assert not found[0].is_found
