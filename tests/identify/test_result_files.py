@@ -35,8 +35,10 @@ from stickslip_sim.recording.measured_run import MeasuredRun
 from stickslip_sim.scene import load_scene, scene_from_values
 from stickslip_sim.scene.load import parse_scene
 from stickslip_sim.study import Saltelli, Study
+from stickslip_sim.study.point_figures import FIGURES
 from stickslip_sim.study.uncertain_file import uncertain_of
-from tests.support.measured_axes import FREE, free_file, readings, start_scene
+from stickslip_sim.study.uncertainty import uncertainty_of
+from tests.support.measured_axes import FREE, START, free_file, readings, start_scene
 from tests.support.measured_axes import VALUES as TRUTH
 
 STATIC = 'friction.static.initial'
@@ -139,6 +141,27 @@ def test_numbers_that_were_not_found_are_uniform_or_fall_from_their_end(found: I
         uncertain_of(read_yaml(posterior_text(each, 'measured')))
 
 
+def test_numbers_that_are_known_together_stay_together(tmp_path: Path) -> None:
+    """From the position alone only ratios of mass, stiffness, damping and normal force are known: of 2 for each."""
+    measured = readings()
+    alone = measured._replace(columns={'position': measured.columns['position']}).as_run(tmp_path / 'alone')
+    free = {name: (0.5 * value, 2.0 * value) for name, value in START.items()
+            if name in ('axis.mass', 'axis.drive_stiffness', 'axis.drive_damping', 'axis.normal_force')
+            and isinstance(value, float)}
+    found = identify(alone, start_scene(), free_file(tmp_path / 'free.yaml', free))
+    assert {one.kind for one in found.estimates} == {NOT_IDENTIFIABLE}
+    known = uncertain_of(read_yaml(posterior_text(found, 'measured')))
+    sample = Saltelli(known.distributions, 64, 0, known.correlations)
+    study = Study(parse_scene(identified_text(found, 'measured', 'start.yaml')).values, sample, 4.0)
+    drawn = study.points(0, study.count)
+    assert np.log(drawn).std(axis=0).min() > 0.1
+    assert np.log(drawn / drawn[:, :1]).std(axis=0).max() < 1e-3
+    period = uncertainty_of(sample, {name: getattr(figures, name) for figures in [study.figures(0, study.count)]
+                                     for name in FIGURES}).percentiles['period']
+    assert period is not None
+    assert period[-1] / period[0] < 1.003
+
+
 def test_tails_end_where_a_corner_would_be_no_scene(found: Identification) -> None:
     """0.2 - 4 x 0.01 x 0.2 is below the kinetic coefficient at rest, 0.19."""
     values = {**found.scene.values, 'friction.kinetic.coefficients': (0.19, 0.08)}
@@ -168,6 +191,17 @@ def test_the_phase_goes_from_break_away_to_break_away(found: Identification) -> 
     assert np.isnan(phases(alone, times)).all()
     assert slip_share(alone) == 0.0
     assert usual_cycles(alone) == pytest.approx((3.6, 4.0))
+
+
+def test_all_times_are_those_of_the_measurement(found: Identification, tmp_path: Path) -> None:
+    """Of a run that begins late, and that a mass without a chance does not fit."""
+    measured = readings({**TRUTH, 'axis.mass': 50.0}, 2.0)
+    late = identify(measured._replace(times=measured.times + 100.0).as_run(tmp_path / 'late'), start_scene(),
+                    free_file(tmp_path / 'free.yaml'))
+    assert late.shift == 100.0
+    assert 100.0 < late.slips[0].time < late.slips[0].fitted_time + 1.0 < 103.0
+    assert {100.0 <= one.from_time < one.to_time <= 102.0 for one in late.misfits} == {True}
+    assert np.isfinite(phases(late, late.channels[0].times)).any()
 
 
 def test_friction_straight_from_the_measurement_is_that_of_the_axis(run: MeasuredRun, found: Identification) -> None:

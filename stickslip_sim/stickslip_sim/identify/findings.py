@@ -54,7 +54,7 @@ def identification_of(problem: FitProblem, scene: Scene, ends: Sequence[Ended], 
     values = problem.values(point)
     stretches = problem.stretches(0).parts
     misfits = [misfit for k, channel in enumerate(problem.measurement.channels) for misfit in misfits_of(
-        channel, channel.values - fitted[k], problem.measurement.times, stretches)]
+        channel, channel.values - fitted[k], problem.measurement.times + problem.measurement.shift, stretches)]
     criterion = best.solution.cost + count * float(np.log(effective_count(problem)))
     return Identification(
         start=scene, scene=changed(scene, problem.model.changes(values)),
@@ -68,7 +68,8 @@ def identification_of(problem: FitProblem, scene: Scene, ends: Sequence[Ended], 
         slips=_slips(problem, values), criterion=CRITERION, cost=best.solution.cost,
         n_residuals=len(whole.rows) * len(channels), runs=problem.model.runs, seconds=time.perf_counter() - began,
         notes=(*problem.measurement.notes, *([] if best.solution.is_settled else [_UNSETTLED]),
-               *([] if best.of_slips is None else [_OF_SLIPS])))
+               *([] if best.of_slips is None else [_OF_SLIPS])),
+        shift=problem.measurement.shift)
 
 
 def _channels(problem: FitProblem, fitted: Sequence[Numbers]) -> tuple[ChannelFit, ...]:
@@ -138,6 +139,7 @@ def _slips(problem: FitProblem, values: Numbers) -> tuple[SlipFit, ...]:
         else:
             begin, fitted = since + measured.slip.middle + slip.begin, since + slip.middle + slip.begin
             force = slip.break_away
-        found.append(SlipFit(begin, fitted, begin - since, fitted - since,
+        shift = problem.measurement.shift
+        found.append(SlipFit(begin + shift, fitted + shift, begin - since, fitted - since,
                              rest_force(problem.measurement, begin, since, begin), force))
     return tuple(found)

@@ -140,7 +140,7 @@ class Identification:
     the estimates alone.  `correlation` (k, k) is of the k estimates, in their order; NaN in rows that the data do not
     determine.  `fits` says whether no test rejects the model (`misfits` is empty).  `criterion` names the one that
     compares `laws`, `cost` is the chi-square over `n_residuals`, `runs` how many simulations it took, `notes` what a
-    user must know.
+    user must know.  The start of the simulation is at `shift` s of the measurement, whose times all of this has.
     """
 
     start: Scene
@@ -159,6 +159,7 @@ class Identification:
     runs: int
     seconds: float
     notes: tuple[str, ...] = ()
+    shift: float = 0.0
 
     @property
     def fits(self) -> bool:

@@ -70,11 +70,11 @@ def friction_points(run: Run, found: Identification) -> FrictionPoints:
 
 
 def loads_at(found: Identification, times: Numbers) -> Numbers:
-    """Return the normal force on the slideway at times (n,), N."""
+    """Return the normal force on the slideway at times of the measurement (n,), N."""
     if found.scene.normal_load is None:
         return np.full(len(times), found.scene.axis.normal_force)
     profile = found.scene.normal_force
-    return np.array([profile.value_at(time) for time in times.tolist()])
+    return np.array([profile.value_at(time) for time in (times - found.shift).tolist()])
 
 
 def binned(points: FrictionPoints) -> FrictionBins:

@@ -3,7 +3,8 @@
 """What an identification leaves open of a scene, as a file for `stickslip uncertainty --with`.
 
 A number that was found is normal, or lognormal where the fit took its logarithm, and correlated with the others as in
-the fit.  One at the end of its range falls from there; one that the run does not tell is uniform over its range.
+the fit.  One at the end of its range falls from there; those that the run knows only together share a factor, and
+one that it does not know at all is uniform over its range.
 """
 
 import itertools
@@ -21,6 +22,7 @@ from ..study.uncertain_file import LEAST_KEPT
 from ..study.variation import changes_at, parameter_of
 from .identification import FOUND, NOT_IDENTIFIABLE, Estimate, Identification, Numbers
 from .identified_scene import OF_SENSORS, rounded_scene
+from .shared_factors import REACH, with_shared_factors
 
 _TAILS = (4.0, 3.0, 2.0, 1.5, 1.0)   # standard deviations: the widest whose corners are scenes
 _WEAKEST = 5e-4                      # a correlation that is left out
@@ -39,14 +41,15 @@ class _Entry(NamedTuple):
 
 def posterior_text(found: Identification, run: str) -> str:
     """Return the file: numbers of the scene that were free, at most as many as a study takes."""
-    free = [k for k, one in enumerate(found.estimates) if not one.name.startswith(OF_SENSORS)]
-    chosen = sorted(sorted(free, key=lambda k: -_relative(found.estimates[k]))[:MOST_VARIATIONS])
-    estimates = [found.estimates[k] for k in chosen]
-    entries = _entries(rounded_scene(found), estimates)
+    every, correlation, shared = with_shared_factors(found)
+    free = [k for k, one in enumerate(every) if not one.name.startswith(OF_SENSORS)]
+    chosen = sorted(sorted(free, key=lambda k: -_relative(every[k]))[:MOST_VARIATIONS])
+    estimates = [every[k] for k in chosen]
+    entries = _entries(rounded_scene(found), estimates, shared)
     lines = [f'# What the run {run} leaves open of {found.scene.name}, for stickslip uncertainty --with.',
              '# Correlations are those of the fit.', *_left_out(found, free, chosen), 'seed: 0', 'parameters:']
     lines += [f'  {_key(one.name)}: {{{entry.words}}}' for one, entry in zip(estimates, entries, strict=True)]
-    return '\n'.join([*lines, *_correlation_lines(found, chosen)]) + '\n'
+    return '\n'.join([*lines, *_correlation_lines(estimates, correlation[np.ix_(chosen, chosen)])]) + '\n'
 
 
 def _relative(one: Estimate) -> float:
@@ -59,13 +62,16 @@ def _left_out(found: Identification, free: Sequence[int], chosen: Sequence[int])
         yield f'# A study takes {MOST_VARIATIONS} numbers; those known best are left out: {", ".join(names)}'
 
 
-def _entries(scene: Scene, estimates: Sequence[Estimate]) -> list[_Entry]:
-    """Return the distributions, with tails as long as every combination of their ends is a scene."""
-    for tails in _TAILS[:-1]:
-        found = [_entry(one, tails) for one in estimates]
+def _entries(scene: Scene, estimates: Sequence[Estimate], shared: frozenset[str]) -> list[_Entry]:
+    """Return the distributions, with tails as long as every combination of their ends is a scene.
+
+    Those of `shared` factors are all cut at one place, so that they stay together, and within their ranges.
+    """
+    for tails in _TAILS:
+        found = [_entry(one, min(tails, REACH) if one.name in shared else tails) for one in estimates]
         if _corners_are_scenes(scene, estimates, found):
-            return found
-    return [_entry(one, _TAILS[-1]) for one in estimates]
+            break
+    return found
 
 
 def _corners_are_scenes(scene: Scene, estimates: Sequence[Estimate], entries: Sequence[_Entry]) -> bool:
@@ -122,9 +128,9 @@ def _allowed(name: str, low: float, high: float) -> tuple[float, float]:
     return (low if entry.low is None else max(low, entry.low)), (high if entry.high is None else min(high, entry.high))
 
 
-def _correlation_lines(found: Identification, chosen: Sequence[int]) -> Iterator[str]:
-    matrix = _definite(found, chosen)
-    names = [found.estimates[k].name for k in chosen]
+def _correlation_lines(estimates: Sequence[Estimate], correlation: Numbers) -> Iterator[str]:
+    matrix = _definite(estimates, correlation)
+    names = [one.name for one in estimates]
     rows = [[(names[j], matrix[i, j]) for j in range(i) if abs(matrix[i, j]) > _WEAKEST] for i in range(len(names))]
     if any(rows):
         yield 'correlations:'
@@ -133,11 +139,10 @@ def _correlation_lines(found: Identification, chosen: Sequence[int]) -> Iterator
             yield f'  {_key(name)}: {{{", ".join(f"{_key(other)}: {number:.6f}" for other, number in row)}}}'
 
 
-def _definite(found: Identification, chosen: Sequence[int]) -> Numbers:
+def _definite(estimates: Sequence[Estimate], correlation: Numbers) -> Numbers:
     """Return the correlations of numbers that were found, shrunk until they are definite; 0 for all others."""
-    matrix = np.array(found.correlation, dtype=np.float64)[np.ix_(chosen, chosen)]
-    known = np.array([found.estimates[k].kind == FOUND for k in chosen])
-    matrix = np.where(np.isfinite(matrix) & known & known[:, None], matrix, 0.0)
+    known = np.array([one.kind == FOUND for one in estimates])
+    matrix = np.where(np.isfinite(correlation) & known & known[:, None], correlation, 0.0)
     matrix[np.abs(matrix) <= _WEAKEST] = 0.0
     np.fill_diagonal(matrix, 1.0)
     shrink = _SHRINK
