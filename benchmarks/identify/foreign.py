@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stickslip_sim.identify.fit import identify
+from stickslip_sim.identification.fit import identify
 from stickslip_sim.runs import Columns, simulate
 from stickslip_sim.runs.slips import slips_of
 from stickslip_sim.scene import Scene, scene_from_values

@@ -16,7 +16,7 @@ from .scene_changes import SceneChanges, scene_changes
 from .sweeping import process_count
 
 if TYPE_CHECKING:
-    from ..identify.work_folder import WorkFolder
+    from ..identification.work_folder import WorkFolder
 
 
 @click.command(short_help='Find the parameters of an axis from a measured run.')
@@ -40,9 +40,9 @@ def identify(run: str, scene: str, free: str, out: str, workers: str | None, res
         check_new_folder('--out', out)
     count = process_count('1' if workers is None else workers)
     from ..core.errors import VerdictError
-    from ..identify.fit import identify as find
-    from ..identify.result_folder import PAGE, write_results
-    from ..identify.work_folder import WorkFolder, facts_of
+    from ..identification.fit import identify as find
+    from ..identification.result_folder import PAGE, write_results
+    from ..identification.work_folder import WorkFolder, facts_of
     from ..scene.load import read_text
     from .identify_lines import result_lines
     from .progress import progress_bar

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ..identify.identification import Identification
+    from ..identification.identification import Identification
 
 _NAME, _NUMBER = 36, 14
 _MISFITS = 4         # that are printed
@@ -36,8 +36,8 @@ def result_lines(found: 'Identification', run: str) -> Iterator[str]:
 
 
 def _estimates(found: 'Identification') -> Iterator[str]:
-    from ..identify.identification import FOUND
-    from ..identify.identified_scene import interval_words, number_words
+    from ..identification.identification import FOUND
+    from ..identification.identified_scene import interval_words, number_words
 
     for one in found.estimates:
         kind = '' if one.kind == FOUND else f', {one.kind}'

@@ -10,13 +10,13 @@ import pytest
 
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.friction import SmoothKinetic, smooth
-from stickslip_sim.identify.curve_fit import Fit
-from stickslip_sim.identify.curve_laws import fit_laws, sides, sign_changes
-from stickslip_sim.identify.curve_scene import Origin, scene_with_friction
-from stickslip_sim.identify.friction_curve import FrictionCurve, Numbers
-from stickslip_sim.identify.friction_laws import SMOOTH_FORMS
-from stickslip_sim.identify.smooth_fit import fit_smooth
-from stickslip_sim.identify.table_fit import fit_table, points_table
+from stickslip_sim.identification.curve_fit import Fit
+from stickslip_sim.identification.curve_laws import fit_laws, sides, sign_changes
+from stickslip_sim.identification.curve_scene import Origin, scene_with_friction
+from stickslip_sim.identification.friction_curve import FrictionCurve, Numbers
+from stickslip_sim.identification.friction_laws import SMOOTH_FORMS
+from stickslip_sim.identification.smooth_fit import fit_smooth
+from stickslip_sim.identification.table_fit import fit_table, points_table
 
 SPEEDS: Numbers = np.geomspace(1e-4, 0.2, 40).astype(np.float64)
 LAWS: dict[str, SmoothKinetic] = {

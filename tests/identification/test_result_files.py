@@ -13,11 +13,11 @@ import numpy as np
 import pytest
 
 from stickslip_sim.config.ros_yaml import read_yaml
-from stickslip_sim.identify.cycle_phases import phases, slip_share, usual_cycles
-from stickslip_sim.identify.fit import identify
-from stickslip_sim.identify.free_parameters import FreeParameter
-from stickslip_sim.identify.friction_band import half_width, kinetic_of, static_of
-from stickslip_sim.identify.identification import (
+from stickslip_sim.identification.cycle_phases import phases, slip_share, usual_cycles
+from stickslip_sim.identification.fit import identify
+from stickslip_sim.identification.free_parameters import FreeParameter
+from stickslip_sim.identification.friction_band import half_width, kinetic_of, static_of
+from stickslip_sim.identification.identification import (
     AT_BOUND,
     NOT_IDENTIFIABLE,
     Combination,
@@ -27,10 +27,10 @@ from stickslip_sim.identify.identification import (
     Misfit,
     StartEnd,
 )
-from stickslip_sim.identify.identified_scene import identified_text
-from stickslip_sim.identify.measured_friction import binned, friction_points
-from stickslip_sim.identify.posterior import posterior_text
-from stickslip_sim.identify.result_folder import PAGE, POSTERIOR, SCENE, VALUES, write_results
+from stickslip_sim.identification.identified_scene import identified_text
+from stickslip_sim.identification.measured_friction import binned, friction_points
+from stickslip_sim.identification.posterior import posterior_text
+from stickslip_sim.identification.result_folder import PAGE, POSTERIOR, SCENE, VALUES, write_results
 from stickslip_sim.recording.measured_run import MeasuredRun
 from stickslip_sim.scene import load_scene, scene_from_values
 from stickslip_sim.scene.load import parse_scene

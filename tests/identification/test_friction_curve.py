@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from stickslip_sim.core.errors import InputError
-from stickslip_sim.identify.friction_curve import FrictionCurve, Units, load_curve, units_of
+from stickslip_sim.identification.friction_curve import FrictionCurve, Units, load_curve, units_of
 from stickslip_sim.inputs.units import SPEEDS, in_si, named_unit
 from tests.support.repository import ROOT
 

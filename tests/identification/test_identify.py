@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 import stickslip_sim as stickslip
-from stickslip_sim.identify.identification import AT_BOUND, FOUND, NOT_IDENTIFIABLE, Identification
+from stickslip_sim.identification.identification import AT_BOUND, FOUND, NOT_IDENTIFIABLE, Identification
 from stickslip_sim.recording import write_measured
-from tests.identify.measured_axis import between, measure
+from tests.identification.measured_axis import between, measure
 
 RIGID = stickslip.load_scene('paper_fig7', {'drive.course': 'steps', 'drive.times': (0.0, 2.0, 4.0),
                                             'drive.velocities': (0.003, 0.005, 0.002)})
