@@ -10,34 +10,34 @@
 All names of `__all__` are imported when they are first used (docs/python.md shows them).  The rooms, from the top
 floor down; each imports only from the floors below it:
 
-    cli            the tool `stickslip`, one file a verb; the only room that prints
-    ros            the nodes, and the demo of `make run`; the only room that imports ROS
-    extremes       what breaks other simulators, measured on this one
-    compare        the figures and statements of the paper, on any run
-    advise         which solver and which parts of a scene are worth their time
-    design         the experiment that would narrow parameters most
-    check          a run against limits
-    verify         a recorded run again, bit by bit, or as something else had been
-    identification from measurements to a scene: friction curves, and runs from which all parameters are fitted
-    sensitivity    derivatives of what a run shows with respect to the numbers of its scene
-    study          sweeps, maps, critical values, uncertainty
-    bench          this solver beside its rivals, which are in bench/peers
-    inputs         what comes from outside: profiles and measured numbers from files, in their units
-    recording      runs as bags: written, read back, played
-    runs           a run as one thing, simulated or recorded; its receipt and error; batches of thousands
-    realtime       steps that keep the time of a clock, and how well they do
-    plots          pictures; the only room that imports matplotlib
-    scene          everything that decides a run, from a file
-    controllers    the example controllers, without ROS
-    rig            what is around the axis: commands, drive limits, faults, encoders
-    simulation     one axis through time: simulator, inputs, checkpoint, cycles
-    solvers        from event to event: exact, adaptive and fixed steps
-    reference      an independent solver that judges the others
-    axis           the physics of the paper: motion in each mode, transitions, sinusoids
-    friction       the laws of friction
-    linear         closed forms of linear motion, and roots that are not missed
-    config         strict YAML, and what a parameter is
-    core           what every room uses: errors, events, samples, input profiles, the switch to compiled code
+    cli             the tool `stickslip`, one file a verb; the only room that prints
+    ros             the nodes, and the demo of `make run`; the only room that imports ROS
+    extremes        what breaks other simulators, measured on this one
+    compare         the figures and statements of the paper, on any run
+    advise          which solver and which parts of a scene are worth their time
+    design          the experiment that would narrow parameters most
+    check           a run against limits
+    verify          a recorded run again, bit by bit, or as something else had been
+    identification  from measurements to a scene: friction curves, and runs from which all parameters are fitted
+    sensitivity     derivatives of what a run shows with respect to the numbers of its scene
+    study           sweeps, maps, critical values, uncertainty
+    bench           this solver beside its rivals, which are in bench/peers
+    inputs          what comes from outside: profiles and measured numbers from files, in their units
+    recording       runs as bags: written, read back, played
+    runs            a run as one thing, simulated or recorded; its receipt and error; batches of thousands
+    realtime        steps that keep the time of a clock, and how well they do
+    plots           pictures; the only room that imports matplotlib
+    scene           everything that decides a run, from a file
+    controllers     the example controllers, without ROS
+    rig             what is around the axis: commands, drive limits, faults, encoders
+    simulation      one axis through time: simulator, inputs, checkpoint, cycles
+    solvers         from event to event: exact, adaptive and fixed steps
+    reference       an independent solver that judges the others
+    axis            the physics of the paper: motion in each mode, transitions, sinusoids
+    friction        the laws of friction
+    linear          closed forms of linear motion, and roots that are not missed
+    config          strict YAML, and what a parameter is
+    core            what every room uses: errors, events, samples, input profiles, the switch to compiled code
 """
 
 from .core.version import __version__

@@ -99,7 +99,7 @@ def _log_choices(n: int, k: int) -> float:
     return float(special.gammaln(n + 1) - special.gammaln(k + 1) - special.gammaln(n - k + 1)) if k <= n else -np.inf
 
 
-class Side(NamedTuple):
+class CurveSide(NamedTuple):
     """A direction of motion beside the curve of both: mean of measured over fitted, and its standard error."""
 
     name: str
@@ -108,12 +108,12 @@ class Side(NamedTuple):
     error: float
 
 
-def sides(fit: Fit) -> list[Side]:
+def sides(fit: Fit) -> list[CurveSide]:
     """Return both directions of a curve beside the fit; none when all points are of one."""
     forward = fit.curve.forward
     if forward.all() or not forward.any():
         return []
     ratios = fit.curve.coefficients / fit.at(fit.curve.speeds)
-    return [Side(name, int(chosen.sum()), float(ratios[chosen].mean()),
+    return [CurveSide(name, int(chosen.sum()), float(ratios[chosen].mean()),
                  float(ratios[chosen].std() / np.sqrt(chosen.sum())))
             for name, chosen in (('forward', forward), ('backward', ~forward))]

@@ -63,7 +63,7 @@ def static_coefficient(law, low, limit, tau, exponent, rest):
 
 
 @always_compiled
-def kinetic_at_rest(p):
+def friction_at_rest(p):
     """Return mu_k as motion stops."""
     return p[TABLE + _MU]
 

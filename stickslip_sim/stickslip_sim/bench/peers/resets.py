@@ -13,7 +13,7 @@ from ...core.types import EventKind
 from .automaton import (
     ACCELERATING, COASTING, DECELERATING, DEFLECTION, DIRECTION, EXCESS, F, F_RATE, MODE, REST, ROUNDING, S,
     SEGMENT, STICK, TIME, TURN, U, V, V_RATE, X, applied, breakpoint_at, contact, friction_lines, inputs,
-    is_compliant, kinetic_at_rest, motion_of, segment_of, static_coefficient, static_margin,
+    is_compliant, friction_at_rest, motion_of, segment_of, static_coefficient, static_margin,
 )
 
 BREAKAWAY, COAST, ACCELERATE = float(EventKind.BREAKAWAY), float(EventKind.COAST), float(EventKind.ACCELERATE)
@@ -115,7 +115,7 @@ def _stick(p, m):
     m[REST] = m[U] = 0.0
     m[DEFLECTION] = 0.0
     if p[COMPLIANT] != 0.0:
-        m[DEFLECTION] = m[DIRECTION] * p[NORMAL] * kinetic_at_rest(p) / p[CONTACT_STIFFNESS]
+        m[DEFLECTION] = m[DIRECTION] * p[NORMAL] * friction_at_rest(p) / p[CONTACT_STIFFNESS]
     m[DIRECTION] = 0.0
 
 
