@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import stickslip_sim as stickslip
+from stickslip_sim.cli.identify_lines import result_lines
 from stickslip_sim.identification.identification import AT_BOUND, FOUND, NOT_IDENTIFIABLE, Identification
 from stickslip_sim.recording import write_measured
 from tests.identification.measured_axis import between, measure
@@ -117,6 +118,56 @@ def test_a_model_that_does_not_fit_is_rejected(rigid: stickslip.Run) -> None:
     assert all(misfit.statistic > misfit.limit for misfit in found.misfits)
     assert all(0.0 <= misfit.from_time < misfit.to_time <= 6.0 for misfit in found.misfits)
     assert all('off by' in misfit.statement or 'go together' in misfit.statement for misfit in found.misfits)
+
+
+KATO = changed(RIGID, {'friction.static.law': 'kato', 'friction.static.limit': 0.24,
+                       'friction.static.time_constant': 0.2, 'friction.static.exponent': 0.5})
+
+
+def criteria(found: Identification) -> dict[str, float]:
+    return {law.static: law.criterion for law in found.laws}
+
+
+def test_the_law_that_made_the_run_is_preferred(tmp_path: Path) -> None:
+    """Growth by Kato's law, fitted with the exponential law: no numbers of it make this motion, those of Kato's do."""
+    run = measure(tmp_path / 'run', KATO, 6.0)
+    found = stickslip.identify(run, changed(RIGID, OFF), OF_FRICTION, laws=True)
+    best, *others = sorted(found.laws, key=lambda law: law.criterion)
+    assert (best.static, best.kinetic, best.n_parameters, best.is_chosen) == ('kato', 'table', 4, False)
+    assert best.cost < 2.0 * found.n_residuals
+    assert {law.static for law in others} == {'exponential', 'constant', 'hyperbolic', 'logarithmic'}
+    assert min(law.criterion for law in others) > best.criterion + 1000.0
+    assert [law.static for law in found.laws if law.is_chosen] == ['exponential']
+    said = '\n'.join(result_lines(found, 'run'))
+    assert 'better laws: kato with table, BIC ' in said
+    assert 'below exponential with table' in said
+
+
+def test_a_law_is_not_preferred_for_a_number_more(rigid: stickslip.Run) -> None:
+    """Kato's law with the exponent 1 is the exponential law: it fits as well, and has a parameter more."""
+    found = stickslip.identify(rigid, changed(RIGID, OFF), OF_FRICTION, laws=True)
+    found_by = criteria(found)
+    assert 0.0 < found_by['kato'] - found_by['exponential'] < 12.0
+    assert min(found_by, key=found_by.__getitem__) == 'exponential'
+    said = '\n'.join(result_lines(found, 'run'))
+    assert 'none of 4 other laws is better by more than 10 of BIC than exponential with table' in said
+
+
+def test_kinetic_laws_are_compared_where_one_is_fitted(tmp_path: Path) -> None:
+    smooth = changed(RIGID, {'friction.kinetic.law': 'exponential', 'friction.kinetic.initial': 0.12,
+                             'friction.kinetic.limit': 0.05, 'friction.kinetic.stribeck_velocity': 0.02,
+                             'friction.kinetic.viscous': 0.2})
+    run = measure(tmp_path / 'run', smooth, 3.0)
+    start = changed(smooth, {'friction.kinetic.law': 'stribeck', 'friction.kinetic.initial': 0.11,
+                             'friction.kinetic.limit': 0.055, 'friction.kinetic.stribeck_velocity': 0.025,
+                             'friction.kinetic.viscous': 0.2})
+    found = stickslip.identify(run, start, {
+        'friction.kinetic.initial': between(0.06, 0.12), 'friction.kinetic.limit': between(0.02, 0.09),
+        'friction.kinetic.stribeck_velocity': between(0.005, 0.08)}, laws=True)
+    by = {law.kinetic: law.criterion for law in found.laws}
+    assert set(by) == {'stribeck', 'exponential', 'hyperbolic'}
+    assert {law.static for law in found.laws} == {'exponential'}
+    assert min(by, key=by.__getitem__) == 'exponential'
 
 
 def test_a_range_that_ends_before_the_truth(rigid: stickslip.Run) -> None:

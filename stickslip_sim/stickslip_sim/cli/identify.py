@@ -25,11 +25,12 @@ if TYPE_CHECKING:
               help='The scene to begin with: a file, or a shipped one.')
 @click.option('--free', required=True, metavar='FILE.yaml', help='What is sought, and in which ranges.')
 @click.option('--out', required=True, metavar='FOLDER', help='New folder for the results.')
+@click.option('--laws', is_flag=True, help='Fit other laws of friction, too, and say which is best.')
 @click.option('--workers', metavar='N|all', help='Processes to use [default: 1].')
 @click.option('--resume', is_flag=True, help='Go on with what was interrupted.')
 @scene_changes('Change a parameter of the scene to begin with.')
-def identify(run: str, scene: str, free: str, out: str, workers: str | None, resume: bool, changes: SceneChanges
-             ) -> None:
+def identify(run: str, scene: str, free: str, out: str, laws: bool, workers: str | None, resume: bool,
+             changes: SceneChanges) -> None:
     """Find from a measured RUN of an axis the scene that reproduces it, with intervals.
 
     FOLDER gets identified.yaml, a scene; posterior.yaml, what is left open of it, for uncertainty --with; report.html
@@ -51,7 +52,7 @@ def identify(run: str, scene: str, free: str, out: str, workers: str | None, res
     measured = recorded_run(run)
     work = WorkFolder(out, facts_of(measured, start, read_text(Path(free), 'file of distributions')), resume)
     with _going_on(work), progress_bar('identifying') as progress:
-        found = find(measured, start, free, workers=count, keeper=work,
+        found = find(measured, start, free, workers=count, laws=laws, keeper=work,
                      progress=progress and (lambda stage, share: progress(share)))
     with new_folder('--out', work.results) as folder:
         write_results(measured, found, scene, folder)

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 _NAME, _NUMBER = 36, 14
 _MISFITS = 4         # that are printed
-_AS_GOOD = 2.0       # of the criterion: laws nearer than that are as good
+_BETTER = 10.0      # of the criterion: laws so far below are better (Kass and Raftery 1995: very strong evidence)
 _ELSEWHERE = 1.01    # times the least sum of squares: a search that ended above it ended elsewhere
 
 
@@ -60,14 +60,18 @@ def _slips(found: 'Identification') -> Iterator[str]:
 
 
 def _laws(found: 'Identification') -> Iterator[str]:
-    """Yield which laws the criterion prefers, and which are as good."""
+    """Yield which laws are better by far than those of the scene; that none is, where others were tried."""
     if len(found.laws) < 2:
         return
-    best, *others = sorted(found.laws, key=lambda one: one.criterion)
-    as_good = [f'{one.static} with {one.kinetic}' for one in others if one.criterion - best.criterion < _AS_GOOD]
-    yield (f'laws by {found.criterion}: best is {best.static} with {best.kinetic}, '
-           + (f'as good {"; ".join(as_good)}' if as_good else
-              f'the next is {others[0].criterion - best.criterion:.3g} above'))
+    taken = next(one for one in found.laws if one.is_chosen)
+    better = [one for one in sorted(found.laws, key=lambda one: one.criterion)
+              if taken.criterion - one.criterion > _BETTER]
+    for one in better:
+        yield (f'better laws: {one.static} with {one.kinetic}, {found.criterion} '
+               f'{taken.criterion - one.criterion:.4g} below {taken.static} with {taken.kinetic}')
+    if not better:
+        yield (f'none of {len(found.laws) - 1} other laws is better by more than {_BETTER:g} of {found.criterion} than '
+               f'{taken.static} with {taken.kinetic}')
 
 
 def _starts(found: 'Identification') -> Iterator[str]:

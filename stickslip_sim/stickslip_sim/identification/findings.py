@@ -47,7 +47,6 @@ def identification_of(problem: FitProblem, scene: Scene, ends: Sequence[Ended], 
     fitted = problem.fitted(point, whole)
     assert fitted is not None
     channels = _channels(problem, fitted)
-    count = len(problem.parameters)
     information = best.solution.information
     inflation = _inflation(problem, fitted) if best.of_slips is None else max(best.of_slips, 1.0)
     known = certainty_of(information, inflation, problem.parameters)
@@ -55,7 +54,6 @@ def identification_of(problem: FitProblem, scene: Scene, ends: Sequence[Ended], 
     stretches = problem.stretches(0).parts
     misfits = [misfit for k, channel in enumerate(problem.measurement.channels) for misfit in misfits_of(
         channel, channel.values - fitted[k], problem.measurement.times + problem.measurement.shift, stretches)]
-    criterion = best.solution.cost + count * float(np.log(effective_count(problem)))
     return Identification(
         start=scene, scene=changed(scene, problem.model.changes(values)),
         estimates=_estimates(problem, values, known, _WHOLE if best.of_slips is None else _SINGLE),
@@ -63,13 +61,18 @@ def identification_of(problem: FitProblem, scene: Scene, ends: Sequence[Ended], 
         misfits=tuple(misfits),
         combinations=combinations_of(information - problem.information_beforehand(), problem.parameters),
         starts=tuple(_start_end(problem, end, end is best) for end in ends),
-        laws=(LawFit(str(scene.values['friction.static.law']), str(scene.values['friction.kinetic.law']), criterion,
-                     count, best.solution.cost, True),),
+        laws=(LawFit(str(scene.values['friction.static.law']), str(scene.values['friction.kinetic.law']),
+                     criterion_of(problem, best.solution.cost), len(problem.parameters), best.solution.cost, True),),
         slips=_slips(problem, values), criterion=CRITERION, cost=best.solution.cost,
         n_residuals=len(whole.rows) * len(channels), runs=problem.model.runs, seconds=time.perf_counter() - began,
         notes=(*problem.measurement.notes, *([] if best.solution.is_settled else [_UNSETTLED]),
                *([] if best.of_slips is None else [_OF_SLIPS])),
         shift=problem.measurement.shift)
+
+
+def criterion_of(problem: FitProblem, cost: float) -> float:
+    """Return the criterion of Bayes of a fit with a sum of squares: the lower, the better."""
+    return cost + len(problem.parameters) * float(np.log(effective_count(problem)))
 
 
 def _channels(problem: FitProblem, fitted: Sequence[Numbers]) -> tuple[ChannelFit, ...]:

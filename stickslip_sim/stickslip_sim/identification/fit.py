@@ -18,6 +18,7 @@ from .findings import identification_of
 from .free_parameters import free_parameters
 from .identification import Identification
 from .input_checks import check_data, check_parameters
+from .law_comparison import with_laws
 from .many_fits import Keeper, fits_from
 from .motions import motions_of, track_of
 from .problem import FitProblem
@@ -28,16 +29,18 @@ from .stages import Progress, best_fit, best_of_slips, starts_of
 
 def identify(run: Run | str | os.PathLike[str], start: SceneOrName, free: str | Path | Mapping[str, object], *,
              resolutions: Mapping[str, float] | None = None, seed: int = 0, workers: int = 1,
-             progress: Progress | None = None, keeper: Keeper | None = None) -> Identification:
+             laws: bool = False, progress: Progress | None = None, keeper: Keeper | None = None) -> Identification:
     """Return the scene that reproduces a measured or recorded run, found from the scene `start`.
 
     `free` is a file as `uncertainty --with` takes it, or its section of parameters, and names beside parameters of the
     scene `sensor.CHANNEL.offset` and `sensor.CHANNEL.scale`.  `resolutions` are standard deviations of the noise by
     channel, in its unit, where they are known.  `progress` is called with a stage and the share of it that is done.
-    Fits from several starts are shared out to `workers` processes, and kept by a `keeper`, if there is one.
+    With `laws` the run is fitted with other laws of friction, too, and a criterion says which is best.  Fits from
+    several starts are shared out to `workers` processes, and kept by a `keeper`, if there is one.
     What is not known of the start of the run is taken from it, and noted.  Raises InputError and RecordingError.
     """
     began = time.perf_counter()
+    say = progress or (lambda stage, share: None)
     scene = start if isinstance(start, Scene) else load_scene(start)
     parameters = free_parameters(scene, free)
     found = read_run(os.fspath(run)) if isinstance(run, str | os.PathLike) else run
@@ -50,5 +53,6 @@ def identify(run: Run | str | os.PathLike[str], start: SceneOrName, free: str | 
     model = AxisModel(scene, parameters, measurement)
     problem = FitProblem(model, parameters, measurement, motions)
     with closing(fits_from(problem, starts_of(problem, seed), workers, keeper)) as fits:
-        ends = best_fit(fits, progress or (lambda stage, share: None))
-    return identification_of(problem, scene, best_of_slips(problem, ends), began)
+        ends = best_fit(fits, say)
+    identified = identification_of(problem, scene, best_of_slips(problem, ends), began)
+    return with_laws(identified, problem, workers, keeper, say) if laws else identified

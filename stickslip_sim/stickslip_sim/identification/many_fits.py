@@ -6,7 +6,7 @@ Which fits there are and in which order they end does not depend on the processe
 bit.
 """
 
-from collections.abc import Callable, Generator, Iterator, Mapping
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from copy import deepcopy
 from functools import partial
@@ -34,6 +34,14 @@ class Keeper(Protocol):
         """Keep the arrays of a fit."""
 
 
+class KeyedFit(NamedTuple):
+    """A fit to be made, of a problem from a start, and the key under which it is kept."""
+
+    key: str
+    problem: FitProblem
+    start: Numbers
+
+
 class _Fitted(NamedTuple):
     """The end of a fit, and how many simulations it took."""
 
@@ -44,16 +52,19 @@ class _Fitted(NamedTuple):
 def fits_from(problem: FitProblem, starts: Iterator[Numbers], workers: int, keeper: Keeper | None
               ) -> Generator[Ended, None, None]:
     """Yield the fit from each start, in their order; the first is made alone, for it may be good enough."""
-    first = next(starts)
-    yield _kept(problem, 'fit_0', partial(_fit, problem, first), keeper)
-    others = list(enumerate(starts, 1))
+    yield from kept_fits([KeyedFit('fit_0', problem, next(starts))], 1, keeper)
+    yield from kept_fits([KeyedFit(f'fit_{k}', problem, start) for k, start in enumerate(starts, 1)], workers, keeper)
+
+
+def kept_fits(fits: Sequence[KeyedFit], workers: int, keeper: Keeper | None) -> Generator[Ended, None, None]:
+    """Yield where fits end, in their order; those that are kept are not made again."""
     with ExitStack() as stack:
-        works: list[Callable[[], _Fitted]] = [partial(_fit, problem, start) for _, start in others]
-        if min(workers, len(others)) > 1:
-            pool = stack.enter_context(processes(min(workers, len(others)))).pool
+        works: list[Callable[[], _Fitted]] = [partial(_fit, one.problem, one.start) for one in fits]
+        if min(workers, len(fits)) > 1:
+            pool = stack.enter_context(processes(min(workers, len(fits)))).pool
             works = [pool.submit(work).result for work in works]
-        for (k, _), work in zip(others, works, strict=True):
-            yield _kept(problem, f'fit_{k}', work, keeper)
+        for one, work in zip(fits, works, strict=True):
+            yield _kept(one.problem, one.key, work, keeper)
 
 
 def _kept(problem: FitProblem, key: str, work: Callable[[], _Fitted], keeper: Keeper | None) -> Ended:
