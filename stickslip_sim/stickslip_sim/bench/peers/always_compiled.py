@@ -1,12 +1,17 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The rivals' machine code: numba compiles it when it is first called, and keeps it beside the source.
+"""The rivals' machine code: numba compiles it when it is first called, and keeps it beside these sources.
 
 The switch STICKSLIP_COMPILED is not for it: a rival is never held back.
 """
 
+import hashlib
 from collections.abc import Callable
+from pathlib import Path
 from typing import TypeVar
+
+from ...axis import layout
+from ...friction import static
 
 _Function = TypeVar('_Function', bound=Callable[..., object])
 
@@ -15,6 +20,19 @@ try:
     NUMBA_MISSING = None
 except ImportError:
     NUMBA_MISSING = 'pip install numba'
+
+
+def _digest() -> str:
+    """Return what tells these sources, and those whose numbers they hold, from any others.
+
+    numba itself looks at the file of a function alone, and would go on with the places of a table laid out anew.
+    """
+    files = [*sorted(Path(__file__).parent.glob('*.py')), Path(layout.__file__), Path(static.__file__)]
+    return hashlib.sha256(b''.join(file.read_bytes() for file in files)).hexdigest()[:16]
+
+
+if NUMBA_MISSING is None:
+    numba.config.CACHE_DIR = str(Path(__file__).parent / '__pycache__' / _digest())
 
 
 def always_compiled(function: _Function) -> _Function:
