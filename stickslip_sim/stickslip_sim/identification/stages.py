@@ -21,9 +21,9 @@ from .slip_features import MeasuredSlip
 Numbers = NDArray[np.float64]
 Progress = Callable[[str, float], None]
 
-_STARTS = 64            # trial points beside the given one, a power of two
-_TRIAL_SLIPS = 3        # at each of them
-_FITTED_STARTS = 4      # of them, the best
+_STARTS = 256           # trial points beside the given one, a power of two
+_TRIAL_SLIPS = 5        # at each of them
+_FITTED_STARTS = 8      # of them, the best
 _SLIPS = 10             # at most, for the coarse fit
 _SAMPLES = 4000         # about so many are enough until the last stage
 _FIRST_SLIPS = 0, 1, 3, 8, 20, 50   # that are fitted as one, before the whole run
