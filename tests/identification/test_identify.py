@@ -66,6 +66,7 @@ def test_a_rigid_axis_from_position_and_force(rigid: stickslip.Run) -> None:
     assert [(law.static, law.n_parameters, law.is_chosen) for law in found.laws] == [('exponential', 6, True)]
     assert found.n_residuals == 2 * 6001
     assert all('whole run' in estimate.derivation for estimate in found.estimates)
+    assert all(estimate.profile is None for estimate in found.estimates)   # the covariance says the same
     assert [channel.name for channel in found.channels] == ['position', 'drive_force']
     assert all(channel.correlation_time < 1e-3 for channel in found.channels)
     assert not found.notes
@@ -93,6 +94,23 @@ def test_without_a_force_only_ratios(tmp_path: Path) -> None:
     assert all(weight == pytest.approx(1.0, abs=0.05) for weight in together.weights)
     assert 'ratios' in together.statement
     assert {estimate.kind for estimate in found.estimates} == {NOT_IDENTIFIABLE}
+    mass = found.estimates[0]
+    of_normal_force = (350.0 * 2000.0 / RIGID.axis.normal_force, 350.0 * 5000.0 / RIGID.axis.normal_force)
+    assert mass.interval == (150.0, 900.0)
+    assert mass.profile == pytest.approx(of_normal_force, rel=0.03)
+
+
+def test_an_interval_of_a_lopsided_likelihood(tmp_path: Path) -> None:
+    """Static friction is at its limit after every rest: the time constant is short, and nothing says how short."""
+    run = measure(tmp_path / 'run', changed(RIGID, {'friction.static.time_constant': 0.01}), 4.0)
+    found = stickslip.identify(run, changed(RIGID, {'friction.static.time_constant': 0.02}), {
+        'friction.static.limit': between(0.1, 0.5), 'friction.static.time_constant': between(1e-3, 0.6)})
+    time_constant = found.estimates[1]
+    assert time_constant.profile is not None
+    assert time_constant.profile[0] == pytest.approx(1e-3)
+    assert 0.01 < time_constant.profile[1] < 0.04
+    assert time_constant.interval[0] > 0.01   # the covariance excludes the truth
+    assert time_constant.best_interval == time_constant.profile
 
 
 def test_a_sensor_that_is_off(tmp_path: Path) -> None:

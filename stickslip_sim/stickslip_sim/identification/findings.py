@@ -23,6 +23,7 @@ from .identification import (
     StartEnd,
 )
 from .problem import FitProblem
+from .profiles import with_profiles
 from .residual_tests import correlation_length, misfits_of
 from .slip_features import rest_force, simulated_slip
 from .stages import Ended, effective_count
@@ -54,10 +55,12 @@ def identification_of(problem: FitProblem, scene: Scene, ends: Sequence[Ended], 
     stretches = problem.stretches(0).parts
     misfits = [misfit for k, channel in enumerate(problem.measurement.channels) for misfit in misfits_of(
         channel, channel.values - fitted[k], problem.measurement.times + problem.measurement.shift, stretches)]
+    estimates = _estimates(problem, values, known, _WHOLE if best.of_slips is None else _SINGLE)
+    if best.of_slips is None and not misfits:
+        estimates = with_profiles(estimates, problem, best.solution, known, inflation)
     return Identification(
         start=scene, scene=changed(scene, problem.model.changes(values)),
-        estimates=_estimates(problem, values, known, _WHOLE if best.of_slips is None else _SINGLE),
-        correlation=known.correlation, channels=channels,
+        estimates=estimates, correlation=known.correlation, channels=channels,
         misfits=tuple(misfits),
         combinations=combinations_of(information - problem.information_beforehand(), problem.parameters),
         starts=tuple(_start_end(problem, end, end is best) for end in ends),
