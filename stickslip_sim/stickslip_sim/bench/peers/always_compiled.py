@@ -23,7 +23,7 @@ except ImportError:
 
 
 def _digest() -> str:
-    """Return what tells these sources, and those whose numbers they hold, from any others.
+    """Return a mark of these sources, and of those whose numbers they hold.
 
     numba itself looks at the file of a function alone, and would go on with the places of a table laid out anew.
     """
