@@ -6,6 +6,7 @@ The switch STICKSLIP_COMPILED is not for it: a rival is never held back.
 """
 
 import hashlib
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
@@ -14,12 +15,6 @@ from ...axis import layout
 from ...friction import static
 
 _Function = TypeVar('_Function', bound=Callable[..., object])
-
-try:
-    import numba
-    NUMBA_MISSING = None
-except ImportError:
-    NUMBA_MISSING = 'pip install numba'
 
 
 def _digest() -> str:
@@ -31,8 +26,12 @@ def _digest() -> str:
     return hashlib.sha256(b''.join(file.read_bytes() for file in files)).hexdigest()[:16]
 
 
-if NUMBA_MISSING is None:
-    numba.config.CACHE_DIR = str(Path(__file__).parent / '__pycache__' / _digest())
+os.environ['NUMBA_CACHE_DIR'] = str(Path(__file__).parent / '__pycache__' / _digest())
+try:
+    import numba
+    NUMBA_MISSING = None
+except ImportError:
+    NUMBA_MISSING = 'pip install numba'
 
 
 def always_compiled(function: _Function) -> _Function:
