@@ -23,7 +23,7 @@ from .identification import (
     StartEnd,
 )
 from .problem import FitProblem
-from .profiles import with_profiles
+from .profiles import with_profile_intervals
 from .residual_tests import correlation_length, misfits_of
 from .slip_features import rest_force, simulated_slip
 from .stages import Ended, effective_count
@@ -57,7 +57,7 @@ def identification_of(problem: FitProblem, scene: Scene, ends: Sequence[Ended], 
         channel, channel.values - fitted[k], problem.measurement.times + problem.measurement.shift, stretches)]
     estimates = _estimates(problem, values, known, _WHOLE if best.of_slips is None else _SINGLE)
     if best.of_slips is None and not misfits:
-        estimates = with_profiles(estimates, problem, best.solution, known, inflation)
+        estimates = with_profile_intervals(estimates, problem, best.solution, known, inflation)
     return Identification(
         start=scene, scene=changed(scene, problem.model.changes(values)),
         estimates=estimates, correlation=known.correlation, channels=channels,

@@ -130,8 +130,8 @@ class Profile:
         return float(residuals @ residuals) if np.isfinite(residuals[0]) else np.inf
 
 
-def with_profiles(estimates: Sequence[Estimate], problem: FitProblem, best: Solution, known: Certainty,
-                  inflation: float) -> tuple[Estimate, ...]:
+def with_profile_intervals(estimates: Sequence[Estimate], problem: FitProblem, best: Solution, known: Certainty,
+                           inflation: float) -> tuple[Estimate, ...]:
     """Return estimates with their profile intervals, where those of the covariance do not hold."""
     profiles = [Profile(problem, best, known, inflation, k) for k in range(len(estimates))]
     return tuple(replace(one, profile=profile.interval() if profile.needs() else None)
