@@ -21,6 +21,7 @@ from .simulated import columns_of_rows
 Numbers = NDArray[np.float64]
 
 _IN_STRETCH = 32     # samples between two events
+_IN_BAND = 20        # where only the least and the most of a cycle are seen
 _MOST = 6000         # stretches that are all sampled
 _PARTS = 480         # of a window with more: two for each place that a picture has
 _EVEN = 6000         # samples of a window beside those
@@ -53,10 +54,11 @@ def _by_events(events: Numbers, breaks: Numbers, begin: float, end: float) -> Nu
     """Return times in a window, s, that show what happens between its events."""
     inside = events[(events > begin) & (events < end)]
     starts, ends = np.append(begin, inside), np.append(inside, end)
+    count = _IN_STRETCH
     if len(inside) > _MOST:
         chosen = _one_cycle_in_each(breaks, starts, begin, end)
-        starts, ends = starts[chosen], ends[chosen]
-    share = np.linspace(0.0, 1.0, _IN_STRETCH, endpoint=False) ** 2
+        starts, ends, count = starts[chosen], ends[chosen], _IN_BAND
+    share = np.linspace(0.0, 1.0, count, endpoint=False) ** 2
     return np.asarray((starts[:, None] + (ends - starts)[:, None] * share).ravel(), dtype=np.float64)
 
 
