@@ -26,7 +26,8 @@ _SLOWEST = 0.05          # quantile of the speeds of the drive
 _YIELDS = 0.3             # of the speed of the drive: a slider that moves slower rests, on a contact that yields
 _SHARE, _NOISES = 0.04, 4.0   # of the highest speed, without a drive; standard deviations
 _PEAK = 2.0              # times that: so fast is a motion at its peak
-_RINGS_FOR, _RINGS = 0.7, 0.15   # of the motion before: its duration, and its way
+_RINGS_AFTER, _RINGS = 3.0, 0.15   # of a ring: its own duration since the last one; of the way of a slip
+_LONG = 0.8              # quantile of the ways: of a slip, not of a ring
 _RISE, _FALL = (0.15, 0.6), (0.03, 0.25)   # of the peak: between these a line is laid through the slope
 _SHORT = 0.2             # of a motion: what is shorter is no rest
 _MIDDLE = 0.25, 0.75     # of a rest: between these the slider stands still,
@@ -118,15 +119,27 @@ def motions_of(track: Track) -> list[MeasuredMotion]:
         if abs(track.velocity[peak]) < _PEAK * track.still[peak]:
             continue
         motion = _motion(track, first, end, peak, float(ways[first]))
-        if motion is not None and (not found or (motion.begin > found[-1].end and not _rings(motion, found[-1]))):
+        if motion is not None and (not found or motion.begin > found[-1].end):
+            found.append(motion)
+    return _without_rings(found)
+
+
+def _without_rings(motions: Sequence[MeasuredMotion]) -> list[MeasuredMotion]:
+    """Return motions without those of a contact that rings after a slip.
+
+    Rings follow each other at once, and are short beside the slip before them.  That may be a long way with the drive,
+    beside which slips are short too: then they are compared with the ways of others.
+    """
+    if not motions:
+        return []
+    usual = float(np.quantile([abs(motion.stop - motion.start) for motion in motions], _LONG))
+    found = [motions[0]]
+    for before, motion in pairwise(motions):
+        way = min(abs(found[-1].stop - found[-1].start), usual)
+        if motion.begin - before.end >= _RINGS_AFTER * (motion.end - motion.begin) \
+                or abs(motion.stop - motion.start) >= _RINGS * way:
             found.append(motion)
     return found
-
-
-def _rings(motion: MeasuredMotion, before: MeasuredMotion) -> bool:
-    """Return whether a motion is that of a contact that rings after the motion before it."""
-    return (motion.begin - before.end < _RINGS_FOR * (before.end - before.begin)
-            and abs(motion.stop - motion.start) < _RINGS * abs(before.stop - before.start))
 
 
 def ends_in_rest(motions: Sequence[MeasuredMotion], track: Track, drive: InputProfile) -> tuple[MeasuredMotion, ...]:
