@@ -4,18 +4,22 @@
 
 import math
 import random
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from itertools import pairwise
 from typing import Any
 
+import numpy as np
 import pytest
 
 from stickslip_sim.axis import InitialState, pack
 from stickslip_sim.core import hot_path
 from stickslip_sim.core.errors import UnsoundError
 from stickslip_sim.core.input_profile import InputProfile, steps, table
-from stickslip_sim.core.types import Event
+from stickslip_sim.core.time_grid import instants
+from stickslip_sim.core.types import Event, Instant, Sample
 from stickslip_sim.simulation.simulator import Simulator
-from stickslip_sim.solvers import DONE, FULL, PieceWalk, Solver, exact, fixed_step, with_advance
+from stickslip_sim.solvers import DONE, FULL, Solver, exact, fixed_step, with_advance
 from stickslip_sim.solvers.walk import walk_of
 from tests.conftest import Program
 from tests.support.axes import COMPLIANT, instant, paper_axis
@@ -84,6 +88,47 @@ def test_a_walk_gives_the_bits_of_one_piece_after_the_other(kind: str, calls: in
     assert one.root_iterations == other.root_iterations
 
 
+def sampled(kind: str, solver: Solver, blocks: int, rate: int = 1300) -> tuple[Bits, bytes, Simulator]:
+    """Return the events and the samples of a run that takes them in blocks."""
+    simulator = make(kind, solver)
+    at = instants(Fraction(1, rate), 0, int(DURATION * rate) + 1)
+    rows = np.empty((len(at.seconds), len(Sample._fields)))
+    ends = [len(rows) * k // blocks for k in range(blocks + 1)]
+    events = [row for first, last in pairwise(ends)
+              for row in bits(simulator.take_samples(at.part(first, last), rows[first:last]))]
+    return events, rows.tobytes(), simulator
+
+
+@pytest.mark.parametrize('kind', KINDS)
+@pytest.mark.parametrize('rate', [1300, 7])   # many samples a piece, or pieces a sample: a table fills
+def test_samples_through_pieces_have_the_bits_of_those_one_by_one(kind: str, rate: int) -> None:
+    simulator = make(kind, ONE_BY_ONE)
+    events, samples = [], []
+    for time in map(Instant, *(column.tolist() for column in instants(Fraction(1, rate), 0, int(DURATION * rate) + 1))):
+        events += bits(simulator.advance(time))
+        samples.append(simulator.sample())
+    assert len(events) > 100
+    for solver, blocks in ((exact.SOLVER, 1), (exact.SOLVER, 5), (ONE_BY_ONE, 1)):
+        own, rows, other = sampled(kind, solver, blocks, rate)
+        assert own == events
+        assert rows == np.array(samples).tobytes()
+        assert (other.sample(), other.energy, other.time) == (simulator.sample(), simulator.energy, simulator.time)
+        assert other.event_counts == simulator.event_counts
+
+
+def test_a_run_that_gives_up_while_samples_are_taken_says_when() -> None:
+    ends = []
+    for solver in (exact.SOLVER, ONE_BY_ONE):
+        simulator = make('plain', doctored(solver))
+        at = instants(Fraction(1, 1000), 0, 2000)
+        with pytest.raises(UnsoundError, match='contradicts its own motion or balance of energy at t = ') as failure:
+            simulator.take_samples(at, np.empty((2000, len(Sample._fields))))
+        assert 0.0 < simulator.time.seconds < 0.5
+        assert repr(simulator.time.seconds) in str(failure.value)
+        ends.append((str(failure.value), simulator.time, simulator.sample()))
+    assert ends[0] == ends[1]
+
+
 @pytest.mark.parametrize('kind', KINDS)
 def test_the_split_of_time_changes_no_bit(kind: str) -> None:
     whole = run_in(kind, 1)
@@ -124,11 +169,15 @@ def doctored(solver: Solver) -> Solver:
     """Return a solver with energy that the run never had, from the first walk through pieces on."""
     walk = walk_of(solver)
 
-    def run(p: Any, s: Any, *arguments: Any) -> Any:
-        s.stored_at_start += 1e3   # J
-        return walk.run(p, s, *arguments)
+    def spoilt(way: Callable[..., Any]) -> Callable[..., Any]:
+        def spoil(p: Any, s: Any, *arguments: Any) -> Any:
+            s.stored_at_start += 1e3   # J
+            return way(p, s, *arguments)
 
-    return solver._replace(walk=PieceWalk(walk.pieces_of, run))   # type: ignore[attr-defined, no-any-return]
+        return spoil
+
+    spoilt_walk = walk._replace(run=spoilt(walk.run), sample=spoilt(walk.sample))
+    return solver._replace(walk=spoilt_walk)   # type: ignore[attr-defined, no-any-return]
 
 
 def test_a_run_that_gives_up_in_mid_walk_says_when_and_stands_there() -> None:

@@ -70,6 +70,8 @@ class InputProfile:
 
     def check(self, name: str) -> None:
         """Raise InputError when a number of the profile called `name` is not finite."""
+        if math.isfinite(sum(self.starts) + sum(self.values) + sum(self.rates)):   # one that is not finite makes it so
+            return
         numbers = *self.starts, *self.values, *self.rates
         if not all(map(math.isfinite, numbers)):
             raise InputError(name, next(number for number in numbers if not math.isfinite(number)),

@@ -16,7 +16,6 @@ from ..core.input_profile import Input, InputProfile
 from ..core.time_grid import Instants
 from ..core.types import Event, EventKind, Instant, Mode, Sample, tuple_of
 from ..solvers import DONE, FULL, OUT_OF_RANGE, UNSOUND, Solver, exact
-from ..solvers.block import sample_block_of
 from ..solvers.normal_load import under_load
 from ..solvers.walk import walk_of
 from .checkpoint import check_state, event_of, numbers_of
@@ -141,15 +140,22 @@ class Simulator:
 
         Returns the events up to the last; raises as `advance` and `sample` do.
         """
-        times = at.seconds + at.fractions
         events = self._set_out(Instant(float(at.seconds[0]), float(at.fractions[0])))
-        taken = 0
-        while taken < len(times):
-            if self._inputs.until <= times[taken]:
-                self._enter_more(float(times[taken]), events)
-            last = int(np.searchsorted(times, self._inputs.until, 'left'))
-            self._take_samples(at, taken, last, out, events)
-            taken = last
+        inputs, reached, taken = self._inputs, 0, 0
+        drive, force = inputs.pieces(self._walk.pieces_of)
+        while reached < len(out):
+            before = reached, inputs.until
+            reached, until, rows, end = self._walk.sample(
+                self._parameters, self._state, drive, force, inputs.until, *at, reached, len(out), self._sinusoids,
+                self._table, out)
+            events.extend(self._rows(rows))
+            inputs.go_on(until)
+            self._check_samples(out[before[0]:reached])
+            if reached > before[0]:
+                self._time = Instant(float(at.seconds[reached - 1]), float(at.fractions[reached - 1]))
+            taken = rows if before != (reached, until) else taken + rows
+            if end != DONE:
+                self._check_end(end, taken)
         for event in events:
             self._counts[event.kind] += 1
         return events
@@ -236,7 +242,7 @@ class Simulator:
         if normal_force is not None:
             self._solver = under_load(self._solver, normal_force)
             self._parameters.normal_force = normal_force.value_at(self._time.seconds)
-        self._walk, self._sample_block = walk_of(self._solver, normal_force), sample_block_of(self._solver)
+        self._walk = walk_of(self._solver, normal_force)
 
     def _obey(self) -> None:
         """Let the commands of this instant take effect, all at once: their order does not matter."""
@@ -266,21 +272,6 @@ class Simulator:
             self._obey()
         events, self._waiting = self._waiting, []
         return events
-
-    def _take_samples(self, at: Instants, first: int, last: int, out: NDArray[np.float64], events: list[Event]
-                      ) -> None:
-        """Fill the rows from `first` on and before `last`, within the pieces of the inputs that are in force."""
-        taken = 0
-        while True:
-            reached, rows, end = self._sample_block(self._parameters, self._state, *at, first, last, self._table, out)
-            events.extend(self._rows(rows))
-            self._check_samples(out[first:reached])
-            if reached > first:
-                self._time, taken = Instant(float(at.seconds[reached - 1]), float(at.fractions[reached - 1])), 0
-            if end == DONE:
-                return
-            first, taken = reached, taken + rows
-            self._check_end(end, taken)
 
     def _check_samples(self, rows: NDArray[np.float64]) -> None:
         """Raise SolverError unless the states in rows of samples are finite."""

@@ -89,18 +89,18 @@ class Solver(Protocol):
 
     @property
     def walk(self) -> 'PieceWalk | None':
-        """What enters many pieces of the inputs in one call; None: `walk.walk` does, by `advance` and `set_inputs`."""
-
-    @property
-    def sample_block(self) -> 'Callable[..., tuple[int, int, int]] | None':
-        """What takes many samples in one call; None: `block.sample_block` does, by `advance` and `sample`."""
+        """What goes through many pieces of the inputs in one call; None: `solvers.walk` does, by the methods above."""
 
 
 class PieceWalk(NamedTuple):
-    """What `walk.walk` does, in another way: `run` takes the inputs as what `pieces_of` made of their profiles."""
+    """A way through the pieces of the inputs, which it takes as what `pieces_of` made of their profiles.
+
+    `run` does what `walk.walk` does, `sample` what `walk.sample_pieces` does.
+    """
 
     pieces_of: Callable[[InputProfile], Any]
     run: Callable[..., tuple[float, int, int]]
+    sample: Callable[..., tuple[int, float, int, int]]
 
 
 class SolverOfFunctions(NamedTuple):
@@ -118,7 +118,6 @@ class SolverOfFunctions(NamedTuple):
     records: Any = PLAIN
     advice: str = 'a parameter or an input is too extreme for this axis: check the scene'
     walk: PieceWalk | None = None
-    sample_block: Callable[..., tuple[int, int, int]] | None = None
     with_normal_force: None = None
 
 

@@ -1,22 +1,28 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Many pieces of the inputs in one call."""
+"""Many pieces of the inputs, and many samples, in one call."""
 
 import math
 from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
 
 from ..axis.layout import Parameters, State
 from ..axis.rows import Events, Sinusoids
 from ..core.input_profile import InputProfile
 from . import DONE, FULL, PieceWalk, Solver
 
+Numbers = NDArray[np.float64]
+
 
 def walk_of(solver: Solver, normal_force: InputProfile | None = None) -> PieceWalk:
     """Return the way of a solver through the pieces: its own, or one piece after the other; through those of N, too."""
-    way = solver.walk or PieceWalk(lambda profile: profile, partial(walk, solver))
+    way = solver.walk or PieceWalk(lambda profile: profile, partial(walk, solver), partial(sample_pieces, solver))
     if normal_force is None:
         return way
-    return way._replace(run=partial(way.run, normal_force=way.pieces_of(normal_force)))
+    pieces = way.pieces_of(normal_force)
+    return way._replace(run=partial(way.run, normal_force=pieces), sample=partial(way.sample, normal_force=pieces))
 
 
 def walk(solver: Solver, p: Parameters, s: State, drive: InputProfile, force: InputProfile, until: float, time: float,
@@ -45,3 +51,26 @@ def walk(solver: Solver, p: Parameters, s: State, drive: InputProfile, force: In
             row = solver.set_load(p, s, second, until - second, normal, *inputs)
         until = min(v_end, f_end, math.inf if normal_force is None else normal_force.pieces_at(until)[2])
     return until, row, DONE
+
+
+def sample_pieces(solver: Solver, p: Parameters, s: State, drive: InputProfile, force: InputProfile, until: float,
+                  seconds: Numbers, fractions: Numbers, first: int, last: int, sinusoids: Sinusoids, events: Events,
+                  out: Numbers, /, normal_force: InputProfile | None = None) -> tuple[int, float, int, int]:
+    """Bring a state to the times from `first` on and before `last`, and fill the row of each with its sample.
+
+    The pieces that begin up to each are entered before, as `walk` does.  Returns the first time that was not reached,
+    until when the pieces hold that are in force then, the rows of events in use and how it ended.
+    """
+    sample = solver.records.SampleRow()
+    row = 0
+    for k in range(first, last):
+        second, fraction = float(seconds[k]), float(fractions[k])
+        until, row, end = walk(solver, p, s, drive, force, until, second + fraction, sinusoids, events, row,
+                               normal_force=normal_force)
+        if end == DONE:
+            row, end = solver.advance(p, s, second, fraction, events, row)
+        if end != DONE:
+            return k, until, row, end
+        solver.sample(p, s, second, fraction, sample)
+        out[k] = sample.tolist()
+    return last, until, row, DONE

@@ -70,7 +70,6 @@ class Engine:
     energy: ClassVar[None] = None
     is_sound: ClassVar[None] = None
     walk: ClassVar[None] = None
-    sample_block: ClassVar[None] = None
 
     def with_normal_force(self, normal_force: InputProfile) -> 'Engine':
         """Return the solver for a normal force that varies, N."""

@@ -11,12 +11,11 @@ start, advance = entry(engine.start), entry(engine.advance)
 set_inputs, set_parameters = entry(engine.set_inputs), entry(engine.set_parameters)
 set_load = entry(engine.set_load)
 sample, energy, is_sound = entry(engine.sample), entry(engine.energy), entry(judge.is_sound)
-walk = None if UNIT is None else PieceWalk(UNIT.Pieces, UNIT.walk)
-sample_block = getattr(RECORDS, 'sample_block', None)
+walk = None if UNIT is None else PieceWalk(UNIT.Pieces, UNIT.walk, UNIT.sample_pieces)
 run_axes = getattr(RECORDS, 'run_axes', many_axes.run_axes)
 
 SOLVER = SolverOfFunctions('exact', start, advance, set_inputs, set_parameters, set_load, sample, energy, is_sound,
-                          RECORDS, walk=walk, sample_block=sample_block)
+                          RECORDS, walk=walk)
 
 __all__ = ['SOLVER', 'advance', 'energy', 'is_sound', 'sample', 'set_inputs', 'set_load',
            'set_parameters', 'start']
