@@ -11,7 +11,7 @@ import numpy as np
 from stickslip_sim.axis import Axis, Friction
 from stickslip_sim.friction import StaticLaw, StaticLawKind
 
-Long = np.longdouble
+from .extended import Long
 
 
 class Line(NamedTuple):

@@ -16,8 +16,10 @@ import numpy as np
 from stickslip_sim.core.types import EventKind, Mode
 
 from ..case import Run
+from .extended import EPSILON, Long
 from .linear import Samples, samples
-from .segments import EPSILON, LOWER, ONE, UPPER, Long, Segment, U, Y, limit_along, segments
+from .resistance import ONE, U, Y
+from .segments import LOWER, UPPER, Segment, limit_along, segments
 
 MARGIN = 1024.0          # so much more than rounding is a find
 FEWEST, MOST = 32, 1024  # samples of a segment

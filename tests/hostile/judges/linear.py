@@ -10,7 +10,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-Long = np.longdouble
+from .extended import Long
+
 Array = Any
 TERMS = 22
 EARLY = 24      # halvings of the interval towards its start
