@@ -203,7 +203,8 @@ class TestRuns:
 
 @pytest.mark.ros
 def test_a_run_of_the_node_has_the_figures_of_the_simulation(tmp_path: Path, capsys: Capture) -> None:
-    from tests.support.ros_nodes import client, running
+    from tests.support.node_processes import running
+    from tests.support.ros_nodes import client
 
     folder = tmp_path / 'run'
     text = 'commands: optional\nwindow: {end: 1.0}\nlimits: {' + ''.join(

@@ -17,8 +17,9 @@ import yaml
 from stickslip_sim.scene import load_scene
 from stickslip_sim.scene.schema import BY_NAME
 from tests.support.dockerfiles import instructions, stages
+from tests.support.node_processes import executable
 from tests.support.repository import ROOT
-from tests.support.ros_nodes import client, executable
+from tests.support.ros_nodes import client
 from tests.support.tool import restore_interrupt
 from tests.support.waiting import DEADLINE
 

@@ -13,8 +13,9 @@ from pathlib import Path
 import pytest
 
 from stickslip_sim.recording import open_bag
+from tests.support.node_processes import running
 from tests.support.repository import ROOT
-from tests.support.ros_nodes import Client, client, running
+from tests.support.ros_nodes import Client, client
 from tests.support.waiting import wait_for
 
 pytestmark = pytest.mark.ros

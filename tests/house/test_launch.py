@@ -12,7 +12,8 @@ from stickslip_sim.core.errors import InputError
 from stickslip_sim.recording import open_bag
 from stickslip_sim.scene.schema import BY_NAME
 from tests.support.launch_files import FILES, LAUNCH, Started, launched
-from tests.support.ros_nodes import assert_clean, client, executable, running
+from tests.support.node_processes import assert_clean, executable, running
+from tests.support.ros_nodes import client
 
 from stickslip_sim.ros.controllers.controller_parameters import (  # isort: skip  # after ros_nodes, which skips
     COMMON, COMPENSATION,

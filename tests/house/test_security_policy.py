@@ -11,8 +11,9 @@ from typing import NamedTuple
 import pytest
 
 from stickslip_sim.cli.main import run
+from tests.support.node_processes import running
 from tests.support.repository import ROOT
-from tests.support.ros_nodes import Client, client, running
+from tests.support.ros_nodes import Client, client
 from tests.support.waiting import wait_for
 
 pytestmark = pytest.mark.ros

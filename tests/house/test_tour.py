@@ -14,8 +14,9 @@ from pathlib import Path
 import pytest
 
 from stickslip_sim.recording import open_bag
+from tests.support.node_processes import executable
 from tests.support.repository import ROOT
-from tests.support.ros_nodes import client, executable
+from tests.support.ros_nodes import client
 from tests.support.tool import restore_interrupt
 from tests.support.waiting import DEADLINE
 

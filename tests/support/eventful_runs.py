@@ -7,7 +7,8 @@ from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 
-from tests.support.ros_nodes import Client, assert_clean, client, recording_into, running
+from tests.support.node_processes import assert_clean, recording_into, running
+from tests.support.ros_nodes import Client, client
 from tests.support.waiting import wait_for
 
 from stickslip_msgs.srv import InjectFault  # isort: skip

@@ -1,12 +1,8 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Real nodes in processes of their own, and a client that talks to them over DDS.  Conditions have deadlines."""
+"""A client that talks to real nodes over DDS.  Conditions have deadlines."""
 
 import importlib
-import os
-import resource
-import signal
-import subprocess
 import threading
 import warnings
 from collections import Counter
@@ -42,13 +38,8 @@ from stickslip_msgs.msg import (  # noqa: E402
     SliderState,
     StepTiming,
 )
-from tests.support.busy_machine import CoreWaits  # noqa: E402
-from tests.support.tool import restore_interrupt  # noqa: E402
+from tests.support.node_processes import NodeProcess, assert_clean, running  # noqa: E402
 from tests.support.waiting import DEADLINE, wait_for  # noqa: E402
-
-# Without `make test` every session still keeps to itself.
-os.environ.setdefault('ROS_DOMAIN_ID', str(1 + os.getpid() % 100))
-os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
 
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _ALL = QoSProfile(depth=5000)
@@ -62,81 +53,6 @@ _HEARD = {
 def nanoseconds(time: Any) -> int:
     """Return a time of ROS as a number."""
     return int(time.sec) * 1_000_000_000 + int(time.nanosec)
-
-
-def executable(name: str) -> str:
-    """Return an installed program, as `ros2 run` finds it."""
-    for prefix in os.environ['AMENT_PREFIX_PATH'].split(os.pathsep):
-        path = Path(prefix, 'lib', 'stickslip_sim', name)
-        if path.is_file():
-            return str(path)
-    raise AssertionError(f'{name} is not installed: run `make build`')
-
-
-def recording_into(folder: Path) -> list[str]:
-    """Return the arguments of a node that records from the start."""
-    return ['-p', 'record.enabled:=true', '-p', f'record.folder:={folder}']
-
-
-def with_small_files() -> None:
-    """Let a process write no file of more than 200 kB: for `prepare`."""
-    restore_interrupt()
-    resource.setrlimit(resource.RLIMIT_FSIZE, (200_000, 200_000))
-
-
-class NodeProcess:
-    """A program with default signal handling, in a process group of its own, as a terminal starts it."""
-
-    def __init__(self, *ros_args: str, folder: Path | None = None, prepare: Callable[[], None] | None = None,
-                 program: str = 'sim_node') -> None:
-        self._process = subprocess.Popen(
-            [executable(program), '--ros-args', *ros_args], cwd=folder, stderr=subprocess.PIPE, text=True,
-            start_new_session=True, preexec_fn=prepare or restore_interrupt)
-        self.waits = CoreWaits(self.pid)
-
-    @property
-    def pid(self) -> int:
-        return self._process.pid
-
-    def send(self, number: int) -> None:
-        self.waits.look()    # it may end
-        self._process.send_signal(number)
-
-    def wait(self) -> tuple[int, str]:
-        """Return the exit code and standard error."""
-        try:
-            _, errors = self._process.communicate(timeout=DEADLINE)
-        except subprocess.TimeoutExpired:
-            self._process.kill()
-            raise
-        return self._process.returncode, errors
-
-    def end(self, number: int = signal.SIGINT) -> tuple[int, str]:
-        self.send(number)
-        return self.wait()
-
-    def kill(self) -> None:
-        if self._process.poll() is None:
-            self.waits.look()
-            self._process.kill()
-            print(self._process.communicate()[1])    # what it had to say, for the report of a test that failed
-
-
-def assert_clean(code: int, errors: str) -> None:
-    """Check how a process ended."""
-    assert code == 0, errors
-    assert 'Traceback' not in errors
-    assert 'Exception' not in errors
-
-
-@contextmanager
-def running(*ros_args: str, folder: Path | None = None, prepare: Callable[[], None] | None = None,
-            program: str = 'sim_node') -> Iterator[NodeProcess]:
-    process = NodeProcess(*ros_args, folder=folder, prepare=prepare, program=program)
-    try:
-        yield process
-    finally:
-        process.kill()
 
 
 class Client:

@@ -14,8 +14,9 @@ from stickslip_sim.recording import open_bag, read_run
 from stickslip_sim.rig import RigEventKind
 from stickslip_sim.verify.origin import checkpoint_of, doubts_about
 from stickslip_sim.verify.verification import Verdict, verify
+from tests.support.node_processes import running
 from tests.support.rewritten_bags import rewritten
-from tests.support.ros_nodes import Client, client, running
+from tests.support.ros_nodes import Client, client
 
 pytestmark = pytest.mark.ros
 

@@ -19,7 +19,8 @@ from stickslip_sim.controllers import Moves
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.types import EventKind
 from tests.support.busy_machine import judged_by_time
-from tests.support.ros_nodes import Client, assert_clean, client, executable, running
+from tests.support.node_processes import assert_clean, executable, running
+from tests.support.ros_nodes import Client, client
 from tests.support.tool import Capture, answered
 from tests.support.waiting import DEADLINE, wait_for
 

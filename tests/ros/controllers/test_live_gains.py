@@ -8,7 +8,8 @@ import pytest
 
 from stickslip_sim.scene import load_scene
 from stickslip_sim.scene.text import scene_text
-from tests.support.ros_nodes import Client, assert_clean, client, running
+from tests.support.node_processes import assert_clean, running
+from tests.support.ros_nodes import Client, client
 from tests.support.waiting import wait_for
 
 from rclpy.qos import QoSProfile, ReliabilityPolicy  # isort: skip  # after tests.support.ros_nodes, which skips without ROS

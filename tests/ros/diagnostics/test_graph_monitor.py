@@ -10,8 +10,9 @@ from sensor_msgs.msg import JointState
 
 from stickslip_sim.recording import topics as names
 from stickslip_sim.ros.diagnostics.graph_monitor import PublisherWatch
+from tests.support.node_processes import running
 from tests.support.ros2_control_client import THRESHOLD, Rule, always, hardware_interface, near_is_silent
-from tests.support.ros_nodes import Client, client, running
+from tests.support.ros_nodes import Client, client
 from tests.support.waiting import wait_for
 
 pytestmark = pytest.mark.ros

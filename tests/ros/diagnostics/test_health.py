@@ -10,7 +10,8 @@ import pytest
 from diagnostic_msgs.msg import DiagnosticStatus
 
 from stickslip_sim.core.errors import StickslipError
-from tests.support.ros_nodes import client, executable, recording_into, running, with_small_files
+from tests.support.node_processes import executable, recording_into, running, with_small_files
+from tests.support.ros_nodes import client
 
 from stickslip_sim.ros.diagnostics.health_node import health_of  # isort: skip  # after ros_nodes, which skips without ROS
 

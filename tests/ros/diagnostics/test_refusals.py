@@ -11,7 +11,8 @@ from typing import Any
 import pytest
 
 from stickslip_sim.recording import open_bag
-from tests.support.ros_nodes import Client, node_and_client, recording_into
+from tests.support.node_processes import recording_into
+from tests.support.ros_nodes import Client, node_and_client
 from tests.support.waiting import wait_for
 
 pytestmark = pytest.mark.ros

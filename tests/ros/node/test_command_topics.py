@@ -12,7 +12,8 @@ import pytest
 
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.recording import flat_layout, topics
-from tests.support.ros_nodes import Client, client, rclpy, running
+from tests.support.node_processes import running
+from tests.support.ros_nodes import Client, client, rclpy
 from tests.support.waiting import wait_for
 
 pytestmark = pytest.mark.ros

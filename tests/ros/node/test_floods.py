@@ -18,8 +18,9 @@ from stickslip_sim.config.ros_yaml import plain_value
 from stickslip_sim.recording import open_bag
 from stickslip_sim.rig import RigEventKind
 from stickslip_sim.scene import Scene, load_scene
+from tests.support.node_processes import recording_into, running
 from tests.support.replays import assert_same_states, made_again
-from tests.support.ros_nodes import client, node_and_client, recording_into, running
+from tests.support.ros_nodes import client, node_and_client
 from tests.support.waiting import wait_for
 
 from stickslip_msgs.srv import Step  # isort: skip

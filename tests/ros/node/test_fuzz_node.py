@@ -11,7 +11,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from tests.fuzz.texts import NAMES
-from tests.support.ros_nodes import Client, client, running
+from tests.support.node_processes import running
+from tests.support.ros_nodes import Client, client
 
 from stickslip_msgs.srv import InjectFault, Step  # isort: skip
 

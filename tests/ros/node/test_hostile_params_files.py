@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.ros_nodes import executable
+from tests.support.node_processes import executable
 from tests.support.waiting import DEADLINE
 
 pytestmark = pytest.mark.ros

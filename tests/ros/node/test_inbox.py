@@ -12,7 +12,8 @@ import pytest
 
 from stickslip_sim.realtime.command_slot import CommandSlot
 from stickslip_sim.recording import topics
-from tests.support.ros_nodes import client, rclpy, running
+from tests.support.node_processes import running
+from tests.support.ros_nodes import client, rclpy
 from tests.support.waiting import wait_for
 
 pytestmark = pytest.mark.ros

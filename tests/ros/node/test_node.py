@@ -15,7 +15,8 @@ from stickslip_sim.scene import load_scene
 from stickslip_sim.scene.schema import PARAMETERS
 from stickslip_sim.simulation.simulator import Simulator
 from tests.support.busy_machine import judged_by_time
-from tests.support.ros_nodes import Client, NodeProcess, client, nanoseconds, running
+from tests.support.node_processes import NodeProcess, running
+from tests.support.ros_nodes import Client, client, nanoseconds
 from tests.support.waiting import wait_for
 
 pytestmark = pytest.mark.ros

@@ -12,7 +12,8 @@ from stickslip_sim.core.errors import RecordingWarning
 from stickslip_sim.core.types import EventKind
 from stickslip_sim.recording import open_bag
 from tests.support.busy_machine import judged_by_time
-from tests.support.ros_nodes import assert_clean, client, recording_into, running
+from tests.support.node_processes import assert_clean, recording_into, running
+from tests.support.ros_nodes import client
 from tests.support.waiting import wait_for
 
 from rcl_interfaces.srv import SetParameters, SetParametersAtomically  # isort: skip  # after ros_nodes, which skips

@@ -13,7 +13,8 @@ from stickslip_sim.core.errors import RecordingWarning
 from stickslip_sim.recording import Bag, open_bag, read_run
 from stickslip_sim.scene import load_scene
 from stickslip_sim.verify.verification import verify
-from tests.support.ros_nodes import assert_clean, client, recording_into, running, with_small_files
+from tests.support.node_processes import assert_clean, recording_into, running, with_small_files
+from tests.support.ros_nodes import client
 from tests.support.waiting import DEADLINE, wait_for
 
 from stickslip_sim.ros.node.recordings import (  # isort: skip  # after tests.support.ros_nodes, which skips without ROS

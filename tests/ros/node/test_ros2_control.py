@@ -16,6 +16,7 @@ from stickslip_msgs.msg import RigEvent
 from stickslip_msgs.srv import InjectFault
 from stickslip_sim.recording import open_bag
 from stickslip_sim.scene.sections import NODE
+from tests.support.node_processes import running
 from tests.support.ros2_control_client import (
     SHIPPED,
     THRESHOLD,
@@ -26,7 +27,7 @@ from tests.support.ros2_control_client import (
     hardware_interface,
     near_is_silent,
 )
-from tests.support.ros_nodes import Client, client, nanoseconds, running
+from tests.support.ros_nodes import Client, client, nanoseconds
 from tests.support.waiting import wait_for
 
 pytestmark = pytest.mark.ros

@@ -12,8 +12,9 @@ from stickslip_sim.core.errors import InputError
 from stickslip_sim.recording import open_bag
 from stickslip_sim.scene import load_scene
 from stickslip_sim.scene.load import parse_scene
+from tests.support.node_processes import recording_into, running
 from tests.support.rights import name_of, needs_fifo, policies, start_without_rights
-from tests.support.ros_nodes import client, recording_into, running
+from tests.support.ros_nodes import client
 from tests.support.waiting import wait_for
 
 pytestmark = pytest.mark.ros

@@ -20,9 +20,10 @@ from stickslip_sim.recording import Bag, open_bag
 from stickslip_sim.runs import simulate_events
 from stickslip_sim.scene import Scene, load_scene
 from tests.support.busy_machine import judged_by_time
+from tests.support.node_processes import NodeProcess, assert_clean, running
 from tests.support.replays import FIELDS, assert_same_states, made_again
 from tests.support.rigs import run
-from tests.support.ros_nodes import Client, NodeProcess, assert_clean, client, nanoseconds, running
+from tests.support.ros_nodes import Client, client, nanoseconds
 from tests.support.waiting import wait_for
 
 rosgraph_msgs = pytest.importorskip('rosgraph_msgs.msg')

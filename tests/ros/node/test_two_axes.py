@@ -12,7 +12,8 @@ from rosgraph_msgs.msg import Clock
 
 from stickslip_sim.recording import open_bag
 from tests.support.launch_files import launched
-from tests.support.ros_nodes import Client, NodeProcess, client, running
+from tests.support.node_processes import NodeProcess, running
+from tests.support.ros_nodes import Client, client
 from tests.support.waiting import wait_for
 
 pytestmark = pytest.mark.ros

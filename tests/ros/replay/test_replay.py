@@ -17,8 +17,9 @@ from stickslip_sim.core.errors import RecordingWarning
 from stickslip_sim.recording import open_bag, open_run, schema, write_bag
 from stickslip_sim.recording.topics import CLOCK, PARAMETER_EVENTS, RECORDED, SLIDER_STATE, Topic
 from tests.support.busy_machine import judged_by_time
+from tests.support.node_processes import assert_clean, executable, running
 from tests.support.recorded_runs import FACTS, damage, events, samples
-from tests.support.ros_nodes import Client, assert_clean, client, executable, running
+from tests.support.ros_nodes import Client, client
 from tests.support.tool import Capture, answered
 from tests.support.waiting import wait_for
 

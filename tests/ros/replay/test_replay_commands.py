@@ -14,8 +14,9 @@ from stickslip_sim.recording.messages import Packer
 from stickslip_sim.recording.topics import DRIVE_VELOCITY, RIG_EVENT, SLIDER_STATE, Topic, recorded_topics
 from tests.support.busy_machine import judged_by_time
 from tests.support.eventful_runs import eventful_run
+from tests.support.node_processes import NodeProcess, assert_clean, recording_into, running
 from tests.support.recorded_runs import FACTS, samples
-from tests.support.ros_nodes import NodeProcess, assert_clean, client, recording_into, running
+from tests.support.ros_nodes import client
 from tests.support.waiting import wait_for
 
 from rclpy.serialization import serialize_message  # isort: skip

@@ -10,7 +10,8 @@ import pytest
 from stickslip_sim.recording import open_bag
 from tests.support.tool import Capture, answered, refused, tool
 
-from tests.support.ros_nodes import client, running  # isort: skip  # skips without ROS
+from tests.support.node_processes import running  # isort: skip  # skips without ROS
+from tests.support.ros_nodes import client  # isort: skip  # skips without ROS
 
 pytestmark = pytest.mark.ros
 

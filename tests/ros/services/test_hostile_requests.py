@@ -7,7 +7,8 @@ from typing import Any
 
 import pytest
 
-from tests.support.ros_nodes import Client, client, running
+from tests.support.node_processes import running
+from tests.support.ros_nodes import Client, client
 
 pytestmark = pytest.mark.ros
 

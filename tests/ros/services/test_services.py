@@ -17,8 +17,9 @@ from stickslip_sim.rig import Fault
 from stickslip_sim.rig.faults import RULES
 from stickslip_sim.scene import load_scene, scene_from_values
 from stickslip_sim.verify.verification import verify
+from tests.support.node_processes import recording_into
 from tests.support.replays import FIELDS, assert_same_states, made_again
-from tests.support.ros_nodes import Client, node_and_client, recording_into
+from tests.support.ros_nodes import Client, node_and_client
 
 from stickslip_msgs.srv import InjectFault, Step  # isort: skip
 

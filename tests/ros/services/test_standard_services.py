@@ -12,7 +12,8 @@ from typing import Any
 import pytest
 
 from tests.support import standard_package
-from tests.support.ros_nodes import client, running
+from tests.support.node_processes import running
+from tests.support.ros_nodes import client
 from tests.support.waiting import wait_for
 
 pytestmark = pytest.mark.ros
