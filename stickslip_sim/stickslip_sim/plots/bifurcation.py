@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from .scale import Scale
-from .style import BLACK, BLUE, DOUBLE_COLUMN, GREEN, JOURNAL, MILLI, ORANGE, Numbers, legend_outside, letter, save
+from .style import BLACK, BLUE, DOUBLE_COLUMN, GREEN, JOURNAL, MILLI, ORANGE, Numbers, legend_of, letter, save
 
 _DOT: dict[str, Any] = {'linestyle': '', 'marker': 'o', 'markersize': 1.6, 'markeredgewidth': 0.0}
 
@@ -32,7 +32,7 @@ def plot_bifurcation(over: Scale, cycles: Numbers, sliding: Numbers, path: Path 
             panel.set(xlabel=over.label, xscale=over.kind)
             panel.set_ylim(bottom=min(0.0, panel.get_ylim()[0]))
             letter(panel, name)
-        legend_outside(figure, 'upper left', *force.get_legend_handles_labels(), ncols=4, markerscale=2.5)
+        legend_of(figure, 'upper left', force, ncols=4, markerscale=2.5)
         save(figure, path)
 
 

@@ -27,7 +27,7 @@ from .style import (
     RED,
     SKY,
     Numbers,
-    legend_outside,
+    legend_of,
     letter,
     save,
 )
@@ -75,7 +75,7 @@ def plot_friction_fits(points: MeasuredPoints, lines: Sequence[FittedLine], head
             _residuals(panels[1, column], points, lines, log)
         _axes(panels, points)
         panels[0, 0].set_title(heading, loc='left', fontsize=8.0)
-        legend_outside(figure, 'upper center', *panels[0, 0].get_legend_handles_labels(), ncols=4)
+        legend_of(figure, 'upper center', panels[0, 0], ncols=4)
         save(figure, path)
 
 

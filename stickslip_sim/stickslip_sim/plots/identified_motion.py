@@ -23,7 +23,7 @@ from .style import (
     ORANGE,
     RED,
     Numbers,
-    legend_outside,
+    legend_of,
     letter,
     save,
     thinned,
@@ -95,11 +95,10 @@ def _figure(count: int, share: bool) -> Iterator[tuple[Figure, Sequence[Sequence
 def _finish(figure: Figure, rows: Sequence[Sequence[Axes]], labels: Sequence[str], path: Path | str) -> None:
     for panel, label in zip(rows[-1], labels):
         panel.set_xlabel(label)
-    for panel, name in zip((panel for row in rows for panel in row), ascii_lowercase):
+    panels = [panel for row in rows for panel in row]
+    for panel, name in zip(panels, ascii_lowercase):
         letter(panel, name)
-    handles = {name: handle for row in rows for panel in row
-               for handle, name in zip(*panel.get_legend_handles_labels())}
-    legend_outside(figure, 'upper center', handles.values(), handles, ncols=4)
+    legend_of(figure, 'upper center', *panels, ncols=4)
     save(figure, path)
 
 

@@ -20,7 +20,7 @@ from .style import (
     ORANGE,
     SKY,
     Numbers,
-    legend_outside,
+    legend_of,
     letter,
     save,
 )
@@ -80,9 +80,7 @@ def plot_known_friction(friction: KnownFriction, path: Path | str) -> None:
         kinetic.set_ylim(0.0, top)
         for panel, name in zip((kinetic, static), 'ab'):
             letter(panel, name)
-        found = dict(zip(*reversed(kinetic.get_legend_handles_labels())))
-        found = {**dict(zip(*reversed(static.get_legend_handles_labels()))), **found}
-        legend_outside(figure, 'upper center', found.values(), found.keys(), ncols=4)
+        legend_of(figure, 'upper center', static, kinetic, ncols=4)
         save(figure, path)
 
 

@@ -26,6 +26,7 @@ from .style import (
     Numbers,
     legend_outside,
     letter,
+    lines_by_label,
     save,
     thinned,
 )
@@ -89,7 +90,7 @@ def plot_motion(motion: DrawnMotion, *paths: Path | str) -> None:
 
 def legend_below(figure: Figure, *panels: Axes) -> None:
     """Explain the lines of panels below the whole picture, those of one name once."""
-    lines = {label: handle for panel in panels for handle, label in zip(*panel.get_legend_handles_labels())}
+    lines = lines_by_label(*panels)
     labels = sorted(lines, key=lambda label: _MODE_NAMES.index(label) if label in _MODE_NAMES else -1)
     legend_outside(figure, 'lower center', [lines[label] for label in labels], labels, ncols=min(len(labels), 5),
                    handlelength=3.6)

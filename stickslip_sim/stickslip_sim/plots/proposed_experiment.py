@@ -24,7 +24,7 @@ from .style import (
     RED,
     SKY,
     Numbers,
-    legend_outside,
+    legend_of,
     letter,
     save,
     thinned,
@@ -84,7 +84,7 @@ def _left(part: SubFigure, parameters: Sequence[str], kinds: Sequence[str], devi
     panel.set(xscale='log', yticks=range(len(kinds)), yticklabels=kinds, ylim=(len(kinds) - 0.5, -0.5),
               xlabel='standard deviation of each parameter after the run / %')
     letter(panel, 'd')
-    legend_outside(part, 'upper right', *panel.get_legend_handles_labels(), ncols=2)
+    legend_of(part, 'upper right', panel, ncols=2)
 
 
 def _colour(k: int) -> str:

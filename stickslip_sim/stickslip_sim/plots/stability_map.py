@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from ..simulation.cycles import SWINGS_ON
 from .paper_panels import DrawnMotion, phase_plane
 from .scale import Scale
-from .style import BLACK, DOUBLE_COLUMN, GREY, JOURNAL, RED, SINGLE_COLUMN, Numbers, legend_outside, save
+from .style import BLACK, DOUBLE_COLUMN, GREY, JOURNAL, RED, SINGLE_COLUMN, Numbers, legend_of, legend_outside, save
 
 PLAIN = ('smooth sliding', SWINGS_ON, 'at rest', 'failed', 'undecided')
 _PLAIN_COLOURS = ('#f2f2f2', '#c4c4c4', '#56B4E9', '#ffffff', '#ffffff')
@@ -146,5 +146,4 @@ def _portraits(panels: list[Axes], picks: Sequence[Pick]) -> None:
         panel.set_title(letter, loc='left', fontsize=8.0, fontweight='bold')
     for panel in panels[len(picks):]:
         panel.set_visible(False)
-    labels = {label: line for panel in panels for line, label in zip(*panel.get_legend_handles_labels())}
-    legend_outside(panels[0].figure, 'upper left', labels.values(), labels.keys(), ncols=3)
+    legend_of(panels[0].figure, 'upper left', *panels, ncols=3)

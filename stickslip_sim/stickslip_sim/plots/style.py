@@ -70,6 +70,17 @@ def legend_outside(figure: Figure | SubFigure, place: str, handles: Iterable[Art
     keep(' ', fontsize=height)
 
 
+def lines_by_label(*panels: Axes) -> dict[str, Artist]:
+    """Return the lines of panels that have a label, those of one label once."""
+    return {label: line for panel in panels for line, label in zip(*panel.get_legend_handles_labels())}
+
+
+def legend_of(figure: Figure | SubFigure, place: str, *panels: Axes, **look: Any) -> None:
+    """Explain the lines of panels beside them all."""
+    lines = lines_by_label(*panels)
+    legend_outside(figure, place, lines.values(), lines, **look)
+
+
 def letter(panel: Axes, text: str) -> None:
     """Name a panel in its upper left corner, outside."""
     panel.annotate(f'({text})', (0.0, 1.0), xytext=(-26.0, 5.0), xycoords='axes fraction',

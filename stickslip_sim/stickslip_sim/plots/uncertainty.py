@@ -16,7 +16,7 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import MaxNLocator
 
 from .scale import Scale, in_words
-from .style import BLACK, BLUE, DOUBLE_COLUMN, GREY, JOURNAL, SKY, Numbers, legend_outside, letter, save
+from .style import BLACK, BLUE, DOUBLE_COLUMN, GREY, JOURNAL, SKY, Numbers, legend_of, letter, save
 
 _MOST_BINS = 30   # a square root of the points, where that is less
 _NARROW = 1e-6   # of its size: a figure that spreads less is drawn as one value, in a range of 1 %
@@ -69,8 +69,7 @@ def _spreads(part: SubFigure, spreads: Sequence[Spread], heading: str) -> None:
         panel.set_ylabel('points / %')
     letter(panels[0, 0], 'a')
     panels[0, 0].set_title(heading, loc='left', fontsize=8.0)
-    labels = {label: line for panel in panels.flat for line, label in zip(*panel.get_legend_handles_labels())}
-    legend_outside(part, 'upper right', labels.values(), labels.keys(), ncols=3)
+    legend_of(part, 'upper right', *panels.flat, ncols=3)
 
 
 def _histogram(panel: Axes, spread: Spread) -> None:
@@ -112,4 +111,4 @@ def _shares(part: SubFigure, parameters: Sequence[str], shares: Sequence[Shares]
         panel.set(xticks=[0.0, 0.5, 1.0], ylim=(len(parameters) - 0.45, -0.55))
     letter(panels[0], 'b')
     part.supxlabel('share of the variance that the parameter explains, ± standard error', fontsize=8.0)
-    legend_outside(part, 'upper right', *panels[0].get_legend_handles_labels(), ncols=2)
+    legend_of(part, 'upper right', panels[0], ncols=2)
