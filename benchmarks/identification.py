@@ -11,9 +11,7 @@ import json
 import math
 import pathlib
 import re
-import shlex
 import shutil
-import subprocess
 import sys
 from collections.abc import Mapping
 from typing import Any
@@ -32,7 +30,9 @@ from stickslip_sim.recording import read_run
 from stickslip_sim.runs import simulate
 from stickslip_sim.scene.load import changed
 
+from . import quoted_commands
 from .page import replace_generated
+from .quoted_commands import quoted, said
 
 Numbers = NDArray[np.float64]
 
@@ -82,7 +82,7 @@ def commands() -> None:
     """Run the commands of the page, and quote them with what they print."""
     shutil.rmtree(RUNS, ignore_errors=True)
     for name, given in COMMANDS.items():
-        parts = [f'{shown(command)}\n\n{quoted(said(command, 3 if name == FAILS and k else 0))}'
+        parts = [f'{shown(command)}\n\n{quoted(without_time(said(command, 3 if name == FAILS and k else 0)))}'
                  for k, command in enumerate(given)]
         replace_generated(PAGE, '\n'.join(parts), name)
     report = json.loads((RUNS / 'axis_found/report.json').read_text(encoding='utf-8'))
@@ -115,30 +115,13 @@ def pictures() -> None:
 
 
 def shown(command: str) -> str:
-    """Return a command as a user gives it, folded to the width of the page."""
-    rows = ['    stickslip']
-    for word in command.replace(' --', '\n--').split('\n'):   # an option stays with its value
-        if len(rows[-1]) + len(word) > 116:
-            rows[-1] += ' \\'
-            rows.append('       ')
-        rows[-1] += f' {word}'
-    return '\n'.join(rows)
+    """Return a command as the page shows it."""
+    return quoted_commands.shown(command, 'stickslip')
 
 
-def quoted(text: str) -> str:
-    """Return what a command printed as a part of the page, without the time that it took."""
-    lines = re.sub(r'( simulations) in \S+ s$', r'\1', text, flags=re.MULTILINE).splitlines()
-    return ''.join(f'    {line}'.rstrip() + '\n' for line in lines)
-
-
-def said(command: str, code: int) -> str:
-    """Return what a command prints, its line on standard error at the end; it must end with this exit code."""
-    print(command, flush=True)
-    done = subprocess.run([sys.executable, '-m', 'stickslip_sim', *shlex.split(command)], check=False, text=True,
-                          capture_output=True)
-    if done.returncode != code:
-        raise SystemExit(f'exit code {done.returncode}: {done.stderr}')
-    return done.stdout + done.stderr
+def without_time(text: str) -> str:
+    """Return what a command printed without the time that it took."""
+    return re.sub(r'( simulations) in \S+ s$', r'\1', text, flags=re.MULTILINE)
 
 
 def _write(path: pathlib.Path, samples: Mapping[str, Numbers]) -> None:

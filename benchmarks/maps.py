@@ -11,7 +11,6 @@ import pathlib
 import shlex
 import shutil
 import statistics
-import subprocess
 import sys
 import time
 from collections.abc import Callable
@@ -28,7 +27,9 @@ from stickslip_sim.study import Grid, Motion, Saltelli, Study, variation
 from stickslip_sim.study.table import lines, rows_of
 from stickslip_sim.study.uncertain_file import load_uncertain
 
+from . import quoted_commands
 from .page import replace_generated
+from .quoted_commands import quoted, said
 
 PAGE = pathlib.Path('docs/maps.md')
 RUNS, IMAGES = pathlib.Path('runs/maps'), pathlib.Path('docs/images')
@@ -100,19 +101,20 @@ def pictures() -> None:
     for name, commands in PICTURES.items():
         replace_generated(PAGE, '\n'.join(map(shown, commands)) + '\n', name)
         for command in commands:
-            _said(command)
+            said(command)
         _keep_picture(commands[-1])
 
 
 def critical() -> None:
     """Find the critical values."""
-    replace_generated(PAGE, '\n'.join(f'{shown(command)}\n\n{_quoted(command)}' for command in CRITICAL), 'critical')
+    parts = [f'{shown(command)}\n\n{quoted(said(command))}' for command in CRITICAL]
+    replace_generated(PAGE, '\n'.join(parts), 'critical')
 
 
 def uncertainty() -> None:
     """Run an axis whose friction is known only roughly."""
     shutil.rmtree(RUNS / 'uncertainty', ignore_errors=True)
-    replace_generated(PAGE, f'{shown(UNCERTAIN)}\n\n{_quoted(UNCERTAIN)}', 'uncertainty')
+    replace_generated(PAGE, f'{shown(UNCERTAIN)}\n\n{quoted(said(UNCERTAIN))}', 'uncertainty')
     _keep_picture(UNCERTAIN)
 
 
@@ -206,24 +208,8 @@ def _keep_picture(command: str) -> None:
 
 
 def shown(command: str) -> str:
-    """Return a command as a user gives it, folded to the width of the page."""
-    rows = ['    python3 -m stickslip_sim']
-    for word in command.replace(' --', '\n--').split('\n'):   # an option stays with its value
-        if len(rows[-1]) + len(word) > 116:
-            rows[-1] += ' \\'
-            rows.append('       ')
-        rows[-1] += f' {word}'
-    return '\n'.join(rows)
-
-
-def _quoted(command: str) -> str:
-    return ''.join(f'    {line}'.rstrip() + '\n' for line in _said(command).splitlines())
-
-
-def _said(command: str) -> str:
-    print(command, flush=True)
-    return subprocess.run([sys.executable, '-m', 'stickslip_sim', *shlex.split(command)], check=True,
-                          stdout=subprocess.PIPE, text=True).stdout
+    """Return a command as the page shows it."""
+    return quoted_commands.shown(command, 'python3 -m stickslip_sim')
 
 
 if __name__ == '__main__':

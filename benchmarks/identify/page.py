@@ -4,17 +4,21 @@
 
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
+from operator import itemgetter
 from statistics import median
+from typing import TypeVar
 
 from .axes import FARTHEST, FREE, LEAST_SLIPS, NEAREST
 from .foreign import ForeignOutcome
 from .measuring import USUAL
-from .outcomes import CLOSE, Outcome, ParameterOutcome, all_parameters
+from .outcomes import CLOSE, Outcome, all_parameters
 from .page_beside import beside, foreign_data, share
 from .rivals import RivalOutcome
 
 FOUND_MARK, TIME_MARK = 95, 10.0   # % of parameters, s
 COVERAGE_MARK = 92, 98             # %
+
+Entry = TypeVar('Entry')
 
 
 def page(outcomes: Sequence[Outcome], rivals: Mapping[str, Sequence[RivalOutcome]], foreign: ForeignOutcome,
@@ -59,26 +63,30 @@ def _marks(outcomes: Sequence[Outcome]) -> list[str]:
 
 
 def _by_model(outcomes: Sequence[Outcome]) -> list[str]:
-    groups: defaultdict[str, list[Outcome]] = defaultdict(list)
-    for outcome in outcomes:
-        for model in zip(('contact', 'static', 'kinetic'), outcome.models, strict=True):
-            groups[': '.join(model)].append(outcome)
+    groups = _grouped((': '.join(model), outcome) for outcome in outcomes
+                      for model in zip(('contact', 'static', 'kinetic'), outcome.models, strict=True))
     rows = [f'| {name} | {len(of)} | {sum(each.is_found for each in of)} | '
             f'{_percent(each.is_covered for each in all_parameters(of))} | '
-            f'{median(each.seconds for each in of):.1f} s |' for name, of in sorted(groups.items())]
+            f'{median(each.seconds for each in of):.1f} s |' for name, of in groups]
     return ['| model | axes | of which all is found | parameters covered | processor time, median |',
             '|---|---|---|---|---|', *rows]
 
 
 def _by_parameter(outcomes: Sequence[Outcome]) -> list[str]:
-    groups: defaultdict[str, list[ParameterOutcome]] = defaultdict(list)
-    for parameter in all_parameters(outcomes):
-        groups[parameter.name].append(parameter)
+    groups = _grouped((parameter.name, parameter) for parameter in all_parameters(outcomes))
     rows = [f'| `{name}` | {len(of)} | {_percent(each.is_found for each in of)} | '
             f'{_percent(each.is_covered for each in of)} | {share(median(each.error for each in of))} | '
-            f'{share(median(each.width for each in of))} |' for name, of in sorted(groups.items())]
+            f'{share(median(each.width for each in of))} |' for name, of in groups]
     return ['| parameter | times | found | covered | error, median | half of the interval, median |',
             '|---|---|---|---|---|---|', *rows]
+
+
+def _grouped(named: Iterable[tuple[str, Entry]]) -> list[tuple[str, list[Entry]]]:
+    """Return what has one name together, in the order of the names."""
+    groups: defaultdict[str, list[Entry]] = defaultdict(list)
+    for name, entry in named:
+        groups[name].append(entry)
+    return sorted(groups.items(), key=itemgetter(0))
 
 
 def _failures(outcomes: Sequence[Outcome]) -> list[str]:
