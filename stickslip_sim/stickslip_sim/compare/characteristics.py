@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from ..axis import Friction
 from ..core.types import Event, EventKind, Mode
 from ..friction import StaticLaw
 from ..plots.characteristics import Characteristics, Curve
@@ -18,33 +19,39 @@ _POINTS = 400
 _TIME_CONSTANTS = 5.0
 
 
-def characteristics_of(run: Run) -> Characteristics:
-    """Return what there is to draw of the friction of a run."""
-    friction = run.scene.axis.friction
-    speeds = _speeds(run)
-    kinetic = np.array([friction.kinetic.coefficient(speed) for speed in speeds])
+def characteristics_of(run: Run) -> list[Characteristics]:
+    """Return what there is to draw of the friction of a run: forwards, and backwards where that differs."""
     breaks = [event for event in run.events if event.kind == EventKind.BREAKAWAY and event.mode != Mode.STICK]
+    sides = [(friction, breaks) for friction in run.scene.axis.friction.sides]
+    if len(sides) > 1:
+        sides = [(friction, [event for event in breaks if event.direction == direction])
+                 for (friction, _), direction in zip(sides, (1, -1))]
+    longest = max(_longest(friction.static, breaks) for friction, breaks in sides)
+    return [_of_side(run, friction, breaks, longest) for friction, breaks in sides]
+
+
+def _of_side(run: Run, friction: Friction, breaks: list[Event], longest: float) -> Characteristics:
+    speeds = _speeds(run, friction)
+    kinetic = np.array([friction.kinetic.coefficient(speed) for speed in speeds])
     finite = [event for event in breaks if math.isfinite(event.rest_time)]
     marks = np.array([(event.rest_time, event.static_coefficient) for event in finite]).reshape(-1, 2)
-    rests = np.linspace(0.0, _longest(friction.static, finite), _POINTS, dtype=np.float64)
+    rests = np.linspace(0.0, longest, _POINTS, dtype=np.float64)
     static = np.array([friction.static.coefficient(rest) for rest in rests.tolist()])
     return Characteristics(
-        Curve(speeds, kinetic), _accelerating(run, speeds, kinetic, breaks), Curve(rests, static),
+        Curve(speeds, kinetic), _accelerating(friction, speeds, kinetic, breaks), Curve(rests, static),
         friction.static.coefficient(math.inf) if friction.static.bounded else None,
         Curve(marks[:, 0], marks[:, 1]), len(finite) < len(breaks))
 
 
-def _speeds(run: Run) -> Numbers:
+def _speeds(run: Run, friction: Friction) -> Numbers:
     """Return speeds that show all of the tables, breakpoints among them."""
-    friction = run.scene.axis.friction
     breakpoints = {*friction.kinetic.velocities, *(friction.excess.velocities if friction.excess else ())}
     end = _BEYOND * (friction.kinetic.limit_velocity or max(map(abs, look_at(run).ranges['velocity'])) or 1.0)
     return np.array(sorted({*np.linspace(0.0, end, _POINTS).tolist(), *(w for w in breakpoints if w < end)}))
 
 
-def _accelerating(run: Run, speeds: Numbers, kinetic: Numbers, breaks: list[Event]) -> dict[str, Curve]:
+def _accelerating(friction: Friction, speeds: Numbers, kinetic: Numbers, breaks: list[Event]) -> dict[str, Curve]:
     """Return the accelerating branch of the first and of the last break-away: mu_k + E psi."""
-    friction = run.scene.axis.friction
     if friction.excess is None or not breaks:
         return {}
     psi = np.array([friction.excess.fraction(speed) for speed in speeds])
@@ -60,4 +67,4 @@ def _accelerating(run: Run, speeds: Numbers, kinetic: Numbers, breaks: list[Even
 
 def _longest(law: StaticLaw, events: list[Event]) -> float:
     constants = _TIME_CONSTANTS * law.time_constant
-    return max([constants, *(_BEYOND * event.rest_time for event in events)])
+    return max([constants, *(_BEYOND * event.rest_time for event in events if math.isfinite(event.rest_time))])

@@ -25,6 +25,7 @@ _OF_MOTION = (
     'stable limit cycle.  Grey and dashed: at most 30 cycles from the start on, coloured: the last complete one.')
 _OF_FRICTION = ('Friction characteristics as in Fig. 6 of the paper: (a) kinetic friction of both branches over '
                 'velocity; (b) static friction over rest time, with the break-aways of this run.')
+_OF_BACKWARDS = '  Motion backwards is at velocities below 0, its static friction is dashed.'
 _OWN = ' (own)'   # behind the name of the row with the characteristics of the run itself
 _OF_ROWS = 'forces and velocity over time, friction force over velocity, as in Fig. 4 of the paper.'
 
@@ -67,9 +68,9 @@ def _motion(name: str, run: Run, motion: DrawnMotion, folder: Path) -> Picture:
 
 
 def _friction(name: str, run: Run, folder: Path) -> Picture:
-    friction = characteristics_of(run)
-    picture = Picture(f'{name}_friction', name, _OF_FRICTION)
-    return _drawn(picture, folder, lambda *paths: plot_characteristics(friction, *paths))
+    sides = characteristics_of(run)
+    picture = Picture(f'{name}_friction', name, _OF_FRICTION + (_OF_BACKWARDS if len(sides) > 1 else ''))
+    return _drawn(picture, folder, lambda *paths: plot_characteristics(sides, *paths))
 
 
 def _beside(run: Run) -> dict[str, DrawnMotion]:
