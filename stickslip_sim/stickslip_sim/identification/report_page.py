@@ -53,8 +53,8 @@ def _verdict(found: Identification) -> str:
 
 
 def _facts(found: Identification, run: str, start: str) -> Iterator[str]:
-    channels = ', '.join(one.name.replace('_', ' ') for one in found.channels)
-    yield (f'<p>From the {escape(channels)} of {escape(run)}, with {escape(start)} to begin with: '
+    channels = ' and '.join(one.name.replace('_', ' ') for one in found.channels)
+    yield (f'<p>From {escape(channels)} of {escape(run)}, with {escape(start)} to begin with: '
            f'{len(found.estimates)} parameters, {found.n_residuals} residuals with a sum of squares of '
            f'{found.cost:.6g}, {found.runs} simulations in {found.seconds:.3g} s.</p>')
     for note in found.notes:
@@ -69,7 +69,7 @@ def _estimates(estimates: Sequence[Estimate]) -> str:
         rows.append([one.name, *numbers, change, interval_words(one), 'profile' if one.profile else 'covariance',
                      one.kind, one.derivation])
     return html_table('Parameters: where the search began, what was found, and the 95 % interval', [
-        '', 'start', 'value', 'change', 'interval', 'interval by', '', 'from'], rows)
+        '', 'start', 'value', 'change', 'interval', 'interval by', 'kind', 'from'], rows)
 
 
 def _open(found: Identification) -> Iterator[str]:
