@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..axis import CompliantContact, InitialState
 from ..core.errors import StickslipError
-from ..core.input_profile import InputProfile
+from ..core.input_profile import InputProfile, constant
 from ..core.time_grid import Instants
 from ..core.types import Event, Instant, Sample
 from ..scene import Scene, changed
@@ -22,7 +22,7 @@ from .channel_units import OUTPUTS
 from .free_parameters import FreeParameter
 from .measured_inputs import shifted, travelled
 from .motions import MeasuredMotion
-from .readings import SensorReadings
+from .readings import SensorReadings, drives_directly
 from .same_tables import SameTables, put_in_order
 
 Numbers = NDArray[np.float64]
@@ -34,17 +34,20 @@ _BELOW = 1.0 - 1e-12   # of what the contact holds: rounding must not break it
 class AxisModel:
     """What an axis does with trial `values` of its free parameters; the inputs are those that were measured, if any.
 
-    `runs` counts the simulations.
+    `runs` counts the simulations.  It `is_pushed` when a measured force drives its slider without a spring.
     """
 
     def __init__(self, scene: Scene, parameters: Sequence[FreeParameter], measurement: SensorReadings) -> None:
-        self._scene, self._parameters, self._measurement = scene, tuple(parameters), measurement
+        self.scene, self._parameters, self._measurement = scene, tuple(parameters), measurement
         self._own = [k for k, one in enumerate(parameters) if one.sensor is None]
         self._names = [parameters[k].name for k in self._own]
         self._profiles: dict[object, Any] = {}
         self._keeps_drive = measurement.drive is not None or not any(name.startswith('drive.') for name in self._names)
         self._keeps_force = not any(one.name.startswith(('force.', 'sensor.external_force.')) for one in parameters)
         self._tables = SameTables(scene, self._names)
+        force = measurement.force or constant(0.0)
+        self._force = np.array([force.values, force.rates])
+        self.is_pushed = measurement.force is not None and drives_directly(scene)
         self.runs = 0
 
     def take_tables_of(self, values: Numbers) -> bool:
@@ -52,15 +55,15 @@ class AxisModel:
 
         How fine a table is depends on how far the law falls, and so a little on what is sought.
         """
-        if self._scene.axis.friction.kinetic.law is None:
+        if self.scene.axis.friction.kinetic.law is None:
             return False
-        self._tables = SameTables(changed(self._scene, self.changes(values)), self._names)
+        self._tables = SameTables(changed(self.scene, self.changes(values)), self._names)
         return True
 
     def changes(self, values: Numbers) -> dict[str, object]:
         """Return the changes to the scene that trial values are, with static friction not below kinetic."""
         own = self._values(values)
-        return {name: own[name] for name in own if own[name] != self._scene.values.get(name)}
+        return {name: own[name] for name in own if own[name] != self.scene.values.get(name)}
 
     def dynamics(self, values: Numbers) -> Dynamics | None:
         """Return the axis and its inputs with trial values; None where these contradict each other."""
@@ -71,20 +74,20 @@ class AxisModel:
         force = self._measurement.force
         if force is not None and not self._keeps_force:
             offset, scale = self.gain(values, 'external_force')
-            force = InputProfile(force.starts, tuple((value - offset) / scale for value in force.values),
-                                 tuple(rate / scale for rate in force.rates))
+            forces, rates = (self._force[0] - offset) / scale, self._force[1] / scale
+            force = InputProfile(force.starts, tuple(forces.tolist()), tuple(rates.tolist()))
         return found._replace(drive=self._measurement.drive or found.drive, force=force or found.force)
 
     def _values(self, values: Numbers) -> dict[str, object]:
         """Return the values of the scene, those of the free parameters among them."""
-        own = {**self._scene.values, **changes_at(self._scene.values, self._names, values[self._own])}
+        own = {**self.scene.values, **changes_at(self.scene.values, self._names, values[self._own])}
         put_in_order(own)
         return own
 
     def drive_of(self, values: Numbers) -> InputProfile:
         """Return the velocity of the drive: as it was measured, or with trial values."""
         found = self.dynamics(values)
-        return self._scene.drive if found is None else found.drive
+        return self.scene.drive if found is None else found.drive
 
     def gain(self, values: Numbers, channel: str) -> tuple[float, float]:
         """Return offset and scale of the sensor of a channel."""
@@ -113,7 +116,7 @@ class AxisModel:
         rows = np.empty((len(at.seconds), len(Sample._fields)))
         duration = float(at.seconds[-1] + at.fractions[-1])
         try:
-            self._simulator(dynamics, begin, initial, duration).take_samples(at, rows)
+            self._simulator(dynamics, begin, initial, duration).take_samples(at, rows, with_events=False)
         except StickslipError:
             return None
         return rows

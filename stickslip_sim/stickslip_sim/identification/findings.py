@@ -44,6 +44,7 @@ def identification_of(problem: FitProblem, scene: Scene, ends: Sequence[Ended], 
     best = ends[0]
     point = best.solution.point
     problem.model.take_tables_of(problem.values(point))
+    problem.take_input_noise_of(problem.values(point))
     whole = problem.stretches(None if best.of_slips is None else 0)
     fitted = problem.fitted(point, whole)
     assert fitted is not None
@@ -53,8 +54,9 @@ def identification_of(problem: FitProblem, scene: Scene, ends: Sequence[Ended], 
     known = certainty_of(information, inflation, problem.parameters)
     values = problem.values(point)
     stretches = problem.stretches(0).parts
-    misfits = [misfit for k, channel in enumerate(problem.measurement.channels) for misfit in misfits_of(
-        channel, channel.values - fitted[k], problem.measurement.times + problem.measurement.shift, stretches)]
+    times = problem.measurement.times + problem.measurement.shift
+    misfits = [misfit for k, channel in enumerate(problem.measurement.channels)
+               for misfit in misfits_of(channel, problem.white(k, channel.values - fitted[k]), times, stretches)]
     estimates = _estimates(problem, values, known, _WHOLE if best.of_slips is None else _SINGLE)
     if best.of_slips is None and not misfits:
         estimates = with_profile_intervals(estimates, problem, best.solution, known, inflation)
@@ -82,7 +84,7 @@ def _channels(problem: FitProblem, fitted: Sequence[Numbers]) -> tuple[ChannelFi
     measurement = problem.measurement
     found = []
     for k, channel in enumerate(measurement.channels):
-        length = correlation_length(channel.values - fitted[k], channel.weights)
+        length = correlation_length(problem.white(k, channel.values - fitted[k]), channel.weights)
         found.append(ChannelFit(channel.name, channel.unit, measurement.times + measurement.shift, channel.values,
                                 fitted[k], channel.resolution, (length - 1.0) * measurement.period))
     return tuple(found)
@@ -92,7 +94,7 @@ def _inflation(problem: FitProblem, fitted: Sequence[Numbers]) -> float:
     """Return the factor on the covariance: what residuals are larger than the noise, and go together, of the worst."""
     factors = [1.0]
     for k, channel in enumerate(problem.measurement.channels):
-        residuals = channel.values - fitted[k]
+        residuals = problem.white(k, channel.values - fitted[k])
         mean = float((channel.weights * residuals**2).sum() / channel.weights.sum()) / channel.resolution**2
         length = correlation_length(residuals, channel.weights)
         factors.append(mean * (length if length > _TOGETHER else 1.0))

@@ -14,6 +14,7 @@ from ..recording import read_run
 from ..runs import Run
 from ..scene import Scene, SceneOrName
 from .axis_model import AxisModel
+from .direct_motion import as_held
 from .findings import identification_of
 from .free_parameters import free_parameters
 from .identification import Identification
@@ -22,7 +23,7 @@ from .law_comparison import with_laws
 from .many_fits import Keeper, fits_from
 from .motions import motions_of, track_of
 from .problem import FitProblem
-from .readings import readings_of
+from .readings import drives_directly, readings_of
 from .run_start import from_measured_start
 from .stages import Progress, best_fit, best_of_slips, starts_of
 
@@ -45,6 +46,8 @@ def identify(run: Run | str | os.PathLike[str], start: SceneOrName, free: str | 
     parameters = free_parameters(scene, free)
     found = read_run(os.fspath(run)) if isinstance(run, str | os.PathLike) else run
     measurement = readings_of(found, scene, resolutions or {})
+    if drives_directly(scene):
+        measurement = as_held(measurement, scene.axis.mass)
     motions = motions_of(track_of(measurement, measurement.drive or scene.drive))
     check_parameters(parameters, measurement)
     check_data(parameters, measurement, motions, scene)

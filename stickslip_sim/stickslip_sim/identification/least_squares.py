@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 Numbers = NDArray[np.float64]
 Residuals = Callable[[Numbers], Numbers]
+Step = float | Numbers
 
 STEP = 1e-6            # of a logarithm, or of a range: rounding is 1e-10 of it, the third derivative 1e-12
 _DAMPING = 1e-3        # of the first step, relative to the diagonal
@@ -35,16 +36,17 @@ class Solution(NamedTuple):
     is_settled: bool
 
 
-def slopes_of(residuals: Residuals, point: Numbers, low: Numbers, high: Numbers, step: float = STEP) -> Numbers:
-    """Return the derivatives (n, k) of residuals by central differences.
+def slopes_of(residuals: Residuals, point: Numbers, low: Numbers, high: Numbers, step: Step = STEP) -> Numbers:
+    """Return the derivatives (n, k) of residuals by central differences over a step, or one for each parameter (k,).
 
     They are one-sided at the end of a range, and where there is no motion on one side; 0 where there is on none.
     """
     here: Numbers | None = None
     columns = []
+    steps = np.broadcast_to(step, point.shape)
     for k in range(len(point)):
         up, down = point.copy(), point.copy()
-        up[k], down[k] = min(point[k] + step, high[k]), max(point[k] - step, low[k])
+        up[k], down[k] = min(point[k] + steps[k], high[k]), max(point[k] - steps[k], low[k])
         above, below = residuals(up), residuals(down)
         if np.isnan(above[0]) or np.isnan(below[0]):
             here = residuals(point) if here is None else here
@@ -55,7 +57,7 @@ def slopes_of(residuals: Residuals, point: Numbers, low: Numbers, high: Numbers,
 
 
 def minimise(residuals: Residuals, point: Numbers, low: Numbers, high: Numbers, *, most: int, tolerance: float,
-             share: float = 1e-9, robust: float = np.inf, step: float = STEP, steepest: float = np.inf) -> Solution:
+             share: float = 1e-9, robust: float = np.inf, step: Step = STEP, steepest: float = np.inf) -> Solution:
     """Return where the sum of squares is least, from a point on, after at most so many steps.
 
     It is settled where the next step would gain less than `tolerance`, or that `share` of the sum.  Residuals are all

@@ -32,6 +32,7 @@ _RISE, _FALL = (0.15, 0.6), (0.03, 0.25)   # of the peak: between these a line i
 _SHORT = 0.2             # of a motion: what is shorter is no rest
 _MIDDLE = 0.25, 0.75     # of a rest: between these the slider stands still,
 _FOLLOWS = 0.4           # or goes less than this share of the way of the drive, as a compliant contact lets it
+_LOST = 2.0              # standard deviations: a speed that is none
 _LONGEST = 0.02          # of the run: so long a parabola may be
 SHARES = 0.1, 0.3, 0.5, 0.7, 0.9   # of the way at which a motion is timed
 
@@ -140,6 +141,18 @@ def _without_rings(motions: Sequence[MeasuredMotion]) -> list[MeasuredMotion]:
                 or abs(motion.stop - motion.start) >= _RINGS * way:
             found.append(motion)
     return found
+
+
+def stops_of(track: Track) -> Numbers:
+    """Return when the slider comes to a stop, or turns, s: where its speed leaves what a motion has, and is lost."""
+    moves = np.abs(track.velocity) > track.still
+    found = []
+    for row in np.flatnonzero(moves[:-1] & ~moves[1:]):
+        after = np.sign(track.velocity[row]) * track.velocity[row:] <= _LOST * track.velocity_noise
+        if after.any():
+            found.append(track.times[row + int(after.argmax())])
+    turns = moves[:-1] & moves[1:] & (track.velocity[:-1] * track.velocity[1:] < 0.0)
+    return np.sort(np.array([*found, *track.times[:-1][turns]]))
 
 
 def ends_in_rest(motions: Sequence[MeasuredMotion], track: Track, drive: InputProfile) -> tuple[MeasuredMotion, ...]:

@@ -11,8 +11,11 @@ from numpy.typing import NDArray
 from ..core.time_grid import Instants
 from .axis_model import PLACES, AxisModel
 from .direct_drive import direct_drive
+from .direct_motion import direct_motion, force_noise_of, sliding_motion
 from .free_parameters import FreeParameter
-from .motions import MeasuredMotion, ends_in_rest, track_of
+from .input_noise import NoiseFilter, filters_of, white_of
+from .least_squares import STEP
+from .motions import MeasuredMotion, ends_in_rest, stops_of, track_of
 from .readings import Channel, SensorReadings, instants_of
 from .slip_features import N_FIGURES, MeasuredSlip, measured_slips, simulated_slip, slip_distance
 
@@ -20,6 +23,8 @@ Numbers = NDArray[np.float64]
 Rows = NDArray[np.intp]
 
 _ROUGH = 0.02  # of a slip: so well the motion after a measured arrest is known
+_STATIC, _NOISY_STEP = 'friction.static.', 0.02
+_STEP = 0.02   # of the logarithm of a mass: how far noise of the force moves it is taken in such steps
 _LOOSE = 2.0   # ranges: the standard deviation of a weak prior, which holds what the data do not determine
 
 
@@ -35,13 +40,15 @@ class MeasuredStretch(NamedTuple):
 class Stretches(NamedTuple):
     """Stretches one after the other: all their `rows`, and of each channel the measured values times `factors`.
 
-    A factor is one over the standard deviation, so that a difference becomes a residual.
+    A factor is one over the standard deviation, so that a difference becomes a residual; behind the filter of the
+    channel, if it has one.
     """
 
     parts: tuple[MeasuredStretch, ...]
     rows: Rows
     targets: tuple[Numbers, ...]
     factors: tuple[Numbers, ...]
+    filters: tuple[NoiseFilter | None, ...]
 
 
 class FitProblem:
@@ -52,18 +59,60 @@ class FitProblem:
         self.model, self.parameters, self.measurement = model, tuple(parameters), measurement
         self.motions = tuple(motions)
         drive = model.drive_of(np.array([one.start for one in parameters]))
-        self._rests = ends_in_rest(motions, track_of(measurement, drive), drive)
+        track = track_of(measurement, drive)
+        self._rests, self._stops = ends_in_rest(motions, track, drive), stops_of(track)
         rests = {id(motion) for motion in self._rests}
         self.slips = measured_slips(motions, measurement)
         self.clear_slips = [slip for slip in self.slips if slip.before is None or id(slip.before) in rests]
         self.start = np.array([one.inner(one.start) for one in parameters])
         self.low = np.array([one.inner(one.low) for one in parameters])
         self.high = np.array([one.inner(one.high) for one in parameters])
+        self._mass, self._force_noise = model.scene.axis.mass, force_noise_of(measurement)
+        self._filters: tuple[NoiseFilter | None, ...] = (None,) * len(measurement.channels)
+        self._sliding = self._of_sliding()
+        self.take_input_noise_of(self.values(self.with_direct(self.start)))
+
+    def _of_sliding(self) -> dict[int, float]:
+        """Return the parameters that the motion under a measured force shows by itself, by place."""
+        if not self.model.is_pushed:
+            return {}
+        motion = sliding_motion(self.measurement, self._mass)
+        return {} if motion is None else direct_motion(self.model, self.parameters, motion, self.start, self.low,
+                                                       self.high)
+
+    @property
+    def is_direct(self) -> bool:
+        """Whether a measured force that drives the slider by itself shows parameters directly."""
+        return bool(self._sliding)
+
+    @property
+    def steps(self) -> Numbers:
+        """The steps (k,) of derivatives: where noise of the input decides when it breaks away, as long as that noise.
+
+        Between two readings the break-away does not move with its limit, and then it goes to another reading.
+        """
+        return np.array([_NOISY_STEP if self.model.is_pushed and one.name.startswith(_STATIC) else STEP
+                         for one in self.parameters])
+
+    def take_input_noise_of(self, values: Numbers) -> bool:
+        """Take the noise of a measured force as it moves the mass of these values, in steps; return if that is new."""
+        dynamics = self.model.dynamics(values)
+        if not self.model.is_pushed or dynamics is None:
+            return False
+        was, self._mass = self._mass, float(np.exp(_STEP * np.round(np.log(dynamics.axis.mass) / _STEP)))
+        self._filters = filters_of(self.measurement, self._force_noise, self._mass, self._stops)
+        return self._mass != was
+
+    def white(self, k: int, residuals: Numbers) -> Numbers:
+        """Return the residuals (n,) of the k-th channel without what the noise of a measured force does to them."""
+        return white_of(self._filters, k, self.measurement.channels[k], residuals)
 
     def with_direct(self, point: Numbers) -> Numbers:
-        """Return a point (k,) with what the measured force says by itself of the drive, within the ranges."""
+        """Return a point (k,) with what the measured force says by itself, within the ranges."""
         found = direct_drive(self.model, self.values(point), self.measurement)
         point = point.copy()
+        for k, number in self._sliding.items():
+            point[k] = number
         for k, one in enumerate(self.parameters):
             if one.name in found:
                 point[k] = one.inner(min(max(found[one.name], one.low), one.high))
@@ -102,11 +151,13 @@ class FitProblem:
                 parts.append(MeasuredStretch(before, begin, rows, instants_of(times[rows] - begin)))
         rows = np.concatenate([part.rows for part in parts])
         own = np.concatenate([np.full(len(part.rows), part.before is None and first != 0) for part in parts])
+        filters = self._filters if first is None and stride == 1 else (None,) * len(self._filters)
         factors = tuple(np.sqrt(channel.weights[rows]) / np.where(own, channel.resolution, self._roughly(channel))
-                        for channel in self.measurement.channels)
+                        if one is None else np.full(len(rows), 1.0 / one.deviation)
+                        for one, channel in zip(filters, self.measurement.channels, strict=True))
         targets = tuple(channel.values[rows] * factor
                         for channel, factor in zip(self.measurement.channels, factors, strict=True))
-        return Stretches(tuple(parts), rows, targets, factors)
+        return Stretches(tuple(parts), rows, targets, factors, filters)
 
     def _roughly(self, channel: Channel) -> float:
         """Return the standard deviation of a channel where a stretch begins from a measured arrest."""
@@ -121,6 +172,8 @@ class FitProblem:
             return np.full(len(stretches.rows) * len(stretches.targets) + len(point), np.nan)
         parts = [target - factor * column for target, factor, column in zip(stretches.targets, stretches.factors,
                                                                             fitted, strict=True)]
+        parts = [part if one is None else one.weighted(part)
+                 for one, part in zip(stretches.filters, parts, strict=True)]
         return np.concatenate([*parts, self.beforehand(point)])
 
     def fitted(self, point: Numbers, stretches: Stretches) -> list[Numbers] | None:

@@ -15,13 +15,13 @@ from ..recording.measured_run import MeasuredRun
 from ..runs import Run
 from ..scene import Scene
 from .channel_units import OUTPUTS
-from .measured_inputs import profile_through
+from .measured_inputs import profile_through, velocity_within
 from .sensor_noise import Numbers, noise_of, quantum_of, weights_of
 
 _FEWEST = 20          # samples
 _LONGEST_GAP = 1.0    # of the time that was measured without it
 _MOST, _NOISES = 0.99, 4.0   # a drive is that of the scene where this share of it is within so many deviations
-_MOST_PIECES = 1500   # of a measured force: each takes as long as many samples
+_WITHIN = 2.0         # standard deviations of a measured drive position: so near to it the drive is taken to move
 _RATES = 10.0, 2e5    # Hz
 
 
@@ -78,7 +78,7 @@ def readings_of(run: Run, scene: Scene, resolutions: Mapping[str, float]) -> Sen
     keep = np.all([np.isfinite(columns[name]) for name in known if name in columns], axis=0)
     columns = {name: values[keep] for name, values in columns.items()}
     times, shift, period = _times(columns['time'])
-    as_force = _drives_directly(scene) and 'drive_force' in known
+    as_force = drives_directly(scene) and 'drive_force' in known
     outputs = [name for name in OUTPUTS if name in known and not (as_force and name == 'drive_force')]
     if not run.is_recorded or not isinstance(run, MeasuredRun):
         outputs = [name for name in outputs if name != 'friction_force']
@@ -128,7 +128,7 @@ def _check_motion(channels: tuple[Channel, ...]) -> None:
                          'moves', 'look at its column and unit, or measure with a larger feed')
 
 
-def _drives_directly(scene: Scene) -> bool:
+def drives_directly(scene: Scene) -> bool:
     """Return whether a scene has no drive spring: then the measured drive force acts on the slider by itself."""
     return scene.axis.drive_stiffness == 0.0 and scene.axis.drive_damping == 0.0
 
@@ -149,33 +149,27 @@ def _drive(columns: Mapping[str, Numbers], known: tuple[str, ...], times: Number
     if float(np.quantile(np.abs(off), _MOST)) <= _NOISES * noise and abs(float(np.mean(off))) <= noise:
         return None
     notes.append('the drive moves as it was measured')
-    return profile_through(times, values, _is_held(columns, known, times, values))
+    if 'drive_velocity' not in known:
+        places = columns['drive_position']
+        quantum = quantum_of(places)
+        return velocity_within(times, places, max(0.5 * quantum, _WITHIN * noise_of(places, quantum)))
+    return profile_through(times, values, _is_held(columns, times, values))
 
 
-def _is_held(columns: Mapping[str, Numbers], known: tuple[str, ...], times: Numbers, values: Numbers) -> bool:
+def _is_held(columns: Mapping[str, Numbers], times: Numbers, values: Numbers) -> bool:
     """Return whether a drive holds each velocity up to the next sample, as its positions say; else it is linear."""
     if 'drive_position' not in columns or not np.isfinite(columns['drive_position']).all():
         return False
-    if 'drive_velocity' not in known:
-        return True
     gone, steps = np.diff(columns['drive_position']), np.diff(times)
     held, linear = gone - values[:-1] * steps, gone - 0.5 * (values[:-1] + values[1:]) * steps
     return float(held @ held) < float(linear @ linear)
 
 
 def _force(values: NDArray[np.float64] | None, times: Numbers, scene: Scene) -> InputProfile | None:
-    """Return the measured force on the slider, None where that of the scene is as good.
-
-    A long one is taken as means over blocks of samples, linear between them: its impulse stays.
-    """
+    """Return the measured force on the slider, None where that of the scene is as good."""
     if values is None:
         return None
     own = np.array([scene.force.value_at(float(time)) for time in times])
     if np.abs(values - own).max() <= 1e-6 * max(np.abs(own).max(), 1e-12):
         return None
-    block = -(-len(times) // _MOST_PIECES)
-    if block == 1:
-        return profile_through(times, values)
-    starts = np.arange(0, len(times), block)
-    counts = np.diff([*starts, len(times)])
-    return profile_through(np.add.reduceat(times, starts) / counts, np.add.reduceat(values, starts) / counts)
+    return profile_through(times, values)

@@ -37,10 +37,14 @@ def quantum_of(readings: Numbers) -> float:
 
 def noise_of(readings: Numbers, quantum: float) -> float:
     """Return the standard deviation of the noise in readings, that of counting in steps `quantum` included."""
+    return max(spread_of(readings, quantum), _SMALLEST * float(np.ptp(readings)))
+
+
+def spread_of(readings: Numbers, quantum: float) -> float:
+    """Return the same without a least one for sensors of a wide range."""
     third = np.diff(readings, 3)
     spread: float = _MAD * float(np.median(np.abs(third - np.median(third)))) / _THIRD if len(third) else 0.0
-    least: float = max(quantum / float(np.sqrt(12.0)), _SMALLEST * float(np.ptp(readings)))
-    return max(spread, least)
+    return max(spread, quantum / float(np.sqrt(12.0)))
 
 
 def weights_of(readings: Numbers, quantum: float) -> Numbers:

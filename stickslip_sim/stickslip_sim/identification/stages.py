@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .least_squares import Solution, minimise
+from .least_squares import STEP, Solution, minimise
 from .problem import FitProblem
 from .slip_features import MeasuredSlip
 
@@ -31,6 +31,7 @@ _GOOD = 1.5             # a mean square up to that, and no other start is tried
 _COARSE_STEP = 1e-5
 _LOST = 100.0           # a mean square from which on the whole run is not followed
 _FEWEST_SLIPS, _MOST_SLIPS = 3, 30
+_TRIED = 40             # values of a parameter over its range
 _TABLES = 4             # times at most that tables of smooth laws are made anew
 _STEEPEST = 1e4         # figures of slips over a logarithm: a hundred times in proportion
 _KEPT = 0.5, 0.8        # of the slips, in turn; in the last also those whose cost is not far above the median
@@ -51,7 +52,12 @@ class Ended(NamedTuple):
 
 
 def starts_of(problem: FitProblem, seed: int) -> Iterator[Numbers]:
-    """Yield points to start from, by the figures of single slips: from the given start, then from many others."""
+    """Yield points to start from, by the figures of single slips: from the given start, then from many others.
+
+    Before them that which a force that drives the slider by itself shows directly.
+    """
+    if problem.is_direct:
+        yield problem.with_direct(problem.start)
     chosen = [problem.clear_slips[k] for k in _spread(len(problem.clear_slips), _SLIPS)]
     first = _coarse(problem, problem.with_direct(problem.start), chosen)
     yield first.point
@@ -87,20 +93,45 @@ def fit_from(problem: FitProblem, start: Numbers) -> Ended:
     """Return the best fit of the whole run from a point near it."""
     point = start
     stride = max(1, len(problem.measurement.times) // _SAMPLES)
-    for first in (first for first in _FIRST_SLIPS if first < len(problem.motions)):
+    few = 0 if problem.is_direct else len(problem.motions)   # the filtered residuals lead there from any point
+    for first in (first for first in _FIRST_SLIPS if first < few):
         part = problem.stretches(first, stride)
         point = minimise(partial(problem.of_stretches, stretches=part), point, problem.low, problem.high, most=10,
                          tolerance=1.0, share=1e-3, robust=_ROBUST if first == 0 else np.inf).point
-    residuals = partial(problem.of_stretches, stretches=problem.stretches())
-    solution = minimise(residuals, point, problem.low, problem.high, most=60, tolerance=1e-3)
+    solution = _fit_whole(problem, point, 60)
+    if (better := _beyond_noise(problem, solution)) is not None:
+        solution = _fit_whole(problem, better, 60)
     for _ in range(_TABLES):
-        if not problem.model.take_tables_of(problem.values(solution.point)):
+        values = problem.values(solution.point)
+        if not problem.model.take_tables_of(values) | problem.take_input_noise_of(values):
             break
         before = solution.cost
-        solution = minimise(residuals, solution.point, problem.low, problem.high, most=30, tolerance=1e-3)
+        solution = _fit_whole(problem, solution.point, 30)
         if abs(solution.cost - before) < 0.1:
             break
     return Ended(start, solution, solution.cost / effective_count(problem))
+
+
+def _fit_whole(problem: FitProblem, point: Numbers, most: int) -> Solution:
+    residuals = partial(problem.of_stretches, stretches=problem.stretches())
+    return minimise(residuals, point, problem.low, problem.high, most=most, tolerance=1e-3, step=problem.steps)
+
+
+def _beyond_noise(problem: FitProblem, found: Solution) -> Numbers | None:
+    """Return a point that is better than where a fit ended, by a parameter whose derivative is that of noise.
+
+    The sum of squares over such a one has steps, on which a fit comes to rest: its whole range is tried.
+    """
+    residuals = partial(problem.of_stretches, stretches=problem.stretches())
+    best, cost = found.point, found.cost
+    for k in np.flatnonzero(problem.steps > STEP):
+        for number in np.linspace(problem.low[k], problem.high[k], _TRIED):
+            trial = best.copy()
+            trial[k] = number
+            left = residuals(trial)
+            if np.isfinite(left[0]) and float(left @ left) < cost:
+                best, cost = trial, float(left @ left)
+    return None if best is found.point else best
 
 
 def effective_count(problem: FitProblem) -> float:

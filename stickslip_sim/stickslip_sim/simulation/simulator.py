@@ -135,10 +135,11 @@ class Simulator:
             self._counts[event.kind] += 1
         return events
 
-    def take_samples(self, at: Instants, out: NDArray[np.float64]) -> list[Event]:
+    def take_samples(self, at: Instants, out: NDArray[np.float64], *, with_events: bool = True) -> list[Event]:
         """Bring the state to one time after the other, as `advance` does, and fill a row with the sample at each.
 
-        Returns the events up to the last; raises as `advance` and `sample` do.
+        Returns the events up to the last, which are neither returned nor counted without `with_events`, as by `skip`;
+        raises as `advance` and `sample` do.
         """
         events = self._set_out(Instant(float(at.seconds[0]), float(at.fractions[0])))
         inputs, reached, taken = self._inputs, 0, 0
@@ -148,7 +149,8 @@ class Simulator:
             reached, until, rows, end = self._walk.sample(
                 self._parameters, self._state, drive, force, inputs.until, *at, reached, len(out), self._sinusoids,
                 self._table, out)
-            events.extend(self._rows(rows))
+            if with_events:
+                events.extend(self._rows(rows))
             inputs.go_on(until)
             self._check_samples(out[before[0]:reached])
             if reached > before[0]:
