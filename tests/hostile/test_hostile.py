@@ -21,7 +21,10 @@ CASE = Case(draw.paper() | draw.constant(0.002), 3.0)
 TOUCHING = Case(draw.axis(350.0, 6e5, 0.0, 3432.3275) | draw.contact(5e6, 0.0) | draw.static(0.12)
                 | draw.kinetic([0.0], [0.12]) | draw.constant(0.0)
                 | {'initial.velocity': 0.1, 'initial.rest_time': 0.0}, 1.0)
-
+KATO = (draw.paper() | draw.contact(5e6, 15000.0)
+        | draw.static(0.12, 0.12000001110800634, 70.98870335904223, 'kato', 0.9904340921138295)
+        | draw.kinetic([0.0, 0.035], [0.12, 0.05], branches=True) | draw.constant(0.006978529282690192)
+        | {'initial.rest_time': 0.001})
 
 # what the attack, and audits before it, found wrong: each with the seconds to run it
 KNOWN = {
@@ -62,6 +65,16 @@ KNOWN = {
         | draw.contact(2.195934537987053e+16) | draw.static(5.793267347457344)
         | draw.kinetic([0.0, 11.84509070112242], [5.793267347457344, 2.7749957786770683])
         | draw.constant(-1791.6329384264484), 830.0),
+    'no damper anywhere under a ramp away from a side that holds nothing': (
+        draw.axis(88.37409450229083, 65196271.5573849, 0.0, 447.20364453557835) | draw.contact(499668931.7451392)
+        | draw.static(0.731345904128406, 1.4730985940752366, 0.10383028427939264, 'hyperbolic')
+        | draw.kinetic([0.0, 0.0006233869652845942], [0.731345904128406, 0.3921349202309617])
+        | {'friction.static.backward.initial': 0.0, 'friction.static.backward.limit': 0.0,
+           'friction.kinetic.backward.coefficients': [0.0, 0.0], 'drive.course': 'ramp',
+           'drive.acceleration': 0.0007310528496116081}, 0.5),
+    "Kato's law all but exponential, from an arrest on its limit": (KATO, 2.0),
+    'the same under a sinusoid': (
+        KATO | {'drive.amplitudes': [0.0005], 'drive.frequencies': [3.0], 'drive.phases': [0.1]}, 1.0),
 }
 
 

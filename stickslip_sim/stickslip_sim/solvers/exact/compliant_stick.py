@@ -175,11 +175,11 @@ def _step(p: Parameters, s: State, osc: Oscillator, contact: ContactForce,
     value, fall = max(top - side * force, 0.0), top_rate - side * rate
     other, other_fall = p.normal_force * back + side * force, p.normal_force * back_growth + side * rate
     if back_curvature == math.inf:
-        far = steep_start(p, -side, max(other, 0.0), abs(rate), swing) if p.sided != 0.0 else math.inf
+        far = steep_start(p, -side, max(other, 0.0), -side * rate, swing)
     else:
         far = safe_step(max(other, 0.0), other_fall, swing + p.normal_force * back_curvature)
     if curvature == math.inf:
-        step = min(steep_start(p, side, value, abs(rate), swing), far)
+        step = min(steep_start(p, side, value, side * rate, swing), far)
         return step, (_GO_ON if step > 0.0 else _IS_ROOT), side
     second_rate = swing + p.normal_force * curvature
     near = safe_step(value, fall, second_rate)
@@ -217,7 +217,14 @@ def _nudge(osc: Oscillator, free_second: float, free_third: float) -> float:
 
 @compiled
 def _late_nudge(osc: Oscillator, free_second: float, free_third: float) -> float:
-    """Return a step off a guard with value = slope = curvature = 0 and f‴ > 0, as under a ramp from a rest."""
+    """Return a step off a guard with value = slope = curvature = 0, as under a ramp from a rest, and f‴ > 0.
+
+    Without any damper f‴ = 0, too, and f⁗ > 0.
+    """
     free_fourth = -2.0 * osc.gamma * free_third - osc.omega2 * free_second
-    fourth = bound(osc, free_fourth, -2.0 * osc.gamma * free_fourth - osc.omega2 * free_third)
-    return 4.0 * abs(free_third) / fourth if fourth > 0.0 else 0.0
+    free_fifth = -2.0 * osc.gamma * free_fourth - osc.omega2 * free_third
+    if free_third != 0.0:
+        fourth = bound(osc, free_fourth, free_fifth)
+        return 4.0 * abs(free_third) / fourth if fourth > 0.0 else 0.0
+    fifth = bound(osc, free_fifth, -2.0 * osc.gamma * free_fifth - osc.omega2 * free_fourth)
+    return 5.0 * abs(free_fourth) / fifth if fifth > 0.0 else 0.0

@@ -154,13 +154,11 @@ def _guard_at(p: Parameters, now: Reading, limits: GuardLimits, rounding: float,
     up, up_rate = limits.top - now.value, limits.top_rate - now.rate
     down, down_rate = now.value - limits.floor, now.rate - limits.floor_rate
     swing = now.curvature + limits.bow
-    if swing == math.inf and p.sided != 0.0:
+    if swing == math.inf:   # Kato's law right after the arrest
         return _steep_guard(p, now, limits, now.noise + rounding)
     noise = max(now.noise + rounding, swing * (1e-15 / fastest) ** 2)
     side, value, fall, step = _nearer(up, up_rate, down, down_rate, swing, noise)
     exact = _exact_step(up, up_rate, down, down_rate, swing)
-    if swing == math.inf:   # Kato's law right after the arrest
-        step = exact = steep_start(p, side, max(value, 0.0), abs(now.rate), now.curvature) if value >= -noise else 0.0
     return Guard(side, value, fall, swing, noise, min(step, now.reach), min(exact, now.reach))
 
 
@@ -184,7 +182,7 @@ def _side_step(p: Parameters, now: Reading, side: float, gap: float, gap_rate: f
     """Return a step from rest time 0 within which the gap to the limit of a direction does not vanish."""
     curvature = grown(p, 0.0, side).curvature
     if curvature == math.inf:
-        return steep_start(p, side, max(gap, 0.0), abs(now.rate), now.curvature)
+        return steep_start(p, side, max(gap, 0.0), side * now.rate, now.curvature)
     return safe_step(max(gap, 0.0), gap_rate, now.curvature + p.normal_force * curvature)
 
 

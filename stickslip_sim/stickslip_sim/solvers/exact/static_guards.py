@@ -23,6 +23,7 @@ from ...linear.root_steps import EPSILON, halley, householder, householder_settl
 STEPS = 100_000
 _DIRECT_STEPS = 8
 GAVE_UP = -1.0     # instead of a time: the steps were used up
+_NO_TIME = 1e-30  # of τ: with n near 1 mu_s outruns a force for less than that, and never in doubles
 _SAME_TIME = 2.0 ** -50   # s, and of a time: more than rounding of the time of a segment's start
 
 
@@ -208,7 +209,7 @@ def _stepped_side(p: Parameters, s: State, force: float, rate: float, second_rat
         slope = normal * growth - rate - second_rate * t
         step = safe_step(value, slope, normal * curvature + max(second_rate, 0.0))
         if curvature == math.inf:
-            step = steep_start(p, side, value, abs(rate), abs(second_rate))
+            step = steep_start(p, side, value, rate, abs(second_rate))
         s.iterations += 1.0
         if step <= 2.0 * EPSILON * t or (value <= 4.0 * EPSILON * normal * limit and slope < 0.0):
             return t
@@ -222,10 +223,12 @@ def _stepped_side(p: Parameters, s: State, force: float, rate: float, second_rat
 def steep_start(p: Parameters, side: float, value: float, rate: float, second_rate: float) -> float:
     """Return a safe step from rest time 0 under Kato's law with n < 1, whose rate is infinite there.
 
-    The law is concave: on [0, d] it rises at least as fast as at d, so that it stays above a force that rises less.
-    It never falls, so a force that is off the limit by `value` takes its time as well.
+    `rate` is that of the force towards this side, at 0.  The law is concave: on [0, d] it rises at least as fast as at
+    d, so that it stays above a force that rises less.  It never falls, so a force that is off the limit by `value`, or
+    moves away from it, takes its time as well.
     """
-    step = static_numbers(p, side).tau
-    while p.normal_force * grown(p, step, side).rate < rate + second_rate * step and step > 0.0:
+    tau = static_numbers(p, side).tau
+    step, least = tau, _NO_TIME * tau
+    while p.normal_force * grown(p, step, side).rate < rate + second_rate * step and step > least:
         step *= 0.125
-    return max(step, safe_step(value, -rate, second_rate))
+    return max(step if step > least else 0.0, safe_step(value, -rate, second_rate))
