@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Let the recording node and a controller run for minutes: memory flat, no drift, nothing lost; write the table.
 
-    python3 -m benchmarks.soak [--minutes 10] [--out docs/soak.md]
+    python3 -m benchmarks.soak [--minutes 10] [--priority 0] [--out docs/soak.md]
 
 Exit code 1 when a limit is missed.
 """
 
 import argparse
+import os
 import sys
 import tempfile
 import threading
@@ -27,6 +28,7 @@ RATE = 1000.0    # 1/s
 PERIOD = 1.0     # s between two looks at the memory
 PARTS = 12       # of the recording
 WARM_UP = 2      # parts, before the memory is judged
+BELOW = 2        # priority of the controller, below that of the step thread; the node's other threads are 1 below
 
 
 class Limit(NamedTuple):
@@ -52,6 +54,7 @@ FACTS = (
     Limit('steps that began more than a period late, %', 'overruns_percent', np.inf, '.3f'),
     Limit('lateness, p99, median of the seconds, ms', 'lateness_p99_ms', np.inf, '.3f'),
     Limit('lateness, maximum, ms', 'lateness_max_ms', np.inf, '.1f'),
+    Limit('load of the machine (threads that run or wait for a core), last 15 minutes', 'load', np.inf, '.1f'),
 )
 
 
@@ -88,18 +91,19 @@ class MemoryWatch:
         return float(slope) * 60.0 / 1024.0
 
 
-def soak(minutes: float) -> tuple[dict[str, float], str]:
-    """Return the figures of a run, and the node's own verdict on its real time."""
+def soak(minutes: float, priority: int = 0) -> tuple[dict[str, float], str]:
+    """Return the figures of a run, and the node's own verdict on its real time; `priority` of SCHED_FIFO, 0: none."""
     with tempfile.TemporaryDirectory() as parent:
         folder = Path(parent, 'run')
         split = ['-p', f'record.max_duration:={minutes * 60.0 / PARTS}']
-        with running([*node_command(RATE, folder), *split]) as process, MemoryWatch(process.pid) as memory:
-            figures = control(process.pid, minutes * 60.0)
+        with running([*node_command(RATE, folder, priority), *split]) as process, MemoryWatch(process.pid) as memory:
+            figures = control(process.pid, minutes * 60.0, priority=max(priority - BELOW, 0))
         figures |= {**node_figures(folder), **bag_figures(folder)}
         verdict = str(open_bag(folder).receipt['timing']['verdict'])
     figures = {**figures, 'growth': memory.growth(), 'spread': memory.spread(),
                'resident': memory.samples[-1] / 2**20,
-               'drift_ms': figures['drift'] * 1e3, 'overruns_percent': figures['overruns'] * 1e2,
+               'load': os.getloadavg()[2], 'drift_ms': figures['drift'] * 1e3,
+               'overruns_percent': figures['overruns'] * 1e2,
                'lateness_p99_ms': figures['lateness_p99'] * 1e3, 'lateness_max_ms': figures['lateness_max'] * 1e3}
     return figures, verdict
 
@@ -109,20 +113,23 @@ def missed(figures: Mapping[str, float]) -> list[str]:
     return [limit.title for limit in LIMITS if not abs(figures[limit.name]) <= limit.most]
 
 
-def page(minutes: float, figures: Mapping[str, float], verdict: str) -> str:
+def page(minutes: float, priority: int, figures: Mapping[str, float], verdict: str) -> str:
     """Return the page."""
     rows = [f'| {limit.title} | {figures[limit.name]:{limit.form}} | '
             f'{f"{limit.most:g}" if np.isfinite(limit.most) else "–"} |' for limit in (*LIMITS, *FACTS)]
     failures = missed(figures)
+    options = f'--minutes {minutes:g}' + (f' --priority {priority}' if priority else '')
+    scheduling = (f'  Its step thread has SCHED_FIFO {priority}, its other threads and the controller a little less.'
+                  if priority else '')
     return '\n'.join([
         '# The soak', '',
         'See here whether memory, drift and losses of a recording node stay within their limits for long.',
-        f'`python3 -m benchmarks.soak --minutes {minutes:g}` (`make soak`) wrote this page on',
+        f'`python3 -m benchmarks.soak {options}` (`make soak`) wrote this page on',
         f'{machine()}.', '',
         f'`sim_node` runs `{SCENE}` at {RATE:g} steps a second for {minutes:g} minutes, with its recording in parts',
         f'of {minutes / PARTS:g} minutes (`record.max_duration`).  A controller in a process of its own answers every',
         'state with a drive velocity.  What grows in memory while the node records is the index of a part, which MCAP',
-        'writes at its end.', '',
+        f'writes at its end.{scheduling}', '',
         '| figure | measured | at most |', '|---|---|---|', *rows, '',
         'Missed: ' + '; '.join(failures) + '.' if failures else
         'Memory, drift and loss are within their limits.', '',
@@ -134,12 +141,15 @@ def main() -> int:
     """Soak, write the page, return the exit code."""
     parser = argparse.ArgumentParser(prog='python3 -m benchmarks.soak', description=__doc__.splitlines()[0])
     parser.add_argument('--minutes', type=float, default=10.0, help='[%(default)g]')
+    parser.add_argument('--priority', type=int, default=0, help='SCHED_FIFO of the step thread; 0: none')
     parser.add_argument('--out', type=Path, default=Path('docs/soak.md'), help='[%(default)s]')
     options = parser.parse_args()
     if not 0.2 <= options.minutes <= 1e4:
         parser.error(f'argument --minutes: {options.minutes:g}; give 0.2 to 10000')
-    figures, verdict = soak(options.minutes)
-    text = page(options.minutes, figures, verdict)
+    if options.priority and not BELOW < options.priority <= 98:
+        parser.error(f'argument --priority: {options.priority}; give 0, or {BELOW + 1} to 98')
+    figures, verdict = soak(options.minutes, options.priority)
+    text = page(options.minutes, options.priority, figures, verdict)
     options.out.parent.mkdir(parents=True, exist_ok=True)
     options.out.write_text(text, encoding='utf-8')
     sys.stdout.write(text)

@@ -134,7 +134,10 @@ def main() -> None:
     parser.add_argument('--pid', type=int, required=True, help='process of the node')
     parser.add_argument('--seconds', type=float, default=10.0)
     parser.add_argument('--stride', type=int, default=1, help='answer every state of this many')
+    parser.add_argument('--priority', type=int, default=0, help='SCHED_FIFO; 0: none')
     options = parser.parse_args()
+    if options.priority:   # the threads of the middleware inherit it
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(options.priority))
     rclpy.init(args=[])
     controller = Controller(options.stride)
     print(json.dumps(measure(controller, options.pid, options.seconds)), flush=True)

@@ -60,10 +60,11 @@ def running(command: list[str]) -> Iterator[subprocess.Popen[str]]:
         process.wait()
 
 
-def control(pid: int, seconds: float, stride: int = 1) -> dict[str, float]:
-    """Run a controller beside a node; return its figures."""
+def control(pid: int, seconds: float, stride: int = 1, priority: int = 0) -> dict[str, float]:
+    """Run a controller beside a node, with a priority of SCHED_FIFO (0: none); return its figures."""
     done = subprocess.run([sys.executable, '-m', 'benchmarks.hil.controller', '--pid', str(pid), '--seconds',
-                           str(seconds), '--stride', str(stride)], check=False, stdout=subprocess.PIPE, text=True)
+                           str(seconds), '--stride', str(stride), '--priority', str(priority)],
+                          check=False, stdout=subprocess.PIPE, text=True)
     if done.returncode != 0:
         raise SystemExit(f'the controller ended with exit code {done.returncode}')
     figures: dict[str, float] = json.loads(done.stdout)
