@@ -7,7 +7,8 @@ import pytest
 from numpy.typing import NDArray
 
 from stickslip_sim import Sample, Simulator, load_scene
-from stickslip_sim.identification.direct_motion import as_held
+from stickslip_sim.identification.direct_motion import with_delay
+from stickslip_sim.identification.free_parameters import FreeParameter
 from stickslip_sim.identification.input_noise import NoiseFilter, filters_of
 from stickslip_sim.identification.measured_inputs import profile_through, travelled, velocity_within
 from stickslip_sim.identification.readings import Channel, SensorReadings, instants_of
@@ -81,11 +82,14 @@ def test_a_force_without_noise_needs_no_filter() -> None:
     assert filters_of(measured('drive_force', 1e-6), 0.3, 95.0, NONE) == (None,)
 
 
-@pytest.mark.parametrize('held', [True, False])
-def test_whether_a_force_is_held_shows_in_the_motion(held: bool) -> None:
-    """It does where the force has more than one frequency."""
+MASS = FreeParameter('axis.mass', 'kg', 70.0, 50.0, 200.0)
+
+
+@pytest.mark.parametrize(('held', 'late', 'delay'), [(True, 0, 0.5e-3), (False, 0, 0.0), (False, 3, 3e-3)])
+def test_a_delay_of_the_force_shows_in_the_motion(held: bool, late: int, delay: float) -> None:
+    """It does where the force has more than one frequency; one that is held acts half a period later than a line."""
     random, times = np.random.default_rng(3), TIMES[:3000]
-    force = 40.0 * np.sign(np.sin(9.0 * times)) + 30.0 * np.sin(5.0 * times)
+    force = 60.0 * np.sin(25.0 * times) + 60.0 * np.sin(7.0 * times)
     scene = load_scene('paper_fig7', {'axis.drive_stiffness': 0.0, 'axis.drive_damping': 0.0, 'axis.mass': 95.0,
                                       'axis.normal_force': 100.0, 'drive.velocity': 0.0,
                                       'friction.acceleration_dependence': False, 'friction.kinetic.velocities': (0.0,),
@@ -95,8 +99,11 @@ def test_whether_a_force_is_held_shows_in_the_motion(held: bool) -> None:
     simulator.take_samples(instants_of(times), rows)
     position = np.round(rows[:, Sample._fields.index('position')] / MICROMETRE) * MICROMETRE
     channel = Channel('position', 'm', position, 3e-7, MICROMETRE, np.ones(len(times)))
-    measured_force = profile_through(times, force + random.normal(0.0, 0.3, len(times)))
-    found = as_held(SensorReadings(times, 0.0, 1e-3, (channel,), None, measured_force, ()), 70.0)
-    assert found.force is not None
-    assert any(found.force.rates) is not held
-    assert bool(found.notes) is held
+    read = np.append(force[late:], np.full(late, force[-1])) + random.normal(0.0, 0.3, len(times))
+    parameters, found = with_delay((MASS,), SensorReadings(times, 0.0, 1e-3, (channel,), None,
+                                                           profile_through(times, read), ()), 70.0)
+    assert bool(found.notes) is (delay != 0.0)
+    assert len(parameters) == 1 + bool(delay)
+    if delay:
+        assert parameters[-1].name == 'sensor.external_force.delay'
+        assert parameters[-1].start == pytest.approx(delay, abs=2e-4)

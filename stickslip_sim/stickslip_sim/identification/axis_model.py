@@ -19,7 +19,7 @@ from ..scene.build import Dynamics, dynamics_of
 from ..simulation.simulator import Simulator
 from ..study.variation import changes_at
 from .channel_units import OUTPUTS
-from .free_parameters import FreeParameter
+from .free_parameters import DELAY, FreeParameter
 from .measured_inputs import shifted, travelled
 from .motions import MeasuredMotion
 from .readings import SensorReadings, drives_directly
@@ -46,7 +46,7 @@ class AxisModel:
         self._keeps_force = not any(one.name.startswith(('force.', 'sensor.external_force.')) for one in parameters)
         self._tables = SameTables(scene, self._names)
         force = measurement.force or constant(0.0)
-        self._force = np.array([force.values, force.rates])
+        self._force = np.array([force.starts, force.values, force.rates])
         self.is_pushed = measurement.force is not None and drives_directly(scene)
         self.runs = 0
 
@@ -73,10 +73,26 @@ class AxisModel:
             return None
         force = self._measurement.force
         if force is not None and not self._keeps_force:
-            offset, scale = self.gain(values, 'external_force')
-            forces, rates = (self._force[0] - offset) / scale, self._force[1] / scale
-            force = InputProfile(force.starts, tuple(forces.tolist()), tuple(rates.tolist()))
+            force = self._force_of(values)
         return found._replace(drive=self._measurement.drive or found.drive, force=force or found.force)
+
+    def delay(self, values: Numbers) -> float:
+        """Return how long after its readings the measured force acts, s."""
+        return float(sum(value for one, value in zip(self._parameters, values.tolist(), strict=True)
+                         if one.sensor == ('external_force', DELAY)))
+
+    def _force_of(self, values: Numbers) -> InputProfile:
+        """Return the force that acted, from what its sensor measured."""
+        offset, scale = self.gain(values, 'external_force')
+        starts, forces, rates = self._force
+        starts, forces, rates = starts + self.delay(values), (forces - offset) / scale, rates / scale
+        first = max(int(np.searchsorted(starts, 0.0, 'right')) - 1, 0)
+        if starts[0] > 0.0:   # up to there the first reading holds
+            starts, forces, rates = (np.append(one, numbers) for one, numbers in (
+                (0.0, starts), (forces[0], forces), (0.0, rates)))
+        begin = forces[first] - rates[first] * starts[first]
+        return InputProfile((0.0, *starts[first + 1:].tolist()), (float(begin), *forces[first + 1:].tolist()),
+                            tuple(rates[first:].tolist()))
 
     def _values(self, values: Numbers) -> dict[str, object]:
         """Return the values of the scene, those of the free parameters among them."""
@@ -93,7 +109,7 @@ class AxisModel:
         """Return offset and scale of the sensor of a channel."""
         gain = {'offset': 0.0, 'scale': 1.0}
         for one, value in zip(self._parameters, values.tolist(), strict=True):
-            if one.sensor is not None and one.sensor[0] == channel:
+            if one.sensor is not None and one.sensor[0] == channel and one.sensor[1] in gain:
                 gain[one.sensor[1]] = value
         return gain['offset'], gain['scale']
 

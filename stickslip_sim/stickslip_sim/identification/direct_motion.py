@@ -17,7 +17,7 @@ from ..core.input_profile import InputProfile
 from .axis_model import AxisModel
 from .free_parameters import FreeParameter
 from .least_squares import minimise
-from .measured_inputs import profile_through, travelled
+from .measured_inputs import travelled
 from .readings import SensorReadings
 from .sensor_noise import noise_of, quantum_of
 
@@ -27,21 +27,30 @@ _CURVED = 720.0**0.5   # of the second derivative of a parabola through n readin
 _FEWEST, _MOST = 5, 0.01   # readings in a parabola, and as a share of the run
 _STILL = 0.03         # of the highest speed: slower is no sure slip
 _WELL = 0.1           # of a range: a standard deviation, beyond which a parameter is not taken
-_CLEARLY = 25.0       # of a logarithm of the likelihood, twice
+_DELAY = 'sensor.external_force.delay'
+_LONGEST, _FINE = 10, 8   # periods, and steps in each
+_SURE = 25.0       # of a logarithm of the likelihood, twice
 _ENOUGH = 50          # readings
 
 
 class SlidingMotion(NamedTuple):
-    """Where the slider surely slides: velocity (m/s), acceleration (m/s²), the measured force there (N), its noise.
+    """Velocity (m/s) and acceleration (m/s²) at the `rows` (n,) of even times in which the slider surely slides.
 
-    The `length` of the filter is in readings: so many in a row say as much as one.
+    `force` (N) is at all of these times, `noise` the standard deviation of one reading of it.  The `length` of the
+    filter is in readings: so many in a row say as much as one.
     """
 
     velocity: Numbers
     acceleration: Numbers
+    rows: NDArray[np.intp]
     force: Numbers
     noise: float
+    period: float
     length: int
+
+    def force_after(self, delay: float) -> Numbers:
+        """Return the force (n,) that acts in these rows when it acts so much later (s) than it was read."""
+        return np.asarray(np.interp(self.rows - delay / self.period, np.arange(len(self.force)), self.force))
 
 
 def force_noise_of(measurement: SensorReadings) -> float:
@@ -72,33 +81,39 @@ def sliding_motion(measurement: SensorReadings, mass: float) -> SlidingMotion | 
     clear = ~np.convolve(slow | (np.diff(np.sign(velocity), prepend=0.0) != 0.0), np.ones(length), 'same').astype(bool)
     if int(clear.sum()) < _ENOUGH:
         return None
-    return SlidingMotion(velocity[clear], acceleration[clear], force[clear], max(noise, 1e-300), length)
+    return SlidingMotion(velocity[clear], acceleration[clear], np.flatnonzero(clear), force, max(noise, 1e-300),
+                         measurement.period, length)
 
 
-def as_held(measurement: SensorReadings, mass: float) -> SensorReadings:
-    """Return a measurement whose force holds each value up to the next sample, where the motion says so.
+def with_delay(parameters: tuple[FreeParameter, ...], measurement: SensorReadings, mass: float
+               ) -> tuple[tuple[FreeParameter, ...], SensorReadings]:
+    """Return the parameters with the delay of the measured force among them, and a note, where there is one for sure.
 
-    It acts half a sample later than one that is linear between samples, and leaves less of F = m ẍ + d ẋ + R sign ẋ +
-    a constant, all four fitted; clearly less, as a motion of one frequency shows no delay.
+    A force that a controller holds up to its next reading acts half a period later than the line through the readings;
+    a drive has delays of its own.  The delay is right that leaves least of F = m ẍ + d ẋ + R sign ẋ + a constant, all
+    four fitted.  A motion of one frequency shows none.
     """
-    if measurement.force is None:
-        return measurement
-    values = measurement.force.values_at(measurement.times)
-    held = replace(measurement, force=profile_through(measurement.times, values, held=True),
-                   notes=(*measurement.notes, 'the force holds each value up to the next sample, as the motion says'))
-    as_line, as_steps = sliding_motion(measurement, mass), sliding_motion(held, mass)
-    if as_line is None or as_steps is None:
-        return measurement
-    count = len(as_line.force) / as_line.length
-    return held if count * (_left(as_line) / _left(as_steps) - 1.0) > _CLEARLY else measurement
+    motion = sliding_motion(measurement, mass)
+    if motion is None or any(one.name == _DELAY for one in parameters):
+        return parameters, measurement
+    delays = measurement.period * np.linspace(-_LONGEST, _LONGEST, 2 * _LONGEST * _FINE + 1)
+    left = np.array([_left(motion, float(delay)) for delay in delays])
+    best = int(left.argmin())
+    count = len(motion.rows) / motion.length
+    if not 0 < best < len(delays) - 1 or count * (_left(motion, 0.0) / left[best] - 1.0) < _SURE:
+        return parameters, measurement
+    delay, most = float(delays[best]), float(delays[-1])
+    note = f'the measured force acts {1e3 * delay:.2g} ms after its readings: {_DELAY} is free, too'
+    return ((*parameters, FreeParameter(_DELAY, 's', delay, -most, most)),
+            replace(measurement, notes=(*measurement.notes, note)))
 
 
-def _left(motion: SlidingMotion) -> float:
+def _left(motion: SlidingMotion, delay: float) -> float:
     """Return the sum of squares that is left of the force."""
-    speed = motion.velocity
+    speed, force = motion.velocity, motion.force_after(delay)
     terms = np.stack([motion.acceleration, speed, np.sign(speed), np.ones(len(speed))], axis=1)
-    found, *_ = np.linalg.lstsq(terms, motion.force, rcond=None)
-    left = motion.force - terms @ found
+    found, *_ = np.linalg.lstsq(terms, force, rcond=None)
+    left = force - terms @ found
     return float(left @ left)
 
 
@@ -121,7 +136,7 @@ def direct_motion(model: AxisModel, parameters: Sequence[FreeParameter], motion:
         values = np.array([one.outer(number) for one, number in zip(parameters, point.tolist(), strict=True)])
         dynamics = model.dynamics(values)
         if dynamics is None:
-            return np.full(len(motion.force) + len(point), np.nan)
+            return np.full(len(motion.rows) + len(point), np.nan)
         axis, speed = dynamics.axis, np.abs(motion.velocity)
         needed = axis.mass * motion.acceleration
         for direction, rows in ((1.0, forwards), (-1.0, ~forwards)):
@@ -131,7 +146,8 @@ def direct_motion(model: AxisModel, parameters: Sequence[FreeParameter], motion:
             coefficient = np.interp(at, kinetic.velocities, kinetic.coefficients) + kinetic.end_slope * beyond
             needed[rows] += direction * axis.normal_force * coefficient
         offset, scale = model.gain(values, 'external_force')
-        return np.concatenate([(needed - (motion.force - offset) / scale) / motion.noise, (point - start) / spread])
+        force = (motion.force_after(model.delay(values)) - offset) / scale
+        return np.concatenate([(needed - force) / motion.noise, (point - start) / spread])
 
     found = minimise(residuals, start, low, high, most=20, tolerance=1e-2)
     known = np.sqrt(np.diag(np.linalg.pinv(found.information, hermitian=True))) < _WELL * spread

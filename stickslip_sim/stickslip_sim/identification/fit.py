@@ -14,7 +14,7 @@ from ..recording import read_run
 from ..runs import Run
 from ..scene import Scene, SceneOrName
 from .axis_model import AxisModel
-from .direct_motion import as_held
+from .direct_motion import with_delay
 from .findings import identification_of
 from .free_parameters import free_parameters
 from .identification import Identification
@@ -46,13 +46,13 @@ def identify(run: Run | str | os.PathLike[str], start: SceneOrName, free: str | 
     parameters = free_parameters(scene, free)
     found = read_run(os.fspath(run)) if isinstance(run, str | os.PathLike) else run
     measurement = readings_of(found, scene, resolutions or {})
-    if drives_directly(scene):
-        measurement = as_held(measurement, scene.axis.mass)
     motions = motions_of(track_of(measurement, measurement.drive or scene.drive))
     check_parameters(parameters, measurement)
     check_data(parameters, measurement, motions, scene)
     scene, parameters, notes = from_measured_start(scene, parameters, measurement)
     measurement = replace(measurement, notes=(*measurement.notes, *notes))
+    if drives_directly(scene):
+        parameters, measurement = with_delay(parameters, measurement, scene.axis.mass)
     model = AxisModel(scene, parameters, measurement)
     problem = FitProblem(model, parameters, measurement, motions)
     with closing(fits_from(problem, starts_of(problem, seed), workers, keeper)) as fits:

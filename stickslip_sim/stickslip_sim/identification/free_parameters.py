@@ -3,7 +3,8 @@
 """What an identification may change: parameters of a scene, and offsets and scales of sensors, with their ranges.
 
 A file of them has the format of `stickslip uncertainty --with`; beside the parameters of a scene it may name
-`sensor.CHANNEL.offset` and `sensor.CHANNEL.scale`: measured = offset + scale · true.
+`sensor.CHANNEL.offset` and `sensor.CHANNEL.scale`: measured = offset + scale · true; and of a measured input
+`sensor.CHANNEL.delay`: what is read acts so much later.
 """
 
 import math
@@ -17,8 +18,9 @@ from ..scene import Scene
 from ..study.distribution import Distribution
 from ..study.uncertain_file import load_uncertain, uncertain_of
 from ..study.variation import parameter_of
-from .channel_units import UNITS
+from .channel_units import INPUTS, UNITS
 
+DELAY = 'delay'
 _OFFSET, _SCALE = 'offset', 'scale'
 
 
@@ -44,7 +46,7 @@ class FreeParameter:
 
     @property
     def sensor(self) -> tuple[str, str] | None:
-        """The channel and `offset` or `scale`; None of a parameter of the scene."""
+        """The channel and `offset`, `scale` or `delay`; None of a parameter of the scene."""
         first, *rest = self.name.split('.')
         return (rest[0], rest[1]) if first == 'sensor' else None
 
@@ -76,6 +78,8 @@ def _parameter(name: str) -> tuple[Parameter, int | None]:
     if not name.startswith('sensor.'):
         return parameter_of(name)
     _, channel, what, *more = [*name.split('.'), '', '']
+    if channel in INPUTS and what == DELAY and not any(more):
+        return Parameter(name, 'double', 0.0, 's', 'later than it was read', low=-1.0, high=1.0), None
     if channel not in UNITS or what not in (_OFFSET, _SCALE) or any(more):
         raise InputError('free parameter', name, f'sensor.CHANNEL.{_OFFSET} or sensor.CHANNEL.{_SCALE}, CHANNEL one of '
                          + ', '.join(UNITS), 'for example sensor.drive_force.scale')

@@ -27,7 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .readings import Channel, SensorReadings
-from .sensor_noise import spread_of
+from .sensor_noise import own_noise_of
 
 Numbers = NDArray[np.float64]
 
@@ -90,7 +90,7 @@ def _filter(channel: Channel, step: float, period: float, begins: tuple[int, ...
     grown = step * count**0.5 * (period * count if order == 2 else 1.0)
     if order == 0 or grown <= _NOTICEABLE * channel.resolution:
         return None
-    own = spread_of(channel.values, channel.quantum) if channel.quantum > 0.0 else channel.resolution
+    own = own_noise_of(channel.values, channel.quantum) if channel.quantum > 0.0 else channel.resolution
     ratio = step * (period if order == 2 else 1.0) / own
     denominator, more = _of_velocity(ratio) if order == 1 else _of_position(ratio)
     learns = math.ceil(order * math.log(_LEFT) / math.log(max(abs(denominator[-1]), _LEFT)))

@@ -37,10 +37,10 @@ def quantum_of(readings: Numbers) -> float:
 
 def noise_of(readings: Numbers, quantum: float) -> float:
     """Return the standard deviation of the noise in readings, that of counting in steps `quantum` included."""
-    return max(spread_of(readings, quantum), _SMALLEST * float(np.ptp(readings)))
+    return max(own_noise_of(readings, quantum), _SMALLEST * float(np.ptp(readings)))
 
 
-def spread_of(readings: Numbers, quantum: float) -> float:
+def own_noise_of(readings: Numbers, quantum: float) -> float:
     """Return the same without a least one for sensors of a wide range."""
     third = np.diff(readings, 3)
     spread: float = _MAD * float(np.median(np.abs(third - np.median(third)))) / _THIRD if len(third) else 0.0
