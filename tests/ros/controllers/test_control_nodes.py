@@ -20,6 +20,7 @@ from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.types import EventKind
 from tests.support.busy_machine import judged_by_time
 from tests.support.node_processes import assert_clean, executable, running
+from tests.support.refused_starts import ended_at_once
 from tests.support.ros_nodes import Client, client
 from tests.support.tool import Capture, answered
 from tests.support.waiting import DEADLINE, wait_for
@@ -43,10 +44,9 @@ ATTEMPTS = 40
 
 def refused(program: str, *ros_args: str) -> str:
     """Return the one line with which a program refuses to start."""
-    done = subprocess.run([executable(program), '--ros-args', *ros_args], capture_output=True, text=True, timeout=60,
-                          check=False)
-    assert done.returncode == 2, done.stderr
-    (line,) = done.stderr.splitlines()
+    code, errors = ended_at_once(program, '--ros-args', *ros_args)
+    assert code == 2, errors
+    (line,) = errors.splitlines()
     assert line.startswith(f'{program}: ')
     return line
 
