@@ -18,7 +18,7 @@ from tests.support.repository import ROOT
 from tests.support.ros_nodes import Client, client
 from tests.support.waiting import wait_for
 
-pytestmark = pytest.mark.ros
+pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
 DRIVE = ROOT / 'examples' / 'drive.py'
 SETPOINT = ROOT / 'examples' / 'setpoint.py'
@@ -30,7 +30,7 @@ def python(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
                           check=False)
 
 
-@pytest.fixture(scope='module')
+@pytest.fixture(scope='class')
 def axis(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
     with running(folder=tmp_path_factory.mktemp('axis')), client() as it:
         it.connect()
@@ -46,19 +46,19 @@ def test_the_demonstration_records_and_has_nothing_to_complain_of(tmp_path: Path
     assert open_bag(folder).receipt is not None    # it was closed
 
 
-def test_what_is_sent_holds(axis: Client) -> None:
-    done = python(DRIVE, '0.005', '--force', '400')
-    assert done.returncode == 0, done.stderr
-    wait_for(lambda: axis.latest('slider_state').drive_velocity == 0.005, 'its effect')
+class TestDrive:
+    def test_what_is_sent_holds(self, axis: Client) -> None:
+        done = python(DRIVE, '0.005', '--force', '400')
+        assert done.returncode == 0, done.stderr
+        wait_for(lambda: axis.latest('slider_state').drive_velocity == 0.005, 'its effect')
 
-
-@pytest.mark.parametrize('value', ['5.0', 'nan'])
-def test_a_refused_value_is_an_error_of_the_sender(axis: Client, value: str) -> None:
-    before = axis.latest('slider_state').drive_velocity
-    done = python(DRIVE, value)
-    assert done.returncode == 1
-    assert f'velocity = {value} is refused' in done.stderr
-    assert axis.latest('slider_state').drive_velocity == before
+    @pytest.mark.parametrize('value', ['5.0', 'nan'])
+    def test_a_refused_value_is_an_error_of_the_sender(self, axis: Client, value: str) -> None:
+        before = axis.latest('slider_state').drive_velocity
+        done = python(DRIVE, value)
+        assert done.returncode == 1
+        assert f'velocity = {value} is refused' in done.stderr
+        assert axis.latest('slider_state').drive_velocity == before
 
 
 def test_nothing_to_send_is_wrong_use() -> None:

@@ -29,6 +29,8 @@ from tests.support.axes import COMPLIANT, RIGID, Contact, instant, make, paper_a
 from tests.support.tool import Capture, answered
 from tests.support.verify_tool import verified
 
+pytestmark = pytest.mark.slow
+
 DELAY = 0.1   # s
 CLOSURES: Mapping[str, Mapping[str, object]] = {   # of a scene
     'undeflected': {'contact.arrest': 'undeflected'},
@@ -37,6 +39,7 @@ CLOSURES: Mapping[str, Mapping[str, object]] = {   # of a scene
     'slideway': {'axis.damper': 'slideway'},
 }
 FEED, SHORT = 0.002, 2.0   # m/s, s
+MOST = 60                  # events that are compared
 START = InitialState(rest_time=3.0)
 SINES = Sinusoid(0.003, 3.0, 0.4), Sinusoid(150.0, 41.0, 0.0)
 
@@ -73,6 +76,9 @@ def of_two_directions(friction: Friction) -> Friction:
 
 def agree(found: list[Event], axis: Axis, drive: InputProfile, force: InputProfile, end: float, within: float) -> None:
     """Compare with the reference, up to where the last digits decide: when the slider has taken the drive's speed."""
+    if len(found) > MOST:
+        end = 0.5 * (found[MOST - 1].time + found[MOST].time)
+        found = found[:MOST]
     truth = simulate_reference(axis, START, drive, force, end).events
     settled = [abs(event.velocity - drive.value_at(event.time)) < 1e-7 * abs(event.velocity) for event in truth]
     last = settled.index(True) if True in settled else len(truth)
