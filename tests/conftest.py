@@ -5,6 +5,7 @@
 import os
 import subprocess
 import sys
+from collections import Counter
 from pathlib import Path
 from typing import Protocol
 
@@ -16,6 +17,15 @@ from stickslip_sim.cli.main import run
 # The same examples each time, however slow a busy machine is; `make fuzz` looks for new ones.
 settings.register_profile('always the same', derandomize=True, database=None, deadline=None)
 settings.load_profile('always the same')
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Let several processes begin with the files that are slow, so that none of them runs alone at the end."""
+    if 'PYTEST_XDIST_WORKER' not in os.environ:
+        return
+    slow = {item.path for item in items if item.get_closest_marker('slow')}
+    counts = Counter(item.path for item in items)
+    items.sort(key=lambda item: (item.path not in slow, -counts[item.path]))
 
 
 class Program(Protocol):

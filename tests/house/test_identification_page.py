@@ -14,6 +14,8 @@ from stickslip_sim.inputs import load_scene
 from tests.support.repository import ROOT
 from tests.support.tool import Capture, answered
 
+pytestmark = pytest.mark.slow
+
 ROW = re.compile(r'^ *([a-z]\w*(?:\.\w+)+(?:\[\d\])?) +'                                 # name
                  r'([\d.e+-]+)(?: (?:N s|[^\d ]+))?(?:/m)? +([\d.e+-]+)', re.MULTILINE)   # start and found
 

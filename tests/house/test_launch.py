@@ -21,7 +21,7 @@ from stickslip_sim.ros.controllers.controller_parameters import (  # isort: skip
 from stickslip_sim.ros.replay.replay_settings import PARAMETERS  # isort: skip
 from tests.support.ros2_control_client import Description  # isort: skip
 
-pytestmark = pytest.mark.ros
+pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
 CONTROLLER = {entry.name for entry in (*COMMON, *COMPENSATION)}
 KNOWN = {'sim_node': set(BY_NAME), 'replay_node': {entry.name for entry in PARAMETERS},

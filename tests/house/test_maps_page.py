@@ -13,6 +13,8 @@ from stickslip_sim.cli.main import run
 from tests.support.repository import ROOT
 from tests.support.tool import Capture
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope='module')
 def page() -> str:

@@ -20,7 +20,7 @@ from tests.support.ros_nodes import client
 from tests.support.tool import restore_interrupt
 from tests.support.waiting import DEADLINE
 
-pytestmark = pytest.mark.ros
+pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
 PAGE = ROOT / 'docs' / 'hil.md'
 HUMAN = 3.0      # s from the start of the axis to that of the controller: beyond the window of any limits from 0 on

@@ -15,6 +15,8 @@ from stickslip_sim.identification.identification import AT_BOUND, FOUND, NOT_IDE
 from stickslip_sim.recording import write_measured
 from tests.identification.measured_axis import between, measure
 
+pytestmark = pytest.mark.slow
+
 RIGID = stickslip.load_scene('paper_fig7', {'drive.course': 'steps', 'drive.times': (0.0, 2.0, 4.0),
                                             'drive.velocities': (0.003, 0.005, 0.002)})
 COMPLIANT = stickslip.load_scene('paper_fig8', {'drive.velocity': 0.003})

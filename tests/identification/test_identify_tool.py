@@ -18,6 +18,8 @@ from stickslip_sim.scene import load_scene
 from tests.support.measured_axes import FREE, VALUES, Readings, free_file, readings, start_scene
 from tests.support.tool import Capture, answered, refused
 
+pytestmark = pytest.mark.slow
+
 WIDE = {'axis.drive_stiffness': (5e4, 1e6), 'friction.static.initial': (0.15, 0.9),
         'friction.kinetic.coefficients[0]': (0.02, 0.15), 'friction.kinetic.coefficients[1]': (0.01, 0.3),
         'friction.kinetic.velocities[1]': (1e-3, 0.1)}

@@ -21,6 +21,8 @@ from stickslip_sim.study.description import versions_of_a_study
 from stickslip_sim.study.folder import PARTIAL, TABLE
 from tests.support.tool import Capture, restore_interrupt
 
+pytestmark = pytest.mark.slow
+
 distributed = pytest.importorskip('distributed', reason='needs the extra cluster')
 LONG = ['sweep', 'paper_fig7', '--over', 'drive.velocity=1e-3:0.03:16000:log', '--duration', '60']   # eight chunks
 ABSENT = 'tcp://127.0.0.1:9'

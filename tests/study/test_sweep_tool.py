@@ -22,6 +22,8 @@ from stickslip_sim.study.point_figures import FIGURES
 from stickslip_sim.study.table import read_columns, title_line
 from tests.support.tool import Capture, refused, restore_interrupt
 
+pytestmark = pytest.mark.slow
+
 SMALL = ['paper_fig7', '--over', 'drive.velocity=1e-3:0.06:6:log', '--over', 'axis.drive_stiffness=1e5:1e6:4:log']
 LONG = ['paper_fig7', '--over', 'drive.velocity=1e-3:0.03:8000:log', '--duration', '40']   # four chunks
 FULL = 'import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (600_000, 600_000)); '

@@ -18,7 +18,7 @@ from tests.support.node_processes import running
 from tests.support.rewritten_bags import rewritten
 from tests.support.ros_nodes import Client, client
 
-pytestmark = pytest.mark.ros
+pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
 from stickslip_msgs.srv import InjectFault, Step  # noqa: E402
 

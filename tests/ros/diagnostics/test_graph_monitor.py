@@ -15,7 +15,7 @@ from tests.support.ros2_control_client import THRESHOLD, Rule, always, hardware_
 from tests.support.ros_nodes import Client, client
 from tests.support.waiting import wait_for
 
-pytestmark = pytest.mark.ros
+pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
 ON = ('-p', 'joint_interface.enabled:=true')
 

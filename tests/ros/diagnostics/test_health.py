@@ -15,7 +15,7 @@ from tests.support.ros_nodes import client
 
 from stickslip_sim.ros.diagnostics.health_node import health_of  # isort: skip  # after ros_nodes, which skips without ROS
 
-pytestmark = pytest.mark.ros
+pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
 
 def health(*ros_args: str) -> tuple[int, str, str]:

@@ -25,7 +25,7 @@ from tests.support.waiting import wait_for
 
 from stickslip_msgs.srv import Step  # isort: skip
 
-pytestmark = pytest.mark.ros
+pytestmark = [pytest.mark.ros, pytest.mark.slow]
 _SENDER = """
 import sys, time, rclpy
 from rclpy.node import Node

@@ -19,7 +19,7 @@ from tests.support.waiting import wait_for
 from rcl_interfaces.srv import SetParameters, SetParametersAtomically  # isort: skip  # after ros_nodes, which skips
 from rclpy.parameter import Parameter  # isort: skip
 
-pytestmark = pytest.mark.ros
+pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
 
 def test_refused_commands_of_one_kind_do_not_hush_up_the_other() -> None:

@@ -21,7 +21,7 @@ from stickslip_sim.ros.node.recordings import (  # isort: skip  # after tests.su
     Recordings,
 )
 
-pytestmark = pytest.mark.ros
+pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
 
 class TestRecording:

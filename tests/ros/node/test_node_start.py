@@ -11,9 +11,10 @@ import pytest
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.scene import load_scene
 from tests.support.node_processes import assert_clean, executable, running
+from tests.support.refused_starts import ended_at_once
 from tests.support.ros_nodes import client
 
-pytestmark = pytest.mark.ros
+pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
 
 class TestRefusedStart:
@@ -103,7 +104,7 @@ class TestRefusedStart:
 
 
 def start(*ros_args: str) -> tuple[int, str]:
-    return run(executable('sim_node'), '--ros-args', *ros_args)
+    return ended_at_once('sim_node', '--ros-args', *ros_args)
 
 
 def run(*command: str) -> tuple[int, str]:

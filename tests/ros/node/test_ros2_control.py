@@ -30,7 +30,7 @@ from tests.support.ros2_control_client import (
 from tests.support.ros_nodes import Client, client, nanoseconds
 from tests.support.waiting import wait_for
 
-pytestmark = pytest.mark.ros
+pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
 ON = ('-p', 'joint_interface.enabled:=true')
 

@@ -33,7 +33,7 @@ from rclpy.qos import QoSProfile  # noqa: E402
 
 from stickslip_msgs.srv import Step  # noqa: E402
 
-pytestmark = pytest.mark.ros
+pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
 STALL = 0.2          # s
 MS = 1_000_000

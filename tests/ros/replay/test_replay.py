@@ -4,7 +4,6 @@
 
 import signal
 import statistics
-import subprocess
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -17,8 +16,9 @@ from stickslip_sim.core.errors import RecordingWarning
 from stickslip_sim.recording import open_bag, open_run, schema, write_bag
 from stickslip_sim.recording.topics import CLOCK, PARAMETER_EVENTS, RECORDED, SLIDER_STATE, Topic
 from tests.support.busy_machine import judged_by_time
-from tests.support.node_processes import assert_clean, executable, running
+from tests.support.node_processes import assert_clean, running
 from tests.support.recorded_runs import FACTS, damage, events, samples
+from tests.support.refused_starts import ended_at_once
 from tests.support.ros_nodes import Client, client
 from tests.support.tool import Capture, answered
 from tests.support.waiting import wait_for
@@ -32,7 +32,7 @@ from stickslip_msgs.msg import SliderState  # isort: skip
 from stickslip_sim.ros.replay.replay_settings import PARAMETERS  # isort: skip
 from stickslip_sim.ros.node.topics import message_type, qos  # isort: skip
 
-pytestmark = pytest.mark.ros
+pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
 SECOND = 1_000_000_000
 
@@ -281,9 +281,7 @@ class TestProcess:
 
 
 def run(*arguments: str) -> tuple[int, str]:
-    done = subprocess.run([executable('replay_node'), '--ros-args', *arguments], capture_output=True, text=True,
-                          timeout=60, check=False)
-    return done.returncode, done.stderr
+    return ended_at_once('replay_node', '--ros-args', *arguments)
 
 
 def another(path: Path, type_name: str, type_hash: str, topic: str = '/slider_state') -> Path:

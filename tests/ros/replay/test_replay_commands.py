@@ -24,7 +24,7 @@ from rclpy.serialization import serialize_message  # isort: skip
 from stickslip_msgs.msg import RigEvent  # isort: skip
 from stickslip_msgs.srv import Step  # isort: skip
 
-pytestmark = pytest.mark.ros
+pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
 SAME = ('/slider_state', '/friction_force', '/mode_event')
 LOCKSTEP = ('-p', 'time.mode:=lockstep')

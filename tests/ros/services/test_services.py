@@ -23,7 +23,7 @@ from tests.support.ros_nodes import Client, node_and_client
 
 from stickslip_msgs.srv import InjectFault, Step  # isort: skip
 
-pytestmark = pytest.mark.ros
+pytestmark = [pytest.mark.ros, pytest.mark.slow]
 CALLS = 150
 BILLION = 10**9
 COUNTS: tuple[int, ...] = (0, -1, -BILLION, BILLION, 100_001, 1, 2, 7, 50)

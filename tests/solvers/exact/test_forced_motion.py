@@ -17,6 +17,8 @@ from stickslip_sim.core.types import Event, EventKind, Mode
 from tests.support.axes import COMPLIANT, RIGID, make, paper_axis, random_axis
 from tests.support.forced_profiles import random_profiles, with_sinusoids
 
+pytestmark = pytest.mark.slow
+
 
 class Piece:
     """The motion from one event to the next as the model states it."""
