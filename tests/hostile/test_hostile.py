@@ -13,7 +13,7 @@ from stickslip_sim.core.input_profile import constant
 from stickslip_sim.core.types import EventKind, Mode
 from tests.hostile import report
 from tests.hostile.attack import Found, Tally, judge_again, one_round
-from tests.hostile.case import Case, Find, Run, run
+from tests.hostile.case import Case, Find, Run, Undecided, run
 from tests.hostile.generators import GENERATORS, draw
 from tests.hostile.judges import batch, bounds, guards, images, parts, reference, touch
 
@@ -25,6 +25,29 @@ KATO = (draw.paper() | draw.contact(5e6, 15000.0)
         | draw.static(0.12, 0.12000001110800634, 70.98870335904223, 'kato', 0.9904340921138295)
         | draw.kinetic([0.0, 0.035], [0.12, 0.05], branches=True) | draw.constant(0.006978529282690192)
         | {'initial.rest_time': 0.001})
+
+# what only rounding of the data decides, each with the seconds to run it and the event that it decides
+ROUNDING = {
+    'coasting in a thin band': (
+        draw.axis(350.0, 24887095.86501167, 93329.97135301224, 3432.3275)
+        | draw.contact(199096766.92009336, 263977.0225266447)
+        | draw.static(0.33840202163103306, 0.3384020219694351, 0.10675718973292454)
+        | draw.kinetic([0.0, 1.494939476299893e-06, 0.007354503689041886],
+                       [0.33840202163103306, 0.3384020191120692, 0.33839268284750085], branches=True)
+        | draw.constant(0.001175453461710623), 0.156, 14),
+    'a drive that turns with the force on the limit': (
+        draw.axis(1.0, 96.04318947087962, 0.0, 9.80665) | draw.contact() | draw.static(0.635)
+        | draw.kinetic([0.0], [0.635])
+        | {'friction.static.backward.initial': 0.0, 'friction.kinetic.backward.coefficients': [0.0]}
+        | draw.steps('drive', 'velocities', [0.0, 0.11195091109888311], [0.25771644732135, -0.25771644732135])
+        | {'drive.period': 0.22390182219776622}, 0.23, 0),
+    'a stop without acceleration': (
+        draw.axis(11263.317678828129, 99930437.14051418, 0.0, 152160.13762930935) | draw.contact() | draw.static(0.66)
+        | draw.kinetic([0.0], [0.5])
+        | {'friction.static.backward.initial': 0.0, 'friction.kinetic.backward.coefficients': [0.0]}
+        | draw.steps('drive', 'velocities', [0.0, 0.05919900698385758], [0.0, -0.06912301661272699])
+        | {'initial.stretch': -0.0006377745895225377}, 0.16, 5),
+}
 
 # what the attack, and audits before it, found wrong: each with the seconds to run it
 KNOWN = {
@@ -200,6 +223,19 @@ def test_the_reference_sees_a_missed_event(good: Run) -> None:
     reference.compare(short.parts, events, 20)
     with pytest.raises(Find):
         reference.compare(short.parts, events[:-1], 20)
+
+
+@pytest.mark.parametrize('scene', ROUNDING)
+def test_what_rounding_of_the_data_may_change_is_undecided_and_no_more(scene: str) -> None:
+    pytest.importorskip('mpmath')
+    values, duration, k = ROUNDING[scene]
+    done = run(Case(values, duration).parts)
+    with pytest.raises(Undecided, match=r'rounding of the data|double root'):
+        reference.judge(done)
+    events = done.events
+    events[k] = events[k]._replace(fraction=events[k].fraction + 1e-8)
+    with pytest.raises(Find):
+        reference.compare(done.parts, events, len(events))
 
 
 def test_a_find_is_written_and_judged_again(tmp_path: Path) -> None:
