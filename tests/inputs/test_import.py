@@ -172,3 +172,21 @@ def test_nothing_to_compare_with(run: MeasuredRun, tmp_path: Path, capsys: Captu
     assert 'rest: at rest, no complete cycle to be compared' in refused(
         capsys, 'compare', tmp_path / 'rest', 'paper_fig7', '--out', tmp_path / 'report')
     assert not (tmp_path / 'report').exists()
+
+
+def test_a_unit_has_a_factor(tmp_path: Path, capsys: Capture) -> None:
+    """Counts of an encoder that counts backwards, and a motor's voltage."""
+    path = tmp_path / 'counts.csv'
+    path.write_text('t,counts,volts\n0,0,1\n0.001,-3,2\n0.002,-20,-0.5\n', encoding='utf-8')
+    code, _, err = answered(capsys, 'import', path, '--columns', 'time=t,position=counts,external_force=volts',
+                            '--unit', 'position=-0.05 um,external_force=35.15N', '--out', tmp_path / 'run')
+    assert (code, err) == (0, '')
+    samples = read_run(tmp_path / 'run').samples
+    assert samples['position'].tolist() == [0.0, 1.5e-7, 1e-6]
+    assert samples['external_force'].tolist() == [35.15, 70.3, -17.575]
+
+
+@pytest.mark.parametrize('unit', ['0 mm', '-mm', '2e99 mm', '5', '1 mm mm'])
+def test_a_wrong_factor_is_refused(unit: str, data: Path, tmp_path: Path, capsys: Capture) -> None:
+    assert '--unit' in refused(capsys, 'import', data, '--columns', 'time=t,position=x', '--unit',
+                               f'time=ms,position={unit}', '--out', tmp_path / 'run')

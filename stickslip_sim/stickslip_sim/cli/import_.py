@@ -13,7 +13,8 @@ from .files import check_new_folder, new_folder, say_written
 @click.argument('data', metavar='DATA.csv|BAG')
 @click.option('--columns', multiple=True, required=True, metavar='time=T,position=X,...',
               help='The column of each quantity; of a bag TOPIC:FIELD, as joint_states:position[0].')
-@click.option('--unit', multiple=True, metavar='position=mm,...', help='Units of the columns [default: SI].')
+@click.option('--unit', multiple=True, metavar='position=mm,...',
+              help='Units of the columns [default: SI], with a factor if need be: position="-0.05 um".')
 @click.option('--stick-velocity', type=float, metavar='V',
               help='A slip is faster than this, m/s, and at its peak than 5 times it [default: 5 % of the highest].')
 @click.option('--out', required=True, metavar='RUN_FOLDER', help='New folder of the run.')

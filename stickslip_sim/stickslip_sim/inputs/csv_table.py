@@ -27,13 +27,22 @@ MOST_BYTES = 256 << 20
 
 
 class Wanted(NamedTuple):
-    """A column: its `name` and `unit`, the options that gave them, and the `units` that it may have."""
+    """A column: its `name` and `unit`, the options that gave them, and the `units` that it may have.
+
+    A number in it stands for so many units as `factor` says.
+    """
 
     name_option: str
     name: str
     unit_option: str
     unit: str
     units: Mapping[str, Fraction]
+    factor: Fraction = Fraction(1)
+
+    @property
+    def in_si(self) -> Fraction:
+        """What a 1 in the column is in SI; raises InputError on an unknown unit."""
+        return self.factor * self.units[unit_of(self.unit_option, self.unit, self.units)]
 
 
 class CsvTable:
@@ -50,8 +59,7 @@ class CsvTable:
         rows = self._rows(places, most_rows)
         for column, place in zip(wanted, places, strict=True):
             _check_heading(headings[place], column)
-        self.columns = [all_in_si(rows[:, i], column.units[unit_of(column.unit_option, column.unit, column.units)])
-                        for i, column in enumerate(wanted)]
+        self.columns = [all_in_si(rows[:, i], column.in_si) for i, column in enumerate(wanted)]
 
     def refuse(self, row: int, value: object, allowed: str, fix: str) -> NoReturn:
         """Raise the InputError for a row of the numbers."""

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A measurement: columns of a CSV file, or topics of a bag, over one time, in SI."""
 
+import re
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from pathlib import Path
@@ -19,6 +20,8 @@ QUANTITIES: Mapping[str, Mapping[str, Fraction]] = {
 }
 MOST_ROWS = 2_000_000
 COLUMNS_OPTION, UNIT_OPTION = '--columns', '--unit'
+_SCALED = re.compile(r'([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,2})?)\s*\*?\s*(.+)')   # 0.05 um
+_LARGEST = 1e15    # factor
 
 
 class MeasuredColumns(NamedTuple):
@@ -54,8 +57,7 @@ def load_measurement(path: Path, columns: Mapping[str, str], units: Mapping[str,
     for name in units:
         if name not in columns:
             raise InputError(UNIT_OPTION, name, f'of a quantity in {COLUMNS_OPTION}', 'add its column')
-    wanted = {name: Wanted(COLUMNS_OPTION, column, UNIT_OPTION, units.get(name, next(iter(QUANTITIES[name]))),
-                           QUANTITIES[name]) for name, column in columns.items()}
+    wanted = {name: _wanted(name, column, units.get(name)) for name, column in columns.items()}
     if path.is_dir() or path.suffix == '.mcap':
         return _of_bag(path, wanted)
     if 'time' not in wanted:
@@ -71,6 +73,17 @@ def load_measurement(path: Path, columns: Mapping[str, str], units: Mapping[str,
     if len(times) < 2:
         raise InputError('DATA', path.name, 'a file of two rows or more', 'a run takes time')
     return MeasuredColumns(times, numbers)
+
+
+def _wanted(name: str, column: str, unit: str | None) -> Wanted:
+    """Return the column of a quantity; its unit may have a factor before it: `0.05 um` a count, `-1 mm`."""
+    known = QUANTITIES[name]
+    scaled = None if unit is None else _SCALED.fullmatch(unit.strip())
+    factor = Fraction(scaled[1]) if scaled else Fraction(1)
+    if factor == 0 or abs(factor) > _LARGEST:
+        raise InputError(UNIT_OPTION, unit, 'a unit, or one with a factor that is not 0', 'for example 35.15 N')
+    word = scaled[2] if scaled else unit or next(iter(known))
+    return Wanted(COLUMNS_OPTION, column, UNIT_OPTION, word, known, factor)
 
 
 def _of_bag(path: Path, wanted: Mapping[str, Wanted]) -> MeasuredColumns:

@@ -12,7 +12,7 @@ import numpy as np
 from ..core.errors import InputError
 from ..recording import Bag, RecordedMessage, open_bag
 from .csv_table import Numbers, Wanted
-from .units import all_in_si, unit_of
+from .units import all_in_si
 
 LOG_TIME = 'log_time'
 _ELEMENT = re.compile(r'(\w+)\[([^\]]+)\]')   # velocity[0], or velocity[axis_drive] of a message with names
@@ -74,7 +74,7 @@ class TopicTable:
         if not np.isfinite(values).all():
             row = int(np.argmin(np.isfinite(values)))
             self.refuse(row, float(values[row]), 'a finite number', 'leave such messages out')
-        return all_in_si(values, column.units[unit_of(column.unit_option, column.unit, column.units)])
+        return all_in_si(values, column.in_si)
 
 
 def _value(message: Any, path: str) -> float:
