@@ -277,3 +277,18 @@ def test_a_motor_force_drives_an_axis_without_a_spring(tmp_path: Path) -> None:
         assert high - low < 0.01 * right
         assert low - 0.5 * (high - low) < right < high + 0.5 * (high - low), estimate
     assert found.runs < 2000
+
+
+def test_a_drive_that_was_measured_by_its_encoder(tmp_path: Path) -> None:
+    """Its feed is not known otherwise; what the steps of the encoder leave open of it is in the intervals."""
+    samples = stickslip.simulate(RIGID, 6.0, 1e-3).samples
+    random = np.random.default_rng(5)
+    write_measured(tmp_path / 'run', samples['time'], {
+        'position': np.round(samples['position'], 6), 'drive_position': np.round(samples['drive_position'], 6),
+        'drive_force': samples['drive_force'] + random.normal(0.0, 2.0, len(samples['time']))}, {})
+    start = changed(RIGID, {**OFF, 'drive.course': 'constant', 'drive.velocity': 0.0})
+    found = stickslip.identify(stickslip.read_run(tmp_path / 'run'), start, {
+        **OF_FRICTION, 'axis.drive_stiffness': between(2.5e5, 1.5e6)})
+    check(found, RIGID, 0.005)
+    assert found.notes == ('the drive moves as it was measured',)
+    assert found.runs < 10_000

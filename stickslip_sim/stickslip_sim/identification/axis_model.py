@@ -4,6 +4,8 @@
 
 import math
 from collections.abc import Sequence
+from copy import copy
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -38,15 +40,13 @@ class AxisModel:
     """
 
     def __init__(self, scene: Scene, parameters: Sequence[FreeParameter], measurement: SensorReadings) -> None:
-        self.scene, self._parameters, self._measurement = scene, tuple(parameters), measurement
+        self.scene, self._parameters = scene, tuple(parameters)
         self._own = [k for k, one in enumerate(parameters) if one.sensor is None]
         self._names = [parameters[k].name for k in self._own]
-        self._profiles: dict[object, Any] = {}
+        self._take_inputs(measurement)
         self._keeps_drive = measurement.drive is not None or not any(name.startswith('drive.') for name in self._names)
         self._keeps_force = not any(one.name.startswith(('force.', 'sensor.external_force.')) for one in parameters)
         self._tables = SameTables(scene, self._names)
-        force = measurement.force or constant(0.0)
-        self._force = np.array([force.starts, force.values, force.rates])
         self.is_pushed = measurement.force is not None and drives_directly(scene)
         self.runs = 0
 
@@ -59,6 +59,25 @@ class AxisModel:
             return False
         self._tables = SameTables(changed(self.scene, self.changes(values)), self._names)
         return True
+
+    @property
+    def has_readings(self) -> bool:
+        """Whether an input was measured."""
+        return self._measurement.drive_readings is not None or self._measurement.force_readings is not None
+
+    def with_inputs_read_again(self, random: np.random.Generator) -> 'AxisModel':
+        """Return the model with inputs as other readings of them would have given them, with noise of their own."""
+        measurement = self._measurement
+        drive, force = measurement.drive_readings, measurement.force_readings
+        again = copy(self)
+        again._take_inputs(replace(measurement, drive=drive and drive.read_again(random),
+                                   force=force and force.read_again(random)))
+        return again
+
+    def _take_inputs(self, measurement: SensorReadings) -> None:
+        self._measurement, self._profiles = measurement, dict[object, Any]()
+        force = measurement.force or constant(0.0)
+        self._force = np.array([force.starts, force.values, force.rates])
 
     def changes(self, values: Numbers) -> dict[str, object]:
         """Return the changes to the scene that trial values are, with static friction not below kinetic."""

@@ -4,6 +4,7 @@
 
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +23,7 @@ from .identification import (
     SlipFit,
     StartEnd,
 )
+from .input_certainty import changes_by_inputs, covariance_by_inputs, more_by_inputs
 from .problem import FitProblem
 from .profiles import with_profile_intervals
 from .residual_tests import correlation_length, misfits_of
@@ -50,16 +52,22 @@ def identification_of(problem: FitProblem, scene: Scene, ends: Sequence[Ended], 
     assert fitted is not None
     channels = _channels(problem, fitted)
     information = best.solution.information
+    changes = changes_by_inputs(problem, point) if best.of_slips is None else []
+    more = more_by_inputs(problem, changes)
     inflation = _inflation(problem, fitted) if best.of_slips is None else max(best.of_slips, 1.0)
-    known = certainty_of(information, inflation, problem.parameters)
+    of_readings = certainty_of(information, inflation, problem.parameters)
+    by_inputs = covariance_by_inputs(problem, best.solution, changes)
+    known = of_readings._replace(covariance=of_readings.covariance + by_inputs)
     values = problem.values(point)
     stretches = problem.stretches(0).parts
     times = problem.measurement.times + problem.measurement.shift
     misfits = [misfit for k, channel in enumerate(problem.measurement.channels)
-               for misfit in misfits_of(channel, problem.white(k, channel.values - fitted[k]), times, stretches)]
+               for misfit in misfits_of(channel, problem.white(k, channel.values - fitted[k]), times, stretches,
+                                        float(more[k]))]
     estimates = _estimates(problem, values, known, _WHOLE if best.of_slips is None else _SINGLE)
     if best.of_slips is None and not misfits:
-        estimates = with_profile_intervals(estimates, problem, best.solution, known, inflation)
+        estimates = with_profile_intervals(estimates, problem, best.solution, of_readings, inflation)
+        estimates = tuple(map(_widened, estimates, problem.parameters, np.sqrt(np.diag(by_inputs))))
     return Identification(
         start=scene, scene=changed(scene, problem.model.changes(values)),
         estimates=estimates, correlation=known.correlation, channels=channels,
@@ -122,6 +130,16 @@ def _estimate(one: FreeParameter, value: float, deviation: float, is_known: bool
                         (one.low, one.high), None, kind, 'the data do not determine it by itself')
     return Estimate(one.name, one.unit, value, one.start, one.low, one.high, one.logarithmic, own, ends, None, kind,
                     derivation)
+
+
+def _widened(one: Estimate, parameter: FreeParameter, deviation: float) -> Estimate:
+    """Return an estimate whose profile has the standard deviation by the inputs in it, as its covariance has."""
+    if one.profile is None or deviation == 0.0:
+        return one
+    middle, more = parameter.inner(one.value), _SCORE * deviation
+    low, high = (parameter.inner(end) for end in one.profile)
+    return replace(one, profile=(parameter.outer(middle - float(np.hypot(middle - low, more))),
+                                 parameter.outer(middle + float(np.hypot(high - middle, more)))))
 
 
 def _start_end(problem: FitProblem, end: Ended, is_best: bool) -> StartEnd:

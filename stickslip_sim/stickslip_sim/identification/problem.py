@@ -3,6 +3,7 @@
 """The residuals of an identification: of single slips, of stretches between measured arrests, and of the whole run."""
 
 from collections.abc import Sequence
+from copy import copy
 from typing import NamedTuple
 
 import numpy as np
@@ -158,6 +159,12 @@ class FitProblem:
         targets = tuple(channel.values[rows] * factor
                         for channel, factor in zip(self.measurement.channels, factors, strict=True))
         return Stretches(tuple(parts), rows, targets, factors, filters)
+
+    def with_inputs_read_again(self, random: np.random.Generator) -> 'FitProblem':
+        """Return the problem with other readings of the same inputs."""
+        again = copy(self)
+        again.model = self.model.with_inputs_read_again(random)
+        return again
 
     def _roughly(self, channel: Channel) -> float:
         """Return the standard deviation of a channel where a stretch begins from a measured arrest."""

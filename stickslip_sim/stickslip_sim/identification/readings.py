@@ -15,13 +15,12 @@ from ..recording.measured_run import MeasuredRun
 from ..runs import Run
 from ..scene import Scene
 from .channel_units import OUTPUTS
-from .measured_inputs import profile_through, velocity_within
+from .input_readings import HELD, LINE, PLACES, InputReadings
 from .sensor_noise import Numbers, noise_of, quantum_of, weights_of
 
 _FEWEST = 20          # samples
 _LONGEST_GAP = 1.0    # of the time that was measured without it
 _MOST, _NOISES = 0.99, 4.0   # a drive is that of the scene where this share of it is within so many deviations
-_WITHIN = 2.0         # standard deviations of a measured drive position: so near to it the drive is taken to move
 _RATES = 10.0, 2e5    # Hz
 
 
@@ -44,7 +43,8 @@ class Channel:
 class SensorReadings:
     """Channels over `times` (n,), s since the start of the simulation, which is `shift` s of the measurement.
 
-    `drive` and `force` are the inputs, where they were measured; `period` (s) is the median time between samples.
+    `drive` and `force` are the inputs, where they were measured, made of `drive_readings` and `force_readings`;
+    `period` (s) is the median time between samples.
     """
 
     times: Numbers
@@ -54,6 +54,8 @@ class SensorReadings:
     drive: InputProfile | None
     force: InputProfile | None
     notes: tuple[str, ...]
+    drive_readings: InputReadings | None = None
+    force_readings: InputReadings | None = None
 
     @property
     def instants(self) -> Instants:
@@ -89,8 +91,9 @@ def readings_of(run: Run, scene: Scene, resolutions: Mapping[str, float]) -> Sen
     _check_motion(channels)
     notes = [f'time {shift:g} s of the measurement is the start of the simulation'] if shift else []
     force = columns['drive_force'] if as_force else columns['external_force'] if 'external_force' in known else None
-    return SensorReadings(times, shift, period, channels, _drive(columns, known, times, scene, notes),
-                       _force(force, times, scene), tuple(notes))
+    of_drive, of_force = _drive(columns, known, times, scene, notes), _force(force, times, scene)
+    return SensorReadings(times, shift, period, channels, of_drive and of_drive.profile(),
+                          of_force and of_force.profile(), tuple(notes), of_drive, of_force)
 
 
 def _times(times: Numbers) -> tuple[Numbers, float, float]:
@@ -134,7 +137,7 @@ def drives_directly(scene: Scene) -> bool:
 
 
 def _drive(columns: Mapping[str, Numbers], known: tuple[str, ...], times: Numbers, scene: Scene, notes: list[str]
-           ) -> InputProfile | None:
+           ) -> InputReadings | None:
     """Return the measured drive, None where that of the scene is as good."""
     if 'drive_velocity' in known:
         values = columns['drive_velocity']
@@ -150,10 +153,8 @@ def _drive(columns: Mapping[str, Numbers], known: tuple[str, ...], times: Number
         return None
     notes.append('the drive moves as it was measured')
     if 'drive_velocity' not in known:
-        places = columns['drive_position']
-        quantum = quantum_of(places)
-        return velocity_within(times, places, max(0.5 * quantum, _WITHIN * noise_of(places, quantum)))
-    return profile_through(times, values, _is_held(columns, times, values))
+        return InputReadings(times, columns['drive_position'], PLACES)
+    return InputReadings(times, values, HELD if _is_held(columns, times, values) else LINE)
 
 
 def _is_held(columns: Mapping[str, Numbers], times: Numbers, values: Numbers) -> bool:
@@ -165,11 +166,11 @@ def _is_held(columns: Mapping[str, Numbers], times: Numbers, values: Numbers) ->
     return float(held @ held) < float(linear @ linear)
 
 
-def _force(values: NDArray[np.float64] | None, times: Numbers, scene: Scene) -> InputProfile | None:
+def _force(values: NDArray[np.float64] | None, times: Numbers, scene: Scene) -> InputReadings | None:
     """Return the measured force on the slider, None where that of the scene is as good."""
     if values is None:
         return None
     own = np.array([scene.force.value_at(float(time)) for time in times])
     if np.abs(values - own).max() <= 1e-6 * max(np.abs(own).max(), 1e-12):
         return None
-    return profile_through(times, values)
+    return InputReadings(times, values, LINE)

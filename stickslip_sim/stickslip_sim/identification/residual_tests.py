@@ -20,15 +20,20 @@ Numbers = NDArray[np.float64]
 
 _CHANCE = 1e-4       # of rejecting a model that is right
 _SLACK = 1.15        # on a mean square: the noise is known only so well
+_BY_INPUTS = 1.1     # of a mean square: more by the noise of inputs, whose residuals go together
 _CORRELATED = 0.2    # of neighbouring residuals
 
 
-def misfits_of(channel: Channel, residuals: Numbers, times: Numbers, stretches: Sequence[MeasuredStretch]
-               ) -> list[Misfit]:
-    """Return the tests that the residuals (n,) of a channel, in its unit, fail."""
-    squares = channel.weights * (residuals / channel.resolution)**2
+def misfits_of(channel: Channel, residuals: Numbers, times: Numbers, stretches: Sequence[MeasuredStretch],
+               more: float = 1.0) -> list[Misfit]:
+    """Return the tests that the residuals (n,) of a channel, in its unit, fail.
+
+    They may be larger by the factor `more` in the mean square, by the noise of inputs, and go together then.
+    """
+    squares = channel.weights * (residuals / channel.resolution)**2 / more
     found = [_size(channel, squares, times, np.arange(len(times)), 1, 'mean square')]
-    found.append(_correlation(channel, residuals, times))
+    if more < _BY_INPUTS:
+        found.append(_correlation(channel, residuals, times))
     if found[0] is not None:
         found += [_size(channel, squares, times, stretch.rows, len(stretches), 'mean square of a stretch')
                   for stretch in stretches]
