@@ -65,6 +65,11 @@ project(simulation_interfaces)
 find_package(ament_cmake REQUIRED)
 find_package(rosidl_default_generators REQUIRED)
 rosidl_generate_interfaces(${PROJECT_NAME} %s)
+# of C++, compiled together: two thirds of the time
+foreach(support fastrtps_c fastrtps_cpp introspection_cpp cpp)
+  set_target_properties(${PROJECT_NAME}__rosidl_typesupport_${support} PROPERTIES
+    UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 0)
+endforeach()
 ament_package()
 '''
 _PACKAGE = '''
