@@ -13,7 +13,7 @@ from stickslip_sim.core.input_profile import constant
 from stickslip_sim.core.types import EventKind, Mode
 from tests.hostile import report
 from tests.hostile.attack import Found, Tally, judge_again, one_round
-from tests.hostile.case import Case, Find, Run, Undecided, run
+from tests.hostile.case import Case, Find, Run, Undecided, Values, run
 from tests.hostile.generators import GENERATORS, draw
 from tests.hostile.judges import batch, bounds, guards, images, parts, reference, touch
 
@@ -96,7 +96,24 @@ KNOWN = {
            'friction.kinetic.backward.coefficients': [0.0, 0.0], 'drive.course': 'ramp',
            'drive.acceleration': 0.0007310528496116081}, 0.5),
     "Kato's law all but exponential, from an arrest on its limit": (KATO, 2.0),
-    'the same under a sinusoid': (
+    'mu_s waits for 13 ps': (
+        draw.axis(11.799584113343863, 5112853.415158913, 2256.4520231740685, 73.96390721626602) | draw.contact()
+        | draw.static(0.8689223977642208, 0.9092787578147266, 0.20686718395072204)
+        | draw.kinetic([0.0, 0.0035394194975010124], [0.8689223977642208, 0.5249314697124853], branches=True)
+        | draw.constant(-0.001424813853457483, -24.36896357165652)
+        | {'friction.static.delay': 1.3100050399632882e-11, 'initial.velocity': -0.001424813853457483,
+           'initial.rest_time': 0.0}, 0.29505057499772314),
+    'a force on a limit that waits, and moves on': (
+        draw.axis(2.0, 4.0, 1.0, 8.0) | draw.contact() | draw.static(0.25, 0.5, 0.5) | draw.kinetic([0.0], [0.25])
+        | draw.constant(0.0, -2.0) | {'axis.damper': 'slideway', 'friction.static.delay': 1.5, 'drive.course': 'ramp',
+                                      'drive.acceleration': -3.0, 'initial.rest_time': 0.0}, 3.0),
+    'a rest that begins a last bit beyond its delay of hours': (
+        draw.axis(20424.671705516645, 9339414764.468754, 0.0, 200297.60678090478)
+        | draw.contact(12038283639.701122) | draw.static(0.7857669235010063, 1.2975801128561235, 0.06232322983494321)
+        | draw.kinetic([0.0, 0.00022206069658608536], [0.7857669235010063, 0.349438724250315])
+        | draw.constant(0.00031070307959729963, -49770.195483764175)
+        | {'friction.static.delay': 74495.24881522506, 'initial.rest_time': 74495.24881522507}, 0.3),
+    "Kato's law all but exponential under a sinusoid": (
         KATO | {'drive.amplitudes': [0.0005], 'drive.frequencies': [3.0], 'drive.phases': [0.1]}, 1.0),
 }
 
@@ -176,6 +193,16 @@ def test_an_invented_event_is_seen(good: Run) -> None:
     events, end = good.stretches[0]
     invented = events[0]._replace(fraction=events[0].fraction - 0.1, drive_force=events[0].drive_force - 120.0)
     assert guards.judge([good._replace(stretches=[([invented, *events], end)])])[0]
+
+
+@pytest.mark.parametrize('closure', [{'contact.arrest': 'undeflected'}, {'contact.break_away': 'drive_force'},
+                                     {'friction.static.delay': 0.1}, {'axis.damper': 'slideway'}], ids=repr)
+def test_another_closure_is_seen(closure: Values) -> None:
+    values = CASE.values | draw.contact(5e6, 15000.0) | draw.constant(0.02)   # breaks away while the contact rings
+    usual, other = run(Case(values, 1.0).parts), run(Case(values | closure, 1.0).parts)
+    assert guards.judge([usual, other]) == [[], []]
+    assert guards.judge([usual._replace(parts=other.parts)])[0]
+    assert guards.judge([other._replace(parts=usual.parts)])[0]
 
 
 def test_a_graze_between_samples_is_seen() -> None:

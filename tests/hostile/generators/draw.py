@@ -77,6 +77,20 @@ def starts(rng: random.Random, speed: float) -> Values:
     return {'initial.velocity': rng.choice((-1.0, 1.0)) * speed, 'initial.rest_time': 0.0}
 
 
+def closures(rng: random.Random, values: Values, share: float = 0.12) -> Values:
+    """Return the switches of how stick begins and ends, each with a probability of `share`."""
+    found: Values = {}
+    if values['contact.model'] == 'compliant':
+        found = {name: way for name, way in (('contact.arrest', 'undeflected'), ('contact.break_away', 'drive_force'))
+                 if rng.random() < share}
+    if rng.random() < share:
+        found['axis.damper'] = 'slideway'
+    tau = values.get('friction.static.time_constant')
+    if tau is not None and rng.random() < share:
+        found['friction.static.delay'] = min(tau * powers(rng, 1e-3, 30.0), 1e6)
+    return found
+
+
 def paper(**changes: Any) -> Values:
     """Return the values of the paper's axis with a rigid contact and one branch, without inputs."""
     return (axis(350.0, 6e5, 4000.0, 3432.3275) | contact() | static(0.12, 0.24, 0.2)

@@ -8,10 +8,11 @@ from stickslip_sim.core.errors import SolverError
 from stickslip_sim.core.types import EventKind
 
 from ..case import Case, Values, all_events
-from . import degenerate, draw, inputs, machines, ranges
+from . import degenerate, draw, inputs, machines, ranges, sides
 
 _BASES = (machines.any_machine, machines.any_machine, machines.two_breakpoints, inputs.sines, inputs.step_at_event,
-          ranges.excesses, ranges.periodic, ranges.static_laws, degenerate.ties)
+          ranges.excesses, ranges.periodic, ranges.static_laws, degenerate.ties, sides.two_directions,
+          sides.odd_directions, sides.mid_cycle)
 
 
 def loads(rng: random.Random) -> Case:
@@ -21,6 +22,8 @@ def loads(rng: random.Random) -> Case:
     times = [0.0, *_times(rng, case)]
     forces = [normal * rng.choice((0.0, 0.0, -1.0, -0.5, rng.uniform(-1.0, 0.0), rng.uniform(0.0, 2.0), 1e-12))
               for _ in times]
+    if 'initial.deflection' in case.values:   # which the contact can hold without a load
+        forces[0] = 0.0
     values: Values = case.values | draw.steps('normal_load', 'forces', times, forces)
     if rng.random() < 0.3:
         values['normal_load.period'] = max(times[-1] * rng.uniform(1.01, 1.5), 1e-6)

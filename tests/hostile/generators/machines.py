@@ -24,7 +24,7 @@ def two_breakpoints(rng: random.Random) -> Case:
     values |= _static(rng, at_rest)
     feed = rng.choice((-1.0, 1.0)) * draw.powers(rng, 1e-5, 0.1)
     values |= draw.constant(feed, rng.choice((0.0, rng.uniform(-0.5, 0.5) * at_rest * normal)))
-    values |= draw.starts(rng, feed)
+    values |= draw.starts(rng, feed) | draw.closures(rng, values)
     slow = at_rest * normal / stiffness / abs(feed)
     return Case(values, min(draw.powers(rng, 1.0, 60.0), 30.0 * slow + 20.0 / math.sqrt(stiffness / mass)))
 
@@ -52,7 +52,7 @@ def any_machine(rng: random.Random) -> Case:
     feed = speed * draw.powers(rng, 1e-3, 1.0)
     duration = rng.uniform(5.0, 60.0) / omega + min(3.0 * at_rest * normal / stiffness / feed, 100.0 / omega)
     values |= _drive(rng, feed, duration) | _force(rng, normal * at_rest, duration) | draw.starts(rng, feed)
-    return Case(values, duration)
+    return Case(values | draw.closures(rng, values), duration)
 
 
 def _contact(rng: random.Random, mass: float, stiffness: float) -> Values:

@@ -71,7 +71,8 @@ def speed_bound(run: Run) -> float:
     axis, drive, force = run.parts.heaviest, run.parts.drive, run.parts.force
     end = run.parts.duration
     fastest, changes = _most(drive, end), _changes(drive, end)
-    pull = _most(force, end) + axis.normal_force * max(_coefficients(axis, run))
+    # a damper on the slideway is one on the drive and a force against its velocity
+    pull = _most(force, end) + axis.normal_force * max(_coefficients(axis, run)) + axis.slideway_damping * fastest
     start = abs(run.parts.initial.velocity)
     # a slip begins with a stretch that a rest can hold; one rest is as good as any other
     stretch = (axis.normal_force * max(_coefficients(axis, run)) + _most(force, end)

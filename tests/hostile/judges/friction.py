@@ -11,7 +11,7 @@ import numpy as np
 from stickslip_sim.axis import Axis, Friction
 from stickslip_sim.friction import StaticLaw, StaticLawKind
 
-from .extended import Long
+Long = np.longdouble
 
 
 class Line(NamedTuple):
@@ -72,6 +72,11 @@ def _line(speeds: Any, values: Any, end_slope: float, speed: float) -> Line:
 def static(law: StaticLaw, rest: Any) -> tuple[Any, Any]:
     """Return mu_s and its rate after rest times (an array)."""
     rest = np.asarray(rest, dtype=Long)
+    values, growth = _grown(law, np.maximum(rest - Long(law.delay), 0))
+    return values, np.where(rest < Long(law.delay), 0, growth)
+
+
+def _grown(law: StaticLaw, rest: Any) -> tuple[Any, Any]:
     zero = np.zeros_like(rest)
     initial, rise = Long(law.initial), Long(law.limit) - Long(law.initial)
     if law.kind == StaticLawKind.CONSTANT:

@@ -103,7 +103,7 @@ def _time_unit(parts: Parts, events: Sequence[Event], k: float) -> None:
 def _stiffened(axis: Axis, stiffer: float, damper: float) -> Axis:
     contact = axis.contact
     if isinstance(contact, CompliantContact):
-        contact = CompliantContact(stiffer * contact.stiffness, damper * contact.damping)
+        contact = replace(contact, stiffness=stiffer * contact.stiffness, damping=damper * contact.damping)
     return replace(axis, drive_stiffness=stiffer * axis.drive_stiffness, drive_damping=damper * axis.drive_damping,
                    contact=contact)
 
@@ -122,7 +122,7 @@ def _faster_friction(friction: Friction, k: float) -> Friction:
 
 
 def _slower(friction: Friction, k: float) -> Friction:
-    static = replace(friction.static, time_constant=k * friction.static.time_constant)
+    static = replace(friction.static, time_constant=k * friction.static.time_constant, delay=k * friction.static.delay)
     return replace(friction, static=static, backward=friction.backward and _slower(friction.backward, k))
 
 

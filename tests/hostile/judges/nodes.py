@@ -72,7 +72,7 @@ def _node_of_event(event: Event, excess: Any, excess_noise: Any, jumped: bool, p
     axis = axis_at(parts, event.instant)
     contact, kinetic = axis.contact, axis.friction.along(event.direction).kinetic
     deflection = 0.0
-    if isinstance(contact, CompliantContact) and event.mode == Mode.STICK:
+    if isinstance(contact, CompliantContact) and event.mode == Mode.STICK and not contact.undeflected:
         deflection = event.direction * axis.normal_force * kinetic.coefficients[0] / contact.stiffness
     return Node(event.instant, event, event.mode, event.direction, event.position, event.velocity, event.drive_force,
                 deflection, 0.0, excess, excess_noise, jumped)

@@ -129,7 +129,8 @@ def _start(acting: _Setting, begin: Node) -> tuple[Any, Any]:
 def _start_force(acting: _Setting, begin: Node) -> tuple[Any, Any]:
     """Return f at the node and its rounding: less than that of the sum where the event itself says what f is."""
     held, noise = acting.held, acting.rounding
-    net = Long(begin.drive_force) + acting.inputs.external_force
+    braked = Long(acting.axis.slideway_damping) * Long(begin.velocity)   # no part of the drive's force
+    net = Long(begin.drive_force) - braked + acting.inputs.external_force
     force = net - held.now if held.moves else net
     event = begin.event
     if event is None or begin.new_force or begin.mode not in SLIP:
@@ -151,8 +152,9 @@ def _rates(acting: _Setting) -> Any:
     """Return A."""
     axis, held, inputs = acting.axis, acting.held, acting.inputs
     m, c, h = Long(axis.mass), Long(axis.drive_stiffness), Long(axis.drive_damping)
+    feed = h * Long(axis.feed_share)
     rates = np.zeros((acting.size, acting.size), dtype=Long)
-    rates[F, V], rates[F, U], rates[F, ONE] = c, -c, h * inputs.drive.rate + inputs.force.rate
+    rates[F, V], rates[F, U], rates[F, ONE] = c, -c, feed * inputs.drive.rate + inputs.force.rate
     if held.moves:
         rates[F, U] = -(c + held.stiffness)
         rates[F, F] = -(h + held.damping) / m
@@ -163,7 +165,7 @@ def _rates(acting: _Setting) -> Any:
         w, amplitude = 2 * PI * Long(wave.sinusoid.frequency), Long(wave.sinusoid.amplitude)
         rates[at, at + 1], rates[at + 1, at] = w, -w
         rates[F, at] += 0 if wave.is_force else c * amplitude
-        rates[F, at + 1] += w * amplitude * (1 if wave.is_force else h)
+        rates[F, at + 1] += w * amplitude * (1 if wave.is_force else feed)
     return rates
 
 
@@ -172,7 +174,8 @@ def _outputs(acting: _Setting) -> Any:
     held = acting.held
     outputs = np.zeros((3, acting.size), dtype=Long)
     outputs[0, U] = outputs[1, Y] = outputs[2, F] = 1
-    outputs[2, U], outputs[2, Y], outputs[2, ONE] = held.damping, held.stiffness, held.offset
+    braked = Long(acting.axis.slideway_damping)
+    outputs[2, U], outputs[2, Y], outputs[2, ONE] = held.damping + braked, held.stiffness, held.offset
     return outputs
 
 

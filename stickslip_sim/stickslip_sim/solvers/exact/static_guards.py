@@ -24,7 +24,7 @@ STEPS = 100_000
 _DIRECT_STEPS = 8
 GAVE_UP = -1.0     # instead of a time: the steps were used up
 _NO_TIME = 1e-30  # of τ: with n near 1 mu_s outruns a force for less than that, and never in doubles
-_SAME_TIME = 2.0 ** -50   # s, and of a time: more than rounding of the time of a segment's start
+_SAME_TIME = 2.0 ** -50   # of a time: more than rounding of the time of a segment's start
 
 
 @inlined
@@ -49,7 +49,7 @@ def _one_side(p: Parameters, s: State, force: float, rate: float, second_rate: f
               horizon: float) -> float:
     """Return when N mu_s − force comes down to 0; `side` is the sign of the force against which mu_s holds."""
     normal, rest = p.normal_force, s.rest
-    if p.static_law == CONSTANT or rest == math.inf:
+    if p.static_law == CONSTANT or rest == math.inf or rest < p.static_delay:
         t = first_crossing(max(normal * static_limit(p, rest, side) - force, 0.0), -rate, -second_rate)
         return t if t <= horizon else math.inf
     if rate <= 0.0 and second_rate <= 0.0:
@@ -120,9 +120,10 @@ def grown(p: Parameters, age: float, side: float) -> StaticGrowth:
 def delay_left(p: Parameters, s: State) -> float:
     """Return how long mu_s still waits for its growth, s; up to rounding of the time it waits no more."""
     left = p.static_delay - s.rest
-    if p.static_delay == 0.0 or left < -_SAME_TIME - _SAME_TIME * p.static_delay:
+    rounding = _SAME_TIME * ((s.fraction if s.second == 0.0 else 1.0) + p.static_delay)
+    if p.static_delay == 0.0 or left < -rounding:
         return 0.0
-    if left <= _SAME_TIME + _SAME_TIME * p.static_delay:
+    if left <= rounding:
         s.rest = p.static_delay
         return 0.0
     return left
