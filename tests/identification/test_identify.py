@@ -261,7 +261,7 @@ def test_a_motor_force_drives_an_axis_without_a_spring(tmp_path: Path) -> None:
         'force.frequency': 1.0})
     samples = stickslip.simulate(axis, 3.0).samples
     noise = np.random.default_rng(2).normal(0.0, 0.3, len(samples['time']))
-    write_measured(tmp_path / 'run', samples['time'], {
+    write_measured(tmp_path / 'run', samples['time'] + 0.7, {   # the clock starts before the motion
         'position': np.round(samples['position'], 6), 'drive_force': samples['external_force'] + noise}, {})
     start = changed(axis, {'axis.mass': 130.0, 'friction.kinetic.end_slope': 1.4, 'force.course': 'constant',
                            'friction.static.initial': 0.3, 'friction.kinetic.coefficients': (0.27,)})
@@ -269,7 +269,8 @@ def test_a_motor_force_drives_an_axis_without_a_spring(tmp_path: Path) -> None:
         'axis.mass': between(50.0, 200.0), 'friction.kinetic.coefficients[0]': between(0.05, 0.3),
         'friction.static.initial': between(0.05, 0.5), 'friction.kinetic.end_slope': between(0.5, 5.0)})
     assert found.fits, found.misfits
-    assert not found.notes
+    assert found.shift == 0.7
+    assert len(found.notes) == 1
     for name, right in (('axis.mass', 95.0), ('friction.kinetic.coefficients[0]', 0.2),
                         ('friction.kinetic.end_slope', 2.0)):
         estimate = next(one for one in found.estimates if one.name == name)

@@ -72,9 +72,19 @@ def test_noise_of_a_force_becomes_white(name: str, resolution: float) -> None:
 def test_after_a_gap_the_filter_starts_anew() -> None:
     """What came before, a drift of 1 mm, is not taken for something new."""
     times = np.concatenate([TIMES[:1000], TIMES[1500:]])
-    (one,) = filters_of(measured('position', 1e-7, times), 0.3, 95.0, NONE)
-    residuals = np.where(times < 1.2, 0.0, 1e-3)
-    assert np.abs(filtered(one, residuals)).max() < 1e-6
+    (one,) = filters_of(measured('position', 1e-7, times), 0.3, 95.0, np.array([2.5]))
+    residuals = np.where(times < 1.2, 0.0, 1e-3 * np.cos(times))
+    white = filtered(one, residuals)
+    assert np.abs(white[times < 2.5]).max() == 0.0   # nor what nobody knows of the force in the gap, up to a stop
+    assert np.abs(white[times > 2.6]).max() > 0.0
+
+
+@pytest.mark.parametrize('moves', [False, True])
+def test_a_start_in_motion_counts_from_its_first_stop_on(moves: bool) -> None:
+    (one,) = filters_of(measured('position', 1e-7), 0.3, 95.0, np.array([2.5]), moves)
+    white = filtered(one, np.random.default_rng(1).normal(0.0, 1e-7, len(TIMES)))
+    assert bool(np.any(white[TIMES < 2.4])) is not moves
+    assert np.any(white[TIMES > 2.6])
 
 
 def test_a_force_without_noise_needs_no_filter() -> None:

@@ -40,8 +40,9 @@ _LEFT = 0.01        # of a step that the filter has not learnt yet
 class NoiseFilter(NamedTuple):
     """(1 − z⁻¹)ⁿ over 1 + a₁ z⁻¹ + …; what comes out has a standard `deviation`, in the unit of the channel.
 
-    It starts anew at the rows `begins`, after gaps.  `counts` (n,) is 0 where the slider has just come to a stop, else
-    1; `roots` (n,) are those of the weights of the readings.
+    It starts anew at the rows `begins`, after gaps.  `counts` (n,) is 0 where the slider has just come to a stop, and
+    from a gap, over which nobody knows the force, or a start in motion, to the next stop; else 1.  `roots` (n,) are
+    those of the weights of the readings.
     """
 
     order: int
@@ -69,21 +70,22 @@ class NoiseFilter(NamedTuple):
         return np.asarray(self.roots * self.white(residuals))
 
 
-def filters_of(measurement: SensorReadings, force_noise: float, mass: float, stops: Numbers
-               ) -> tuple[NoiseFilter | None, ...]:
+def filters_of(measurement: SensorReadings, force_noise: float, mass: float, stops: Numbers,
+               moves: bool = False) -> tuple[NoiseFilter | None, ...]:
     """Return a filter for each channel, None where noise of the force (N, a standard deviation) does not show.
 
-    The slider comes to rest, or turns, at the times `stops` (s).
+    The slider comes to rest, or turns, at the times `stops` (s); at the start it `moves`, nobody knows how, or rests.
     """
     step = force_noise / mass * measurement.period        # m/s, what one reading of the force is off by
     gaps = np.flatnonzero(np.diff(measurement.times) > _GAP * measurement.period) + 1
     begins = (0, *(int(row) for row in gaps))
     rows = np.searchsorted(measurement.times, stops)
-    return tuple(_filter(channel, step, measurement.period, begins, rows) for channel in measurement.channels)
+    return tuple(_filter(channel, step, measurement.period, begins, rows, moves)
+                 for channel in measurement.channels)
 
 
-def _filter(channel: Channel, step: float, period: float, begins: tuple[int, ...], stops: NDArray[np.intp]
-            ) -> NoiseFilter | None:
+def _filter(channel: Channel, step: float, period: float, begins: tuple[int, ...], stops: NDArray[np.intp],
+            moves: bool) -> NoiseFilter | None:
     orders = {'velocity': 1, 'position': 2}
     order = orders.get(channel.name, 0)
     count = float(len(channel.values))
@@ -97,6 +99,9 @@ def _filter(channel: Channel, step: float, period: float, begins: tuple[int, ...
     counts = np.ones(len(channel.values))
     for row in stops:
         counts[max(row - _BEFORE, 0):row + learns] = 0.0
+    for row in begins if moves else begins[1:]:
+        later = stops[stops >= row]
+        counts[row:int(later[0]) if len(later) else len(counts)] = 0.0
     return NoiseFilter(order, denominator, more * own, begins, counts, np.sqrt(channel.weights))
 
 

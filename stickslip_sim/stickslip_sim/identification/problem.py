@@ -24,6 +24,7 @@ Numbers = NDArray[np.float64]
 Rows = NDArray[np.intp]
 
 _ROUGH = 0.02  # of a slip: so well the motion after a measured arrest is known
+_MOVES = 5.0   # standard deviations: a speed that is one
 _STATIC, _NOISY_STEP = 'friction.static.', 0.02
 _STEP = 0.02   # of the logarithm of a mass: how far noise of the force moves it is taken in such steps
 _LOOSE = 2.0   # ranges: the standard deviation of a weak prior, which holds what the data do not determine
@@ -62,6 +63,7 @@ class FitProblem:
         drive = model.drive_of(np.array([one.start for one in parameters]))
         track = track_of(measurement, drive)
         self._rests, self._stops = ends_in_rest(motions, track, drive), stops_of(track)
+        self._starts_in_motion = abs(float(track.velocity[1])) > _MOVES * track.velocity_noise
         rests = {id(motion) for motion in self._rests}
         self.slips = measured_slips(motions, measurement)
         self.clear_slips = [slip for slip in self.slips if slip.before is None or id(slip.before) in rests]
@@ -101,7 +103,8 @@ class FitProblem:
         if not self.model.is_pushed or dynamics is None:
             return False
         was, self._mass = self._mass, float(np.exp(_STEP * np.round(np.log(dynamics.axis.mass) / _STEP)))
-        self._filters = filters_of(self.measurement, self._force_noise, self._mass, self._stops)
+        self._filters = filters_of(self.measurement, self._force_noise, self._mass, self._stops,
+                                   self._starts_in_motion)
         return self._mass != was
 
     def white(self, k: int, residuals: Numbers) -> Numbers:

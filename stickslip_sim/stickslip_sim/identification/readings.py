@@ -79,8 +79,8 @@ def readings_of(run: Run, scene: Scene, resolutions: Mapping[str, float]) -> Sen
     known = run.measured if isinstance(run, MeasuredRun) else (*OUTPUTS, 'drive_velocity', 'external_force')
     keep = np.all([np.isfinite(columns[name]) for name in known if name in columns], axis=0)
     columns = {name: values[keep] for name, values in columns.items()}
-    times, shift, period = _times(columns['time'])
     as_force = drives_directly(scene) and 'drive_force' in known
+    times, shift, period = _times(columns['time'], as_force or (drives_directly(scene) and 'external_force' in known))
     outputs = [name for name in OUTPUTS if name in known and not (as_force and name == 'drive_force')]
     if not run.is_recorded or not isinstance(run, MeasuredRun):
         outputs = [name for name in outputs if name != 'friction_force']
@@ -96,8 +96,11 @@ def readings_of(run: Run, scene: Scene, resolutions: Mapping[str, float]) -> Sen
                           of_force and of_force.profile(), tuple(notes), of_drive, of_force)
 
 
-def _times(times: Numbers) -> tuple[Numbers, float, float]:
-    """Return times from the start of the simulation on, that start, and the period; raises InputError."""
+def _times(times: Numbers, are_pushed: bool) -> tuple[Numbers, float, float]:
+    """Return times from the start of the simulation on, that start, and the period; raises InputError.
+
+    Motion under nothing but a measured force starts where its readings do.
+    """
     if len(times) < _FEWEST:
         raise InputError('RUN', f'{len(times)} samples', f'{_FEWEST} samples or more', 'measure longer or more often')
     steps = np.diff(times)
@@ -109,7 +112,8 @@ def _times(times: Numbers) -> tuple[Numbers, float, float]:
     if steps[gap] > max(_LONGEST_GAP * (times[-1] - times[0] - steps[gap]), 10.0 * period):
         raise InputError('RUN', f'a jump of its time from {times[gap]:g} to {times[gap + 1]:g} s', 'without a gap that '
                          'is longer than all the rest', 'import the part before or after it')
-    shift = float(times[0]) if times[0] > times[-1] - times[0] else 0.0
+    is_late = times[0] > (period if are_pushed else times[-1] - times[0])
+    shift = float(times[0]) if is_late else 0.0
     return times - shift, shift, period
 
 
