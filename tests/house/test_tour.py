@@ -25,6 +25,7 @@ pytestmark = [pytest.mark.ros, pytest.mark.slow]
 PAGE = ROOT / 'docs' / 'hil.md'
 HUMAN = 3.0      # s from the start of the axis to that of the controller: beyond the window of any limits from 0 on
 JUDGED = 2.0     # s, in examples/controller_limits.yaml
+AT_MOST = r'(\[WARN\].*: waiting for an axis: .*\n)?'   # said by a controller that a busy machine lets wait for 2 s
 
 
 def commands() -> list[list[str]]:
@@ -90,7 +91,7 @@ def test_a_controller_that_is_started_by_hand_is_judged(tmp_path: Path) -> None:
         with started(CONTROLLER, tmp_path) as controller:
             first = listener.next('slider_state', lambda state: state.drive_velocity != 0.0).time
             listener.next('slider_state', lambda state: state.time > first + JUDGED + 0.1)
-            assert interrupt(controller) == ''
+            assert re.fullmatch(AT_MOST, interrupt(controller))
         said = interrupt(axis)
     checked = done(CHECK, tmp_path)
     assert checked.returncode == 3, checked.stderr
