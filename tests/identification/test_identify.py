@@ -79,6 +79,18 @@ def test_a_rigid_axis_from_position_and_force(rigid: stickslip.Run) -> None:
         assert slip.fitted_stick_time == pytest.approx(slip.stick_time, rel=0.05)
 
 
+def test_static_friction_that_begins_at_kinetic_friction(tmp_path: Path) -> None:
+    """Where the one is not below the other the fit must go along the border, and a start above it must come back."""
+    axis = changed(RIGID, {'friction.static.initial': 0.11, 'friction.static.limit': 0.29,
+                           'friction.static.time_constant': 0.31, 'friction.kinetic.coefficients': (0.11, 0.06)})
+    run = measure(tmp_path / 'run', axis, 5.0, rate=500.0)
+    found = stickslip.identify(run, RIGID, {
+        'friction.static.initial': between(0.05, 0.2), 'friction.kinetic.coefficients[0]': between(0.05, 0.2),
+        **OF_FRICTION, 'friction.static.time_constant': between(0.05, 1.0)})
+    check(found, axis, 0.01)
+    assert not found.notes
+
+
 def test_a_compliant_axis_from_its_position_alone(tmp_path: Path) -> None:
     run = measure(tmp_path / 'run', COMPLIANT, 6.0, force=False, gap=(3.0, 3.05))
     start = changed(COMPLIANT, {**OFF, 'axis.mass': 450.0, 'contact.stiffness': 4e6, 'contact.damping': 2e4})

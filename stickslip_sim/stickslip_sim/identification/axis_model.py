@@ -16,7 +16,7 @@ from ..core.errors import StickslipError
 from ..core.input_profile import InputProfile, constant
 from ..core.time_grid import Instants
 from ..core.types import Event, Instant, Sample
-from ..scene import Scene, changed
+from ..scene import Scene
 from ..scene.build import Dynamics, dynamics_of
 from ..simulation.simulator import Simulator
 from ..study.variation import changes_at
@@ -25,7 +25,7 @@ from .free_parameters import DELAY, FreeParameter
 from .measured_inputs import shifted, travelled
 from .motions import MeasuredMotion
 from .readings import SensorReadings, drives_directly
-from .same_tables import SameTables, put_in_order
+from .trial_friction import Breakpoints, breakpoints_of, put_in_order, with_table
 
 Numbers = NDArray[np.float64]
 
@@ -46,19 +46,19 @@ class AxisModel:
         self._take_inputs(measurement)
         self._keeps_drive = measurement.drive is not None or not any(name.startswith('drive.') for name in self._names)
         self._keeps_force = not any(one.name.startswith(('force.', 'sensor.external_force.')) for one in parameters)
-        self._tables = SameTables(scene, self._names)
         self.is_pushed = measurement.force is not None and drives_directly(scene)
+        self._held: Breakpoints | None = None
         self.runs = 0
 
-    def take_tables_of(self, values: Numbers) -> bool:
-        """Make the tables of a smooth kinetic law anew, as those of the scene with these values; return if it has one.
+    def hold_table(self, values: Numbers | None) -> bool:
+        """Hold the breakpoints of a smooth kinetic law as they are with these values; None: they go with the trial.
 
-        How fine a table is depends on how far the law falls, and so a little on what is sought.
+        Return whether there is such a law.
         """
-        if self.scene.axis.friction.kinetic.law is None:
-            return False
-        self._tables = SameTables(changed(self.scene, self.changes(values)), self._names)
-        return True
+        law = self.scene.axis.friction.kinetic.law
+        if law is not None:
+            self._held = None if values is None else breakpoints_of(self._values(values), law.shape)
+        return law is not None
 
     @property
     def has_readings(self) -> bool:
@@ -87,13 +87,17 @@ class AxisModel:
     def dynamics(self, values: Numbers) -> Dynamics | None:
         """Return the axis and its inputs with trial values; None where these contradict each other."""
         try:
-            found = dynamics_of(self._tables.applied(self._values(values)))
+            found = dynamics_of(self._with_table(self._values(values)))
         except StickslipError:
             return None
         force = self._measurement.force
         if force is not None and not self._keeps_force:
             force = self._force_of(values)
         return found._replace(drive=self._measurement.drive or found.drive, force=force or found.force)
+
+    def _with_table(self, values: dict[str, object]) -> dict[str, object]:
+        law = self.scene.axis.friction.kinetic.law
+        return values if law is None else with_table(values, law.shape, self._held)
 
     def delay(self, values: Numbers) -> float:
         """Return how long after its readings the measured force acts, s."""

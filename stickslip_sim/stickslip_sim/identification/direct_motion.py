@@ -19,6 +19,7 @@ from .free_parameters import FreeParameter
 from .least_squares import minimise
 from .measured_inputs import travelled
 from .readings import SensorReadings
+from .region import Region
 from .sensor_noise import noise_of, quantum_of
 
 Numbers = NDArray[np.float64]
@@ -124,12 +125,12 @@ def _integrated(force: InputProfile, times: Numbers) -> Numbers:
 
 
 def direct_motion(model: AxisModel, parameters: Sequence[FreeParameter], motion: SlidingMotion, start: Numbers,
-                  low: Numbers, high: Numbers) -> dict[int, float]:
+                  region: Region) -> dict[int, float]:
     """Return those parameters that the sliding motion determines, by their place, as the fit works on them.
 
-    `start`, `low` and `high` (k,) are likewise.
+    `start` (k,) and the region are likewise.
     """
-    spread = high - low
+    spread = region.high - region.low
     forwards = motion.velocity > 0.0
 
     def residuals(point: Numbers) -> Numbers:
@@ -149,7 +150,7 @@ def direct_motion(model: AxisModel, parameters: Sequence[FreeParameter], motion:
         force = (motion.force_after(model.delay(values)) - offset) / scale
         return np.concatenate([(needed - force) / motion.noise, (point - start) / spread])
 
-    found = minimise(residuals, start, low, high, most=20, tolerance=1e-2)
+    found = minimise(residuals, start, region, most=20, tolerance=1e-2)
     known = np.sqrt(np.diag(np.linalg.pinv(found.information, hermitian=True))) < _WELL * spread
     return {k: float(found.point[k]) for k in np.flatnonzero(known)}
 

@@ -45,7 +45,6 @@ def identification_of(problem: FitProblem, scene: Scene, ends: Sequence[Ended], 
     """Return what was found; `ends` are those of all starts, the best first, `began` when the work did, s."""
     best = ends[0]
     point = best.solution.point
-    problem.model.take_tables_of(problem.values(point))
     problem.take_input_noise_of(problem.values(point))
     whole = problem.stretches(None if best.of_slips is None else 0)
     fitted = problem.fitted(point, whole)

@@ -25,7 +25,8 @@ from .motions import motions_of, track_of
 from .problem import FitProblem
 from .readings import drives_directly, readings_of
 from .run_start import from_measured_start
-from .stages import Progress, best_fit, best_of_slips, starts_of
+from .stages import Progress, best_fit, best_of_slips
+from .starts import starts_of
 
 
 def identify(run: Run | str | os.PathLike[str], start: SceneOrName, free: str | Path | Mapping[str, object], *,

@@ -43,8 +43,8 @@ def covariance_by_inputs(problem: FitProblem, best: Solution, changes: list[Numb
     if not changes:
         return np.zeros((len(best.point), len(best.point)))
     stretches = problem.stretches()
-    slopes = slopes_of(lambda point: problem.of_stretches(point, stretches), best.point, problem.low, problem.high,
-                       problem.steps)
+    slopes = slopes_of(lambda point: problem.of_stretches(point, stretches), best.point,
+                       problem.of_stretches(best.point, stretches), problem.region, problem.steps)
     scales = np.outer(*2 * [np.sqrt(np.diag(best.information))])
     moves = np.array(changes) @ slopes @ (np.linalg.pinv(best.information / scales, hermitian=True) / scales)
     return np.asarray(moves.T @ moves / len(changes))

@@ -16,6 +16,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from .bounded_step import bounded_step
+from .region import Region
+
 Numbers = NDArray[np.float64]
 Residuals = Callable[[Numbers], Numbers]
 Step = float | Numbers
@@ -23,6 +26,7 @@ Step = float | Numbers
 STEP = 1e-6            # of a logarithm, or of a range: rounding is 1e-10 of it, the third derivative 1e-12
 _DAMPING = 1e-3        # of the first step, relative to the diagonal
 _LEAST_DAMPING, _MOST_DAMPING = 1e-12, 1e12
+_UNDAMPED, _SETTLED = 1e-6, 100.0   # a damping, and times what the last step may gain
 _PROBE = 0.1           # of a step: there its second derivative is taken
 _MOST_TURN = 0.75      # of the length of a step
 
@@ -36,56 +40,58 @@ class Solution(NamedTuple):
     is_settled: bool
 
 
-def slopes_of(residuals: Residuals, point: Numbers, low: Numbers, high: Numbers, step: Step = STEP) -> Numbers:
-    """Return the derivatives (n, k) of residuals by central differences over a step, or one for each parameter (k,).
+def slopes_of(residuals: Residuals, point: Numbers, here: Numbers, region: Region, step: Step) -> Numbers:
+    """Return the derivatives (n, k) of residuals, which are `here` at a point, by central differences over a step.
 
-    They are one-sided at the end of a range, and where there is no motion on one side; 0 where there is on none.
+    There may be a step for each parameter (k,).  They are one-sided at a border, and where there is no motion on one
+    side; 0 where there is on none.  A number that is raised at a border may raise another one with it: the derivatives
+    of single ones follow from those along all ways.
     """
-    here: Numbers | None = None
-    columns = []
-    steps = np.broadcast_to(step, point.shape)
+    ways, changes, steps = np.eye(len(point)), [], np.broadcast_to(step, point.shape)
     for k in range(len(point)):
-        up, down = point.copy(), point.copy()
-        up[k], down[k] = min(point[k] + steps[k], high[k]), max(point[k] - steps[k], low[k])
-        above, below = residuals(up), residuals(down)
-        if np.isnan(above[0]) or np.isnan(below[0]):
-            here = residuals(point) if here is None else here
-            above, up = (here, point) if np.isnan(above[0]) else (above, up)
-            below, down = (here, point) if np.isnan(below[0]) else (below, down)
-        columns.append((above - below) / max(up[k] - down[k], 1e-300))
-    return np.stack(columns, axis=1)
+        ends = [region.inside(point + sign * steps[k] * ways[k]) for sign in (1.0, -1.0)]
+        found = [here if np.array_equal(end, point) else residuals(end) for end in ends]
+        (up, above), (down, below) = ((end, there) if np.isfinite(there[0]) else (point, here)
+                                      for end, there in zip(ends, found))
+        length = up[k] - down[k]
+        changes.append((above - below) / length if length else np.zeros(len(here)))
+        ways[k] = (up - down) / length if length else ways[k]
+    slopes = np.stack(changes, axis=1)
+    return slopes if np.array_equal(ways, np.eye(len(point))) else np.linalg.solve(ways, slopes.T).T
 
 
-def minimise(residuals: Residuals, point: Numbers, low: Numbers, high: Numbers, *, most: int, tolerance: float,
+def minimise(residuals: Residuals, point: Numbers, region: Region, *, most: int, tolerance: float,
              share: float = 1e-9, robust: float = np.inf, step: Step = STEP, steepest: float = np.inf) -> Solution:
     """Return where the sum of squares is least, from a point on, after at most so many steps.
 
-    It is settled where the next step would gain less than `tolerance`, or that `share` of the sum.  Residuals are all
-    NaN where the parameters contradict each other; those beyond `robust` count by their size, not their square.
-    A derivative beyond `steepest` is that of a jump, and is left out.
+    It ends where the next step would gain less than `tolerance`, or that `share` of the sum; it is settled if a step
+    without damping would not gain much more.  Residuals are all NaN where the parameters contradict each other; those
+    beyond `robust` count by their size, not their square.  A derivative beyond `steepest` is that of a jump, and is
+    left out.
     """
-    point = np.clip(point, low, high)
+    point = region.inside(point)
     here = residuals(point)
     cost = _cost(here, robust)
-    damping, growth, settled = _DAMPING, 2.0, False
+    damping, growth = _DAMPING, 2.0
     information = np.eye(len(point))
     for _ in range(most):
-        slopes = slopes_of(residuals, point, low, high, step)
+        slopes = slopes_of(residuals, point, here, region, step)
         slopes[np.abs(slopes) > steepest] = 0.0
         weights = _weights(here, robust)
         weighted = slopes if weights is None else slopes * weights[:, None]
         information, gradient = weighted.T @ slopes, weighted.T @ here
-        while damping < _MOST_DAMPING:
-            move = _move(information, gradient, damping, point, low, high)
-            gain = -float(move @ (2.0 * gradient + information @ move))
-            if gain <= max(tolerance, share * cost):
-                settled = True
-                break
+        least = max(tolerance, share * cost)
+        while True:
+            move = bounded_step(information, gradient, damping, point, region)
+            gain = _gain(information, gradient, move)
+            if not gain > least or damping > _MOST_DAMPING:
+                whole = bounded_step(information, gradient, _UNDAMPED, point, region)
+                return Solution(point, cost, information, not _gain(information, gradient, whole) > _SETTLED * least)
             bent = None if weights is not None else _bend(residuals, slopes, here, point, move)
             if bent is not None:
-                turn = _move(information, slopes.T @ bent, damping, point + move, low, high)
+                turn = bounded_step(information, slopes.T @ bent, damping, point + move, region)
                 if _length(turn, information) < _MOST_TURN * _length(move, information):
-                    move = np.clip(point + move + 0.5 * turn, low, high) - point
+                    move = region.inside(point + move + 0.5 * turn) - point
             there = residuals(point + move)
             new = _cost(there, robust)
             if new < cost:
@@ -94,31 +100,12 @@ def minimise(residuals: Residuals, point: Numbers, low: Numbers, high: Numbers, 
                 point, here, cost, growth = point + move, there, new, 2.0
                 break
             damping, growth = damping * growth, 2.0 * growth
-        else:
-            settled = True
-        if settled:
-            break
-    return Solution(point, cost, information, settled)
+    return Solution(point, cost, information, False)
 
 
-def _move(information: Numbers, gradient: Numbers, damping: float, point: Numbers, low: Numbers, high: Numbers
-          ) -> Numbers:
-    """Return the damped step; parameters at an end of their range that would leave it stay."""
-    scale = np.sqrt(np.maximum(np.diag(information), 1e-300))
-    free = ~(((point <= low) & (gradient > 0.0)) | ((point >= high) & (gradient < 0.0)))
-    move = np.zeros(len(point))
-    for _ in range(len(point)):
-        rows = np.flatnonzero(free)
-        if not len(rows):
-            break
-        scaled = information[np.ix_(rows, rows)] / np.outer(scale[rows], scale[rows])
-        move[:] = 0.0
-        move[rows] = -np.linalg.solve(scaled + damping * np.eye(len(rows)), gradient[rows] / scale[rows]) / scale[rows]
-        out = free & ((point + move < low) & (point <= low) | (point + move > high) & (point >= high))
-        if not out.any():
-            break
-        free &= ~out
-    return np.clip(point + move, low, high) - point
+def _gain(information: Numbers, gradient: Numbers, move: Numbers) -> float:
+    """Return by how much a step lowers the sum of squares, were the residuals linear."""
+    return -float(move @ (2.0 * gradient + information @ move))
 
 
 def _bend(residuals: Residuals, slopes: Numbers, here: Numbers, point: Numbers, move: Numbers) -> Numbers | None:

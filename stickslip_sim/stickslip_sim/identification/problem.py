@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The residuals of an identification: of single slips, of stretches between measured arrests, and of the whole run."""
 
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from copy import copy
 from typing import NamedTuple
 
@@ -18,6 +18,7 @@ from .input_noise import NoiseFilter, filters_of, white_of
 from .least_squares import STEP
 from .motions import MeasuredMotion, ends_in_rest, stops_of, track_of
 from .readings import Channel, SensorReadings, instants_of
+from .region import region_of
 from .slip_features import N_FIGURES, MeasuredSlip, measured_slips, simulated_slip, slip_distance
 
 Numbers = NDArray[np.float64]
@@ -68,8 +69,8 @@ class FitProblem:
         self.slips = measured_slips(motions, measurement)
         self.clear_slips = [slip for slip in self.slips if slip.before is None or id(slip.before) in rests]
         self.start = np.array([one.inner(one.start) for one in parameters])
-        self.low = np.array([one.inner(one.low) for one in parameters])
-        self.high = np.array([one.inner(one.high) for one in parameters])
+        self.region = region_of(parameters, model.scene.values)
+        self.widths = np.array([one.inner(one.high) - one.inner(one.low) for one in parameters])
         self._mass, self._force_noise = model.scene.axis.mass, force_noise_of(measurement)
         self._filters: tuple[NoiseFilter | None, ...] = (None,) * len(measurement.channels)
         self._sliding = self._of_sliding()
@@ -80,8 +81,7 @@ class FitProblem:
         if not self.model.is_pushed:
             return {}
         motion = sliding_motion(self.measurement, self._mass)
-        return {} if motion is None else direct_motion(self.model, self.parameters, motion, self.start, self.low,
-                                                       self.high)
+        return {} if motion is None else direct_motion(self.model, self.parameters, motion, self.start, self.region)
 
     @property
     def is_direct(self) -> bool:
@@ -136,11 +136,12 @@ class FitProblem:
                  for slip in slips]
         return np.concatenate([*parts, self.beforehand(point)])
 
-    def stretches(self, first: int | None = None, stride: int = 1) -> Stretches:
+    def stretches(self, first: int | None = None, stride: int = 1, without: Container[MeasuredMotion] = ()
+                  ) -> Stretches:
         """Return the whole run as one stretch; or its `first` slips, and behind them a stretch for each further one.
 
-        The first comes from the start of the run; the others come from measured arrests, and weigh as little as these
-        are known.  Only every `stride`-th sample is taken.
+        The first comes from the start of the run; the others come from measured arrests, but those `without`, and weigh
+        as little as these are known.  Only every `stride`-th sample is taken.
         """
         times = self.measurement.times
         every = np.arange(len(times))[stride // 2::stride]
@@ -151,7 +152,7 @@ class FitProblem:
             begin = 0.0 if before is None else before.end
             end = np.inf if after is None else after.end
             rows = every[(times[every] >= begin) & (times[every] < end)]
-            if len(rows):
+            if len(rows) and (before is None or before not in without):
                 parts.append(MeasuredStretch(before, begin, rows, instants_of(times[rows] - begin)))
         rows = np.concatenate([part.rows for part in parts])
         own = np.concatenate([np.full(len(part.rows), part.before is None and first != 0) for part in parts])
@@ -186,6 +187,12 @@ class FitProblem:
                  for one, part in zip(stretches.filters, parts, strict=True)]
         return np.concatenate([*parts, self.beforehand(point)])
 
+    def mean_squares(self, point: Numbers, stretches: Stretches) -> Numbers:
+        """Return the mean square of the weighted residuals of each stretch."""
+        squares = self.of_stretches(point, stretches)[:-len(point)].reshape(len(stretches.targets), -1)**2
+        starts = np.cumsum([0, *(len(part.rows) for part in stretches.parts[:-1])])
+        return np.asarray([part.mean() for part in np.split(squares, starts[1:], axis=1)])
+
     def fitted(self, point: Numbers, stretches: Stretches) -> list[Numbers] | None:
         """Return what the sensors would have measured, (n,) for each channel; None where there is no motion."""
         values = self.values(point)
@@ -212,13 +219,13 @@ class FitProblem:
     def beforehand(self, point: Numbers) -> Numbers:
         """Return the residuals of what is known beforehand (k,): the prior of each parameter, or a loose one."""
         found = []
-        for one, number, begin, low, high in zip(self.parameters, point, self.start, self.low, self.high, strict=True):
-            mean, spread = one.prior or (begin, _LOOSE * (high - low))
+        for one, number, begin, width in zip(self.parameters, point, self.start, self.widths, strict=True):
+            mean, spread = one.prior or (begin, _LOOSE * width)
             found.append((number - mean) / spread)
         return np.array(found)
 
     def information_beforehand(self) -> Numbers:
         """Return JᵀJ (k, k) of `beforehand`, diagonal."""
-        spreads = [_LOOSE * (high - low) if one.prior is None else one.prior[1]
-                   for one, low, high in zip(self.parameters, self.low, self.high, strict=True)]
+        spreads = [_LOOSE * width if one.prior is None else one.prior[1]
+                   for one, width in zip(self.parameters, self.widths, strict=True)]
         return np.diag(1.0 / np.array(spreads)**2)

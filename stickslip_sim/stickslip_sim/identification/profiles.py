@@ -9,6 +9,7 @@ cut by the range, and where the data do not determine the parameter by itself.
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -53,7 +54,7 @@ class Profile:
 
     def needs(self) -> bool:
         """Return whether the parabola does not hold at an end of the interval of the covariance, within the range."""
-        low, high = self._problem.low[self._k], self._problem.high[self._k]
+        low, high = self._problem.region.low[self._k], self._problem.region.high[self._k]
         margin = _TOUCHES * (high - low)
         for side in (-1.0, 1.0):
             end = self._best.point[self._k] + side * self._reach
@@ -73,8 +74,9 @@ class Profile:
     def _end(self, side: float) -> float:
         """Return where the score is 1 on a side: by the secant of the score, which is nearly a straight line."""
         begin = float(self._best.point[self._k])
-        bound = float((self._problem.low if side < 0.0 else self._problem.high)[self._k])
-        width = float(self._problem.high[self._k] - self._problem.low[self._k])
+        region = self._problem.region
+        bound = float((region.low if side < 0.0 else region.high)[self._k])
+        width = float(region.high[self._k] - region.low[self._k])
         inside, outside = _Place(begin, 0.0, self._best.point), None
         step = min(self._reach, _FIRST * width)
         for _ in range(_FITS):
@@ -101,29 +103,20 @@ class Profile:
 
     def _fitted(self, at: float, near: _Place) -> _Place:
         """Return the best fit with the parameter at a value, begun from the fit at another one."""
-        others = np.delete(np.arange(len(self._best.point)), self._k)
+        region = self._problem.region.holding(self._k, at)
         begin = self._moved(near, at)
         if not np.isfinite(self._cost(begin)):
-            begin = near.point.copy()
-            begin[self._k] = at
-
-        def whole(part: Numbers) -> Numbers:
-            point = begin.copy()
-            point[others] = part
-            return self._problem.of_stretches(point, self._stretches)
-
-        low, high = self._problem.low[others], self._problem.high[others]
-        cost, point = self._cost(begin), begin.copy()
-        if len(others) and np.isfinite(cost):
-            found = minimise(whole, begin[others], low, high, most=10, tolerance=1e-3 * self._limit)
-            cost, point[others] = found.cost, found.point
+            begin = region.inside(near.point)
+        cost, point = self._cost(begin), begin
+        if np.isfinite(cost):
+            found = minimise(partial(self._problem.of_stretches, stretches=self._stretches), begin, region, most=10,
+                             tolerance=1e-3 * self._limit)
+            cost, point = found.cost, found.point
         return _Place(at, float(np.sqrt(max(cost - self._best.cost, 0.0) / self._limit)), point)
 
     def _moved(self, near: _Place, at: float) -> Numbers:
         """Return a point with the parameter at a value, the others moved along as the covariance says."""
-        moved = near.point + (at - near.at) * self._slope
-        moved[self._k] = at
-        return np.asarray(np.clip(moved, self._problem.low, self._problem.high))
+        return self._problem.region.holding(self._k, at).inside(near.point + (at - near.at) * self._slope)
 
     def _cost(self, point: Numbers) -> float:
         residuals = self._problem.of_stretches(point, self._stretches)

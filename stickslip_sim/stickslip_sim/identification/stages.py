@@ -15,32 +15,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .least_squares import STEP, Solution, minimise
-from .problem import FitProblem
-from .slip_features import MeasuredSlip
+from .motions import MeasuredMotion
+from .problem import FitProblem, Stretches
+from .starts import COARSE_STEP, N_STARTS, ROBUST, STEEPEST, spread_slips
 
 Numbers = NDArray[np.float64]
 Progress = Callable[[str, float], None]
 
-_STARTS = 256           # trial points beside the given one, a power of two
-_TRIAL_SLIPS = 5        # at each of them
-_FITTED_STARTS = 8      # of them, the best
-_SLIPS = 10             # at most, for the coarse fit
 _SAMPLES = 4000         # about so many are enough until the last stage
-_FIRST_SLIPS = 0, 1, 3, 8, 20, 50   # that are fitted as one, before the whole run
-_GOOD = 1.5             # a mean square up to that, and no other start is tried
-_COARSE_STEP = 1e-5
+_FIRST_SLIPS = 1, 3, 8, 20, 50   # that are fitted as one, before the whole run
+_MOST_STEPS = 60
+_ROUNDS, _GAIN = 4, 0.1 # of further fits at most, and what each must gain
+_OFF, _TIMES_OFF = 4.0, 100.0    # a mean square of a stretch: of 2 % of a slip, and of the median of all
+_GOOD = 1.2             # a mean square up to that, and no other start is tried
 _LOST = 100.0           # a mean square from which on the whole run is not followed
 _FEWEST_SLIPS, _MOST_SLIPS = 3, 30
 _TRIED = 40             # values of a parameter over its range
-_TABLES = 4             # times at most that tables of smooth laws are made anew
-_STEEPEST = 1e4         # figures of slips over a logarithm: a hundred times in proportion
-_KEPT = 0.5, 0.8        # of the slips, in turn; in the last also those whose cost is not far above the median
-_FAR_OFF = 4.0
-_ROBUST = 3.0           # figures of slips: beyond, a coarse fit counts their size
 
 
 class Ended(NamedTuple):
-    """A start, where the fit from it ended, and the mean square of the residuals of the whole run there.
+    """A start, where the fit from it ended, and the mean square of the residuals of the worst channel there.
 
     `of_slips` has the mean square of the figures of single slips where these alone were fitted (`best_of_slips`).
     """
@@ -51,70 +45,82 @@ class Ended(NamedTuple):
     of_slips: float | None = None
 
 
-def starts_of(problem: FitProblem, seed: int) -> Iterator[Numbers]:
-    """Yield points to start from, by the figures of single slips: from the given start, then from many others.
-
-    Before them that which a force that drives the slider by itself shows directly.
-    """
-    if problem.is_direct:
-        yield problem.with_direct(problem.start)
-    chosen = [problem.clear_slips[k] for k in _spread(len(problem.clear_slips), _SLIPS)]
-    first = _coarse(problem, problem.with_direct(problem.start), chosen)
-    yield first.point
-    from scipy.stats import qmc  # takes half a second, and most runs need no other start
-
-    few = [problem.clear_slips[k] for k in _spread(len(problem.clear_slips), _TRIAL_SLIPS)]
-    shares = qmc.Sobol(len(problem.start), seed=seed).random(_STARTS)
-    trials = [problem.with_direct(trial) for trial in problem.low + shares * (problem.high - problem.low)]
-    costs = [_cost(problem.of_slips(trial, few)) for trial in trials]
-    found = [first, *(_coarse(problem, trials[k], chosen) for k in np.argsort(costs)[:_FITTED_STARTS])]
-    found.sort(key=lambda solution: solution.cost)
-    yield from (point for point in _distinct([first.point, *(solution.point for solution in found)], problem)[1:])
-
-
-def _coarse(problem: FitProblem, start: Numbers, slips: Sequence[MeasuredSlip]) -> Solution:
-    """Return where the figures of slips are best, from a start on: first without the worst, then without those far off.
-
-    What was taken for a slip may be none, and a slip that is another one from a point on bars the way with a step.
-    """
-    if not slips:
-        return Solution(start, np.inf, np.eye(len(start)), True)
-    found = Solution(start, np.inf, np.eye(len(start)), True)
-    for kept in _KEPT:
-        costs = np.array([_cost(problem.of_slips(found.point, [slip])) for slip in slips])
-        limit = max(float(np.quantile(costs, kept)), _FAR_OFF * float(np.median(costs)) if kept == _KEPT[-1] else 0.0)
-        near = [slip for slip, cost in zip(slips, costs) if cost <= limit]
-        found = minimise(partial(problem.of_slips, slips=near), found.point, problem.low, problem.high, most=20,
-                         tolerance=1e-2, share=1e-4, robust=_ROBUST, step=_COARSE_STEP, steepest=_STEEPEST)
-    return found._replace(cost=_cost(problem.of_slips(found.point, slips)))
-
-
 def fit_from(problem: FitProblem, start: Numbers) -> Ended:
     """Return the best fit of the whole run from a point near it."""
-    point = start
-    stride = max(1, len(problem.measurement.times) // _SAMPLES)
-    few = 0 if problem.is_direct else len(problem.motions)   # the filtered residuals lead there from any point
-    for first in (first for first in _FIRST_SLIPS if first < few):
-        part = problem.stretches(first, stride)
-        point = minimise(partial(problem.of_stretches, stretches=part), point, problem.low, problem.high, most=10,
-                         tolerance=1.0, share=1e-3, robust=_ROBUST if first == 0 else np.inf).point
-    solution = _fit_whole(problem, point, 60)
+    point = start if problem.is_direct else _nearer(problem, start)   # the filtered residuals lead there from any point
+    solution = _of_whole(problem, point)
     if (better := _beyond_noise(problem, solution)) is not None:
-        solution = _fit_whole(problem, better, 60)
-    for _ in range(_TABLES):
-        values = problem.values(solution.point)
-        if not problem.model.take_tables_of(values) | problem.take_input_noise_of(values):
-            break
+        solution = _of_whole(problem, better)
+    for _ in range(_ROUNDS):
         before = solution.cost
-        solution = _fit_whole(problem, solution.point, 30)
-        if abs(solution.cost - before) < 0.1:
+        if not problem.take_input_noise_of(problem.values(solution.point)):
             break
-    return Ended(start, solution, solution.cost / effective_count(problem))
+        solution = _of_whole(problem, solution.point)
+        if abs(solution.cost - before) < _GAIN:
+            break
+    solution = _polished(problem, solution)
+    return Ended(start, solution, _worst_square(problem, solution.point))
 
 
-def _fit_whole(problem: FitProblem, point: Numbers, most: int) -> Solution:
-    residuals = partial(problem.of_stretches, stretches=problem.stretches())
-    return minimise(residuals, point, problem.low, problem.high, most=most, tolerance=1e-3, step=problem.steps)
+def _nearer(problem: FitProblem, start: Numbers) -> Numbers:
+    """Return a point from which the whole run may be fitted: by single slips, then by ever more of them as one."""
+    stride = max(1, len(problem.measurement.times) // _SAMPLES)
+    single = problem.stretches(0, stride)
+    near = problem.stretches(0, stride, _not_followed(problem, start, single))
+    point = _fitted_to(problem, start, near, ROBUST).point
+    wrong = _not_followed(problem, point, single)
+    for first in (first for first in _FIRST_SLIPS if first < len(problem.motions)):
+        point = _fitted_to(problem, point, problem.stretches(first, stride, wrong), np.inf).point
+    return point
+
+
+def _of_whole(problem: FitProblem, start: Numbers) -> Solution:
+    return minimise(partial(problem.of_stretches, stretches=problem.stretches()), start, problem.region,
+                    most=_MOST_STEPS, tolerance=1e-3, step=problem.steps)
+
+
+def _polished(problem: FitProblem, found: Solution) -> Solution:
+    """Return a better end of a fit that follows the run but has not come to rest, or is not good.
+
+    The table of a smooth law has now and then a breakpoint more or less, a step that bars the way: held as it is, it
+    lets the fit by.
+    """
+    for _ in range(_ROUNDS):
+        square = _worst_square(problem, found.point)
+        if square > _LOST or (square < _GOOD and found.is_settled):
+            break
+        has_table = problem.model.hold_table(problem.values(found.point))
+        again = _of_whole(problem, found.point)
+        is_settled = again.is_settled
+        if has_table:
+            problem.model.hold_table(None)
+            again = _of_whole(problem, again.point)
+        gained = found.cost - again.cost
+        if gained > 0.0:
+            found = again
+        if gained < _GAIN:
+            return found._replace(is_settled=is_settled or found.is_settled)
+    return found
+
+
+def _worst_square(problem: FitProblem, point: Numbers) -> float:
+    """Return the mean square of the weighted residuals of the whole run, of the channel where it is the largest."""
+    channels = problem.measurement.channels
+    residuals = problem.of_stretches(point, problem.stretches())[:-len(point)].reshape(len(channels), -1)
+    squares = [float(own @ own / channel.weights.sum()) for own, channel in zip(residuals, channels, strict=True)]
+    return max(squares) if np.isfinite(squares).all() else np.inf
+
+
+def _fitted_to(problem: FitProblem, start: Numbers, part: Stretches, robust: float) -> Solution:
+    return minimise(partial(problem.of_stretches, stretches=part), start, problem.region, most=10, tolerance=1.0,
+                    share=1e-3, robust=robust)
+
+
+def _not_followed(problem: FitProblem, point: Numbers, single: Stretches) -> list[MeasuredMotion]:
+    """Return the motions after which a stretch is far off while most are near: what ended there was no rest."""
+    squares = problem.mean_squares(point, single)
+    limit = max(_OFF, _TIMES_OFF * float(np.median(squares)))
+    return [part.before for part, square in zip(single.parts, squares) if part.before is not None and square > limit]
 
 
 def _beyond_noise(problem: FitProblem, found: Solution) -> Numbers | None:
@@ -125,9 +131,8 @@ def _beyond_noise(problem: FitProblem, found: Solution) -> Numbers | None:
     residuals = partial(problem.of_stretches, stretches=problem.stretches())
     best, cost = found.point, found.cost
     for k in np.flatnonzero(problem.steps > STEP):
-        for number in np.linspace(problem.low[k], problem.high[k], _TRIED):
-            trial = best.copy()
-            trial[k] = number
+        for number in np.linspace(problem.region.low[k], problem.region.high[k], _TRIED):
+            trial = problem.region.holding(int(k), float(number)).inside(best)
             left = residuals(trial)
             if np.isfinite(left[0]) and float(left @ left) < cost:
                 best, cost = trial, float(left @ left)
@@ -144,7 +149,7 @@ def best_fit(ends: Iterator[Ended], progress: Progress) -> list[Ended]:
     ended: list[Ended] = []
     progress('fit', 0.0)
     for k, end in enumerate(ends, 1):
-        progress('fit', k / (1 + _FITTED_STARTS))
+        progress('fit', k / (1 + N_STARTS))
         ended.append(end)
         if end.mean_square < _GOOD:
             break
@@ -157,37 +162,17 @@ def best_of_slips(problem: FitProblem, ends: Sequence[Ended]) -> list[Ended]:
     A model that is not that of the axis still has the right rests and break-aways, each from a measured arrest; in the
     whole run its slips come ever more too late or too early, and the least sum of squares means nothing.
     """
-    slips = [problem.clear_slips[k] for k in _spread(len(problem.clear_slips), _MOST_SLIPS)]
+    slips = spread_slips(problem, _MOST_SLIPS)
     if ends[0].mean_square < _LOST or len(slips) < _FEWEST_SLIPS:
         return [*ends]
     residuals = partial(problem.of_slips, slips=slips)
-    found = [minimise(residuals, point, problem.low, problem.high, most=20, tolerance=1e-2, share=1e-4, robust=_ROBUST,
-                      step=_COARSE_STEP, steepest=_STEEPEST) for point in (ends[0].start, ends[0].solution.point)]
+    found = [minimise(residuals, point, problem.region, most=20, tolerance=1e-2, share=1e-4, robust=ROBUST,
+                      step=COARSE_STEP, steepest=STEEPEST) for point in (ends[0].start, ends[0].solution.point)]
     best = min(found, key=lambda solution: solution.cost)
     whole = problem.of_stretches(best.point, problem.stretches())
     if not np.isfinite(whole).all():
         return [*ends]
     figures = residuals(best.point)
     cost = float(whole @ whole)
-    return [Ended(ends[0].start, best._replace(cost=cost), cost / effective_count(problem),
+    return [Ended(ends[0].start, best._replace(cost=cost), _worst_square(problem, best.point),
                   float(figures @ figures) / len(figures)), *ends]
-
-
-def _cost(residuals: Numbers) -> float:
-    return float(np.sum(np.sqrt(1.0 + residuals**2) - 1.0)) if np.isfinite(residuals).all() else np.inf
-
-
-def _spread(count: int, most: int) -> list[int]:
-    """Return at most so many whole numbers below a count, the first and the last among them."""
-    if not count:
-        return []
-    return sorted(set(np.linspace(0, count - 1, min(count, most)).round().astype(int).tolist()))
-
-
-def _distinct(points: list[Numbers], problem: FitProblem) -> list[Numbers]:
-    """Return points without those that are near one before."""
-    kept: list[Numbers] = []
-    for point in points:
-        if all(np.abs((point - other) / (problem.high - problem.low)).max() > 1e-2 for other in kept):
-            kept.append(point)
-    return kept
