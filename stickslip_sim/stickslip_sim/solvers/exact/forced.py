@@ -27,7 +27,6 @@ bit.
 """
 
 import math
-from typing import NamedTuple
 
 from ...axis.layout import Parameters, State
 from ...axis.motion import (
@@ -40,41 +39,18 @@ from ...axis.motion import (
     oscillator_of,
     segment_end,
 )
-from ...axis.transitions import ACCELERATE, ARREST, BREAKAWAY, COAST, DECELERATE, KNOT, band_of, force_rounding
+from ...axis.transitions import ACCELERATE, ARREST, BREAKAWAY, COAST, DECELERATE, KNOT, force_rounding
 from ...core.hot_path import compiled, inlined
-from ...friction.static import CONSTANT
 from ...linear.oscillator import Oscillator
-from ...linear.polynomials import first_crossing, safe_step
 from ...linear.root_steps import EPSILON, ITERATIONS
 from ...linear.zeros import finite_horizon
-from .signal_readings import Reading, read_signal
+from .forced_guards import GuardLimits, guard_at, guard_limits
+from .forced_leaps import leap_of
+from .signal_readings import read_signal
 from .signals import GuardSignal, signal_of
-from .static_guards import GAVE_UP, concave_root, grown, is_concave, law, steep_start
+from .static_guards import GAVE_UP, is_concave
 
 _STEPS = 10_000_000
-_WORTH_A_LEAP = 1e-6   # room between envelope and limit, as a part of what lies between the limits
-
-
-class GuardLimits(NamedTuple):
-    """What the signal is to stay between."""
-
-    top: float
-    top_rate: float
-    bow: float          # bound on −top″ and floor″
-    floor: float
-    floor_rate: float
-
-
-class Guard(NamedTuple):
-    """The gap to the limit that may be reached first, G, and safe steps."""
-
-    side: float    # 1: the top, −1: the floor
-    value: float   # G
-    fall: float    # G′
-    swing: float   # bound on |G″|
-    noise: float   # ε, size of rounding
-    step: float    # s, within which G + 2ε does not vanish
-    exact: float   # s, within which no gap vanishes
 
 
 @compiled
@@ -98,19 +74,19 @@ def forced_event(p: Parameters, s: State, due: float) -> None:
         if now.gained >= gap:
             _set_event(s, _root(p, s, osc, signal, 0.0, gap, t, before, t), _passed_kind(p, s))
             return
-        limits = _limits(p, s, t)
+        limits = guard_limits(p, s, t)
         if _holds_nothing(s, limits):
             _set_event(s, t, BREAKAWAY)
             return
         if not slips:
-            leap = _leap(p, s, signal, now, limits, t, max(now.noise, rounding), max(due, 2.0 * s.next.searched) - t)
+            leap = leap_of(p, s, signal, now, limits, t, max(now.noise, rounding), max(due, 2.0 * s.next.searched) - t)
             if leap == math.inf or _lands_beyond(s, t, leap, due):
                 return
             if leap > 0.0:
                 t += leap
                 before, value_before = t, 0.0
                 continue
-        guard = _guard_at(p, now, limits, rounding, signal.fastest)
+        guard = guard_at(p, now, limits, rounding, signal.fastest)
         high = _root_at_last(p, s, guard.value, guard.fall, guard.swing, guard.noise, t)
         if high <= t + now.reach and high < math.inf:
             low = before if guard.value <= 0.0 else t
@@ -148,44 +124,6 @@ def _is_searched(s: State, t: float, searched: float, due: float, last: float) -
     return s.next.searched >= due
 
 
-@inlined
-def _guard_at(p: Parameters, now: Reading, limits: GuardLimits, rounding: float, fastest: float) -> Guard:
-    """Return the guard from a reading of the signal and its limits."""
-    up, up_rate = limits.top - now.value, limits.top_rate - now.rate
-    down, down_rate = now.value - limits.floor, now.rate - limits.floor_rate
-    swing = now.curvature + limits.bow
-    if swing == math.inf:   # Kato's law right after the arrest
-        return _steep_guard(p, now, limits, now.noise + rounding)
-    noise = max(now.noise + rounding, swing * (1e-15 / fastest) ** 2)
-    side, value, fall, step = _nearer(up, up_rate, down, down_rate, swing, noise)
-    exact = _exact_step(up, up_rate, down, down_rate, swing)
-    return Guard(side, value, fall, swing, noise, min(step, now.reach), min(exact, now.reach))
-
-
-@compiled
-def _steep_guard(p: Parameters, now: Reading, limits: GuardLimits, noise: float) -> Guard:
-    """Return the guard at rest time 0, where Kato's law lets the limit of one direction, or of both, rise steeply."""
-    up, down = limits.top - now.value, now.value - limits.floor
-    up_rate, down_rate = limits.top_rate - now.rate, now.rate - limits.floor_rate
-    above = _side_step(p, now, 1.0, up + 2.0 * noise, up_rate)
-    below = _side_step(p, now, -1.0, down + 2.0 * noise, down_rate)
-    exact = min(_side_step(p, now, 1.0, up, up_rate), _side_step(p, now, -1.0, down, down_rate), now.reach)
-    if above < below:
-        return Guard(1.0, up, up_rate, now.curvature + p.normal_force * grown(p, 0.0, 1.0).curvature, noise,
-                     min(above, now.reach), exact)
-    return Guard(-1.0, down, down_rate, now.curvature + p.normal_force * grown(p, 0.0, -1.0).curvature, noise,
-                 min(below, now.reach), exact)
-
-
-@compiled
-def _side_step(p: Parameters, now: Reading, side: float, gap: float, gap_rate: float) -> float:
-    """Return a step from rest time 0 within which the gap to the limit of a direction does not vanish."""
-    curvature = grown(p, 0.0, side).curvature
-    if curvature == math.inf:
-        return steep_start(p, side, max(gap, 0.0), side * now.rate, now.curvature)
-    return safe_step(max(gap, 0.0), gap_rate, now.curvature + p.normal_force * curvature)
-
-
 @compiled
 def _set_event(s: State, t: float, kind: float) -> None:
     s.next.time = t
@@ -213,86 +151,6 @@ def _rounding(p: Parameters, s: State, slips: bool) -> float:
         return force_rounding(p, s, lower_limit(p, s.rest) if s.mode == STICK else 0.0)
     coefficient, _, _, _ = friction_line(p, int(s.segment), abs(s.velocity))
     return force_rounding(p, s, coefficient) / p.mass
-
-
-@compiled
-def _limits(p: Parameters, s: State, t: float) -> GuardLimits:
-    """Return the limits of the signal at t."""
-    if s.mode == STICK:
-        normal = p.normal_force
-        if normal == 0.0:
-            return GuardLimits(0.0, 0.0, 0.0, 0.0, 0.0)
-        limit, growth, curvature = law(p, s.rest + t, 1.0)
-        back, back_growth, bow = limit, growth, curvature
-        if p.sided != 0.0:
-            back, back_growth, bow = law(p, s.rest + t, -1.0)
-            bow = max(curvature, bow)
-        return GuardLimits(normal * limit, normal * growth, normal * bow, -normal * back, -normal * back_growth)
-    if s.mode == COASTING:
-        return GuardLimits(band_of(p, s), 0.0, 0.0, 0.0, 0.0)
-    return GuardLimits(math.inf, 0.0, 0.0, 0.0, 0.0)
-
-
-@compiled
-def _leap(p: Parameters, s: State, signal: GuardSignal, now: Reading, limits: GuardLimits, t: float, noise: float,
-          horizon: float) -> float:
-    """Return how long the envelope keeps off both limits for certain: 0 without room, infinity up to the horizon.
-
-    Where it does so for good, the search is over: SEARCHED is infinite.
-    """
-    rate, second_rate, mean, swing = signal.rate, signal.second, signal.mean, signal.amplitude
-    top, floor, size, decay = limits.top, limits.floor, now.size, now.decay
-    mean += (rate + 0.5 * second_rate * t) * t
-    reach = swing + size
-    room = min(top - mean, mean - floor) - reach
-    if room > noise and rate == 0.0 and second_rate == 0.0:
-        s.next.searched = math.inf
-        return math.inf
-    if not room > _WORTH_A_LEAP * (top - floor) or horizon <= 0.0:
-        return 0.0
-    rate += second_rate * t
-    leap = min(
-        _envelope_root(p, s, t, 1.0, top - mean - swing, mean + swing, rate, second_rate, size, decay, horizon),
-        _envelope_root(p, s, t, -1.0, mean - floor - swing, swing - mean, -rate, -second_rate, size, decay, horizon))
-    if leap > horizon:
-        s.next.searched = t + horizon
-        return math.inf
-    return leap
-
-
-@compiled
-def _envelope_root(p: Parameters, s: State, t: float, side: float, room: float, force: float, rate: float,
-                   second_rate: float, size: float, decay: float, horizon: float) -> float:
-    """Return when force + rate d + second_rate d²/2 + size exp(−decay d) may reach a limit, now `room` off.
-
-    `side` is the sign of the force at that limit in stick.
-    """
-    second_rate = max(second_rate, 0.0)
-    if rate <= 0.0 and second_rate == 0.0:
-        return math.inf
-    if s.mode == STICK and p.static_law != CONSTANT and is_concave(p):
-        return concave_root(p, s, s.rest + t, side, force, rate, size, decay, second_rate, horizon)
-    return first_crossing(room - size, -rate, -second_rate)
-
-
-@compiled
-def _nearer(up: float, up_rate: float, down: float, down_rate: float, swing: float, noise: float
-           ) -> tuple[float, float, float, float]:
-    """Return the side (1: top) whose limit may come first, its gap, the gap's rate, and a safe step for gap + 2ε."""
-    below = safe_step(max(down + 2.0 * noise, 0.5 * noise), down_rate, swing)
-    if up == math.inf:
-        return -1.0, down, down_rate, below
-    above = safe_step(max(up + 2.0 * noise, 0.5 * noise), up_rate, swing)
-    if above < below or (above == below and up < down):
-        return 1.0, up, up_rate, above
-    return -1.0, down, down_rate, below
-
-
-@compiled
-def _exact_step(up: float, up_rate: float, down: float, down_rate: float, swing: float) -> float:
-    """Return a step within which no gap vanishes."""
-    below = safe_step(max(down, 0.0), down_rate, swing)
-    return below if up == math.inf else min(safe_step(max(up, 0.0), up_rate, swing), below)
 
 
 @compiled
@@ -348,7 +206,7 @@ def _reading(p: Parameters, s: State, osc: Oscillator, signal: GuardSignal, side
     now = read_signal(p, s, osc, signal, t)
     if side == 0.0:
         return gap - now.gained, -now.value, abs(now.rate), now.curvature
-    limits = _limits(p, s, t)
+    limits = guard_limits(p, s, t)
     if side > 0.0:
         return limits.top - now.value, limits.top_rate - now.rate, now.curvature + limits.bow, 0.0
     return now.value - limits.floor, now.rate - limits.floor_rate, now.curvature + limits.bow, 0.0
