@@ -282,6 +282,9 @@ def test_a_motor_force_drives_an_axis_without_a_spring(tmp_path: Path) -> None:
         'friction.static.initial': between(0.05, 0.5), 'friction.kinetic.end_slope': between(0.5, 5.0)})
     assert found.fits, found.misfits
     assert found.shift == 0.7
+    (position,) = found.channels
+    assert np.std(position.measured - position.fitted) > 20.0 * position.resolution
+    assert np.std(position.residuals) == pytest.approx(position.resolution, rel=0.3)
     assert len(found.notes) == 1
     for name, right in (('axis.mass', 95.0), ('friction.kinetic.coefficients[0]', 0.2),
                         ('friction.kinetic.end_slope', 2.0)):

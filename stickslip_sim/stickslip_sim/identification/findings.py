@@ -91,9 +91,12 @@ def _channels(problem: FitProblem, fitted: Sequence[Numbers]) -> tuple[ChannelFi
     measurement = problem.measurement
     found = []
     for k, channel in enumerate(measurement.channels):
-        length = correlation_length(problem.white(k, channel.values - fitted[k]), channel.weights)
+        residuals = channel.values - fitted[k]
+        new = problem.white(k, residuals)
+        length = correlation_length(new, channel.weights)
         found.append(ChannelFit(channel.name, channel.unit, measurement.times + measurement.shift, channel.values,
-                                fitted[k], channel.resolution, (length - 1.0) * measurement.period))
+                                fitted[k], channel.resolution, (length - 1.0) * measurement.period,
+                                None if new is residuals else new))
     return tuple(found)
 
 

@@ -48,7 +48,8 @@ class ChannelFit:
     """A measured channel, in `unit`: arrays (n,) of `times` (s, of the measurement), `measured` and `fitted` numbers.
 
     `fitted` has the sensor's own offset and scale.  `resolution` is the standard deviation that the fit took for the
-    noise, `correlation_time` (s) over how long residuals go together (0 when each sample stands for itself).
+    noise, `correlation_time` (s) over how long residuals go together (0 when each sample stands for itself).  Where
+    noise of a measured force moves the slider, what is `new` in each sample is judged: the residuals are these.
     """
 
     name: str
@@ -58,11 +59,12 @@ class ChannelFit:
     fitted: Numbers
     resolution: float
     correlation_time: float = 0.0
+    new: Numbers | None = None
 
     @property
     def residuals(self) -> Numbers:
-        """Measured less fitted (n,), in `unit`."""
-        return self.measured - self.fitted
+        """Measured less fitted (n,), in `unit`, or what is new in that."""
+        return self.measured - self.fitted if self.new is None else self.new
 
 
 @dataclass(frozen=True)

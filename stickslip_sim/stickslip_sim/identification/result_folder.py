@@ -55,7 +55,7 @@ def _pictures(found: Identification, friction: KnownFriction) -> dict[str, str]:
 
 def fitted_channels(found: Identification) -> list[FittedChannel]:
     """Return the channels as they are drawn."""
-    return [FittedChannel(one.name, one.unit, one.times, one.measured, one.fitted, one.resolution,
+    return [FittedChannel(one.name, one.unit, one.times, one.measured, one.fitted, one.residuals / one.resolution,
                           phases(found, one.times), misfit_spans(found, one)) for one in found.channels]
 
 

@@ -38,9 +38,10 @@ _SCALES = {'m': (1e3, 'mm'), 'm/s': (1e3, 'mm/s')}
 
 
 class FittedChannel(NamedTuple):
-    """A channel over `times` (s): measured and fitted numbers in `unit`, and the `resolution` of the sensor.
+    """A channel over `times` (s): measured and fitted numbers in `unit`.
 
-    `phases` (n,) are shares of the cycle, NaN outside of one; `misfits` the times (from, to) where a test rejects it.
+    `residuals` (n,) are measured less fitted, or what is new in that, in standard deviations of the sensor, `phases`
+    (n,) shares of the cycle, NaN outside of one; `misfits` are the times (from, to) where a test rejects it.
     """
 
     name: str
@@ -48,14 +49,9 @@ class FittedChannel(NamedTuple):
     times: Numbers
     measured: Numbers
     fitted: Numbers
-    resolution: float
+    residuals: Numbers
     phases: Numbers
     misfits: Sequence[tuple[float, float]]
-
-    @property
-    def residuals(self) -> Numbers:
-        """Measured less fitted, in standard deviations of the sensor."""
-        return (self.measured - self.fitted) / self.resolution
 
 
 def plot_fit(channels: Sequence[FittedChannel], window: tuple[float, float], path: Path | str) -> None:
