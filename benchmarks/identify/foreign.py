@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """A LuGre axis identified as if it were ours: the misfit must be reported, and the scene found must still be of use.
 
-Slips are read off both motions by the same rule (`runs/slips.py`), from the true motion of the one and that of the
-scene found for the other: the stick before each slip, and the largest friction force in it.
+Each slip of the model from the measured arrest before it is read off by the rule of the measured ones, as `identify`
+prints it.  The scene found, left to itself, has slips of its own: off both motions they are read by the same rule
+(`runs/slips.py`), the stick before each and the largest friction force in it.
 """
 
 import time
@@ -15,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stickslip_sim.identification.fit import identify
+from stickslip_sim.identification.identification import SlipFit
 from stickslip_sim.runs import Columns, simulate
 from stickslip_sim.runs.slips import slips_of
 from stickslip_sim.scene import Scene, scene_from_values
@@ -53,10 +55,14 @@ class Pair(NamedTuple):
 
 
 class ForeignOutcome(NamedTuple):
-    """Whether the model is said to fit, what the tests say, the slips of both, and s of processor time."""
+    """Whether the model is said to fit, what the tests say, the slips of both, and s of processor time.
+
+    `pairs` are those of the scene left to itself, `slips` those from measured arrests.
+    """
 
     fits: bool
     statements: tuple[str, ...]
+    slips: tuple[SlipFit, ...]
     true_slips: int
     found_slips: int
     pairs: tuple[Pair, ...]
@@ -65,6 +71,10 @@ class ForeignOutcome(NamedTuple):
     def differences(self, of: str) -> list[float]:
         """Return by how much a figure of the slips differs, as shares, in order of size."""
         return sorted(abs(getattr(pair.found, of) / getattr(pair.true, of) - 1.0) for pair in self.pairs)
+
+    def differences_of_slips(self, of: str) -> list[float]:
+        """Return by how much a figure of the slips from measured arrests differs, as shares, in order of size."""
+        return sorted(abs(getattr(slip, f'fitted_{of}') / getattr(slip, of) - 1.0) for slip in self.slips)
 
 
 def start_scene() -> Scene:
@@ -104,8 +114,8 @@ def identify_lugre() -> ForeignOutcome:
         found = identify(run, start_scene(), free_file())
         seconds = time.process_time() - begin
     slips, own = slips_in(true), slips_in(simulate(found.scene, DURATION, 1.0 / RATE).samples)
-    return ForeignOutcome(found.fits, tuple(misfit.statement for misfit in found.misfits), len(slips), len(own),
-                          pairs_of(slips, own), seconds)
+    return ForeignOutcome(found.fits, tuple(misfit.statement for misfit in found.misfits), found.slips, len(slips),
+                          len(own), pairs_of(slips, own), seconds)
 
 
 def slips_in(samples: Columns) -> list[Slip]:

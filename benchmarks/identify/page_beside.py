@@ -32,9 +32,10 @@ def beside(rivals: Mapping[str, Sequence[RivalOutcome]]) -> list[str]:
 
 def foreign_data(foreign: ForeignOutcome) -> list[str]:
     """Return the section on the LuGre axis."""
-    rows = [f'| {title} | {100.0 * median(of):.1f} % | {100.0 * of[-1]:.1f} % | {_FOREIGN_MARK} % |'
-            for title, name in (('break-away force', 'force'), ('stick time', 'stick_time'))
-            if (of := foreign.differences(name))]
+    single = [_row(title, foreign.differences_of_slips(name), f'{_FOREIGN_MARK} %')
+              for title, name in (('break-away force', 'break_away_force'), ('stick time', 'stick_time'))]
+    alone = [_row(f'{title}, the scene left to itself', foreign.differences(name), '')
+             for title, name in (('break-away force', 'force'), ('stick time', 'stick_time'))]
     return [
         '## Data of another model', '',
         'An axis with LuGre friction, integrated by SciPy to a tolerance of 1e-9: bristles bend before the slider',
@@ -44,7 +45,16 @@ def foreign_data(foreign: ForeignOutcome) -> list[str]:
         *([f'* … and {more} more statements.'] if (more := len(foreign.statements) - _STATEMENTS) > 0 else []),
         f'* Slips: {foreign.true_slips} of the LuGre axis, {foreign.found_slips} of the scene found.',
         f'* Processor time: {foreign.seconds:.1f} s.', '',
-        '| of the slips | difference, median | largest | mark |', '|---|---|---|---|', *rows, '']
+        '| of the slips, each from the measured arrest before it | difference, median | largest | mark |',
+        '|---|---|---|---|', *single, *alone, '',
+        'Left to itself the scene comes to the next change of the feed at another moment of its cycle, and the slip',
+        'there is another one.', '']
+
+
+def _row(title: str, of: Sequence[float], mark: str) -> str:
+    if not of:
+        return f'| {title} | – | – | {mark} |'
+    return f'| {title} | {100.0 * median(of):.1f} % | {100.0 * of[-1]:.1f} % | {mark} |'
 
 
 def share(part: float) -> str:

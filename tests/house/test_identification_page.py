@@ -18,6 +18,8 @@ pytestmark = pytest.mark.slow
 
 ROW = re.compile(r'^ *([a-z]\w*(?:\.\w+)+(?:\[\d\])?) +'                                 # name
                  r'([\d.e+-]+)(?: (?:N s|[^\d ]+))?(?:/m)? +([\d.e+-]+)', re.MULTILINE)   # start and found
+SLIPS = re.compile(r'(\d+) slips, fitted beside measured, apart in the median and at most: '
+                   r'break-away force (\S+) and (\S+) %, time at rest before (\S+) and (\S+) %')
 
 
 @pytest.fixture(scope='module')
@@ -47,6 +49,11 @@ def test_its_commands_find_what_it_says(page: str, tmp_path: Path, monkeypatch: 
         verdict = 'THE MODEL DOES NOT FIT' if name == FAILS else ''
         assert verdict in said
         assert verdict in quoted
+        if name == FAILS:
+            apart = SLIPS.search(said)
+            assert apart
+            assert int(apart[1]) >= 10
+            assert max(float(number) for number in apart.groups()[1:]) < 5.0, apart[0]   # %
         if name == 'synthetic':
             printed, here = found_in(quoted), found_in(said)
             assert set(printed) == set(here) == set(TRUTH)

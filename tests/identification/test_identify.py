@@ -11,6 +11,7 @@ import pytest
 
 import stickslip_sim as stickslip
 from stickslip_sim.cli.identify_lines import result_lines
+from stickslip_sim.identification.free_parameters import free_parameters
 from stickslip_sim.identification.identification import AT_BOUND, FOUND, NOT_IDENTIFIABLE, Identification
 from stickslip_sim.recording import write_measured
 from tests.identification.measured_axis import between, measure
@@ -260,7 +261,8 @@ def test_a_run_that_starts_elsewhere(tmp_path: Path) -> None:
     assert found.values['initial.stretch'] == pytest.approx(4e-4, rel=0.01)
     assert found.values['friction.static.limit'] == pytest.approx(0.24, rel=0.01)
     assert found.scene.initial.position == pytest.approx(0.05, abs=1e-6)
-    assert len(found.notes) == 2
+    assert len(found.notes) == 3
+    assert 'initial.rest_time' in found.values
 
 
 def test_a_motor_force_drives_an_axis_without_a_spring(tmp_path: Path) -> None:
@@ -308,3 +310,24 @@ def test_a_drive_that_was_measured_by_its_encoder(tmp_path: Path) -> None:
     check(found, RIGID, 0.005)
     assert found.notes == ('the drive moves as it was measured',)
     assert found.runs < 10_000
+
+
+def test_a_misfit_is_said_once_for_each_channel(rigid: stickslip.Run) -> None:
+    found = stickslip.identify(rigid, changed(RIGID, {'axis.mass': 300.0}), {
+        'friction.static.limit': between(0.1, 0.5)})
+    assert {misfit.channel for misfit in found.misfits} == {'position', 'drive_force'}
+    assert len(found.misfits) > 4
+    lines = list(result_lines(found, 'run'))
+    said = lines[lines.index('THE MODEL DOES NOT FIT this run:') + 1:]
+    assert [line.split()[0] for line in said] == ['position', 'drive_force', 'and']
+    assert '(rms)' in said[0]
+    assert '% of its range' in said[0]
+
+
+def test_more_parameters_than_a_study_takes() -> None:
+    """Those of friction, drive and start, and offsets and scales of the sensors."""
+    free = {**OF_FRICTION, **OF_DRIVE, 'friction.kinetic.coefficients[0]': between(0.05, 0.12),
+            'friction.static.initial': between(0.05, 0.2), 'sensor.drive_force.offset': between(-50.0, 50.0),
+            'sensor.drive_force.scale': between(0.9, 1.1), 'sensor.position.offset': between(-1e-3, 1e-3)}
+    assert [one.name for one in free_parameters(RIGID, free)] == list(free)
+    assert len(free) == 11

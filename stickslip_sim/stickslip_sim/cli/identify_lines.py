@@ -9,7 +9,6 @@ if TYPE_CHECKING:
     from ..identification.identification import Identification
 
 _NAME, _NUMBER = 36, 14
-_MISFITS = 4         # that are printed
 _BETTER = 10.0      # of the criterion: laws so far below are better (Kass and Raftery 1995: very strong evidence)
 _ELSEWHERE = 1.01    # times the least sum of squares: a search that ended above it ended elsewhere
 
@@ -29,10 +28,18 @@ def result_lines(found: 'Identification', run: str) -> Iterator[str]:
     yield from _laws(found)
     yield from _starts(found)
     yield 'the model fits: no test of the residuals rejects it' if found.fits else 'THE MODEL DOES NOT FIT this run:'
-    for misfit in found.misfits[:_MISFITS]:
-        yield f'  {misfit.statement}'
-    if len(found.misfits) > _MISFITS:
-        yield f'  and {len(found.misfits) - _MISFITS} more, in report.html'
+    yield from _misfits(found)
+
+
+def _misfits(found: 'Identification') -> Iterator[str]:
+    """Yield the first misfit of each channel, which is that of the whole run."""
+    first = {misfit.channel: misfit for misfit in reversed(found.misfits)}
+    for misfit in found.misfits:
+        if misfit is first[misfit.channel]:
+            yield f'  {misfit.statement}'
+    more = len(found.misfits) - len(first)
+    if more:
+        yield f'  and {more} more, in report.html'
 
 
 def _estimates(found: 'Identification') -> Iterator[str]:
@@ -46,7 +53,7 @@ def _estimates(found: 'Identification') -> Iterator[str]:
 
 
 def _slips(found: 'Identification') -> Iterator[str]:
-    """Yield how far slips are apart, in the median of those that both motions have."""
+    """Yield how far slips are apart, in the median and at most, of those that both motions have."""
     import numpy as np
 
     apart = []
@@ -54,9 +61,11 @@ def _slips(found: 'Identification') -> Iterator[str]:
         pairs = np.array([(getattr(slip, of), getattr(slip, f'fitted_{of}')) for slip in found.slips]).reshape(-1, 2)
         both = pairs[np.isfinite(pairs).all(axis=1) & (pairs[:, 0] != 0.0)]
         if len(both):
-            apart.append(f'{words} {100.0 * np.median(np.abs(both[:, 1] / both[:, 0] - 1.0)):.2g} %')
+            off = 100.0 * np.abs(both[:, 1] / both[:, 0] - 1.0)
+            apart.append(f'{words} {np.median(off):.2g} and {off.max():.2g} %')
     if apart:
-        yield f'{len(found.slips)} slips, fitted beside measured, apart in the median: {", ".join(apart)}'
+        yield (f'{len(found.slips)} slips, fitted beside measured, apart in the median and at most: '
+               f'{", ".join(apart)}')
 
 
 def _laws(found: 'Identification') -> Iterator[str]:

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A fitted friction law in a scene: an axis of its own, or another scene with this friction in place of its own."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -88,13 +88,16 @@ def _check_load(base: Scene, changes: Mapping[str, object], measured: float | No
                          f'measurement, or --set {_LOAD}={own} if the coefficient holds there too')
 
 
-def short_text(scene: Scene, remarks: Mapping[str, str] | None = None) -> str:
+def short_text(scene: Scene, remarks: Mapping[str, str] | None = None, files: Mapping[str, str] | None = None,
+               left_out: Collection[str] = ()) -> str:
     """Return a scene as a file without what it leaves at the default, but with its whole axis and friction.
 
-    `remarks` are put behind parameters, by their names, as comments.
+    `remarks` are put behind parameters, by their names, as comments.  Profiles in `files` (by `SECTION.file`) take the
+    place of points that are `left_out`.
     """
-    return scene_text({name: value for name, value in scene.values.items()
-                       if name.startswith(_ALWAYS) or value != BY_NAME[name].default}, remarks)
+    shown = {name: value for name, value in scene.values.items()
+             if name not in left_out and (name.startswith(_ALWAYS) or value != BY_NAME[name].default)}
+    return scene_text({**shown, **(files or {})}, remarks)
 
 
 def _rounded(value: object) -> object:

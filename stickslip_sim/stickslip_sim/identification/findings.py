@@ -24,10 +24,11 @@ from .identification import (
     StartEnd,
 )
 from .input_certainty import changes_by_inputs, covariance_by_inputs, more_by_inputs
+from .measured_scene import with_measured_inputs
 from .problem import FitProblem
 from .profiles import with_profile_intervals
 from .residual_tests import correlation_length, misfits_of
-from .slip_features import rest_force, simulated_slip
+from .slip_features import shown_break_away
 from .stages import Ended, effective_count
 
 Numbers = NDArray[np.float64]
@@ -61,14 +62,17 @@ def identification_of(problem: FitProblem, scene: Scene, ends: Sequence[Ended], 
     stretches = problem.stretches(0).parts
     times = problem.measurement.times + problem.measurement.shift
     misfits = [misfit for k, channel in enumerate(problem.measurement.channels)
-               for misfit in misfits_of(channel, problem.white(k, channel.values - fitted[k]), times, stretches,
-                                        float(more[k]))]
+               for misfit in misfits_of(channel, channel.values - fitted[k],
+                                        problem.white(k, channel.values - fitted[k]), times, stretches, float(more[k]))]
     estimates = _estimates(problem, values, known, _WHOLE if best.of_slips is None else _SINGLE)
     if best.of_slips is None and not misfits:
         estimates = with_profile_intervals(estimates, problem, best.solution, of_readings, inflation)
         estimates = tuple(map(_widened, estimates, problem.parameters, np.sqrt(np.diag(by_inputs))))
+    dynamics = problem.model.dynamics(values)
+    assert dynamics is not None
+    found, inputs = with_measured_inputs(changed(scene, problem.model.changes(values)), problem.measurement, dynamics)
     return Identification(
-        start=scene, scene=changed(scene, problem.model.changes(values)),
+        start=scene, scene=found, measured_inputs=inputs,
         estimates=estimates, correlation=known.correlation, channels=channels,
         misfits=tuple(misfits),
         combinations=combinations_of(information - problem.information_beforehand(), problem.parameters),
@@ -152,22 +156,14 @@ def _start_end(problem: FitProblem, end: Ended, is_best: bool) -> StartEnd:
 def _slips(problem: FitProblem, values: Numbers) -> tuple[SlipFit, ...]:
     """Return each measured slip beside the one that the model does from the same rest on.
 
-    A slip begins without any speed, which no sensor sees: the measured one is taken to begin as long before half of its
-    way as the fitted one does.
+    Both begin by one rule (`break_away`), as the sensors show them.
     """
     dynamics = problem.model.dynamics(values)
     assert dynamics is not None
     found = []
-    for measured in problem.slips:
-        slip = simulated_slip(problem.model, dynamics, values, measured)
-        since = measured.rest_begin
-        if slip is None:
-            begin = measured.motion.begin
-            fitted, force = np.nan, np.nan
-        else:
-            begin, fitted = since + measured.slip.middle + slip.begin, since + slip.middle + slip.begin
-            force = slip.break_away
-        shift = problem.measurement.shift
-        found.append(SlipFit(begin + shift, fitted + shift, begin - since, fitted - since,
-                             rest_force(problem.measurement, begin, since, begin), force))
+    for measured in problem.sharp_slips:
+        rest, force = shown_break_away(problem.model, dynamics, values, measured, problem.track)
+        since = measured.rest_begin + problem.measurement.shift
+        found.append(SlipFit(since + measured.slip.rest, since + rest, measured.slip.rest, rest,
+                             measured.slip.break_away, force))
     return tuple(found)

@@ -25,7 +25,8 @@ from .motions import motions_of, track_of
 from .problem import FitProblem
 from .readings import drives_directly, readings_of
 from .run_start import from_measured_start
-from .stages import Progress, best_fit, best_of_slips
+from .slip_fit import best_of_slips
+from .stages import Progress, best_fit
 from .starts import starts_of
 
 
@@ -50,7 +51,7 @@ def identify(run: Run | str | os.PathLike[str], start: SceneOrName, free: str | 
     motions = motions_of(track_of(measurement, measurement.drive or scene.drive))
     check_parameters(parameters, measurement)
     check_data(parameters, measurement, motions, scene)
-    scene, parameters, notes = from_measured_start(scene, parameters, measurement)
+    scene, parameters, notes = from_measured_start(scene, parameters, measurement, motions)
     measurement = replace(measurement, notes=(*measurement.notes, *notes))
     if drives_directly(scene):
         parameters, measurement = with_delay(parameters, measurement, scene.axis.mass)

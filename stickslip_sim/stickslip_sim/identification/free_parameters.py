@@ -22,6 +22,7 @@ from .channel_units import INPUTS, UNITS
 
 DELAY = 'delay'
 _OFFSET, _SCALE = 'offset', 'scale'
+_MOST = 40   # parameters: about as many as an axis has
 
 
 @dataclass(frozen=True)
@@ -64,9 +65,9 @@ class FreeParameter:
 def free_parameters(scene: Scene, free: str | Path | Mapping[str, object]) -> tuple[FreeParameter, ...]:
     """Return the free parameters of a file, or of its section `parameters`; raises InputError."""
     if isinstance(free, Mapping):
-        found = uncertain_of(free if 'parameters' in free else {'parameters': free}, _parameter)
+        found = uncertain_of(free if 'parameters' in free else {'parameters': free}, _parameter, _MOST)
     else:
-        found = load_uncertain(str(free), _parameter)
+        found = load_uncertain(str(free), _parameter, _MOST)
     if found.correlations is not None:
         raise InputError('correlations', 'given', 'left out here: how parameters go together is what is sought',
                          'drop the section')

@@ -143,6 +143,7 @@ class Identification:
     determine.  `fits` says whether no test rejects the model (`misfits` is empty).  `criterion` names the one that
     compares `laws`, `cost` is the chi-square over `n_residuals`, `runs` how many simulations it took, `notes` what a
     user must know.  The start of the simulation is at `shift` s of the measurement, whose times all of this has.
+    `measured_inputs` are the sections of the scene, `drive` or `force`, that are as they were measured.
     """
 
     start: Scene
@@ -162,6 +163,7 @@ class Identification:
     seconds: float
     notes: tuple[str, ...] = ()
     shift: float = 0.0
+    measured_inputs: tuple[str, ...] = ()
 
     @property
     def fits(self) -> bool:

@@ -13,6 +13,7 @@ from ..scene.schema import BY_NAME
 from ..study.variation import parameter_of
 from .curve_scene import short_text
 from .identification import AT_BOUND, NOT_IDENTIFIABLE, Estimate, Identification
+from .measured_scene import FORMS
 
 OF_SENSORS = 'sensor.'
 _BEYOND = 1e-3    # of the standard deviation: digits below it say nothing
@@ -24,7 +25,24 @@ def identified_text(found: Identification, run: str, start: str) -> str:
     scene = rounded_scene(found)
     estimates = {one.name: one for one in found.estimates}
     remarks = {name: _remark(name, value, estimates, start) for name, value in scene.values.items()}
-    return '\n'.join(_head(found, run, start)) + '\n' + short_text(scene, remarks)
+    files = {f'{section}.file': FORMS[section].file for section in found.measured_inputs}
+    remarks |= dict.fromkeys(files, 'as it was measured')
+    points = {f'{section}.{name}' for section in found.measured_inputs for name in ('times', FORMS[section].values)}
+    return '\n'.join(_head(found, run, start)) + '\n' + short_text(scene, remarks, files, points)
+
+
+def input_texts(found: Identification) -> dict[str, str]:
+    """Return the measured inputs that the scene names, as CSV files by their names."""
+    values = found.scene.values
+    texts = {}
+    for section in found.measured_inputs:
+        form = FORMS[section]
+        times, numbers = values[f'{section}.times'], values[f'{section}.{form.values}']
+        assert isinstance(times, tuple)
+        assert isinstance(numbers, tuple)
+        rows = (f'{time!r},{number!r}' for time, number in zip(times, numbers, strict=True))
+        texts[form.file] = '\n'.join((f'time,{form.column}', *rows)) + '\n'
+    return texts
 
 
 def rounded_scene(found: Identification) -> Scene:

@@ -23,8 +23,10 @@ def check_parameters(parameters: Sequence[FreeParameter], measurement: SensorRea
     for one in parameters:
         inputs = ('external_force',) if measurement.force is not None else ()
         if one.sensor is not None and one.sensor[0] not in inputs and measurement.channel(one.sensor[0]) is None:
-            raise InputError('free parameter', one.name, 'of a channel that was measured: '
-                             + ', '.join(channel.name for channel in measurement.channels), 'leave it out')
+            known = ', '.join((*(channel.name for channel in measurement.channels), *inputs))
+            fix = 'the drive force drives the slider here, and is its external_force' if measurement.force is not None \
+                and one.sensor[0] == 'drive_force' else 'leave it out'
+            raise InputError('free parameter', one.name, f'of a channel that was measured: {known}', fix)
     count = sum(float(channel.weights.sum()) for channel in measurement.channels)
     if count < _PER_PARAMETER * len(parameters):
         raise InputError('RUN', f'{len(measurement.times)} samples, which say as much as {count:.0f} different ones',

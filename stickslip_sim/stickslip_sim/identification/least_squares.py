@@ -27,6 +27,7 @@ STEP = 1e-6            # of a logarithm, or of a range: rounding is 1e-10 of it,
 _DAMPING = 1e-3        # of the first step, relative to the diagonal
 _LEAST_DAMPING, _MOST_DAMPING = 1e-12, 1e12
 _UNDAMPED, _SETTLED = 1e-6, 100.0   # a damping, and times what the last step may gain
+_SHARES = 1.0, 0.3, 0.1, 0.03   # of a step without damping that are tried, where it promises more
 _PROBE = 0.1           # of a step: there its second derivative is taken
 _MOST_TURN = 0.75      # of the length of a step
 
@@ -65,9 +66,9 @@ def minimise(residuals: Residuals, point: Numbers, region: Region, *, most: int,
     """Return where the sum of squares is least, from a point on, after at most so many steps.
 
     It ends where the next step would gain less than `tolerance`, or that `share` of the sum; it is settled if a step
-    without damping would not gain much more.  Residuals are all NaN where the parameters contradict each other; those
-    beyond `robust` count by their size, not their square.  A derivative beyond `steepest` is that of a jump, and is
-    left out.
+    without damping would not gain much more, or does not, as on a plateau of what the data do not determine.
+    Residuals are all NaN where the parameters contradict each other; those beyond `robust` count by their size, not
+    their square.  A derivative beyond `steepest` is that of a jump, and is left out.
     """
     point = region.inside(point)
     here = residuals(point)
@@ -86,7 +87,10 @@ def minimise(residuals: Residuals, point: Numbers, region: Region, *, most: int,
             gain = _gain(information, gradient, move)
             if not gain > least or damping > _MOST_DAMPING:
                 whole = bounded_step(information, gradient, _UNDAMPED, point, region)
-                return Solution(point, cost, information, not _gain(information, gradient, whole) > _SETTLED * least)
+                much = _SETTLED * least
+                is_settled = not _gain(information, gradient, whole) > much or all(
+                    cost - _cost(residuals(point + part * whole), robust) < much for part in _SHARES)
+                return Solution(point, cost, information, is_settled)
             bent = None if weights is not None else _bend(residuals, slopes, here, point, move)
             if bent is not None:
                 turn = bounded_step(information, slopes.T @ bent, damping, point + move, region)

@@ -23,15 +23,12 @@ Numbers = NDArray[np.float64]
 
 _NOISE, _OF_DRIVE = 0.01, 0.05   # of the highest speed, and of a low one of the drive: so much noise a slope may have
 _SLOWEST = 0.05          # quantile of the speeds of the drive
-_YIELDS = 0.3             # of the speed of the drive: a slider that moves slower rests, on a contact that yields
+YIELDS = 0.3             # of the speed of the drive: a slider that moves slower rests, on a contact that yields
 _SHARE, _NOISES = 0.04, 4.0   # of the highest speed, without a drive; standard deviations
 _PEAK = 2.0              # times that: so fast is a motion at its peak
 _RINGS_AFTER, _RINGS = 3.0, 0.15   # of a ring: its own duration since the last one; of the way of a slip
 _LONG = 0.8              # quantile of the ways: of a slip, not of a ring
 _RISE, _FALL = (0.15, 0.6), (0.03, 0.25)   # of the peak: between these a line is laid through the slope
-_SHORT = 0.2             # of a motion: what is shorter is no rest
-_MIDDLE = 0.25, 0.75     # of a rest: between these the slider stands still,
-_FOLLOWS = 0.4           # or goes less than this share of the way of the drive, as a compliant contact lets it
 _LOST = 2.0              # standard deviations: a speed that is none
 _LONGEST = 0.02          # of the run: so long a parabola may be
 SHARES = 0.1, 0.3, 0.5, 0.7, 0.9   # of the way at which a motion is timed
@@ -56,7 +53,8 @@ class MeasuredMotion:
 class Track(NamedTuple):
     """A position, m, and its slope, m/s, over even times (s); at speeds below `still` (m/s, at each time) it rests.
 
-    `position_noise` and `velocity_noise` are standard deviations.
+    `position_noise` and `velocity_noise` are standard deviations.  The slope is that of parabolas through `smoothing`
+    readings, 1 where a velocity was measured.  `driven` is the speed of the drive, m/s.
     """
 
     times: Numbers
@@ -65,6 +63,8 @@ class Track(NamedTuple):
     still: Numbers
     position_noise: float
     velocity_noise: float
+    smoothing: int
+    driven: Numbers
 
 
 def track_of(measurement: SensorReadings, drive: InputProfile) -> Track:
@@ -80,32 +80,42 @@ def track_of(measurement: SensorReadings, drive: InputProfile) -> Track:
     if position is None:
         assert velocity is not None
         speed = np.interp(times, measurement.times, velocity.values)
-        noise = velocity.resolution
+        noise, smoothing = velocity.resolution, 1
         readings = np.append(0.0, np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(times)))
         place_noise = noise * measurement.period
     else:
         readings, place_noise = np.interp(times, measurement.times, position.values), position.resolution
-        speed, noise = _slope(readings, measurement.period, place_noise, driven)
+        speed, noise, smoothing = _slope(readings, measurement.period, place_noise, driven)
         if velocity is not None and velocity.resolution < noise:
-            speed, noise = np.interp(times, measurement.times, velocity.values), velocity.resolution
-    share = _YIELDS * driven if driven.any() else np.full(count, _SHARE * float(np.abs(speed).max()))
-    return Track(times, readings, speed, np.maximum(share, _NOISES * noise), place_noise, noise)
+            speed, noise, smoothing = np.interp(times, measurement.times, velocity.values), velocity.resolution, 1
+    share = YIELDS * driven if driven.any() else np.full(count, _SHARE * float(np.abs(speed).max()))
+    return Track(times, readings, speed, np.maximum(share, _NOISES * noise), place_noise, noise, smoothing, driven)
 
 
-def _slope(readings: Numbers, period: float, resolution: float, driven: Numbers) -> tuple[Numbers, float]:
-    """Return the slope of readings at even times, and its noise, by parabolas through as few as keep the noise low."""
-    length, slope = 3, np.gradient(readings, period)
+def _slope(readings: Numbers, period: float, resolution: float, driven: Numbers) -> tuple[Numbers, float, int]:
+    """Return the slope of readings at even times, and its noise, by parabolas through as few as keep the noise low.
+
+    The last of the three is how many.
+    """
+    length, slope = 3, slope_of(readings, period, 3)
     most = max(3, int(_LONGEST * len(readings)))
     moving = driven[driven > 0.0]
     slowest = float(np.quantile(moving, _SLOWEST)) if len(moving) else np.inf
     while True:
         noise = resolution * float(np.sqrt(12.0 / (length * (length**2 - 1.0)))) / period
         if noise <= min(_NOISE * float(np.abs(slope).max()), _OF_DRIVE * slowest) or length + 2 > most:
-            return np.asarray(slope, dtype=np.float64), noise
+            return np.asarray(slope, dtype=np.float64), noise, length
         length += 2
-        half = length // 2
-        weights = np.arange(half, -half - 1.0, -1.0) / (np.sum(np.arange(-half, half + 1.0)**2) * period)
-        slope = np.convolve(np.pad(readings, half, 'edge'), weights, 'valid')
+        slope = slope_of(readings, period, length)
+
+
+def slope_of(readings: Numbers, period: float, length: int) -> Numbers:
+    """Return the slope of readings at even times by parabolas through an odd number of them."""
+    if length <= 3:
+        return np.asarray(np.gradient(readings, period))
+    half = length // 2
+    weights = np.arange(half, -half - 1.0, -1.0) / (np.sum(np.arange(-half, half + 1.0)**2) * period)
+    return np.convolve(np.pad(readings, half, 'edge'), weights, 'valid')
 
 
 def motions_of(track: Track) -> list[MeasuredMotion]:
@@ -153,20 +163,6 @@ def stops_of(track: Track) -> Numbers:
             found.append(track.times[row + int(after.argmax())])
     turns = moves[:-1] & moves[1:] & (track.velocity[:-1] * track.velocity[1:] < 0.0)
     return np.sort(np.array([*found, *track.times[:-1][turns]]))
-
-
-def ends_in_rest(motions: Sequence[MeasuredMotion], track: Track, drive: InputProfile) -> tuple[MeasuredMotion, ...]:
-    """Return the motions that end in a rest: not those that only slow down, or go on with the drive."""
-    found = []
-    for motion, after in zip(motions, [*motions[1:], None]):
-        end = float(track.times[-1]) if after is None else after.begin
-        ends = motion.end + np.array(_MIDDLE) * (end - motion.end)
-        gone, driven = (float(abs(np.diff(way)[0])) for way in (np.interp(ends, track.times, track.position),
-                                                                travelled(drive, ends)))
-        if end - motion.end >= _SHORT * (motion.end - motion.begin) \
-                and gone <= _FOLLOWS * driven + _NOISES * track.position_noise:
-            found.append(motion)
-    return tuple(found)
 
 
 def _motion(track: Track, first: int, end: int, peak: int, direction: float) -> MeasuredMotion | None:

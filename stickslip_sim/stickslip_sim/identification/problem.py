@@ -16,14 +16,24 @@ from .direct_motion import direct_motion, force_noise_of, sliding_motion
 from .free_parameters import FreeParameter
 from .input_noise import NoiseFilter, filters_of, white_of
 from .least_squares import STEP
-from .motions import MeasuredMotion, ends_in_rest, stops_of, track_of
+from .motions import MeasuredMotion, stops_of, track_of
 from .readings import Channel, SensorReadings, instants_of
 from .region import region_of
-from .slip_features import N_FIGURES, MeasuredSlip, measured_slips, simulated_slip, slip_distance
+from .rests import ends_in_rest
+from .slip_features import (
+    N_FIGURES,
+    N_TELLING,
+    MeasuredSlip,
+    measured_slips,
+    simulated_slip,
+    slip_distance,
+    telling_distance,
+)
 
 Numbers = NDArray[np.float64]
 Rows = NDArray[np.intp]
 
+_SHARP = 2.5   # of the speed of the drive: a slider that sways about it reaches 2 without any slip
 _ROUGH = 0.02  # of a slip: so well the motion after a measured arrest is known
 _MOVES = 5.0   # standard deviations: a speed that is one
 _STATIC, _NOISY_STEP = 'friction.static.', 0.02
@@ -62,12 +72,13 @@ class FitProblem:
         self.model, self.parameters, self.measurement = model, tuple(parameters), measurement
         self.motions = tuple(motions)
         drive = model.drive_of(np.array([one.start for one in parameters]))
-        track = track_of(measurement, drive)
-        self._rests, self._stops = ends_in_rest(motions, track, drive), stops_of(track)
-        self._starts_in_motion = abs(float(track.velocity[1])) > _MOVES * track.velocity_noise
+        self.track = track_of(measurement, drive)
+        self._rests, self._stops = ends_in_rest(motions, self.track, drive), stops_of(self.track)
+        self._starts_in_motion = abs(float(self.track.velocity[1])) > _MOVES * self.track.velocity_noise
         rests = {id(motion) for motion in self._rests}
-        self.slips = measured_slips(motions, measurement)
+        self.slips = measured_slips(motions, measurement, self.track)
         self.clear_slips = [slip for slip in self.slips if slip.before is None or id(slip.before) in rests]
+        self.sharp_slips = [slip for slip in self.clear_slips if _SHARP <= slip.overtakes < np.inf]
         self.start = np.array([one.inner(one.start) for one in parameters])
         self.region = region_of(parameters, model.scene.values)
         self.widths = np.array([one.inner(one.high) - one.inner(one.low) for one in parameters])
@@ -126,13 +137,17 @@ class FitProblem:
         """Return the values of the parameters at a point (k,), in their units."""
         return np.array([one.outer(number) for one, number in zip(self.parameters, point.tolist(), strict=True)])
 
-    def of_slips(self, point: Numbers, slips: Sequence[MeasuredSlip]) -> Numbers:
-        """Return the residuals of the figures of single slips, and of what is known beforehand."""
+    def of_slips(self, point: Numbers, slips: Sequence[MeasuredSlip], telling: bool = False) -> Numbers:
+        """Return the residuals of the figures of single slips, and of what is known beforehand.
+
+        Of `telling` figures break-away force and time at rest weigh most, as for a model that is not that of the axis.
+        """
         values = self.values(point)
         dynamics = self.model.dynamics(values)
         if dynamics is None:
-            return np.full(N_FIGURES * len(slips) + len(point), np.nan)
-        parts = [slip_distance(simulated_slip(self.model, dynamics, values, slip), slip, self.measurement)
+            return np.full((N_TELLING if telling else N_FIGURES) * len(slips) + len(point), np.nan)
+        distance = telling_distance if telling else slip_distance
+        parts = [distance(simulated_slip(self.model, dynamics, values, slip), slip, self.measurement)
                  for slip in slips]
         return np.concatenate([*parts, self.beforehand(point)])
 

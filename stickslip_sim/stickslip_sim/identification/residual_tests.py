@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import gammaincinv
 
+from ..runs.wording import quantity
 from .identification import Misfit
 from .problem import MeasuredStretch
 from .readings import Channel
@@ -24,18 +25,18 @@ _BY_INPUTS = 1.1     # of a mean square: more by the noise of inputs, whose resi
 _CORRELATED = 0.2    # of neighbouring residuals
 
 
-def misfits_of(channel: Channel, residuals: Numbers, times: Numbers, stretches: Sequence[MeasuredStretch],
-               more: float = 1.0) -> list[Misfit]:
-    """Return the tests that the residuals (n,) of a channel, in its unit, fail.
+def misfits_of(channel: Channel, residuals: Numbers, white: Numbers, times: Numbers,
+               stretches: Sequence[MeasuredStretch], more: float = 1.0) -> list[Misfit]:
+    """Return the tests that the residuals (n,) of a channel, in its unit, fail; `white` has what is new in each.
 
     They may be larger by the factor `more` in the mean square, by the noise of inputs, and go together then.
     """
-    squares = channel.weights * (residuals / channel.resolution)**2 / more
-    found = [_size(channel, squares, times, np.arange(len(times)), 1, 'mean square')]
+    squares = channel.weights * (white / channel.resolution)**2 / more
+    found = [_size(channel, residuals, squares, times, np.arange(len(times)), 1, 'mean square')]
     if more < _BY_INPUTS:
-        found.append(_correlation(channel, residuals, times))
+        found.append(_correlation(channel, white, times))
     if found[0] is not None:
-        found += [_size(channel, squares, times, stretch.rows, len(stretches), 'mean square of a stretch')
+        found += [_size(channel, residuals, squares, times, stretch.rows, len(stretches), 'mean square of a stretch')
                   for stretch in stretches]
     return [misfit for misfit in found if misfit is not None]
 
@@ -56,17 +57,19 @@ def correlation_length(residuals: Numbers, weights: Numbers) -> float:
     return total
 
 
-def _size(channel: Channel, squares: Numbers, times: Numbers, rows: NDArray[np.intp], tests: int, name: str
-          ) -> Misfit | None:
+def _size(channel: Channel, residuals: Numbers, squares: Numbers, times: Numbers, rows: NDArray[np.intp], tests: int,
+          name: str) -> Misfit | None:
     count = float(channel.weights[rows].sum())
     mean = float(squares[rows].sum()) / count
     limit = _SLACK * 2.0 * float(gammaincinv(0.5 * count, 1.0 - _CHANCE / tests)) / count
     if mean <= limit:
         return None
     begin, end = float(times[rows[0]]), float(times[rows[-1]])
-    factor = f'{mean**0.5:.3g} times the noise of {channel.resolution:.3g} {channel.unit}'
+    off = float(np.sqrt(np.mean(residuals[rows]**2)))
+    part = 100.0 * off / float(np.ptp(channel.values))
     return Misfit(channel.name, name, mean, limit, begin, end,
-                  f'{channel.name} is off by {factor} (rms) from {begin:.6g} to {end:.6g} s')
+                  f'{channel.name} is off by {quantity(off, channel.unit, 3)} (rms), {part:.2g} % of its range, from '
+                  f'{begin:.6g} to {end:.6g} s: {mean**0.5:.3g} times what the noise explains')
 
 
 def _correlation(channel: Channel, residuals: Numbers, times: Numbers) -> Misfit | None:

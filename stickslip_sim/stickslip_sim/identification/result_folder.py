@@ -14,7 +14,7 @@ from ..plots.known_friction import KnownFriction, plot_known_friction
 from ..runs import Run
 from .cycle_phases import phases, slip_share, usual_cycles
 from .identification import ChannelFit, Identification
-from .identified_scene import identified_text
+from .identified_scene import identified_text, input_texts
 from .posterior import posterior_text
 from .report_friction import known_friction
 from .report_page import caption, report_page
@@ -25,7 +25,9 @@ _WHOLE = 0.99   # of a run: so long a stretch is all of it
 
 
 def write_results(run: Run, found: Identification, start: str, folder: Path) -> None:
-    """Write the four files into a folder that exists; `start` is the scene that was given, as it was named.
+    """Write the four files into a folder that exists, and inputs that were measured beside them.
+
+    `start` is the scene that was given, as it was named.
 
     Raises OSError when the disk refuses.
     """
@@ -33,6 +35,8 @@ def write_results(run: Run, found: Identification, start: str, folder: Path) -> 
     friction = known_friction(run, found)
     values = report_values(found, run.name, start, friction)
     page = report_page(found, run.name, start, _pictures(found, friction), values['versions'])
+    for name, text in input_texts(found).items():
+        (folder / name).write_text(text, encoding='utf-8')
     (folder / SCENE).write_text(identified_text(found, run.name, start), encoding='utf-8')
     (folder / POSTERIOR).write_text(posterior_text(found, run.name), encoding='utf-8')
     (folder / VALUES).write_text(json.dumps(values, indent=1, allow_nan=False) + '\n', encoding='utf-8')

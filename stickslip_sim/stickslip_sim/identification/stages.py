@@ -7,7 +7,7 @@ slips, each from a measured arrest, have few; what they find is near enough for 
 these for longer ones, up to the whole run, which knows the parameters best.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from functools import partial
 from typing import NamedTuple
 
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from .least_squares import STEP, Solution, minimise
 from .motions import MeasuredMotion
 from .problem import FitProblem, Stretches
-from .starts import COARSE_STEP, N_STARTS, ROBUST, STEEPEST, spread_slips
+from .starts import N_STARTS, ROBUST
 
 Numbers = NDArray[np.float64]
 Progress = Callable[[str, float], None]
@@ -28,8 +28,7 @@ _MOST_STEPS = 60
 _ROUNDS, _GAIN = 4, 0.1 # of further fits at most, and what each must gain
 _OFF, _TIMES_OFF = 4.0, 100.0    # a mean square of a stretch: of 2 % of a slip, and of the median of all
 _GOOD = 1.2             # a mean square up to that, and no other start is tried
-_LOST = 100.0           # a mean square from which on the whole run is not followed
-_FEWEST_SLIPS, _MOST_SLIPS = 3, 30
+LOST = 100.0            # a mean square from which on the whole run is not followed
 _TRIED = 40             # values of a parameter over its range
 
 
@@ -87,7 +86,7 @@ def _polished(problem: FitProblem, found: Solution) -> Solution:
     """
     for _ in range(_ROUNDS):
         square = _worst_square(problem, found.point)
-        if square > _LOST or (square < _GOOD and found.is_settled):
+        if square > LOST or (square < _GOOD and found.is_settled):
             break
         has_table = problem.model.hold_table(problem.values(found.point))
         again = _of_whole(problem, found.point)
@@ -154,25 +153,3 @@ def best_fit(ends: Iterator[Ended], progress: Progress) -> list[Ended]:
         if end.mean_square < _GOOD:
             break
     return sorted(ended, key=lambda end: end.solution.cost)
-
-
-def best_of_slips(problem: FitProblem, ends: Sequence[Ended]) -> list[Ended]:
-    """Return the ends, before them the best fit of single slips where no fit of the whole run is near the data.
-
-    A model that is not that of the axis still has the right rests and break-aways, each from a measured arrest; in the
-    whole run its slips come ever more too late or too early, and the least sum of squares means nothing.
-    """
-    slips = spread_slips(problem, _MOST_SLIPS)
-    if ends[0].mean_square < _LOST or len(slips) < _FEWEST_SLIPS:
-        return [*ends]
-    residuals = partial(problem.of_slips, slips=slips)
-    found = [minimise(residuals, point, problem.region, most=20, tolerance=1e-2, share=1e-4, robust=ROBUST,
-                      step=COARSE_STEP, steepest=STEEPEST) for point in (ends[0].start, ends[0].solution.point)]
-    best = min(found, key=lambda solution: solution.cost)
-    whole = problem.of_stretches(best.point, problem.stretches())
-    if not np.isfinite(whole).all():
-        return [*ends]
-    figures = residuals(best.point)
-    cost = float(whole @ whole)
-    return [Ended(ends[0].start, best._replace(cost=cost), _worst_square(problem, best.point),
-                  float(figures @ figures) / len(figures)), *ends]

@@ -21,8 +21,8 @@ Numbers = NDArray[np.float64]
 
 N_STARTS = 8            # fitted of the trial points, the best
 ROBUST = 3.0            # figures of slips: beyond, a coarse fit counts their size
-COARSE_STEP = 1e-5
-STEEPEST = 1e4          # figures of slips over a logarithm: a hundred times in proportion
+_COARSE_STEP = 1e-5
+_STEEPEST = 1e4          # figures of slips over a logarithm: a hundred times in proportion
 _TRIALS = 256           # points beside the given one, a power of two
 _TRIAL_SLIPS = 5        # at each of them
 _SLIPS = 10             # at most, for the coarse fit
@@ -39,7 +39,7 @@ def starts_of(problem: FitProblem, seed: int) -> Iterator[Numbers]:
     """
     if problem.is_direct:
         yield problem.with_direct(problem.start)
-    chosen = spread_slips(problem, _SLIPS)
+    chosen = _spread_slips(problem, _SLIPS)
     begin, places = _direct(problem)
     first = _coarse(problem, begin, chosen)
     is_near = first.cost < _NEAR * len(chosen)
@@ -53,7 +53,7 @@ def starts_of(problem: FitProblem, seed: int) -> Iterator[Numbers]:
     shares = qmc.Sobol(len(begin), seed=seed).random(_TRIALS)
     trials = [problem.region.inside(problem.with_direct((held if k % 2 else problem.region).at(share)))
               for k, share in enumerate(shares)]
-    few = spread_slips(problem, _TRIAL_SLIPS)
+    few = _spread_slips(problem, _TRIAL_SLIPS)
     costs = [_cost(problem.of_slips(trial, few)) for trial in trials]
     found = [first, *(_coarse(problem, trials[k], chosen) for k in np.argsort(costs)[:N_STARTS])]
     found.sort(key=lambda solution: solution.cost)
@@ -61,7 +61,7 @@ def starts_of(problem: FitProblem, seed: int) -> Iterator[Numbers]:
     yield from _distinct([first.point, *points], problem)[1:] if is_near else _distinct(points, problem)
 
 
-def spread_slips(problem: FitProblem, most: int) -> list[MeasuredSlip]:
+def _spread_slips(problem: FitProblem, most: int) -> list[MeasuredSlip]:
     """Return at most so many of the slips whose begin is known, the first and the last among them."""
     count = len(problem.clear_slips)
     rows = np.linspace(0, max(count - 1, 0), min(count, most)).round().astype(int)
@@ -96,7 +96,7 @@ def _coarse(problem: FitProblem, start: Numbers, slips: Sequence[MeasuredSlip]) 
         limit = max(float(np.quantile(costs, kept)), _FAR_OFF * float(np.median(costs)) if kept == _KEPT[-1] else 0.0)
         near = [slip for slip, cost in zip(slips, costs) if cost <= limit]
         found = minimise(partial(problem.of_slips, slips=near), found.point, problem.region, most=20,
-                         tolerance=1e-2, share=1e-4, robust=ROBUST, step=COARSE_STEP, steepest=STEEPEST)
+                         tolerance=1e-2, share=1e-4, robust=ROBUST, step=_COARSE_STEP, steepest=_STEEPEST)
     return found._replace(cost=_cost(problem.of_slips(found.point, slips)))
 
 

@@ -41,22 +41,22 @@ class Uncertain(NamedTuple):
     correlations: Correlations | None = None
 
 
-def load_uncertain(path: str, find: ParameterOf = parameter_of) -> Uncertain:
+def load_uncertain(path: str, find: ParameterOf = parameter_of, most: int = MOST_VARIATIONS) -> Uncertain:
     """Return the content of a file, as `uncertain_of` does; raises InputError, whose text names the file."""
     text = read_text(Path(path), 'file of distributions')
     with named(path):
-        return uncertain_of(read_yaml(text), find)
+        return uncertain_of(read_yaml(text), find, most)
 
 
-def uncertain_of(document: object, find: ParameterOf = parameter_of) -> Uncertain:
-    """Return the content of a document, as YAML gives it; raises InputError.
+def uncertain_of(document: object, find: ParameterOf = parameter_of, most: int = MOST_VARIATIONS) -> Uncertain:
+    """Return the content of a document with `most` parameters or fewer, as YAML gives it; raises InputError.
 
     `find` returns the parameter of a name, and the index of an element: those of a scene, or others beside them.
     """
     given = section('file', document, ('parameters', 'correlations', 'seed'), _PAGE)
     entries = given.get('parameters')
-    if not isinstance(entries, Mapping) or not 1 <= len(entries) <= MOST_VARIATIONS:
-        raise InputError('parameters', entries, f'a section of 1 to {MOST_VARIATIONS} parameters',
+    if not isinstance(entries, Mapping) or not 1 <= len(entries) <= most:
+        raise InputError('parameters', entries, f'a section of 1 to {most} parameters',
                          'for example axis.mass: {distribution: uniform, low: 300.0, high: 400.0}')
     seed = _SEED.checked(given.get('seed', _SEED.default))
     assert isinstance(seed, int)
