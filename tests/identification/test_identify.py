@@ -261,8 +261,9 @@ def test_a_run_that_starts_elsewhere(tmp_path: Path) -> None:
     assert found.values['initial.stretch'] == pytest.approx(4e-4, rel=0.01)
     assert found.values['friction.static.limit'] == pytest.approx(0.24, rel=0.01)
     assert found.scene.initial.position == pytest.approx(0.05, abs=1e-6)
-    assert len(found.notes) == 3
     assert 'initial.rest_time' in found.values
+    for words in ('the run starts at 0.05 m', 'initial.stretch is free, too', 'initial.rest_time is free, too'):
+        assert any(words in note for note in found.notes), words
 
 
 def test_a_motor_force_drives_an_axis_without_a_spring(tmp_path: Path) -> None:

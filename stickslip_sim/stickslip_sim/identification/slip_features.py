@@ -24,7 +24,8 @@ Numbers = NDArray[np.float64]
 N_FIGURES = 9  # of a slip, see `slip_distance`
 N_TELLING = 10  # see `telling_distance`
 _TIME, _WIDTH, _SHAPE, _JUMP, _FORCE = 0.01, 0.02, 0.02, 0.01, 0.01   # relative: as well as a coarse fit has to do
-_MINOR = 0.2           # weight of figures that tell little where the model is another than the axis
+_SAMPLED = 0.3         # of a period: so well the start of a slip is known
+_MINOR = 0.1           # weight of figures that tell little where the model is another than the axis
 _LONGER = 1.3, 4.0     # of the measured time: so far a simulation looks for the slip, first and again
 _PART = 0.2            # of a measured slip: one that goes less far is passed over for a longer one
 _REST_PART = 0.15      # of a rest: over so much of it, before and after, a line is laid through its force
@@ -140,7 +141,7 @@ def telling_distance(found: SlipFigures | None, measured: MeasuredSlip, measurem
     if found is None:
         return np.concatenate([[np.log(_LONGER[-1]) / _TIME], other])
     known = max(slip.rest, measurement.period)
-    other[0] = np.log(max(found.rest, 1e-9) / known) / max(_TIME, measurement.period / known)
+    other[0] = np.log(max(found.rest, 1e-9) / known) / max(_TIME, _SAMPLED * measurement.period / known)
     force = (found.break_away - slip.break_away) / (_FORCE * abs(slip.break_away))
     return np.concatenate([[np.nan_to_num(force)], other])
 

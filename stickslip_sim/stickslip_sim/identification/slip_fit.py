@@ -14,15 +14,16 @@ from numpy.typing import NDArray
 
 from .least_squares import minimise
 from .problem import FitProblem
-from .stages import LOST, Ended, effective_count
+from .stages import LOST, Ended, worst_square
 
 Numbers = NDArray[np.float64]
 
 _FEWEST_SLIPS, _MOST_SLIPS = 3, 30
-_POINTS = 3             # to begin from
+_POINTS = 2             # to begin from, of those where fits began and ended, and with what the force says directly
+_AGAIN = 2              # times that the best is sought from once more: a simplex that has shrunk stands still
 _TRIALS = 60            # at each of them, for each parameter
 _STEP, _STEEPEST = 1e-5, 1e4
-_ROBUST = 4.0           # figures of slips: beyond, their size counts
+_ROBUST = 10.0          # figures of slips: beyond, their size counts
 _NEAR = 1e-3            # of a logarithm or of a range: so well a point is sought
 
 
@@ -33,10 +34,13 @@ def best_of_slips(problem: FitProblem, ends: Sequence[Ended]) -> list[Ended]:
         return [*ends]
     rows = np.unique(np.linspace(0, count - 1, min(count, _MOST_SLIPS)).round().astype(int))
     residuals = partial(problem.of_slips, slips=[problem.sharp_slips[k] for k in rows], telling=True)
-    points = sorted((point for end in ends for point in (end.start, end.solution.point)),
-                    key=lambda point: _cost(residuals(point)))
-    nearest = min((_nearest(residuals, point, problem) for point in points[:_POINTS]),
-                  key=lambda point: _cost(residuals(point)))
+    ended = [point for end in ends for point in (end.start, end.solution.point)]
+    direct = [problem.region.inside(problem.with_direct(point)) for point in (*ended, problem.start)]
+    points = [point for of in (ended, direct)
+              for point in sorted(of, key=lambda point: _cost(residuals(point)))[:_POINTS]]
+    nearest = min((_nearest(residuals, point, problem) for point in points), key=lambda point: _cost(residuals(point)))
+    for _ in range(_AGAIN):
+        nearest = _nearest(residuals, nearest, problem)
     best = minimise(residuals, nearest, problem.region, most=10, tolerance=1e-3, share=1e-4, robust=_ROBUST,
                     step=_STEP, steepest=_STEEPEST)
     whole = problem.of_stretches(best.point, problem.stretches())
@@ -44,7 +48,7 @@ def best_of_slips(problem: FitProblem, ends: Sequence[Ended]) -> list[Ended]:
         return [*ends]
     figures = residuals(best.point)
     cost = float(whole @ whole)
-    return [Ended(ends[0].start, best._replace(cost=cost), cost / effective_count(problem),
+    return [Ended(ends[0].start, best._replace(cost=cost), worst_square(problem, best.point),
                   float(figures @ figures) / len(figures)), *ends]
 
 
@@ -55,10 +59,11 @@ def _nearest(residuals: Callable[[Numbers], Numbers], start: Numbers, problem: F
     """
     from scipy.optimize import Bounds, minimize  # takes a while, and only a wrong model needs it
 
-    found = minimize(lambda point: _cost(residuals(point)), start, method='Nelder-Mead',
-                     bounds=Bounds(problem.region.low, problem.region.high),
+    region = problem.region
+    found = minimize(lambda point: _cost(residuals(region.inside(point))), start, method='Nelder-Mead',
+                     bounds=Bounds(region.low, region.high),
                      options={'maxfev': _TRIALS * len(start), 'xatol': _NEAR, 'fatol': _NEAR, 'adaptive': True})
-    return problem.region.inside(found.x)
+    return region.inside(np.asarray(found.x))
 
 
 def _cost(residuals: Numbers) -> float:

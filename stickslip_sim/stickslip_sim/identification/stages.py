@@ -58,7 +58,7 @@ def fit_from(problem: FitProblem, start: Numbers) -> Ended:
         if abs(solution.cost - before) < _GAIN:
             break
     solution = _polished(problem, solution)
-    return Ended(start, solution, _worst_square(problem, solution.point))
+    return Ended(start, solution, worst_square(problem, solution.point))
 
 
 def _nearer(problem: FitProblem, start: Numbers) -> Numbers:
@@ -85,7 +85,7 @@ def _polished(problem: FitProblem, found: Solution) -> Solution:
     lets the fit by.
     """
     for _ in range(_ROUNDS):
-        square = _worst_square(problem, found.point)
+        square = worst_square(problem, found.point)
         if square > LOST or (square < _GOOD and found.is_settled):
             break
         has_table = problem.model.hold_table(problem.values(found.point))
@@ -102,7 +102,7 @@ def _polished(problem: FitProblem, found: Solution) -> Solution:
     return found
 
 
-def _worst_square(problem: FitProblem, point: Numbers) -> float:
+def worst_square(problem: FitProblem, point: Numbers) -> float:
     """Return the mean square of the weighted residuals of the whole run, of the channel where it is the largest."""
     channels = problem.measurement.channels
     residuals = problem.of_stretches(point, problem.stretches())[:-len(point)].reshape(len(channels), -1)
