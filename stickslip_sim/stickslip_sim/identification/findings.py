@@ -27,7 +27,7 @@ from .input_certainty import changes_by_inputs, covariance_by_inputs, more_by_in
 from .measured_scene import with_measured_inputs
 from .problem import FitProblem
 from .profiles import with_profile_intervals
-from .residual_tests import correlation_length, misfits_of
+from .residual_tests import correlation_length, inflation_of, misfits_of
 from .slip_features import shown_break_away
 from .stages import Ended, effective_count
 
@@ -38,6 +38,8 @@ _AT_END = 1e-6       # of a range
 _UNSETTLED = 'the fit has not come to rest: the best point so far, whose intervals may be too narrow'
 _OF_SLIPS = ('the model does not follow the whole run: single slips are fitted, each from a measured arrest, and shown'
              ' from there')
+_ALONG = ('the model does not fit sample by sample: of what they leave open, numbers are taken with which the position'
+          ' follows the whole run')
 _WHOLE, _SINGLE = 'fit of the whole run', 'fit of single slips, each from a measured arrest'
 CRITERION = 'BIC'
 
@@ -54,7 +56,7 @@ def identification_of(problem: FitProblem, scene: Scene, ends: Sequence[Ended], 
     information = best.solution.information
     changes = changes_by_inputs(problem, point) if best.of_slips is None else []
     more = more_by_inputs(problem, changes)
-    inflation = _inflation(problem, fitted) if best.of_slips is None else max(best.of_slips, 1.0)
+    inflation = inflation_of(problem, fitted) if best.of_slips is None else max(best.of_slips, 1.0)
     of_readings = certainty_of(information, inflation, problem.parameters)
     by_inputs = covariance_by_inputs(problem, best.solution, changes)
     known = of_readings._replace(covariance=of_readings.covariance + by_inputs)
@@ -82,7 +84,7 @@ def identification_of(problem: FitProblem, scene: Scene, ends: Sequence[Ended], 
         slips=_slips(problem, values), criterion=CRITERION, cost=best.solution.cost,
         n_residuals=len(whole.rows) * len(channels), runs=problem.model.runs, seconds=time.perf_counter() - began,
         notes=(*problem.measurement.notes, *([] if best.solution.is_settled else [_UNSETTLED]),
-               *([] if best.of_slips is None else [_OF_SLIPS])),
+               *([] if best.of_slips is None else [_OF_SLIPS]), *([_ALONG] if best.is_along else [])),
         shift=problem.measurement.shift)
 
 
@@ -102,20 +104,6 @@ def _channels(problem: FitProblem, fitted: Sequence[Numbers]) -> tuple[ChannelFi
                                 fitted[k], channel.resolution, (length - 1.0) * measurement.period,
                                 None if new is residuals else new))
     return tuple(found)
-
-
-def _inflation(problem: FitProblem, fitted: Sequence[Numbers]) -> float:
-    """Return the factor on the covariance: what residuals are larger than the noise, and go together, of the worst."""
-    factors = [1.0]
-    for k, channel in enumerate(problem.measurement.channels):
-        residuals = problem.white(k, channel.values - fitted[k])
-        mean = float((channel.weights * residuals**2).sum() / channel.weights.sum()) / channel.resolution**2
-        length = correlation_length(residuals, channel.weights)
-        factors.append(mean * (length if length > _TOGETHER else 1.0))
-    return max(factors)
-
-
-_TOGETHER = 1.5   # samples: below, the correlation is that of chance
 
 
 def _estimates(problem: FitProblem, values: Numbers, known: Certainty, derivation: str) -> tuple[Estimate, ...]:

@@ -28,6 +28,7 @@ from .run_start import from_measured_start
 from .slip_fit import best_of_slips
 from .stages import Progress, best_fit
 from .starts import starts_of
+from .whole_position import along_the_run
 
 
 def identify(run: Run | str | os.PathLike[str], start: SceneOrName, free: str | Path | Mapping[str, object], *,
@@ -59,5 +60,5 @@ def identify(run: Run | str | os.PathLike[str], start: SceneOrName, free: str | 
     problem = FitProblem(model, parameters, measurement, motions)
     with closing(fits_from(problem, starts_of(problem, seed), workers, keeper)) as fits:
         ends = best_fit(fits, say)
-    identified = identification_of(problem, scene, best_of_slips(problem, ends), began)
+    identified = identification_of(problem, scene, best_of_slips(problem, along_the_run(problem, ends)), began)
     return with_laws(identified, problem, workers, keeper, say) if laws else identified

@@ -172,7 +172,7 @@ class FitProblem:
         rows = np.concatenate([part.rows for part in parts])
         own = np.concatenate([np.full(len(part.rows), part.before is None and first != 0) for part in parts])
         filters = self._filters if first is None and stride == 1 else (None,) * len(self._filters)
-        factors = tuple(np.sqrt(channel.weights[rows]) / np.where(own, channel.resolution, self._roughly(channel))
+        factors = tuple(np.sqrt(channel.weights[rows]) / np.where(own, channel.resolution, self.roughly(channel))
                         if one is None else np.full(len(rows), 1.0 / one.deviation)
                         for one, channel in zip(filters, self.measurement.channels, strict=True))
         targets = tuple(channel.values[rows] * factor
@@ -185,7 +185,7 @@ class FitProblem:
         again.model = self.model.with_inputs_read_again(random)
         return again
 
-    def _roughly(self, channel: Channel) -> float:
+    def roughly(self, channel: Channel) -> float:
         """Return the standard deviation of a channel where a stretch begins from a measured arrest."""
         ways = [abs(motion.stop - motion.start) for motion in self.motions]
         size = float(np.median(ways)) if channel.name == 'position' and ways else 0.1 * float(np.ptp(channel.values))

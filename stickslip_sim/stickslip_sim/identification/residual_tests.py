@@ -14,11 +14,12 @@ from scipy.special import gammaincinv
 
 from ..runs.wording import quantity
 from .identification import Misfit
-from .problem import MeasuredStretch
+from .problem import FitProblem, MeasuredStretch
 from .readings import Channel
 
 Numbers = NDArray[np.float64]
 
+_TOGETHER = 1.5   # samples: below, the correlation is that of chance
 _CHANCE = 1e-4       # of rejecting a model that is right
 _SLACK = 1.15        # on a mean square: the noise is known only so well
 _BY_INPUTS = 1.1     # of a mean square: more by the noise of inputs, whose residuals go together
@@ -94,3 +95,14 @@ def _by_runs(residuals: Numbers, weights: Numbers) -> Numbers:
         rows.append(row)
         row += int(lengths[row])
     return np.asarray(np.add.reduceat(residuals * weights, rows))
+
+
+def inflation_of(problem: FitProblem, fitted: Sequence[Numbers]) -> float:
+    """Return the factor on the covariance: what residuals are larger than the noise, and go together, of the worst."""
+    factors = [1.0]
+    for k, channel in enumerate(problem.measurement.channels):
+        residuals = problem.white(k, channel.values - fitted[k])
+        mean = float((channel.weights * residuals**2).sum() / channel.weights.sum()) / channel.resolution**2
+        length = correlation_length(residuals, channel.weights)
+        factors.append(mean * (length if length > _TOGETHER else 1.0))
+    return max(factors)

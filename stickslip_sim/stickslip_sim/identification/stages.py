@@ -35,13 +35,20 @@ _TRIED = 40             # values of a parameter over its range
 class Ended(NamedTuple):
     """A start, where the fit from it ended, and the mean square of the residuals of the worst channel there.
 
-    `of_slips` has the mean square of the figures of single slips where these alone were fitted (`best_of_slips`).
+    `of_slips` has the mean square of the figures of single slips where these alone were fitted (`best_of_slips`); one
+    that `is_along` the run was moved to where the position follows it (`along_the_run`).
     """
 
     start: Numbers
     solution: Solution
     mean_square: float
     of_slips: float | None = None
+    is_along: bool = False
+
+    @property
+    def is_off(self) -> bool:
+        """Whether the residuals are larger than the noise."""
+        return self.mean_square >= _GOOD
 
 
 def fit_from(problem: FitProblem, start: Numbers) -> Ended:
