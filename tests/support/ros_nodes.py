@@ -3,12 +3,11 @@
 """A client that talks to real nodes over DDS.  Conditions have deadlines."""
 
 import importlib
-import sys
 import threading
 import warnings
 from collections import Counter
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, redirect_stderr
+from contextlib import contextmanager
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -24,6 +23,7 @@ from diagnostic_msgs.msg import DiagnosticArray  # noqa: E402
 from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParametersAtomically  # noqa: E402
 from rclpy.context import Context  # noqa: E402
 from rclpy.event_handler import SubscriptionEventCallbacks  # noqa: E402
+from rclpy.executors import SingleThreadedExecutor  # noqa: E402
 from rclpy.node import Node  # noqa: E402
 from rclpy.parameter import Parameter  # noqa: E402
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy  # noqa: E402
@@ -38,7 +38,6 @@ from stickslip_msgs.msg import (  # noqa: E402
     SliderState,
     StepTiming,
 )
-from stickslip_sim.ros.process.program import make_executor  # noqa: E402
 from tests.support.node_processes import NodeProcess, assert_clean, running  # noqa: E402
 from tests.support.waiting import DEADLINE, wait_for  # noqa: E402
 
@@ -73,8 +72,7 @@ class Client:
         self._velocity = self.node.create_publisher(DriveVelocity, 'drive_velocity', _COMMAND)
         self._force = self.node.create_publisher(ExternalForce, 'external_force', _COMMAND)
         self._services: dict[str, Any] = {}
-        with redirect_stderr(sys.__stderr__):   # where it lets Python report crashes; that of capsys is no file
-            self._executor = make_executor(self._context)
+        self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self.node)
         self._is_closing = threading.Event()
         self._thread = threading.Thread(target=self._spin, daemon=True)

@@ -59,14 +59,14 @@ def spin(node: Any, signals: 'Signals', is_over: Callable[[], bool] = lambda: Fa
         node.destroy_node()
 
 
-def make_executor(context: Any = None) -> Any:
+def make_executor() -> Any:
     """Return the executor that takes the least of the interpreter from the step loop (docs/loop.md)."""
     try:
         from rclpy.experimental import EventsExecutor
     except ImportError:
         from rclpy.executors import SingleThreadedExecutor
-        return SingleThreadedExecutor(context=context)
-    return EventsExecutor(context=context)
+        return SingleThreadedExecutor()
+    return EventsExecutor()
 
 
 def _with_ros(args: Sequence[str], signals: 'Signals', program: Program) -> None:
