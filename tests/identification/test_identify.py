@@ -6,56 +6,26 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 import stickslip_sim as stickslip
 from stickslip_sim.cli.identify_lines import result_lines
 from stickslip_sim.identification.free_parameters import free_parameters
-from stickslip_sim.identification.identification import AT_BOUND, FOUND, NOT_IDENTIFIABLE, Identification
-from stickslip_sim.recording import write_measured
-from tests.identification.measured_axis import between, measure
+from stickslip_sim.identification.identification import AT_BOUND, NOT_IDENTIFIABLE, Identification
+from stickslip_sim.scene import changed
+from tests.identification.measured_axis import (
+    COMPLIANT,
+    DRIVE_OFF,
+    OF_DRIVE,
+    OF_FRICTION,
+    OFF,
+    RIGID,
+    between,
+    check,
+    measure,
+)
 
 pytestmark = pytest.mark.slow
-
-RIGID = stickslip.load_scene('paper_fig7', {'drive.course': 'steps', 'drive.times': (0.0, 2.0, 4.0),
-                                            'drive.velocities': (0.003, 0.005, 0.002)})
-COMPLIANT = stickslip.load_scene('paper_fig8', {'drive.velocity': 0.003})
-OF_FRICTION = {'friction.static.limit': between(0.1, 0.5), 'friction.static.time_constant': between(0.05, 0.6),
-               'friction.kinetic.coefficients[1]': between(0.01, 0.11)}
-OF_DRIVE = {'axis.mass': between(150.0, 900.0), 'axis.drive_stiffness': between(2.5e5, 1.5e6),
-            'axis.drive_damping': between(1000.0, 9000.0)}
-OFF = {'friction.static.limit': 0.3, 'friction.static.time_constant': 0.13,
-       'friction.kinetic.coefficients': (0.12, 0.065)}
-DRIVE_OFF = {'axis.mass': 450.0, 'axis.drive_stiffness': 4.4e5, 'axis.drive_damping': 5400.0}
-
-
-def changed(scene: stickslip.Scene, changes: dict[str, object]) -> stickslip.Scene:
-    from stickslip_sim.scene import changed as with_changes
-
-    return with_changes(scene, changes)
-
-
-def truth(scene: stickslip.Scene, name: str) -> float:
-    plain, _, index = name.rstrip(']').partition('[')
-    value = scene.values[plain]
-    if isinstance(value, tuple):
-        value = value[int(index)]
-    assert isinstance(value, float)
-    return value
-
-
-def check(found: Identification, scene: stickslip.Scene, within: float) -> None:
-    """Assert that all was found, near the truth, and within a little more than its interval."""
-    assert found.fits, found.misfits
-    for estimate in found.estimates:
-        right = truth(scene, estimate.name)
-        low, high = estimate.best_interval
-        assert estimate.kind == FOUND, estimate
-        assert abs(estimate.value / right - 1.0) < within, estimate
-        assert low - (high - low) <= right <= high + (high - low), estimate
-        assert truth(found.scene, estimate.name) == pytest.approx(estimate.value, rel=1e-12)
-
 
 @pytest.fixture(scope='module')
 def rigid(tmp_path_factory: pytest.TempPathFactory) -> stickslip.Run:
@@ -264,78 +234,6 @@ def test_a_run_that_starts_elsewhere(tmp_path: Path) -> None:
     assert 'initial.rest_time' in found.values
     for words in ('the run starts at 0.05 m', 'initial.stretch is free, too', 'initial.rest_time is free, too'):
         assert any(words in note for note in found.notes), words
-
-
-def without_a_spring() -> stickslip.Scene:
-    return stickslip.load_scene('paper_fig7', {
-        'axis.drive_stiffness': 0.0, 'axis.drive_damping': 0.0, 'axis.mass': 95.0, 'axis.normal_force': 100.0,
-        'friction.static.law': 'constant', 'friction.static.initial': 0.2, 'friction.acceleration_dependence': False,
-        'friction.kinetic.velocities': (0.0,), 'friction.kinetic.coefficients': (0.2,),
-        'friction.kinetic.end_slope': 2.0, 'drive.velocity': 0.0, 'force.course': 'sine', 'force.amplitude': 60.0,
-        'force.frequency': 1.0})
-
-
-def test_a_motor_force_drives_an_axis_without_a_spring(tmp_path: Path) -> None:
-    """Its noise, integrated twice, moves the axis by hundreds of the steps of its encoder; the intervals know it."""
-    axis = without_a_spring()
-    samples = stickslip.simulate(axis, 3.0).samples
-    noise = np.random.default_rng(2).normal(0.0, 0.3, len(samples['time']))
-    write_measured(tmp_path / 'run', samples['time'] + 0.7, {   # the clock starts before the motion
-        'position': np.round(samples['position'], 6), 'drive_force': samples['external_force'] + noise}, {})
-    start = changed(axis, {'axis.mass': 130.0, 'friction.kinetic.end_slope': 1.4, 'force.course': 'constant',
-                           'friction.static.initial': 0.3, 'friction.kinetic.coefficients': (0.27,)})
-    found = stickslip.identify(stickslip.read_run(tmp_path / 'run'), start, {
-        'axis.mass': between(50.0, 200.0), 'friction.kinetic.coefficients[0]': between(0.05, 0.3),
-        'friction.static.initial': between(0.05, 0.5), 'friction.kinetic.end_slope': between(0.5, 5.0)})
-    assert found.fits, found.misfits
-    assert found.shift == 0.7
-    (position,) = found.channels
-    assert np.std(position.measured - position.fitted) > 20.0 * position.resolution
-    assert np.std(position.residuals) == pytest.approx(position.resolution, rel=0.3)
-    assert len(found.notes) == 1
-    for name, right in (('axis.mass', 95.0), ('friction.kinetic.coefficients[0]', 0.2),
-                        ('friction.kinetic.end_slope', 2.0)):
-        estimate = next(one for one in found.estimates if one.name == name)
-        low, high = estimate.best_interval
-        assert high - low < 0.01 * right
-        assert low - 0.5 * (high - low) < right < high + 0.5 * (high - low), estimate
-    assert found.runs < 2000
-
-
-def test_a_motor_force_on_an_axis_that_is_not_quite_the_model(tmp_path: Path) -> None:
-    """Its friction varies along the way; the scene that is found still follows the position of the whole run."""
-    axis = without_a_spring()
-    random = np.random.default_rng(3)
-    samples = stickslip.simulate(axis, 6.0).samples
-    uneven = 0.6 * np.sin(2.0 * np.pi * samples['position'] / 0.01) * (samples['velocity'] != 0.0)   # N
-    write_measured(tmp_path / 'run', samples['time'], {
-        'position': np.round(samples['position'], 7),
-        'drive_force': samples['external_force'] + uneven + random.normal(0.0, 0.05, len(samples['time']))}, {})
-    start = changed(axis, {'axis.mass': 130.0, 'force.course': 'constant'})
-    found = stickslip.identify(stickslip.read_run(tmp_path / 'run'), start, {
-        'axis.mass': between(50.0, 200.0), 'friction.kinetic.coefficients[0]': between(0.05, 0.3),
-        'friction.kinetic.end_slope': between(0.5, 5.0), 'sensor.external_force.offset': between(-5.0, 5.0)})
-    (position,) = found.channels
-    off = np.std(position.measured - position.fitted) / np.ptp(position.measured)
-    assert off < 0.004   # by the samples alone it is 0.0066
-    assert not found.fits
-    assert any('follows the whole run' in note for note in found.notes)
-    assert found.values['axis.mass'] == pytest.approx(95.0, rel=0.02)
-
-
-def test_a_drive_that_was_measured_by_its_encoder(tmp_path: Path) -> None:
-    """Its feed is not known otherwise; what the steps of the encoder leave open of it is in the intervals."""
-    samples = stickslip.simulate(RIGID, 6.0, 1e-3).samples
-    random = np.random.default_rng(5)
-    write_measured(tmp_path / 'run', samples['time'], {
-        'position': np.round(samples['position'], 6), 'drive_position': np.round(samples['drive_position'], 6),
-        'drive_force': samples['drive_force'] + random.normal(0.0, 2.0, len(samples['time']))}, {})
-    start = changed(RIGID, {**OFF, 'drive.course': 'constant', 'drive.velocity': 0.0})
-    found = stickslip.identify(stickslip.read_run(tmp_path / 'run'), start, {
-        **OF_FRICTION, 'axis.drive_stiffness': between(2.5e5, 1.5e6)})
-    check(found, RIGID, 0.005)
-    assert found.notes == ('the drive moves as it was measured',)
-    assert found.runs < 10_000
 
 
 def test_a_misfit_is_said_once_for_each_channel(rigid: stickslip.Run) -> None:

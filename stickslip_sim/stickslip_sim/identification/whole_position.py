@@ -30,7 +30,8 @@ def along_the_run(problem: FitProblem, ends: Sequence[Ended]) -> list[Ended]:
     """Return the ends, the best of them moved to where the position follows the run, if a misfit asks for it.
 
     Sought is the least of the squares of the position over what is known of it after a rest, counted once for each
-    motion, and of the way from the best fit over its covariance.
+    motion, and of the way from the best fit over its covariance.  The cost stays that of the best fit to the samples,
+    by which starts and laws are compared.
     """
     best, channels = ends[0], problem.measurement.channels
     rows = [k for k, channel in enumerate(channels) if channel.name == 'position']
@@ -52,6 +53,4 @@ def along_the_run(problem: FitProblem, ends: Sequence[Ended]) -> list[Ended]:
         return np.concatenate([factor * (channels[k].values - found[k]), near @ (trial - point)])
 
     moved = minimise(residuals, point, problem.region, most=30, tolerance=1e-2, step=_STEP)
-    there = problem.of_stretches(moved.point, whole)
-    solution = best.solution._replace(point=moved.point, cost=float(there @ there))
-    return [best._replace(solution=solution, is_along=True), *ends[1:]]
+    return [best._replace(solution=best.solution._replace(point=moved.point), is_along=True), *ends[1:]]

@@ -1,0 +1,87 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Axes found from a run whose input was measured: a motor force, or a drive by its encoder."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import stickslip_sim as stickslip
+from stickslip_sim.recording import write_measured
+from stickslip_sim.scene import changed
+from tests.identification.measured_axis import OF_FRICTION, OFF, RIGID, between, check
+
+pytestmark = pytest.mark.slow
+
+
+def without_a_spring() -> stickslip.Scene:
+    return stickslip.load_scene('paper_fig7', {
+        'axis.drive_stiffness': 0.0, 'axis.drive_damping': 0.0, 'axis.mass': 95.0, 'axis.normal_force': 100.0,
+        'friction.static.law': 'constant', 'friction.static.initial': 0.2, 'friction.acceleration_dependence': False,
+        'friction.kinetic.velocities': (0.0,), 'friction.kinetic.coefficients': (0.2,),
+        'friction.kinetic.end_slope': 2.0, 'drive.velocity': 0.0, 'force.course': 'sine', 'force.amplitude': 60.0,
+        'force.frequency': 1.0})
+
+
+def test_a_motor_force_drives_an_axis_without_a_spring(tmp_path: Path) -> None:
+    """Its noise, integrated twice, moves the axis by hundreds of the steps of its encoder; the intervals know it."""
+    axis = without_a_spring()
+    samples = stickslip.simulate(axis, 3.0).samples
+    noise = np.random.default_rng(2).normal(0.0, 0.3, len(samples['time']))
+    write_measured(tmp_path / 'run', samples['time'] + 0.7, {   # the clock starts before the motion
+        'position': np.round(samples['position'], 6), 'drive_force': samples['external_force'] + noise}, {})
+    start = changed(axis, {'axis.mass': 130.0, 'friction.kinetic.end_slope': 1.4, 'force.course': 'constant',
+                           'friction.static.initial': 0.3, 'friction.kinetic.coefficients': (0.27,)})
+    found = stickslip.identify(stickslip.read_run(tmp_path / 'run'), start, {
+        'axis.mass': between(50.0, 200.0), 'friction.kinetic.coefficients[0]': between(0.05, 0.3),
+        'friction.static.initial': between(0.05, 0.5), 'friction.kinetic.end_slope': between(0.5, 5.0)})
+    assert found.fits, found.misfits
+    assert found.shift == 0.7
+    (position,) = found.channels
+    assert np.std(position.measured - position.fitted) > 20.0 * position.resolution
+    assert np.std(position.residuals) == pytest.approx(position.resolution, rel=0.3)
+    assert len(found.notes) == 1
+    for name, right in (('axis.mass', 95.0), ('friction.kinetic.coefficients[0]', 0.2),
+                        ('friction.kinetic.end_slope', 2.0)):
+        estimate = next(one for one in found.estimates if one.name == name)
+        low, high = estimate.best_interval
+        assert high - low < 0.01 * right
+        assert low - 0.5 * (high - low) < right < high + 0.5 * (high - low), estimate
+    assert found.runs < 2000
+
+
+def test_a_motor_force_on_an_axis_that_is_not_quite_the_model(tmp_path: Path) -> None:
+    """Its friction varies along the way; the scene that is found still follows the position of the whole run."""
+    axis = without_a_spring()
+    random = np.random.default_rng(3)
+    samples = stickslip.simulate(axis, 6.0).samples
+    uneven = 0.6 * np.sin(2.0 * np.pi * samples['position'] / 0.01) * (samples['velocity'] != 0.0)   # N
+    write_measured(tmp_path / 'run', samples['time'], {
+        'position': np.round(samples['position'], 7),
+        'drive_force': samples['external_force'] + uneven + random.normal(0.0, 0.05, len(samples['time']))}, {})
+    start = changed(axis, {'axis.mass': 130.0, 'force.course': 'constant'})
+    found = stickslip.identify(stickslip.read_run(tmp_path / 'run'), start, {
+        'axis.mass': between(50.0, 200.0), 'friction.kinetic.coefficients[0]': between(0.05, 0.3),
+        'friction.kinetic.end_slope': between(0.5, 5.0), 'sensor.external_force.offset': between(-5.0, 5.0)})
+    (position,) = found.channels
+    off = np.std(position.measured - position.fitted) / np.ptp(position.measured)
+    assert off < 0.004   # by the samples alone it is 0.0066
+    assert not found.fits
+    assert any('follows the whole run' in note for note in found.notes)
+    assert found.values['axis.mass'] == pytest.approx(95.0, rel=0.02)
+
+
+def test_a_drive_that_was_measured_by_its_encoder(tmp_path: Path) -> None:
+    """Its feed is not known otherwise; what the steps of the encoder leave open of it is in the intervals."""
+    samples = stickslip.simulate(RIGID, 6.0, 1e-3).samples
+    random = np.random.default_rng(5)
+    write_measured(tmp_path / 'run', samples['time'], {
+        'position': np.round(samples['position'], 6), 'drive_position': np.round(samples['drive_position'], 6),
+        'drive_force': samples['drive_force'] + random.normal(0.0, 2.0, len(samples['time']))}, {})
+    start = changed(RIGID, {**OFF, 'drive.course': 'constant', 'drive.velocity': 0.0})
+    found = stickslip.identify(stickslip.read_run(tmp_path / 'run'), start, {
+        **OF_FRICTION, 'axis.drive_stiffness': between(2.5e5, 1.5e6)})
+    check(found, RIGID, 0.005)
+    assert found.notes == ('the drive moves as it was measured',)
+    assert found.runs < 10_000
