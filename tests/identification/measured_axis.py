@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Measured runs for the tests of the identification: scenes through sensors that count and make noise, and the truth."""
+"""Measured runs for the tests of the identification: scenes through sensors with noise, and the truth."""
 
 from collections.abc import Mapping
 from pathlib import Path
