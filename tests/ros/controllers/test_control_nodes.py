@@ -75,10 +75,16 @@ class TestRefusedStart:
         assert done.stdout.startswith(f'usage: {program} ')
 
 
+def log_lines(listener: Client) -> list[str]:
+    """Return the log lines of all nodes; those to come are added."""
+    lines: list[str] = []
+    listener.node.create_subscription(Log, '/rosout', lambda log: lines.append(log.msg), LATCHED)
+    return lines
+
+
 def test_without_an_axis_it_says_what_is_missing() -> None:
-    logged: list[str] = []
     with running(program='cascade_controller') as process, client() as listener:
-        listener.node.create_subscription(Log, '/rosout', lambda log: logged.append(log.msg), LATCHED)
+        logged = log_lines(listener)
         wait_for(lambda: any('no /joint_states' in text for text in logged), 'a warning')
         code, errors = process.end(signal.SIGTERM)
     assert code == 0, errors
@@ -175,7 +181,7 @@ def test_over_dds_the_compensated_one_sticks_less() -> None:
 
 def test_parameters_and_restart_while_it_runs(capsys: Capture) -> None:
     with driven('compensated') as (axis, controller):
-        name = NAMES['compensated']
+        name, logged = NAMES['compensated'], log_lines(axis)
         assert axis.set_parameters(name, velocity_gain=6.0).successful
         assert axis.set_parameters(name, integral_time=math.inf).successful
         assert answered(capsys, 'call', 'set', 'velocity_gain=5', 'integral_time=.inf', '--node', name) == (
@@ -187,9 +193,9 @@ def test_parameters_and_restart_while_it_runs(capsys: Capture) -> None:
         assert 'did you mean moves.feed?' in unknown
         assert answered(capsys, 'call', 'restart', '--node', name) == (
             0, 'the moves begin anew with the next measurement\n', '')
+        wait_for(lambda: sum('the moves begin at' in line for line in logged) >= 2, 'the moves to begin anew')
         code, errors = controller.end()
     assert code == 0, errors
-    assert errors.count('the moves begin') >= 2
 
 
 @pytest.mark.parametrize(('message', 'reported'), [
