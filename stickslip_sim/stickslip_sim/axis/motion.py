@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The motion of each mode from its segment start, and the forces along it.
+"""The motion of each mode from its segment start.
 
 Every mode is m y″ + (h + …) y′ + (c + …) y = polynomial of the time, y the travel since the segment start:
 
@@ -15,126 +15,18 @@ with w = s − x, and b the slope of the friction branch on the present segment 
 slideway there is no h v.  Sines in v and F_e add their own answer, see `sinusoids`.
 """
 
-import math
-from typing import NamedTuple
-
 from ..core.hot_path import compiled, inlined
-from ..core.types import Mode
-from ..friction.static import static_coefficient
 from ..linear.oscillator import Oscillator, ShortIntegrals, integrals, oscillator, short_integrals
+from .codes import ACCELERATING, COASTING, STICK
+from .forces import feed_damping, friction_force, is_rigid_stick
+from .friction_segments import friction_line
 from .layout import Parameters, State
 from .sinusoids import begin_sinusoids, move_sinusoids, sinusoid_drive_travel, sinusoid_travel
 
-# floats, as all fields of the state are
-STICK = float(Mode.STICK)
-ACCELERATING = float(Mode.ACCELERATING)
-COASTING = float(Mode.COASTING)
-DECELERATING = float(Mode.DECELERATING)
-
-TICK = 0.1             # s; a search no longer than that begins with a bound, which mostly ends it
-STAMP = 2.0 ** -51     # s, more than the time of an event is rounded by
 _SIXTH = 1.0 / 6.0
 _LONG = 1e3            # so much longer than the spring's stretch a slide has to be for the balance to be the better one
 _LONG_RING = 1e10      # (ω t)², beyond which the third power of the distance from there would tell
 _SPLIT = 131073.0      # splits off the upper 36 bits of a number (Dekker 1971)
-
-
-class StaticNumbers(NamedTuple):
-    """The numbers of the static law in one direction: mu_0, mu_inf, tau in s, Kato's exponent."""
-
-    initial: float
-    limit: float
-    tau: float
-    exponent: float
-
-
-@inlined
-def static_numbers(p: Parameters, side: float) -> StaticNumbers:
-    """Return the numbers of the static law against a force of this sign."""
-    if side < 0.0 and p.sided != 0.0:
-        return StaticNumbers(p.backward_initial, p.backward_limit, p.backward_tau, p.backward_exponent)
-    return StaticNumbers(p.static_initial, p.static_limit, p.static_tau, p.static_exponent)
-
-
-@inlined
-def static_limit(p: Parameters, rest: float, side: float) -> float:
-    """Return mu_s after the rest time, against a force of this sign."""
-    of = static_numbers(p, side)
-    return static_coefficient(p.static_law, of.initial, of.limit, of.tau, of.exponent,
-                              max(rest - p.static_delay, 0.0))
-
-
-@inlined
-def limit_backwards(p: Parameters, rest: float, forwards: float) -> float:
-    """Return mu_s backwards after the rest time, given that forwards: the same, where there is no difference."""
-    return static_limit(p, rest, -1.0) if p.sided != 0.0 else forwards
-
-
-@inlined
-def lower_limit(p: Parameters, rest: float) -> float:
-    """Return mu_s after the rest time, the smaller one of both directions."""
-    limit = static_limit(p, rest, 1.0)
-    return min(limit, limit_backwards(p, rest, limit))
-
-
-@inlined
-def static_at_once(p: Parameters, side: float) -> float:
-    """Return mu_s at rest time 0 against a force of this sign."""
-    return p.backward_initial if side < 0.0 else p.static_initial
-
-
-@inlined
-def first_segment(p: Parameters, direction: float) -> int:
-    """Return the index of the segment of the tables at standstill, for motion in a direction."""
-    return int(p.backward_segment) if direction < 0.0 else 0
-
-
-@inlined
-def segment_above(p: Parameters, direction: float, speed: float) -> int:
-    """Return the index of the table's segment that goes up from a speed: a breakpoint belongs to the one above it."""
-    segment = first_segment(p, direction)
-    while p.segments[segment].end <= speed < math.inf:
-        segment += 1
-    return segment
-
-
-@inlined
-def segment_below(p: Parameters, direction: float, speed: float) -> int:
-    """Return the index of the table's segment that goes down from a speed: a breakpoint belongs to the one below it."""
-    segment = segment_above(p, direction, speed)
-    return segment - 1 if speed > 0.0 and p.segments[segment].speed == speed else segment
-
-
-@inlined
-def breakpoint_speed(p: Parameters, segment: int) -> float:
-    """Return the speed at which a segment begins: 0 at standstill."""
-    return p.segments[segment].speed
-
-
-@inlined
-def segment_end(p: Parameters, segment: int) -> float:
-    """Return the speed of the breakpoint at which a segment ends, infinity for the last one of its direction."""
-    return p.segments[segment].end
-
-
-@inlined
-def friction_line(p: Parameters, segment: int, speed: float) -> tuple[float, float, float, float]:
-    """Return mu_k, its slope, psi and its slope at `speed` on a segment of the table."""
-    beyond = speed - p.segments[segment].speed
-    slope, psi_slope = p.segments[segment].slope, p.segments[segment].psi_slope
-    return p.segments[segment].friction + slope * beyond, slope, p.segments[segment].psi + psi_slope * beyond, psi_slope
-
-
-@inlined
-def is_rigid_stick(p: Parameters, s: State) -> bool:
-    """Whether the slider stands still in a rigid contact."""
-    return s.mode == STICK and p.compliant == 0.0
-
-
-@inlined
-def kinetic_at_rest(p: Parameters, direction: float) -> float:
-    """Return mu_k(0) in a direction."""
-    return p.segments[first_segment(p, direction)].friction
 
 
 @inlined
@@ -315,62 +207,3 @@ def move_start(p: Parameters, s: State, second: float, fraction: float, t: float
     s.fraction = fraction
     if s.sinusoid_count != 0.0:
         move_sinusoids(s, t)
-
-
-@inlined
-def drive_force(p: Parameters, spring: float, v: float, u: float) -> float:
-    """Return F_d = c (s − x) + h (v − ẋ); with a damper on the slideway what it gives is in it, too."""
-    return p.stiffness * spring + p.damping * (p.feed_share * v - u)
-
-
-@inlined
-def stated_drive_force(p: Parameters, force: float, u: float) -> float:
-    """Return F_d as it is reported, from that of `drive_force`: a damper on the slideway is no part of it."""
-    return force if p.feed_share != 0.0 else force + p.damping * u
-
-
-@inlined
-def feed_damping(p: Parameters) -> float:
-    """Return the part of h that acts on the drive's velocity, N s/m."""
-    return p.damping * p.feed_share
-
-
-@inlined
-def ground_damping(p: Parameters) -> float:
-    """Return the part of h that acts on the slider's velocity alone, N s/m."""
-    return p.damping - feed_damping(p)
-
-
-@inlined
-def contact_force(p: Parameters, deflection: float, u: float) -> float:
-    """Return F_c = c_c δ + h_c ẋ of the compliant contact."""
-    return p.contact_stiffness * deflection + p.contact_damping * u
-
-
-@inlined
-def friction_force(p: Parameters, s: State, deflection: float, u: float, applied: float) -> float:
-    """Return the friction force at velocity u in the present mode, under `applied` = F_d + F_e."""
-    mode = s.mode
-    if mode == COASTING or is_rigid_stick(p, s):
-        return applied
-    if mode == STICK:
-        return contact_force(p, deflection, u)
-    coefficient, _, psi, _ = friction_line(p, int(s.segment), abs(u))
-    if mode == ACCELERATING:
-        coefficient += s.excess * psi
-    return s.direction * p.normal_force * coefficient
-
-
-@inlined
-def slip_friction(p: Parameters, s: State) -> tuple[float, float]:
-    """Return the coefficient of friction on the present branch and segment as a line: at standstill, and its slope."""
-    coefficient, slope, psi, psi_slope = friction_line(p, int(s.segment), 0.0)
-    if s.mode == ACCELERATING:
-        return coefficient + s.excess * psi, slope + s.excess * psi_slope
-    return coefficient, slope
-
-
-@inlined
-def has_branches(p: Parameters) -> bool:
-    """Whether friction depends on the sign of the acceleration."""
-    return p.branches != 0.0

@@ -1,72 +1,44 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""What happens between two modes: break-away, arrest, the choice of the slip sub-mode, jumps of the inputs.
+"""What happens between two modes: break-away, arrest, turns of a slip, breakpoints, jumps of the inputs.
 
-Ties are decided by where the force moves next: a residual within rounding of zero counts as zero, and the sign of its
-rate, then of the rate's rate, decides.
+Each writes the row of its event and begins the mode that follows (`mode_entry`).
 """
 
 from ..core.hot_path import compiled, inlined
-from ..core.types import EventKind
-from .layout import Parameters, State
-from .motion import (
+from .codes import (
+    ACCELERATE,
     ACCELERATING,
+    ARREST,
+    BREAKAWAY,
+    COAST,
     COASTING,
+    DECELERATE,
     DECELERATING,
+    KNOT,
+    REVERSE,
     STICK,
-    breakpoint_speed,
+)
+from .forces import (
+    ROUNDING,
+    applied_force,
+    band_of,
     contact_force,
     drive_force,
-    feed_damping,
+    force_rate,
+    force_rounding,
     friction_force,
-    friction_line,
-    has_branches,
-    kinetic_at_rest,
-    segment_above,
-    segment_below,
+    holds_by_drive,
     stated_drive_force,
-    static_at_once,
-    static_limit,
+    stick_force,
 )
+from .friction_segments import breakpoint_speed, friction_line, kinetic_at_rest, segment_above
+from .layout import Parameters, State
+from .mode_entry import break_away, choose_slip, enter_branch, rest
 from .rows import Events
-from .sinusoids import forced_rate
+from .static_limits import static_at_once, static_limit
 
-BREAKAWAY = float(EventKind.BREAKAWAY)
-COAST = float(EventKind.COAST)
-ACCELERATE = float(EventKind.ACCELERATE)
-DECELERATE = float(EventKind.DECELERATE)
-ARREST = float(EventKind.STICK)
-REVERSE = float(EventKind.REVERSE)
-KNOT = float(EventKind.KNOT)
-
-_ROUNDING = 8.0 * 2.220446049250313e-16
 _MUCH = 16.0     # so much more is lost on a steep segment of the table before the forces know it better
-_TIE = 1e-15   # of the friction force: a closed-form acceleration smaller than that is a tie
-
-
-@inlined
-def applied_force(p: Parameters, s: State) -> float:
-    """Return F_d + F_e at the segment start."""
-    return drive_force(p, s.spring, s.inputs.v, s.velocity) + s.inputs.f
-
-
-@inlined
-def holds_by_drive(p: Parameters) -> bool:
-    """Whether F_d + F_e is what the static limit holds: in a rigid contact, and where a compliant one is so judged."""
-    return p.compliant == 0.0 or p.judges_drive != 0.0
-
-
-@inlined
-def stick_force(p: Parameters, s: State) -> float:
-    """Return the force in stick that ends it at the static limit."""
-    return applied_force(p, s) if holds_by_drive(p) else contact_force(p, s.deflection, s.velocity)
-
-
-@inlined
-def force_rounding(p: Parameters, s: State, friction: float) -> float:
-    """Return the size of rounding errors in a sum of the forces at the segment start."""
-    return _ROUNDING * (p.stiffness * abs(s.spring) + p.damping * (abs(s.inputs.v) + abs(s.velocity)) + abs(s.inputs.f)
-                        + p.normal_force * friction)
 
 
 @inlined
@@ -84,104 +56,6 @@ def write_event(p: Parameters, s: State, events: Events, row: int, kind: float, 
     events.rows[row].friction = friction
     events.rows[row].static = limit
     events.rows[row].rest = s.rest
-
-
-@inlined
-def force_rate(p: Parameters, s: State) -> tuple[float, float]:
-    """Return the rate of F_d + F_e at constant velocity, and the rate's rate; within rounding of 0 the first is 0."""
-    if s.sinusoid_count != 0.0:
-        return forced_rate(p, s)
-    pushed = feed_damping(p) * s.inputs.v_rate + s.inputs.f_rate
-    rate = p.stiffness * (s.inputs.v - s.velocity) + pushed
-    if abs(rate) <= _ROUNDING * (p.stiffness * (abs(s.inputs.v) + abs(s.velocity)) + abs(pushed)):
-        rate = 0.0
-    return rate, p.stiffness * s.inputs.v_rate
-
-
-@inlined
-def choose_slip(p: Parameters, s: State, residual: float, lower: float, tolerance: float) -> bool:
-    """Set the slip sub-mode from R − B = `residual` and R = `lower`; return False when the slider comes to rest.
-
-    R = ±(F_d + F_e) − N mu_k along the slip and B = N e(|ẋ|), see docs/model.md.  Neither is made from the other: where
-    B is large the small one would lose its digits.
-    """
-    direction = s.direction
-    speed = abs(s.velocity)
-    rate, second_rate = force_rate(p, s)
-    rate *= direction
-    second_rate *= direction
-    if abs(residual) <= tolerance:
-        residual = 0.0
-    if residual > 0.0 or (residual == 0.0 and (rate > 0.0 or (rate == 0.0 and second_rate > 0.0))):
-        s.mode = ACCELERATING
-        s.segment = segment_above(p, direction, speed)
-        s.acceleration = direction * residual / p.mass
-        return True
-    if speed == 0.0:
-        return False
-    segment = segment_above(p, direction, speed)
-    coefficient, _, psi, _ = friction_line(p, segment, speed)
-    band = p.normal_force * s.excess * psi
-    if abs(lower) <= min(tolerance, force_rounding(p, s, coefficient)):
-        lower = 0.0
-    rests_on_edge = lower == 0.0 and ((band > 0.0 and rate > 0.0) or (rate == 0.0 and second_rate >= 0.0))
-    if rests_on_edge or (lower > 0.0 and band > 0.0):
-        s.mode = COASTING
-        s.segment = segment
-        s.residual = lower
-        s.acceleration = 0.0
-        return True
-    s.mode = DECELERATING
-    s.segment = segment_below(p, direction, speed)
-    s.acceleration = direction * lower / p.mass
-    return True
-
-
-@inlined
-def band_of(p: Parameters, s: State) -> float:
-    """Return B = N e(|ẋ|), the width of the coasting band at the segment start, N."""
-    _, _, psi, _ = friction_line(p, int(s.segment), abs(s.velocity))
-    return p.normal_force * s.excess * psi
-
-
-@inlined
-def break_away(p: Parameters, s: State, direction: float, limit: float, margin: float) -> None:
-    """Begin a slip at the friction coefficient `limit`; `margin` is how far the force is beyond it along the slip, N.
-
-    The excess E of this slip makes friction continuous; without acceleration dependence, or at a speed where psi has
-    ended, friction drops to mu_k at once.
-    """
-    speed = abs(s.velocity)
-    coefficient, _, psi, _ = friction_line(p, segment_above(p, direction, speed), speed)
-    s.excess = 0.0
-    s.direction = direction
-    tolerance = force_rounding(p, s, limit)
-    if not holds_by_drive(p):
-        margin += direction * p.mass * s.acceleration
-        tolerance = _TIE * p.normal_force * limit
-    residual = lower = margin + p.normal_force * (limit - coefficient)
-    if has_branches(p) and psi > 0.0 and limit >= coefficient:
-        s.excess = (limit - coefficient) / psi
-        residual = margin
-    s.rest = 0.0
-    s.deflection = 0.0
-    if not choose_slip(p, s, residual, lower, tolerance):
-        rest(p, s)
-
-
-@inlined
-def rest(p: Parameters, s: State) -> None:
-    """Begin to stick at standstill."""
-    s.mode = STICK
-    s.rest = 0.0
-    s.velocity = 0.0
-    s.acceleration = 0.0
-    s.deflection = 0.0
-    if p.compliant != 0.0:
-        friction = s.direction * p.normal_force * kinetic_at_rest(p, s.direction) * p.arrest_share
-        s.deflection = friction / p.contact_stiffness
-        s.acceleration = (applied_force(p, s) - friction) / p.mass
-    s.direction = 0.0
 
 
 @inlined
@@ -264,16 +138,6 @@ def turn(p: Parameters, s: State, events: Events, row: int) -> None:
 
 
 @inlined
-def enter_branch(p: Parameters, s: State, mode: float) -> None:
-    """Begin to accelerate or decelerate with no acceleration yet."""
-    s.mode = mode
-    speed = abs(s.velocity)
-    s.segment = (segment_above(p, s.direction, speed) if mode == ACCELERATING
-                 else segment_below(p, s.direction, speed))
-    s.acceleration = 0.0
-
-
-@inlined
 def leave_coast(p: Parameters, s: State, events: Events, row: int, kind: float) -> None:
     """Leave the coasting band: upwards to accelerate, downwards to decelerate."""
     write_event(p, s, events, row, kind, s.direction, applied_force(p, s), static_at_once(p, s.direction))
@@ -299,7 +163,7 @@ def cross_breakpoint(p: Parameters, s: State, events: Events, row: int, before: 
     s.velocity = s.direction * speed
     write_event(p, s, events, row, KNOT, s.direction, friction, static_at_once(p, s.direction))
     s.segment += step
-    if lost > _MUCH * p.normal_force * coefficient and _ROUNDING * lost > _MUCH * force_rounding(p, s, coefficient):
+    if lost > _MUCH * p.normal_force * coefficient and ROUNDING * lost > _MUCH * force_rounding(p, s, coefficient):
         s.acceleration = (applied_force(p, s) - friction) / p.mass
     if step * s.direction * s.acceleration < 0.0:   # the speed peaks here: a tie, which the force's rate decides
         s.acceleration = 0.0

@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The row of a sample, for every solver."""
 
+from ..axis.codes import STICK
+from ..axis.forces import stated_drive_force
 from ..axis.layout import Parameters, State
-from ..axis.motion import STICK, stated_drive_force
 from ..axis.rows import SampleRow
 from ..core.hot_path import inlined
 

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """How a state begins, and how it takes another contact, for solvers that step."""
 
+from ..axis.codes import DECELERATING, STICK
 from ..axis.layout import Parameters, State, clear_state
-from ..axis.motion import DECELERATING, STICK
 from ..core.hot_path import compiled, inlined
 
 

@@ -8,28 +8,15 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
+from ...axis.codes import ACCELERATE, ACCELERATING, ARREST, BREAKAWAY, COAST, COASTING, DECELERATE, KNOT, STICK
+from ...axis.forces import applied_force, drive_force, force_rounding
+from ...axis.friction_segments import friction_line, segment_above
 from ...axis.layout import Parameters, State
-from ...axis.motion import ACCELERATING, COASTING, STICK, drive_force, friction_line, segment_above, static_at_once
+from ...axis.mode_entry import choose_slip
 from ...axis.records import PLAIN
 from ...axis.rows import EventRow, Events, SampleRow, Sinusoids
-from ...axis.transitions import (
-    ACCELERATE,
-    ARREST,
-    BREAKAWAY,
-    COAST,
-    DECELERATE,
-    KNOT,
-    applied_force,
-    apply_inputs,
-    arrest,
-    choose_slip,
-    cross_breakpoint,
-    force_rounding,
-    leave_coast,
-    release,
-    turn,
-    write_event,
-)
+from ...axis.static_limits import static_at_once
+from ...axis.transitions import apply_inputs, arrest, cross_breakpoint, leave_coast, release, turn, write_event
 from ...core.input_profile import InputProfile
 from .. import DONE, FULL, NO_PROGRESS, OUT_OF_RANGE
 from ..inputs import hold_inputs, refresh_inputs, same_inputs

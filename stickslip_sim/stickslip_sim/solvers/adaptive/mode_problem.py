@@ -11,19 +11,11 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Protocol
 
+from ...axis.codes import ACCELERATE, ACCELERATING, ARREST, BREAKAWAY, COAST, COASTING, DECELERATE, KNOT, STICK
+from ...axis.forces import holds_by_drive, is_rigid_stick
+from ...axis.friction_segments import breakpoint_speed, friction_line, segment_above, segment_end
 from ...axis.layout import Parameters, State
-from ...axis.motion import (
-    ACCELERATING,
-    COASTING,
-    STICK,
-    breakpoint_speed,
-    friction_line,
-    is_rigid_stick,
-    segment_above,
-    segment_end,
-    static_limit,
-)
-from ...axis.transitions import ACCELERATE, ARREST, BREAKAWAY, COAST, DECELERATE, KNOT, holds_by_drive
+from ...axis.static_limits import static_limit
 from ...core.input_profile import InputProfile
 from ...linear.waves import TURN, phase_at
 

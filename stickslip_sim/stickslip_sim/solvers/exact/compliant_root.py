@@ -5,7 +5,8 @@
 import math
 
 from ...axis.layout import Parameters, State
-from ...axis.motion import static_numbers, travel, travel_at
+from ...axis.motion import travel, travel_at
+from ...axis.static_limits import static_numbers
 from ...core.hot_path import compiled, inlined
 from ...linear.oscillator import Oscillator, amplitude, short_integrals
 from ...linear.root_steps import EPSILON, halley, halley_settles

@@ -24,9 +24,10 @@ guard is P alone.
 
 import math
 
+from ...axis.forces import force_rounding
 from ...axis.layout import Parameters, State
-from ...axis.motion import TICK, limit_backwards, oscillator_of, static_at_once, static_limit
-from ...axis.transitions import force_rounding
+from ...axis.motion import oscillator_of
+from ...axis.static_limits import limit_backwards, static_at_once, static_limit
 from ...core.hot_path import compiled, inlined
 from ...linear.oscillator import Oscillator, amplitude, bound
 from ...linear.polynomials import first_crossing, safe_step
@@ -44,7 +45,7 @@ from .contact_force import (
     rings_within,
     second_at_start,
 )
-from .static_guards import GAVE_UP, STEPS, concave_root, is_concave, law, steep_start
+from .static_guards import GAVE_UP, STEPS, TICK, concave_root, is_concave, law, steep_start
 
 _WORTH = 0.5   # radian of the free motion: shorter leaps are left to the safe steps
 _GO_ON, _IS_ROOT, _IN_BRACKET = 0.0, 1.0, 2.0

@@ -9,8 +9,10 @@ the free motion y.
 import math
 from typing import NamedTuple
 
+from ...axis.forces import drive_force, feed_damping
 from ...axis.layout import Parameters, State
-from ...axis.motion import drive_force, drive_travel, feed_damping, limit_backwards, static_limit, travel
+from ...axis.motion import drive_travel, travel
+from ...axis.static_limits import limit_backwards, static_limit
 from ...core.hot_path import compiled, inlined
 from ...linear.oscillator import Oscillator, amplitude, impulse
 from ...linear.root_steps import EPSILON

@@ -12,45 +12,22 @@ in place and return the number of rows in use; `advance` also says how it ended.
 
 import math
 
+from ...axis.codes import ARREST, BREAKAWAY, COAST, COASTING, KNOT, STICK
+from ...axis.forces import applied_force, drive_force, force_rounding, friction_force
+from ...axis.friction_segments import friction_line, segment_above
 from ...axis.layout import Parameters, State, clear_state
-from ...axis.motion import (
-    COASTING,
-    STAMP,
-    STICK,
-    begin_motion,
-    drive_force,
-    drive_travel,
-    friction_force,
-    friction_line,
-    move_start,
-    segment_above,
-    spring_after,
-    travel,
-)
+from ...axis.mode_entry import choose_slip
+from ...axis.motion import begin_motion, drive_travel, move_start, spring_after, travel
 from ...axis.rows import EnergyRow, Events, SampleRow, Sinusoids
 from ...axis.sinusoids import inputs_at, load_sinusoids, same_sinusoids
-from ...axis.transitions import (
-    ARREST,
-    BREAKAWAY,
-    COAST,
-    KNOT,
-    applied_force,
-    apply_inputs,
-    arrest,
-    choose_slip,
-    cross_breakpoint,
-    force_rounding,
-    leave_coast,
-    release,
-    turn,
-)
+from ...axis.transitions import apply_inputs, arrest, cross_breakpoint, leave_coast, release, turn
 from ...core.hot_path import compiled, inlined
 from .. import DONE, FULL, NO_PROGRESS, UNSOUND
 from ..sampling import write_sample
 from ..state import is_stuck
 from .account import book_contact, book_parameters, book_works, read_account
 from .judge import event_is_sound
-from .search import RENEWAL, find_event
+from .search import RENEWAL, STAMP, find_event
 from .works import contact_energy, stored_energy
 
 _SAME_INSTANT = 64   # events without progress in time; a sound model needs three

@@ -28,18 +28,12 @@ bit.
 
 import math
 
+from ...axis.codes import ACCELERATE, ACCELERATING, ARREST, BREAKAWAY, COAST, COASTING, DECELERATE, KNOT, STICK
+from ...axis.forces import force_rounding
+from ...axis.friction_segments import breakpoint_speed, friction_line, segment_end
 from ...axis.layout import Parameters, State
-from ...axis.motion import (
-    ACCELERATING,
-    COASTING,
-    STICK,
-    breakpoint_speed,
-    friction_line,
-    lower_limit,
-    oscillator_of,
-    segment_end,
-)
-from ...axis.transitions import ACCELERATE, ARREST, BREAKAWAY, COAST, DECELERATE, KNOT, force_rounding
+from ...axis.motion import oscillator_of
+from ...axis.static_limits import lower_limit
 from ...core.hot_path import compiled, inlined
 from ...linear.oscillator import Oscillator
 from ...linear.root_steps import EPSILON, ITERATIONS

@@ -8,9 +8,9 @@
 import math
 from typing import NamedTuple
 
+from ...axis.codes import COASTING, STICK
+from ...axis.forces import band_of
 from ...axis.layout import Parameters, State
-from ...axis.motion import COASTING, STICK
-from ...axis.transitions import band_of
 from ...core.hot_path import compiled, inlined
 from ...linear.polynomials import safe_step
 from .signal_readings import Reading

@@ -10,25 +10,13 @@ What is allowed is far above rounding, and far below what a figure would show.
 
 import math
 
+from ...axis.codes import ACCELERATE, ACCELERATING, COAST, COASTING, STICK
+from ...axis.forces import band_of, contact_force, drive_force, holds_by_drive
+from ...axis.friction_segments import breakpoint_speed, friction_line, segment_end
 from ...axis.layout import Parameters, State
-from ...axis.motion import (
-    ACCELERATING,
-    COASTING,
-    STICK,
-    breakpoint_speed,
-    contact_force,
-    drive_force,
-    drive_travel,
-    friction_line,
-    limit_backwards,
-    segment_end,
-    spring_after,
-    static_at_once,
-    static_limit,
-    travel,
-)
+from ...axis.motion import drive_travel, spring_after, travel
 from ...axis.sinusoids import inputs_at
-from ...axis.transitions import ACCELERATE, COAST, band_of, holds_by_drive
+from ...axis.static_limits import limit_backwards, static_at_once, static_limit
 from ...core.hot_path import compiled, inlined
 from .account import balance
 

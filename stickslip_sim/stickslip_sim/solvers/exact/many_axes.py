@@ -18,11 +18,10 @@ the speed of that, with a force that accelerates already: the same holds.
 import math
 from typing import Any
 
+from ...axis.codes import ACCELERATE, ACCELERATING, ARREST, BREAKAWAY, DECELERATE, REVERSE, STICK
 from ...axis.fields import numbers_in
 from ...axis.layout import Parameters, State
-from ...axis.motion import ACCELERATING, STICK
 from ...axis.rows import EventRow, Events, Sinusoids
-from ...axis.transitions import ACCELERATE, ARREST, BREAKAWAY, DECELERATE, REVERSE
 from ...core.hot_path import compiled
 from .. import DONE, FULL
 from .axis_figures import FIGURE_NAMES, ROUND_SIZE, AxisFigures, KeptRound, KeptRounds

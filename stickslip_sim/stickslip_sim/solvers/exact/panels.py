@@ -5,8 +5,10 @@
 import math
 from typing import NamedTuple
 
+from ...axis.codes import STICK
+from ...axis.friction_segments import slip_friction
 from ...axis.layout import Parameters, State
-from ...axis.motion import STICK, drive_travel, slip_friction, travel
+from ...axis.motion import drive_travel, travel
 from ...axis.sinusoids import inputs_at
 from ...core.hot_path import compiled
 

@@ -16,20 +16,11 @@ floating point; `judge` holds each event of a run to it.
 
 import math
 
+from ...axis.codes import ACCELERATE, ACCELERATING, ARREST, BREAKAWAY, COAST, COASTING, DECELERATE, KNOT, STICK
+from ...axis.forces import band_of, force_rate
+from ...axis.friction_segments import breakpoint_speed, segment_end
 from ...axis.layout import Parameters, State
-from ...axis.motion import (
-    ACCELERATING,
-    COASTING,
-    STAMP,
-    STICK,
-    TICK,
-    breakpoint_speed,
-    oscillator_of,
-    segment_end,
-    tick_integrals,
-    travel_at,
-)
-from ...axis.transitions import ACCELERATE, ARREST, BREAKAWAY, COAST, DECELERATE, KNOT, band_of, force_rate
+from ...axis.motion import oscillator_of, tick_integrals, travel_at
 from ...core.hot_path import inlined
 from ...linear.polynomials import first_crossing
 from ...linear.root_steps import EPSILON
@@ -37,8 +28,9 @@ from ...linear.roots import first_passage
 from ...linear.zeros import finite_horizon, half_period
 from .compliant_stick import compliant_stick
 from .forced import forced_event
-from .static_guards import delay_left, rigid_stick
+from .static_guards import TICK, delay_left, rigid_stick
 
+STAMP = 2.0 ** -51       # s, more than the time of an event is rounded by
 RENEWAL = -1.0           # in place of an `types.EventKind`: a new segment start, and no event
 _LONG_RING = 1e10        # (ω t)² of a contact that has rung for long
 _DIED_OUT = 40.0         # γ t of one that rings no more

@@ -5,8 +5,8 @@
 import math
 from typing import NamedTuple
 
+from ...axis.codes import STICK
 from ...axis.layout import Parameters, State
-from ...axis.motion import STICK
 from ...axis.sinusoids import sinusoid_force, sinusoid_travel
 from ...core.hot_path import compiled
 from ...linear.oscillator import Oscillator, amplitude, integrals, short_integrals

@@ -15,9 +15,9 @@ over the next stretch, its reach (`signal_readings.Reading`).
 import math
 from typing import NamedTuple
 
+from ...axis.codes import ACCELERATING, COASTING, STICK
+from ...axis.forces import applied_force, feed_damping
 from ...axis.layout import Parameters, State
-from ...axis.motion import ACCELERATING, COASTING, STICK, feed_damping
-from ...axis.transitions import applied_force
 from ...core.hot_path import compiled, inlined
 from ...linear.oscillator import Oscillator
 from ...linear.waves import TURN

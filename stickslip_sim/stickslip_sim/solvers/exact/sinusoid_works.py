@@ -14,8 +14,11 @@ frequency even there; they are interpolated, from where nothing cancels.  What i
 import math
 from typing import NamedTuple
 
+from ...axis.codes import COASTING, STICK
+from ...axis.forces import feed_damping, ground_damping
+from ...axis.friction_segments import slip_friction
 from ...axis.layout import Parameters, State
-from ...axis.motion import COASTING, STICK, feed_damping, ground_damping, oscillator_of, slip_friction
+from ...axis.motion import oscillator_of
 from ...axis.sinusoids import fastest_sinusoid
 from ...core.hot_path import compiled, inlined
 from ...linear.moments import moments

@@ -12,14 +12,15 @@ grows or dies out but exp(−t/τ), and where that is 0 the guard is a straight 
 
 import math
 
+from ...axis.forces import applied_force, force_rate
 from ...axis.layout import Parameters, State
-from ...axis.motion import static_at_once, static_limit, static_numbers
-from ...axis.transitions import applied_force, force_rate
+from ...axis.static_limits import static_at_once, static_limit, static_numbers
 from ...core.hot_path import compiled, inlined
 from ...friction.static import CONSTANT, EXPONENTIAL, KATO, LOGARITHMIC, StaticGrowth, static_growth
 from ...linear.polynomials import first_crossing, safe_step
 from ...linear.root_steps import EPSILON, halley, householder, householder_settles
 
+TICK = 0.1         # s; a search no longer than that begins with a bound, which mostly ends it
 STEPS = 100_000
 _DIRECT_STEPS = 8
 GAVE_UP = -1.0     # instead of a time: the steps were used up

@@ -12,18 +12,11 @@ slips under a fast drive, and of a contact so weak that it holds little.  `sinus
 
 from typing import NamedTuple
 
+from ...axis.codes import COASTING, STICK
+from ...axis.forces import feed_damping, ground_damping, is_rigid_stick
+from ...axis.friction_segments import slip_friction
 from ...axis.layout import Parameters, State
-from ...axis.motion import (
-    COASTING,
-    STICK,
-    drive_travel,
-    feed_damping,
-    ground_damping,
-    is_rigid_stick,
-    oscillator_of,
-    slip_friction,
-    travel,
-)
+from ...axis.motion import drive_travel, oscillator_of, travel
 from ...core.hot_path import compiled, inlined
 from ...linear.moments import moments
 from .panels import Works

@@ -8,30 +8,13 @@ between two points is a step of its own from the last one, which changes nothing
 often it is asked for.
 """
 
+from ...axis.codes import ACCELERATE, ACCELERATING, COAST, COASTING, DECELERATE, DECELERATING, STICK
+from ...axis.forces import applied_force, drive_force, force_rounding, stick_force
+from ...axis.friction_segments import first_segment, friction_line
 from ...axis.layout import Parameters, State
-from ...axis.motion import (
-    ACCELERATING,
-    COASTING,
-    DECELERATING,
-    STICK,
-    drive_force,
-    first_segment,
-    friction_line,
-    static_at_once,
-    static_limit,
-)
 from ...axis.rows import Events, SampleRow, Sinusoids
-from ...axis.transitions import (
-    ACCELERATE,
-    COAST,
-    DECELERATE,
-    applied_force,
-    arrest,
-    force_rounding,
-    release,
-    stick_force,
-    write_event,
-)
+from ...axis.static_limits import static_at_once, static_limit
+from ...axis.transitions import arrest, release, write_event
 from ...core.hot_path import compiled
 from .. import DONE, FULL, OUT_OF_RANGE
 from ..inputs import given_inputs_at, hold_inputs, inputs_vary, refresh_inputs, same_inputs

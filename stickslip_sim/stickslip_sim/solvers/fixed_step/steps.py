@@ -10,16 +10,10 @@ step the first segment of the table is continued.
 
 import math
 
+from ...axis.codes import STICK
+from ...axis.forces import contact_force, drive_force, is_rigid_stick
+from ...axis.friction_segments import breakpoint_speed, friction_line, segment_end
 from ...axis.layout import Parameters, State
-from ...axis.motion import (
-    STICK,
-    breakpoint_speed,
-    contact_force,
-    drive_force,
-    friction_line,
-    is_rigid_stick,
-    segment_end,
-)
 from ...core.hot_path import compiled
 from ..inputs import given_inputs_at
 
@@ -28,7 +22,7 @@ EULER, RK4 = 0.0, 1.0
 
 @compiled
 def segment_near(p: Parameters, segment: int, speed: float) -> int:
-    """Return `motion.segment_above` of a speed, looking around from a segment of the same direction."""
+    """Return `friction_segments.segment_above` of a speed, looking around from a segment of the same direction."""
     while segment_end(p, segment) <= speed < math.inf:
         segment += 1
     while breakpoint_speed(p, segment) > max(speed, 0.0):
