@@ -12,7 +12,8 @@ from ..core.errors import SolverError
 from ..core.input_profile import InputProfile
 from ..core.types import Event, Instant, Mode
 from ..friction import KineticTable, StaticLaw, StaticLawKind
-from ..simulation.simulator import MAX_EVENTS_PER_ADVANCE, Simulator
+from ..simulation.simulator import Simulator
+from ..simulation.solved_axis import MAX_EVENTS_PER_ADVANCE
 from ..solvers import Solver
 from .outcome import Measurement, Setup, Tally, require
 from .shared_axes import COMPLIANT, CONTACTS, RIGID, Contact, instant, make, paper_axis, random_axis, random_profiles

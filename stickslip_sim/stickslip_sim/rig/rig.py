@@ -14,7 +14,8 @@ from ..core.errors import InputError
 from ..core.input_profile import InputProfile
 from ..core.time_grid import Grid, Instants
 from ..core.types import Event, Instant, tuple_of
-from ..simulation.simulator import Simulator, SolverOf
+from ..simulation.simulator import Simulator
+from ..simulation.solved_axis import SolverOf
 from ..solvers import Solver
 from .command_channel import CommandChannel
 from .drive import Drive

@@ -13,7 +13,8 @@ from ..core.input_profile import InputProfile, constant
 from ..core.time_grid import Grid
 from ..rig.rig import Rig
 from ..rig.settings import RigSettings
-from ..simulation.simulator import Simulator, SolverOf
+from ..simulation.simulator import Simulator
+from ..simulation.solved_axis import SolverOf
 from ..solvers import Solver
 from .solver import SolverSettings
 

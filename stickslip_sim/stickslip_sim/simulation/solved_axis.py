@@ -1,0 +1,219 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""One axis under its solver: parameters, state and table of events, brought from time to time; and what ends a run."""
+
+import math
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..axis import Axis, InitialState, pack
+from ..core.energy import EnergyBalance
+from ..core.errors import SolverError, UnsoundError
+from ..core.input_profile import InputProfile
+from ..core.time_grid import Instants
+from ..core.types import Event, EventKind, Instant, Mode, Sample, tuple_of
+from ..solvers import DONE, FULL, OUT_OF_RANGE, UNSOUND, Solver
+from ..solvers.normal_load import under_load
+from ..solvers.walk import walk_of
+from .checkpoint import check_state, numbers_of
+from .inputs import Inputs
+
+SolverOf = Callable[[Axis], Solver]
+
+_KINDS, _MODES = tuple(EventKind), tuple(Mode)
+_MOVES = slice(4, 12)            # of a sample; the rest may be infinite
+_ROWS = 64                       # of the event table; it is emptied as often as it fills
+MAX_EVENTS_PER_ADVANCE = 100_000
+
+
+class SolvedAxis:
+    """An axis, its solver and its state at `time`; all methods raise SolverError where the solver gives up.
+
+    `solver_of` makes the solver for an axis.  A `load` (N) is added to the normal force; raises InputError where the
+    solver cannot follow it.  With `accounting` the solver keeps the account of energy, if it can.  Lists of events get
+    those that a call brings, in the order of time; None takes none.
+    """
+
+    def __init__(self, axis: Axis, solver_of: SolverOf, inputs: Inputs, load: InputProfile | None, accounting: bool
+                 ) -> None:
+        self._solver_of, self._inputs, self._load = solver_of, inputs, load
+        self.time = Instant(0.0, 0.0)
+        self._take(axis)
+        records = self._solver.records
+        self._state = records.State(inputs.most_sinusoids)
+        self._state.accounting = float(accounting and self._solver.energy is not None)
+        self._row = records.SampleRow()
+        self._energies = records.EnergyRow()
+        self._table = records.Events(_ROWS)
+
+    def start(self, initial: InitialState) -> list[Event]:
+        """Set the state at time 0 under the original inputs; return the events at time 0."""
+        v, f = self._inputs.reset()
+        self._take_sinusoids()
+        self.time = Instant(0.0, 0.0)
+        if self._load is not None:
+            self._take(self.axis)
+        rows = self._solver.start(self._parameters, self._state, initial.position, initial.velocity, initial.rest_time,
+                                  initial.stretch, initial.deflection, v.value, v.rate, f.value, f.rate,
+                                  self._sinusoids, self._table, 0)
+        return list(self._events(rows))
+
+    @property
+    def root_iterations(self) -> int:
+        """Iterations of all searches for event times so far."""
+        return int(self._state.iterations)
+
+    @property
+    def energy(self) -> EnergyBalance | None:
+        """The energies from the start up to the present time; None without an account."""
+        if self._solver.energy is None or not self._state.accounting:
+            return None
+        self._solver.energy(self._parameters, self._state, *self.time, self._energies)
+        return EnergyBalance(*self._energies.tolist())
+
+    def judge(self) -> None:
+        """Raise UnsoundError when the state contradicts its own mode or balance of energy; needs an account."""
+        if self._solver.is_sound is not None and self._state.accounting and not self._solver.is_sound(
+                self._parameters, self._state, *self.time):
+            raise self._unsound()
+
+    def obey(self, events: list[Event]) -> None:
+        """Let the commands of this instant take effect, all at once: their order does not matter."""
+        inputs = self._inputs
+        if inputs.most_sinusoids:
+            self._take_sinusoids()
+        second, fraction = self.time
+        rows = self._solver.set_inputs(self._parameters, self._state, second, fraction,
+                                       *inputs.enter(second + fraction), self._sinusoids, self._table, 0)
+        if rows:
+            events.extend(self._events(rows))
+
+    def change(self, axis: Axis, events: list[Event]) -> None:
+        """Go on with other parameters from the present time on."""
+        old = self._parameters
+        self._take(axis)
+        rows = self._solver.set_parameters(old, self._parameters, self._state, *self.time, self._table, 0)
+        events.extend(self._events(rows))
+
+    def advance(self, to: Instant, events: list[Event] | None) -> None:
+        """Bring the state to a time under the inputs that were entered."""
+        second, fraction = to
+        taken = 0
+        while True:
+            rows, end = self._solver.advance(self._parameters, self._state, second, fraction, self._table, 0)
+            if rows and events is not None:
+                events.extend(self._events(rows))
+            taken += rows if events is not None else 0
+            if end == DONE:
+                self.time = to
+                return
+            self._check_end(end, taken)
+
+    def enter_pieces(self, time: float, events: list[Event]) -> None:
+        """Go on through the pieces of the inputs that begin up to a time, s."""
+        inputs, taken = self._inputs, 0
+        drive, force = inputs.pieces(self._walk.pieces_of)
+        while inputs.until <= time:
+            until, rows, end = self._walk.run(self._parameters, self._state, drive, force, inputs.until, time,
+                                              self._sinusoids, self._table, 0)
+            events.extend(self._events(rows))
+            taken = rows if until > inputs.until else taken + rows
+            inputs.go_on(until)
+            if end != DONE:
+                self._check_end(end, taken)
+
+    def take_samples(self, at: Instants, out: NDArray[np.float64], events: list[Event] | None) -> None:
+        """Bring the state to one time after the other, through the pieces of the inputs; fill a row at each."""
+        inputs, reached, taken = self._inputs, 0, 0
+        drive, force = inputs.pieces(self._walk.pieces_of)
+        while reached < len(out):
+            before = reached, inputs.until
+            reached, until, rows, end = self._walk.sample(
+                self._parameters, self._state, drive, force, inputs.until, *at, reached, len(out), self._sinusoids,
+                self._table, out)
+            if events is not None:
+                events.extend(self._events(rows))
+            inputs.go_on(until)
+            self._check_samples(out[before[0]:reached])
+            if reached > before[0]:
+                self.time = Instant(float(at.seconds[reached - 1]), float(at.fractions[reached - 1]))
+            taken = rows if before != (reached, until) else taken + rows
+            if end != DONE:
+                self._check_end(end, taken)
+
+    def sample(self) -> Sample:
+        """Return the state at the present time; raises SolverError when it is not finite."""
+        second, fraction = self.time
+        self._solver.sample(self._parameters, self._state, second, fraction, self._row)
+        row = self._row.tolist()
+        if not math.isfinite(sum(row)) and not all(map(math.isfinite, row[_MOVES])):
+            raise self._out_of_range(second + fraction)
+        row[2], row[3] = _MODES[int(row[2])], int(row[3])
+        return tuple_of(Sample, row)
+
+    def numbers(self) -> list[float]:
+        """Return all numbers of the state."""
+        return self._state.numbers()
+
+    def restore(self, time: Instant, axis: Axis, numbers: Iterable[Any], until: float) -> None:
+        """Go on from a time and the numbers of a state there, whose inputs hold `until` (s).
+
+        Raises TypeError or ValueError when they are none of this axis.
+        """
+        self.time = time
+        self._take(axis)
+        state = self._solver.records.State(self._inputs.most_sinusoids)
+        state.take(numbers_of(numbers, self._state))
+        check_state(state, self._inputs.most_sinusoids, self._parameters)
+        self._state = state
+        self._inputs.go_on(until)
+        self._take_sinusoids()
+
+    def _take(self, axis: Axis) -> None:
+        self.axis, self._solver = axis, self._solver_of(axis)
+        self._parameters = self._solver.records.Parameters(pack(axis))
+        normal_force = None if self._load is None else self._load.plus(axis.normal_force)
+        if normal_force is not None:
+            self._solver = under_load(self._solver, normal_force)
+            self._parameters.normal_force = normal_force.value_at(self.time.seconds)
+        self._walk = walk_of(self._solver, normal_force)
+
+    def _take_sinusoids(self) -> None:
+        """Let the sinusoids of the inputs in force be those that are entered from now on."""
+        self._sinusoids = self._solver.records.Sinusoids(self._inputs.sinusoids())
+
+    def _events(self, count: int) -> Iterator[Event]:
+        for i in range(count):
+            second, fraction, kind, mode, direction, *rest = self._table.row(i)
+            yield Event(second, fraction, _KINDS[int(kind)], _MODES[int(mode)], int(direction), *rest)
+
+    def _check_end(self, end: int, taken: int) -> None:
+        """Let a solver go on whose table of events was full; raise SolverError where it gave up."""
+        self.time = max(self.time, Instant(float(self._state.second), float(self._state.fraction)))
+        if end == OUT_OF_RANGE:
+            raise SolverError(f'the state leaves the range of numbers after t = {self.time.seconds!r} s; '
+                              f'{self._solver.advice}')
+        if end == UNSOUND:
+            raise self._unsound()
+        if end != FULL or taken > MAX_EVENTS_PER_ADVANCE:
+            raise SolverError(f'{taken} events up to t = {self.time.seconds!r} s and time hardly goes on; '
+                              'friction or inputs are too extreme for this axis: check the scene')
+
+    def _check_samples(self, rows: NDArray[np.float64]) -> None:
+        """Raise SolverError unless the states in rows of samples are finite."""
+        lost = ~np.isfinite(rows[:, _MOVES]).all(axis=1)
+        if lost.any():
+            second, fraction = rows[lost.argmax(), :2].tolist()
+            raise self._out_of_range(second + fraction)
+
+    def _out_of_range(self, time: float) -> SolverError:
+        return SolverError(f'the state leaves the range of numbers at t = {time!r} s; {self._solver.advice}')
+
+    def _unsound(self) -> UnsoundError:
+        mode = _MODES[int(self._state.mode)].name
+        return UnsoundError(f'the run contradicts its own motion or balance of energy at t = {self.time.seconds!r} s, '
+                            f'in mode {mode}: none of its figures can be trusted; the solver is at fault, not the '
+                            'scene: please report both')
