@@ -19,7 +19,7 @@ from typing import Any
 import mpmath
 from mpmath import mpf
 
-from stickslip_sim.reference.automaton import Event, Run, Sample
+from stickslip_sim.reference.exact_run import Event, Run, Sample
 
 _STEP = mpf(10) ** -15
 _SMALL = mpf(10) ** -12

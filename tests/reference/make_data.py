@@ -22,7 +22,7 @@ import mpmath
 from mpmath import mpf
 
 from stickslip_sim.reference import automaton
-from stickslip_sim.reference.automaton import Run
+from stickslip_sim.reference.exact_run import Run
 from stickslip_sim.reference.problem import problem
 
 from .objects import exact_run, inputs_of

@@ -12,7 +12,7 @@ from stickslip_sim.core.input_profile import InputProfile, Sinusoid
 from stickslip_sim.friction import ExcessTable, KineticTable, StaticLaw, StaticLawKind
 from stickslip_sim.friction.kinetic import default_excess
 from stickslip_sim.reference import ReferenceRun, simulate
-from stickslip_sim.reference.automaton import Run
+from stickslip_sim.reference.exact_run import Run
 
 Parameters = Mapping[str, Any]
 

@@ -12,7 +12,7 @@ import pytest
 mpmath = pytest.importorskip('mpmath')
 from mpmath import mpf  # noqa: E402
 
-from stickslip_sim.reference.automaton import Run  # noqa: E402
+from stickslip_sim.reference.exact_run import Run  # noqa: E402
 from stickslip_sim.reference.roots import bernstein, first_root  # noqa: E402
 from tests.reference.figures import agrees  # noqa: E402
 from tests.reference.inclusion import violations  # noqa: E402

@@ -11,7 +11,7 @@ import pytest
 pytest.importorskip('mpmath')
 from mpmath import mpf
 
-from stickslip_sim.reference.automaton import Run
+from stickslip_sim.reference.exact_run import Run
 from tests.reference.figures import agrees
 from tests.reference.objects import exact_run as simulate
 from tests.reference.scenes import Parameters, paper

@@ -4,18 +4,16 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right
-from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import mpmath
 from mpmath import mpf
 
-from ..core import types
 from ..core.errors import SolverError
 from ..core.input_profile import constant
-from .flow import Flow, State, after
-from .inputs import Input, Signal
+from .exact_run import Event, Run, Stretch, sample
+from .flow import Flow, State
+from .inputs import Input
 from .modes import ACCELERATE, COAST, DECELERATE, Mode, Slip, Stick, word
 from .physics import Physics
 from .problem import Problem
@@ -25,106 +23,6 @@ GUARD_DIGITS = 12
 UNSEEN_COAST = mpf(10) ** -15  # |R - B| against N mu_b after a compliant break-away
 MOST_EVENTS = 200_000
 _ZERO = mpf(0)
-
-
-@dataclass(frozen=True)
-class Event:
-    """One transition, with `mode` after it.
-
-    The state is continuous.  `friction_force` is the limit σ N mu_s at a break-away, that of the slip which ends at a
-    stick or reversal, and that of the new sub-mode otherwise (different from the old one only where an input jumps).
-    """
-
-    time: mpf
-    kind: str
-    mode: types.Mode
-    direction: int
-    position: mpf
-    velocity: mpf
-    drive_position: mpf
-    drive_force: mpf
-    friction_force: mpf
-    static_coefficient: mpf
-    rest_time: mpf
-
-
-@dataclass(frozen=True)
-class Sample:
-    """State at a given time (after the transition when there is one at that time)."""
-
-    time: mpf
-    mode: types.Mode
-    position: mpf
-    velocity: mpf
-    drive_position: mpf
-    drive_force: mpf
-    friction_force: mpf
-
-
-@dataclass(frozen=True)
-class Stretch:
-    """A stretch of one mode: it starts at ``start`` in ``state`` and is followed in closed form.
-
-    ``physics`` are the equations there: the normal force may jump between two.
-    """
-
-    start: mpf
-    length: mpf
-    state: State
-    flow: Flow
-    mode: Mode
-    physics: Physics
-
-
-class Run(list[Event]):
-    """The events of a simulation, with its motion in closed form.
-
-    `final` is the state at its end.
-    `disputed` counts compliant break-aways on which the model is silent: force and motion of opposite
-    signs, or kinetic friction at the break-away speed above the static limit (E is then kept at 0).
-    """
-
-    def __init__(self, physics: Physics, digits: int) -> None:
-        super().__init__()
-        self.physics = physics
-        self.digits = digits
-        self.stretches: list[Stretch] = []
-        self.disputed = 0
-        self.final: Sample
-
-    def state_at(self, times: Iterable[float | mpf]) -> list[Sample]:
-        """Return position, velocity, drive force and friction force at the given times."""
-        with mpmath.workdps(self.digits):
-            return [self._sample(mpf(t)) for t in times]
-
-    def _sample(self, t: mpf) -> Sample:
-        index = bisect_right(self.stretches, t, key=lambda stretch: stretch.start) - 1
-        if index < 0 or t > self.stretches[-1].start + self.stretches[-1].length:
-            raise ValueError('the time lies outside the simulated interval')
-        stretch = self.stretches[index]
-        drive, force = self._inputs(t)
-        series = stretch.flow.expand(stretch.state, stretch.length)
-        place = after(stretch.state, stretch.flow, series, t - stretch.start)
-        return sample(stretch.physics, stretch.mode, t, State(*place, drive, force))
-
-    def _inputs(self, t: mpf) -> tuple[Signal, Signal]:
-        drive, force = Input(self.physics.axis.drive), Input(self.physics.axis.force)
-        drive.enter(t)
-        force.enter(t)
-        return drive.at(t), force.at(t)
-
-
-def sample(physics: Physics, mode: Mode, t: mpf, state: State) -> Sample:
-    """Return a state of a mode with its forces."""
-    return Sample(
-        t,
-        word(mode),
-        state.position,
-        state.velocity,
-        state.position + state.stretch,
-        physics.drive_force(state),
-        physics.friction(mode, state),
-    )
 
 
 def run(problem: Problem, duration: float, digits: int) -> Run:

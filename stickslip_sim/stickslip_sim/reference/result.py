@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from ..core.types import Event, Mode
 
 if TYPE_CHECKING:
-    from .automaton import Run
+    from .exact_run import Run
 
 
 class Final(NamedTuple):
@@ -24,7 +24,7 @@ class Final(NamedTuple):
 class ReferenceRun(NamedTuple):
     """`events` and `final` state, correctly rounded; `exact` keeps the values in multiple precision.
 
-    `exact` is the list of events as `automaton.Event`, and has `state_at(times)`.
+    `exact` is the list of events as `exact_run.Event`, and has `state_at(times)`.
     """
 
     events: list[Event]

@@ -8,19 +8,19 @@ import mpmath
 from mpmath import mpf
 
 from ..core import types
-from . import automaton
+from . import exact_run
 from .result import Final, ReferenceRun
 
 _KINDS = {kind.name.lower(): kind for kind in types.EventKind}
 
 
-def rounded(run: automaton.Run) -> ReferenceRun:
+def rounded(run: exact_run.Run) -> ReferenceRun:
     """Return the run with its numbers rounded to floats."""
     with mpmath.workdps(run.digits):
         return ReferenceRun([_event(event) for event in run], _final(run), run)
 
 
-def _event(event: automaton.Event) -> types.Event:
+def _event(event: exact_run.Event) -> types.Event:
     second, fraction = split(event.time)
     return types.Event(
         second,
@@ -45,6 +45,6 @@ def split(time: mpf) -> tuple[float, float]:
     return (float(second), fraction) if fraction < 1.0 else (float(second) + 1.0, 0.0)
 
 
-def _final(run: automaton.Run) -> Final:
+def _final(run: exact_run.Run) -> Final:
     end = run.final
     return Final(float(end.position), float(end.velocity), float(end.drive_position), end.mode)
