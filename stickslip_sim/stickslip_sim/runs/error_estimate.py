@@ -25,6 +25,7 @@ from ..core.types import Event, EventKind
 from ..friction import KineticTable, kinetic_table
 from ..scene import Scene, SolverSettings
 from ..solvers.adaptive import MIN_RTOL
+from .event_shifts import MOMENT, Shift, lasting, shift_between
 from .perturbation import perturbed
 from .simulated import SimulatedRun, simulate, simulate_events
 
@@ -32,12 +33,10 @@ REPEATS = 3
 _SAFETY = 4.0   # of the largest shift among so few repeats
 _OF_SPEEDS = 2.0 ** -50   # what rounding leaves of a speed, as a part of the fastest of its slip
 _HALF_ULP = 2.0 ** -54   # of a number below 1: the most that storing it can lose
-_MOMENT = 1e-6   # s; a coast this short after a break-away hangs on the last remains of a contact's ring-down
 _BREAKPOINTS = 800   # of the table that stands for a smooth law; many, and below the most that there can be
 _COARSER = 10.0   # the error of another such table, which is compared with it
 _FINER = 1e-3           # of the tolerances of a run
 _IN_PERIOD, _MOST_STEPS = 16.0, 20_000
-_OF_A_CYCLE = (EventKind.BREAKAWAY, EventKind.STICK, EventKind.REVERSE)
 
 
 class ErrorEstimate(NamedTuple):
@@ -51,12 +50,6 @@ class ErrorEstimate(NamedTuple):
     position_m: float   # of an event
     until_s: float
     how: str
-
-
-class _Shift(NamedTuple):
-    time: float
-    position: float
-    until: float
 
 
 def error_estimate(run: SimulatedRun) -> ErrorEstimate:
@@ -113,11 +106,11 @@ def _perturbed_scenes(scene: Scene) -> list[Scene]:
     return scenes
 
 
-def _repeat(run: SimulatedRun, scene: Scene) -> _Shift:
+def _repeat(run: SimulatedRun, scene: Scene) -> Shift:
     try:
-        return _compare(run.events, simulate_events(scene, run.duration).events, run.duration)
+        return shift_between(run.events, simulate_events(scene, run.duration).events, run.duration)
     except (InputError, SolverError):
-        return _Shift(0.0, 0.0, 0.0)
+        return Shift(0.0, 0.0, 0.0)
 
 
 def _of_steps(run: SimulatedRun) -> ErrorEstimate:
@@ -134,7 +127,7 @@ def _of_steps(run: SimulatedRun) -> ErrorEstimate:
         return ErrorEstimate(0.0, 0.0, 0.0, f'the exact solver gives up: unknown ({reason})')
     shift = _shift(run, judge, own.until_s)
     estimate = _plus(own, shift, 'the largest difference of an event from one of the exact solver on the same scene '
-                                 f'(coasts of less than {_MOMENT:g} s after a break-away left out)')
+                                 f'(coasts of less than {MOMENT:g} s after a break-away left out)')
     if shift.until >= own.until_s:
         return estimate
     return estimate._replace(how=f'{estimate.how}; from t = {shift.until:.6g} s the events are others than those of '
@@ -193,69 +186,17 @@ def _table(table: KineticTable, coarser: float) -> KineticTable:
         return kinetic_table(table.law, coarser * table.error)
 
 
-def _shift(run: SimulatedRun, judge: SimulatedRun, until: float) -> _Shift:
+def _shift(run: SimulatedRun, judge: SimulatedRun, until: float) -> Shift:
     """Return how far the events of two runs are apart before a time; events of kind knot count where both have them."""
     with_knots = run.scene.solver.name != 'fixed_step' and not _has_law(run.scene)
 
     def compared(events: Sequence[Event]) -> list[Event]:
-        return [event for event in _lasting(events)
+        return [event for event in lasting(events)
                 if event.time <= until and (with_knots or event.kind != EventKind.KNOT)]
 
-    return _compare(compared(run.events), compared(judge.events), until)
+    return shift_between(compared(run.events), compared(judge.events), until)
 
 
-def _lasting(events: Sequence[Event]) -> list[Event]:
-    """Return the events without those that mark the end of a coast of a moment, which rounding may decide."""
-    kept: list[Event] = []
-    away = -math.inf
-    for event in events:
-        if event.kind == EventKind.BREAKAWAY:
-            away = event.time
-        elif event.time - away <= _MOMENT:
-            continue
-        kept.append(event)
-    return kept
-
-
-def _plus(own: ErrorEstimate, shift: _Shift, what: str) -> ErrorEstimate:
+def _plus(own: ErrorEstimate, shift: Shift, what: str) -> ErrorEstimate:
     return ErrorEstimate(own.event_time_s + shift.time, own.position_m + shift.position, shift.until,
                          f'{what}, plus {own.how}')
-
-
-def _compare(events: Sequence[Event], others: Sequence[Event], duration: float) -> _Shift:
-    """Return how far two runs are apart up to the last time at which both have had the same events."""
-    count = _same(events, others)
-    rest = [event.time for run in (events, others) for event in run[count:count + 1]]
-    until = min(rest, default=duration)
-    while count and max(events[count - 1].time, others[count - 1].time) > until:   # one run has it, the other not yet
-        count -= 1
-        until = min(events[count].time, others[count].time)
-    pairs = list(zip(events[:count], others))
-    return _Shift(max((_apart(a, b) for a, b in pairs), default=0.0),
-                  max((abs(a.position - b.position) for a, b in pairs), default=0.0), until)
-
-
-def _same(events: Sequence[Event], others: Sequence[Event]) -> int:
-    """Return how many events, in their order, are the same ones in two runs."""
-    for i, (a, b, after_a, after_b) in enumerate(zip(events, others, _next_of_a_kind(events), _next_of_a_kind(others))):
-        # a cycle that one run alone has leaves the kinds as they are; what follows is nearer to the event after
-        if ((a.kind, a.direction) != (b.kind, b.direction)
-                or min(abs(after_a - b.time), abs(after_b - a.time)) < _apart(a, b)):
-            return i
-    return min(len(events), len(others))
-
-
-def _apart(event: Event, other: Event) -> float:
-    return abs((event.second - other.second) + (event.fraction - other.fraction))
-
-
-def _next_of_a_kind(events: Sequence[Event]) -> list[float]:
-    """Return for each break-away, stop or reversal when the next of its kind and direction comes; else infinity."""
-    times: list[float] = []
-    coming: dict[tuple[EventKind, int], float] = {}
-    for event in reversed(events):
-        name = event.kind, event.direction
-        times.append(coming.get(name, math.inf))
-        if event.kind in _OF_A_CYCLE:
-            coming[name] = event.time
-    return times[::-1]
