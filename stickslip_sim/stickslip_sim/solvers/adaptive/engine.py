@@ -9,12 +9,10 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from ...axis.codes import ACCELERATE, ACCELERATING, ARREST, BREAKAWAY, COAST, COASTING, DECELERATE, KNOT, STICK
-from ...axis.forces import applied_force, drive_force, force_rounding
-from ...axis.friction_segments import friction_line, segment_above
+from ...axis.forces import drive_force
 from ...axis.layout import Parameters, State
-from ...axis.mode_entry import choose_slip
 from ...axis.records import PLAIN
-from ...axis.rows import EventRow, Events, SampleRow, Sinusoids
+from ...axis.rows import Events, SampleRow, Sinusoids
 from ...axis.static_limits import static_at_once
 from ...axis.transitions import apply_inputs, arrest, cross_breakpoint, leave_coast, release, turn, write_event
 from ...core.input_profile import InputProfile
@@ -23,6 +21,7 @@ from ..inputs import hold_inputs, refresh_inputs, same_inputs
 from ..sampling import write_sample
 from ..state import begin_state, change_contact
 from .mode_problem import ModeMotion, SmoothLaw
+from .smooth_friction import choose_sub_mode, correct_excess, find_segment, slip_friction_force
 
 _SAME_INSTANT = 64   # events without progress in time; a sound model needs three
 
@@ -72,7 +71,7 @@ class Engine:
         refresh_inputs(s)
         if s.mode == STICK:
             return self._apply(p, s, events, row)
-        self._choose(p, s)
+        choose_sub_mode(self._law(s), p, s)
         return row
 
     @_QUIET
@@ -162,7 +161,7 @@ class Engine:
     def _transition(self, p: Parameters, s: State, events: Events, row: int, kind: float) -> None:
         if kind == BREAKAWAY:
             release(p, s, events, row)
-            self._correct_excess(p, s, events.rows[row])
+            correct_excess(self._law(s), p, s, events.rows[row])
         elif kind == ARREST:
             arrest(p, s, events, row)
         elif kind == KNOT:
@@ -170,8 +169,8 @@ class Engine:
         elif s.mode == COASTING:
             leave_coast(p, s, events, row, kind)
         else:
-            self._find_segment(p, s)
-            friction = self._friction(p, s)
+            find_segment(self._law(s), p, s)
+            friction = slip_friction_force(self._law(s), p, s)
             turn(p, s, events, row)
             events.rows[row].friction = friction
 
@@ -181,38 +180,19 @@ class Engine:
             s.acceleration = self._motion(p, s).rates(0.0, (0.0, s.velocity))[1]   # that a break-away begins with
             if not apply_inputs(p, s, events, row):
                 return row
-            self._correct_excess(p, s, events.rows[row])
+            correct_excess(self._law(s), p, s, events.rows[row])
             return row + 1
         mode = s.mode
-        if not self._choose(p, s):
+        if not choose_sub_mode(self._law(s), p, s):
             arrest(p, s, events, row)
             return row + 1
         if s.mode == mode:
             return row
         kind = COAST if s.mode == COASTING else (ACCELERATE if s.mode == ACCELERATING else DECELERATE)
-        write_event(p, s, events, row, kind, s.direction, self._friction(p, s), static_at_once(p, s.direction))
+        write_event(p, s, events, row, kind, s.direction, slip_friction_force(self._law(s), p, s),
+                    static_at_once(p, s.direction))
         events.rows[row].mode = s.mode
         return row + 1
-
-    def _choose(self, p: Parameters, s: State) -> bool:
-        """Set the sub-mode of a slip from the forces; return False when the slider comes to rest instead."""
-        coefficient, psi = self._coefficients(p, s)
-        upper = coefficient + s.excess * psi
-        push = s.direction * applied_force(p, s)
-        return choose_slip(p, s, push - p.normal_force * upper, push - p.normal_force * coefficient,
-                           force_rounding(p, s, upper))
-
-    def _friction(self, p: Parameters, s: State) -> float:
-        """Return the friction force at the state, N."""
-        if s.mode == COASTING:
-            return applied_force(p, s)
-        coefficient, psi = self._coefficients(p, s)
-        return s.direction * p.normal_force * (coefficient + (s.excess * psi if s.mode == ACCELERATING else 0.0))
-
-    def _coefficients(self, p: Parameters, s: State) -> tuple[float, float]:
-        speed, law = abs(s.velocity), self._law(s)
-        coefficient, _, psi, _ = friction_line(p, segment_above(p, s.direction, speed), speed)
-        return (coefficient if law is None else law.coefficient(speed)), psi
 
     def _law(self, s: State) -> SmoothLaw | None:
         """Return the smooth mu_k of the present direction, if there is one."""
@@ -220,19 +200,6 @@ class Engine:
 
     def _motion(self, p: Parameters, s: State) -> ModeMotion:
         return ModeMotion(p, s, self._law(s), self.normal_force)
-
-    def _correct_excess(self, p: Parameters, s: State, event: EventRow) -> None:
-        """Let E make friction continuous with the smooth law, where the transition took its table."""
-        if self._law(s) is None or s.mode == STICK or s.excess == 0.0:
-            return
-        coefficient, psi = self._coefficients(p, s)
-        limit = abs(event.friction) / p.normal_force if p.normal_force > 0.0 else event.static
-        s.excess = (limit - coefficient) / psi
-
-    def _find_segment(self, p: Parameters, s: State) -> None:
-        """Set the segment for psi, which no breakpoint keeps up to date with a smooth law."""
-        if self._law(s) is not None:
-            s.segment = float(segment_above(p, s.direction, abs(s.velocity)))
 
 
 def _move(p: Parameters, s: State, motion: ModeMotion, second: float, fraction: float, t: float,
