@@ -12,26 +12,27 @@ from types import ModuleType
 from typing import Any
 
 # the files with records, and first the one that reads their fields
-RECORD_FILES = ('axis/fields.py', 'axis/layout.py', 'axis/rows.py', 'solvers/exact/axis_figures.py')
+RECORD_FILES = ('axis/fields.py', 'axis/layout.py', 'axis/state_record.py', 'axis/rows.py',
+                'solvers/exact/axis_figures.py')
 _APART = 'package_of_the_hot_unit'
 
 
 def record_words(package: Path) -> dict[str, Any]:
     """Return what stands in the template of the records: structures, fields, and how many numbers they hold."""
-    fields, layout, rows, axis_figures = (_module(package, name) for name in RECORD_FILES)
+    fields, layout, state_record, rows, axis_figures = (_module(package, name) for name in RECORD_FILES)
     structures = _Structures(fields)
-    for record in (layout.Segment, layout.SinusoidRecord, rows.GivenSinusoid, rows.EventRow, axis_figures.AxisFigures,
-                   axis_figures.KeptRound):
+    for record in (layout.Segment, state_record.SinusoidRecord, rows.GivenSinusoid, rows.EventRow,
+                   axis_figures.AxisFigures, axis_figures.KeptRound):
         structures.add(record)
-    state = [structures.declared(field, public='public ') for field in fields.record_fields(layout.State)]
+    state = [structures.declared(field, public='public ') for field in fields.record_fields(state_record.State)]
     return {
         'STRUCTURES': '\n\n'.join(structures.texts.values()),
         'PARAMETER_FIELDS': ', '.join(layout.PARAMETER_FIELDS),
         'PARAMETER_SIZE': len(layout.PARAMETER_FIELDS),
         'SEGMENT_SIZE': len(layout.SEGMENT_FIELDS),
         'STATE_FIELDS': '\n    '.join(f'cdef {field}' for field in state),
-        'STATE_SIZE': len(layout.STATE_PLACES),
-        'SINUSOID_SIZE': len(fields.names_of(layout.SinusoidRecord)),
+        'STATE_SIZE': len(state_record.STATE_PLACES),
+        'SINUSOID_SIZE': len(fields.names_of(state_record.SinusoidRecord)),
         'GIVEN_SINUSOID_SIZE': len(rows.GIVEN_SINUSOID_FIELDS),
         'EVENT_VALUES': _of('e', fields.names_of(rows.EventRow)),
         'SAMPLE_FIELDS': ', '.join(fields.names_of(rows.SampleRow)),

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from stickslip_sim.axis.fields import places_of
-from stickslip_sim.axis.layout import State
+from stickslip_sim.axis.state_record import State
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.recording import checkpoint_file
 from stickslip_sim.rig import Fault, Rig, StepResult

@@ -4,7 +4,7 @@
 
 from typing import Any
 
-from stickslip_sim.axis.layout import STATE_PLACES
+from stickslip_sim.axis.state_record import STATE_PLACES
 
 
 def set_number(state: Any, place: str, number: float) -> None:

@@ -5,8 +5,9 @@
 from ..core.hot_path import inlined
 from .codes import ACCELERATING, COASTING, STICK
 from .friction_segments import friction_line
-from .layout import Parameters, State
+from .layout import Parameters
 from .sinusoids import forced_rate
+from .state_record import State
 
 ROUNDING = 8.0 * 2.220446049250313e-16   # of the terms of a sum of forces
 

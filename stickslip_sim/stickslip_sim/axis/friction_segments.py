@@ -6,7 +6,8 @@ import math
 
 from ..core.hot_path import inlined
 from .codes import ACCELERATING
-from .layout import Parameters, State
+from .layout import Parameters
+from .state_record import State
 
 
 @inlined

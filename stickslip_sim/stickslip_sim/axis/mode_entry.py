@@ -10,7 +10,8 @@ from ..core.hot_path import inlined
 from .codes import ACCELERATING, COASTING, DECELERATING, STICK
 from .forces import applied_force, force_rate, force_rounding, holds_by_drive
 from .friction_segments import friction_line, has_branches, kinetic_at_rest, segment_above, segment_below
-from .layout import Parameters, State
+from .layout import Parameters
+from .state_record import State
 
 _TIE = 1e-15   # of the friction force: a closed-form acceleration smaller than that is a tie
 

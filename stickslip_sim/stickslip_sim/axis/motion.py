@@ -20,8 +20,9 @@ from ..linear.oscillator import Oscillator, ShortIntegrals, integrals, oscillato
 from .codes import ACCELERATING, COASTING, STICK
 from .forces import feed_damping, friction_force, is_rigid_stick
 from .friction_segments import friction_line
-from .layout import Parameters, State
+from .layout import Parameters
 from .sinusoids import begin_sinusoids, move_sinusoids, sinusoid_drive_travel, sinusoid_travel
+from .state_record import State
 
 _SIXTH = 1.0 / 6.0
 _LONG = 1e3            # so much longer than the spring's stretch a slide has to be for the balance to be the better one

@@ -6,8 +6,9 @@ from types import SimpleNamespace
 from typing import Any
 
 from ..core.hot_path import UNIT
-from .layout import Parameters, State
+from .layout import Parameters
 from .rows import EnergyRow, Events, SampleRow, Sinusoids
+from .state_record import State
 
 PLAIN: Any = SimpleNamespace(Parameters=Parameters, State=State, Events=Events, Sinusoids=Sinusoids,
                              SampleRow=SampleRow, EnergyRow=EnergyRow)

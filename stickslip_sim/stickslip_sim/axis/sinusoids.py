@@ -18,8 +18,9 @@ from typing import NamedTuple
 from ..core.hot_path import compiled
 from ..linear.oscillator import Oscillator
 from ..linear.waves import TURN, phase_at, turns, wave_response
-from .layout import Parameters, State
+from .layout import Parameters
 from .rows import Sinusoids
+from .state_record import State
 
 _ROUNDING = 8.0 * 2.220446049250313e-16
 

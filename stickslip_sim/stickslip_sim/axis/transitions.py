@@ -33,9 +33,10 @@ from .forces import (
     stick_force,
 )
 from .friction_segments import breakpoint_speed, friction_line, kinetic_at_rest, segment_above
-from .layout import Parameters, State
+from .layout import Parameters
 from .mode_entry import break_away, choose_slip, enter_branch, rest
 from .rows import Events
+from .state_record import State
 from .static_limits import static_at_once, static_limit
 
 _MUCH = 16.0     # so much more is lost on a steep segment of the table before the forces know it better

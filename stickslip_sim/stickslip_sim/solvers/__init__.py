@@ -5,9 +5,10 @@
 from collections.abc import Callable
 from typing import Any, NamedTuple, Protocol, runtime_checkable
 
-from ..axis.layout import Parameters, State
+from ..axis.layout import Parameters
 from ..axis.records import PLAIN
 from ..axis.rows import EnergyRow, Events, SampleRow, Sinusoids
+from ..axis.state_record import State
 from ..core.input_profile import InputProfile
 
 # how `advance` ended: at its time, with a full event table, stuck, before a state beyond the range of numbers, or at an

@@ -4,8 +4,8 @@
 
 import math
 
-from ..axis.layout import State
 from ..axis.rows import Sinusoids
+from ..axis.state_record import State
 from ..core.hot_path import compiled
 from ..linear.waves import TURN, phase_at
 

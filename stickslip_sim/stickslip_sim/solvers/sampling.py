@@ -4,8 +4,9 @@
 
 from ..axis.codes import STICK
 from ..axis.forces import stated_drive_force
-from ..axis.layout import Parameters, State
+from ..axis.layout import Parameters
 from ..axis.rows import SampleRow
+from ..axis.state_record import State
 from ..core.hot_path import inlined
 
 

@@ -3,7 +3,8 @@
 """How a state begins, and how it takes another contact, for solvers that step."""
 
 from ..axis.codes import DECELERATING, STICK
-from ..axis.layout import Parameters, State, clear_state
+from ..axis.layout import Parameters
+from ..axis.state_record import State, clear_state
 from ..core.hot_path import compiled, inlined
 
 

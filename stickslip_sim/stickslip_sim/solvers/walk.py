@@ -8,8 +8,9 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from ..axis.layout import Parameters, State
+from ..axis.layout import Parameters
 from ..axis.rows import Events, Sinusoids
+from ..axis.state_record import State
 from ..core.input_profile import InputProfile
 from . import DONE, FULL, PieceWalk, Solver
 

@@ -10,9 +10,10 @@ import numpy as np
 
 from ...axis.codes import ACCELERATE, ACCELERATING, ARREST, BREAKAWAY, COAST, COASTING, DECELERATE, KNOT, STICK
 from ...axis.forces import drive_force
-from ...axis.layout import Parameters, State
+from ...axis.layout import Parameters
 from ...axis.records import PLAIN
 from ...axis.rows import Events, SampleRow, Sinusoids
+from ...axis.state_record import State
 from ...axis.static_limits import static_at_once
 from ...axis.transitions import apply_inputs, arrest, cross_breakpoint, leave_coast, release, turn, write_event
 from ...core.input_profile import InputProfile

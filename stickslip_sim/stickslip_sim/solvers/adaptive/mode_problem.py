@@ -14,7 +14,8 @@ from typing import Protocol
 from ...axis.codes import ACCELERATE, ACCELERATING, ARREST, BREAKAWAY, COAST, COASTING, DECELERATE, KNOT, STICK
 from ...axis.forces import holds_by_drive, is_rigid_stick
 from ...axis.friction_segments import breakpoint_speed, friction_line, segment_above, segment_end
-from ...axis.layout import Parameters, State
+from ...axis.layout import Parameters
+from ...axis.state_record import State
 from ...axis.static_limits import static_limit
 from ...core.input_profile import InputProfile
 from ...linear.waves import TURN, phase_at

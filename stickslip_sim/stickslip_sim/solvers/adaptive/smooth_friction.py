@@ -5,9 +5,10 @@
 from ...axis.codes import ACCELERATING, COASTING, STICK
 from ...axis.forces import applied_force, force_rounding
 from ...axis.friction_segments import friction_line, segment_above
-from ...axis.layout import Parameters, State
+from ...axis.layout import Parameters
 from ...axis.mode_entry import choose_slip
 from ...axis.rows import EventRow
+from ...axis.state_record import State
 from .mode_problem import SmoothLaw
 
 

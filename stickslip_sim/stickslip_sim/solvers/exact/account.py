@@ -5,8 +5,9 @@
 Each sum carries what rounding has lost of it (Neumaier, ZAMM 54, 1974).
 """
 
-from ...axis.layout import Parameters, State
+from ...axis.layout import Parameters
 from ...axis.rows import EnergyRow
+from ...axis.state_record import State
 from ...core.hot_path import compiled, inlined
 from .panels import Works
 from .works import contact_energy, stored_energy, works

@@ -4,8 +4,9 @@
 
 import math
 
-from ...axis.layout import Parameters, State
+from ...axis.layout import Parameters
 from ...axis.motion import travel, travel_at
+from ...axis.state_record import State
 from ...axis.static_limits import static_numbers
 from ...core.hot_path import compiled, inlined
 from ...linear.oscillator import Oscillator, amplitude, short_integrals

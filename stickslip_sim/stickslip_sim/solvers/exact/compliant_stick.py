@@ -25,8 +25,9 @@ guard is P alone.
 import math
 
 from ...axis.forces import force_rounding
-from ...axis.layout import Parameters, State
+from ...axis.layout import Parameters
 from ...axis.motion import oscillator_of
+from ...axis.state_record import State
 from ...axis.static_limits import limit_backwards, static_at_once, static_limit
 from ...core.hot_path import compiled, inlined
 from ...linear.oscillator import Oscillator, amplitude, bound

@@ -10,8 +10,9 @@ import math
 from typing import NamedTuple
 
 from ...axis.forces import drive_force, feed_damping
-from ...axis.layout import Parameters, State
+from ...axis.layout import Parameters
 from ...axis.motion import drive_travel, travel
+from ...axis.state_record import State
 from ...axis.static_limits import limit_backwards, static_limit
 from ...core.hot_path import compiled, inlined
 from ...linear.oscillator import Oscillator, amplitude, impulse

@@ -6,8 +6,8 @@ The segment start moves only at events, at jumps of an input, and just before th
 for long (`search`).  Times between are read off the closed form, so that the motion does not depend on how often it is
 asked for.
 
-Arrays: `p` parameters of the axis, `s` state (both `axis.layout`), `events` a table of rows.  All functions change `s`
-in place and return the number of rows in use; `advance` also says how it ended.
+Records: `p` parameters of the axis (`axis.layout`), `s` state (`axis.state_record`), `events` a table of rows.  All
+functions change `s` in place and return the number of rows in use; `advance` also says how it ended.
 """
 
 import math
@@ -15,11 +15,12 @@ import math
 from ...axis.codes import ARREST, BREAKAWAY, COAST, COASTING, KNOT, STICK
 from ...axis.forces import applied_force, drive_force, force_rounding, friction_force
 from ...axis.friction_segments import friction_line, segment_above
-from ...axis.layout import Parameters, State, clear_state
+from ...axis.layout import Parameters
 from ...axis.mode_entry import choose_slip
 from ...axis.motion import begin_motion, drive_travel, move_start, spring_after, travel
 from ...axis.rows import EnergyRow, Events, SampleRow, Sinusoids
 from ...axis.sinusoids import inputs_at, load_sinusoids, same_sinusoids
+from ...axis.state_record import State, clear_state
 from ...axis.transitions import apply_inputs, arrest, cross_breakpoint, leave_coast, release, turn
 from ...core.hot_path import compiled, inlined
 from .. import DONE, FULL, NO_PROGRESS, UNSOUND

@@ -31,8 +31,9 @@ import math
 from ...axis.codes import ACCELERATE, ACCELERATING, ARREST, BREAKAWAY, COAST, COASTING, DECELERATE, KNOT, STICK
 from ...axis.forces import force_rounding
 from ...axis.friction_segments import breakpoint_speed, friction_line, segment_end
-from ...axis.layout import Parameters, State
+from ...axis.layout import Parameters
 from ...axis.motion import oscillator_of
+from ...axis.state_record import State
 from ...axis.static_limits import lower_limit
 from ...core.hot_path import compiled, inlined
 from ...linear.oscillator import Oscillator

@@ -10,7 +10,8 @@ from typing import NamedTuple
 
 from ...axis.codes import COASTING, STICK
 from ...axis.forces import band_of
-from ...axis.layout import Parameters, State
+from ...axis.layout import Parameters
+from ...axis.state_record import State
 from ...core.hot_path import compiled, inlined
 from ...linear.polynomials import safe_step
 from .signal_readings import Reading

@@ -8,7 +8,8 @@ Argument 4 of `forced`.
 import math
 
 from ...axis.codes import STICK
-from ...axis.layout import Parameters, State
+from ...axis.layout import Parameters
+from ...axis.state_record import State
 from ...core.hot_path import compiled
 from ...friction.static import CONSTANT
 from ...linear.polynomials import first_crossing

@@ -13,9 +13,10 @@ import math
 from ...axis.codes import ACCELERATE, ACCELERATING, COAST, COASTING, STICK
 from ...axis.forces import band_of, contact_force, drive_force, holds_by_drive
 from ...axis.friction_segments import breakpoint_speed, friction_line, segment_end
-from ...axis.layout import Parameters, State
+from ...axis.layout import Parameters
 from ...axis.motion import drive_travel, spring_after, travel
 from ...axis.sinusoids import inputs_at
+from ...axis.state_record import State
 from ...axis.static_limits import limit_backwards, static_at_once, static_limit
 from ...core.hot_path import compiled, inlined
 from .account import balance

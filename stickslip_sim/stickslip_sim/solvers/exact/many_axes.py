@@ -20,8 +20,9 @@ from typing import Any
 
 from ...axis.codes import ACCELERATE, ACCELERATING, ARREST, BREAKAWAY, DECELERATE, REVERSE, STICK
 from ...axis.fields import numbers_in
-from ...axis.layout import Parameters, State
+from ...axis.layout import Parameters
 from ...axis.rows import EventRow, Events, Sinusoids
+from ...axis.state_record import State
 from ...core.hot_path import compiled
 from .. import DONE, FULL
 from .axis_figures import FIGURE_NAMES, ROUND_SIZE, AxisFigures, KeptRound, KeptRounds

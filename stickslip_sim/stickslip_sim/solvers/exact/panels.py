@@ -7,9 +7,10 @@ from typing import NamedTuple
 
 from ...axis.codes import STICK
 from ...axis.friction_segments import slip_friction
-from ...axis.layout import Parameters, State
+from ...axis.layout import Parameters
 from ...axis.motion import drive_travel, travel
 from ...axis.sinusoids import inputs_at
+from ...axis.state_record import State
 from ...core.hot_path import compiled
 
 # eight nodes of Gauss and Legendre's rule

@@ -19,8 +19,9 @@ import math
 from ...axis.codes import ACCELERATE, ACCELERATING, ARREST, BREAKAWAY, COAST, COASTING, DECELERATE, KNOT, STICK
 from ...axis.forces import band_of, force_rate
 from ...axis.friction_segments import breakpoint_speed, segment_end
-from ...axis.layout import Parameters, State
+from ...axis.layout import Parameters
 from ...axis.motion import oscillator_of, tick_integrals, travel_at
+from ...axis.state_record import State
 from ...core.hot_path import inlined
 from ...linear.polynomials import first_crossing
 from ...linear.root_steps import EPSILON

@@ -6,8 +6,9 @@ import math
 from typing import NamedTuple
 
 from ...axis.codes import STICK
-from ...axis.layout import Parameters, State
+from ...axis.layout import Parameters
 from ...axis.sinusoids import sinusoid_force, sinusoid_travel
+from ...axis.state_record import State
 from ...core.hot_path import compiled
 from ...linear.oscillator import Oscillator, amplitude, integrals, short_integrals
 from .signals import GuardSignal, inertia, is_still

@@ -17,7 +17,8 @@ from typing import NamedTuple
 
 from ...axis.codes import ACCELERATING, COASTING, STICK
 from ...axis.forces import applied_force, feed_damping
-from ...axis.layout import Parameters, State
+from ...axis.layout import Parameters
+from ...axis.state_record import State
 from ...core.hot_path import compiled, inlined
 from ...linear.oscillator import Oscillator
 from ...linear.waves import TURN

@@ -11,7 +11,8 @@ from typing import NamedTuple
 
 from ...axis.codes import STICK
 from ...axis.forces import feed_damping, ground_damping
-from ...axis.layout import Parameters, State
+from ...axis.layout import Parameters
+from ...axis.state_record import State
 from ...core.hot_path import compiled
 from ...linear.moments import moments
 from ...linear.oscillator import Oscillator

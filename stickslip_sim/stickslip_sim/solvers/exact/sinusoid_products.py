@@ -11,7 +11,7 @@ import math
 from typing import NamedTuple
 
 from ...axis.codes import STICK
-from ...axis.layout import State
+from ...axis.state_record import State
 from ...core.hot_path import compiled, inlined
 from ...linear.oscillator import Oscillator
 from ...linear.wave_products import (

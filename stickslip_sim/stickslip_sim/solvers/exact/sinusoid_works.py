@@ -13,9 +13,10 @@ import math
 from ...axis.codes import COASTING, STICK
 from ...axis.forces import feed_damping
 from ...axis.friction_segments import slip_friction
-from ...axis.layout import Parameters, State
+from ...axis.layout import Parameters
 from ...axis.motion import oscillator_of
 from ...axis.sinusoids import fastest_sinusoid
+from ...axis.state_record import State
 from ...core.hot_path import compiled
 from ...linear.oscillator import Oscillator
 from ...linear.wave_products import cycle_within, phase_products, wave_integral, wave_moment, wave_products

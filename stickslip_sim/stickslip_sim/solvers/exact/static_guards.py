@@ -13,7 +13,8 @@ grows or dies out but exp(−t/τ), and where that is 0 the guard is a straight 
 import math
 
 from ...axis.forces import applied_force, force_rate
-from ...axis.layout import Parameters, State
+from ...axis.layout import Parameters
+from ...axis.state_record import State
 from ...axis.static_limits import static_at_once, static_limit, static_numbers
 from ...core.hot_path import compiled, inlined
 from ...friction.static import CONSTANT, EXPONENTIAL, KATO, LOGARITHMIC, StaticGrowth, static_growth

@@ -15,8 +15,9 @@ from typing import NamedTuple
 from ...axis.codes import COASTING, STICK
 from ...axis.forces import feed_damping, ground_damping, is_rigid_stick
 from ...axis.friction_segments import slip_friction
-from ...axis.layout import Parameters, State
+from ...axis.layout import Parameters
 from ...axis.motion import drive_travel, oscillator_of, travel
+from ...axis.state_record import State
 from ...core.hot_path import compiled, inlined
 from ...linear.moments import moments
 from .panels import Works

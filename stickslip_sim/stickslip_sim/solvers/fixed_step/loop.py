@@ -11,8 +11,9 @@ often it is asked for.
 from ...axis.codes import ACCELERATE, ACCELERATING, COAST, COASTING, DECELERATE, DECELERATING, STICK
 from ...axis.forces import applied_force, drive_force, force_rounding, stick_force
 from ...axis.friction_segments import first_segment, friction_line
-from ...axis.layout import Parameters, State
+from ...axis.layout import Parameters
 from ...axis.rows import Events, SampleRow, Sinusoids
+from ...axis.state_record import State
 from ...axis.static_limits import static_at_once, static_limit
 from ...axis.transitions import arrest, release, write_event
 from ...core.hot_path import compiled

@@ -13,7 +13,8 @@ import math
 from ...axis.codes import STICK
 from ...axis.forces import contact_force, drive_force, is_rigid_stick
 from ...axis.friction_segments import breakpoint_speed, friction_line, segment_end
-from ...axis.layout import Parameters, State
+from ...axis.layout import Parameters
+from ...axis.state_record import State
 from ...core.hot_path import compiled
 from ..inputs import given_inputs_at
 
