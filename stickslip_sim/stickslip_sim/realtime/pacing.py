@@ -102,31 +102,33 @@ class Pacer:
         self._watches_steady = watches_steady
         self._backlog = max(_MAX_BACKLOG, 2 * self.period)
         self._clock: Clock = clock or SteadyClock()
+        self.now = self._clock.now
         self._origin = self._latest = self._watched = 0
         self._waited = False
         self.restart(0)
 
     def restart(self, step: int, lead: int = 0) -> None:
         """Let a step be due in `lead` ns, and those after it follow."""
-        self._latest = self._clock.now() + lead
-        self._origin = self._latest - self._offset(step)
+        self._latest = self.now() + lead
+        self._origin = self._latest - step * self._numerator // self._denominator
 
     def due(self, step: int) -> int:
         """Return when a step is due, ns on the steady clock."""
-        return self._origin + self._offset(step)
+        return self._origin + step * self._numerator // self._denominator
 
     def wait(self, step: int) -> bool:
         """Wait until a step is due, at most a while; return whether it is."""
-        left = self.due(step) - self._clock.now()
+        due = self.due(step)
+        left = due - self.now()
         if left <= 0:
             return True
         self._waited = True
         self._clock.sleep(min(left / NANOSECONDS, _SLICE))
-        return self.due(step) <= self._clock.now()
+        return due <= self.now()
 
     def begin(self, step: int) -> tuple[int, int]:
         """Count a step that begins; return the time now and how late it is, ns."""
-        now = self._clock.now()
+        now = self.now()
         lateness = now - self.due(step)
         counters = self.counters
         counters.steps += 1
@@ -141,16 +143,9 @@ class Pacer:
         self._latest = now
         return now, lateness
 
-    def now(self) -> int:
-        """Return the time, ns on the steady clock."""
-        return self._clock.now()
-
     def watch_time(self, time: int) -> int:
         """Return the time by which silence is measured."""
         return self._watched if self._watches_steady else time
-
-    def _offset(self, step: int) -> int:
-        return step * self._numerator // self._denominator
 
 
 class Unpaced:

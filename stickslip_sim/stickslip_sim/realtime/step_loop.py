@@ -157,16 +157,17 @@ class StepLoop:
             self.crash = error
 
     def _turn(self) -> None:
-        self._wake.clear()
+        if self._wake.is_set():
+            self._wake.clear()
         try:
-            while self._requests and (self.step >= 0 or self.failure):    # first of all a run has its start
+            while self._requests and (self.rig.step >= 0 or self.failure):    # first of all a run has its start
                 self._requests.popleft()()
             if self._stands_still:
                 self._hear()
                 self._wake.wait(_IDLE)
-            elif self._clock.wait(self.step + 1):
+            elif self._clock.wait(self.rig.step + 1):
                 self._make_due_step()
-            elif self.step >= 0:    # a long period: what comes meanwhile is counted, and the latest will hold
+            elif self.rig.step >= 0:    # a long period: what comes meanwhile is counted, and the latest will hold
                 self._hear()
         except SolverError as error:
             self.failure = str(error)
@@ -174,17 +175,17 @@ class StepLoop:
     def _make_due_step(self) -> None:
         counters = self.pacing_counters
         caught_up = counters.caught_up
-        begin, lateness = self._clock.begin(self.step + 1)
+        begin, lateness = self._clock.begin(self.rig.step + 1)
         if counters.caught_up == caught_up:
             self._core_share.waited(begin)
         self._make_step(begin, lateness)
 
     @property
     def _stands_still(self) -> bool:
-        return bool(self.failure) or (self.step >= 0 and (self.paused or self.by_request))
+        return bool(self.failure) or ((self.paused or self.by_request) and self.rig.step >= 0)
 
     def _make_step(self, begin: int, lateness: int) -> StepResult:
-        if self.step >= 0:    # the first step is the start, which comes before any command
+        if self.rig.step >= 0:    # the first step is the start, which comes before any command
             self._hear()
         new = self._inputs.take(self._clock.now())
         self._watch()

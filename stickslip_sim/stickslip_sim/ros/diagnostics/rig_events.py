@@ -7,6 +7,7 @@ from rclpy.serialization import serialize_message
 
 from stickslip_msgs.msg import RigEvent as RigEventMessage
 
+from ...core.types import Instant
 from ...recording.topics import RECORDED, RIG_EVENT
 from ...rig import RigEvent, RigEventKind, StepResult
 from ..node.conversion import set_stamp
@@ -27,17 +28,17 @@ class RigEvents:
         self._publishers = publishers
         self._publish = publisher(node, RIG_EVENT).publish
         self._index = RECORDED.index(RIG_EVENT)
-        self._time_ns = 0                                # of the latest step
+        self._reached = Instant(0.0, 0.0)                # with the latest step
         self._quiet_until: dict[RigEventKind, float] = {}
 
     def take(self, result: StepResult) -> None:
         """Report what happened at the start of a step; called before its state goes out."""
         if result.step == 0:
-            self._time_ns = 0
+            self._reached = Instant(0.0, 0.0)
             self._quiet_until.clear()
         for event in result.rig_events:
-            self.report(result.step, self._time_ns, event)
-        self._time_ns = result.sample.instant.nanoseconds
+            self.report(result.step, self._reached.nanoseconds, event)
+        self._reached = result.sample.instant
 
     def report(self, step: int, time_ns: int, event: RigEvent) -> None:
         """Report an event that holds from the start of a step, which is at that simulation time."""
