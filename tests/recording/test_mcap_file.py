@@ -70,7 +70,9 @@ def test_blocks_and_single_messages_make_the_bytes_of_the_library(size: int) -> 
             if size:
                 file.add_block(block_of(part[begin:begin + size]))
             else:
-                file.add_message(part[begin])
+                message = part[begin]
+                file.add_message(message.channel_id, message.log_time, message.data, message.publish_time,
+                                 message.sequence)
         if part[0] is MESSAGES[0]:
             file.flush()
             file.add_attachment(9, 'more.json', 'application/json', b'{}')

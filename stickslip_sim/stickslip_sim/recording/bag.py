@@ -7,8 +7,6 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple, NoReturn
 
-from mcap.records import Message
-
 from ..core.errors import RecordingError
 from ..core.version import __version__
 from .blocks import to_yaml
@@ -80,8 +78,7 @@ class BagWriter:
         try:
             if self._is_full(log_time_ns):
                 self._go_on()
-            self._mcap.add_message(Message(topic_index + 1, log_time_ns, data, publish_time_ns,
-                                           sequence & _SEQUENCE_MASK))
+            self._mcap.add_message(topic_index + 1, log_time_ns, data, publish_time_ns, sequence & _SEQUENCE_MASK)
         except OSError as error:
             _refuse(self.path, error)
         self._tally.add(topic_index, log_time_ns)

@@ -3,16 +3,18 @@
 """A chunk of an MCAP file while it fills, and where its messages stand in it."""
 
 import struct
-from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
-from mcap.records import McapRecord, Message
+from mcap.records import McapRecord
 from numpy.typing import NDArray
 
-_ENTRY = struct.Struct('<QQ')   # of an index: log time, place in the chunk
+_ENTRY = struct.Struct('<QQ')        # of an index: log time, place in the chunk
+_FRAME = struct.Struct('<BQHIQQ')    # of a message: opcode, length from the channel on, channel, sequence, times
+_FRONT = 9                           # bytes before the channel
+_OPCODE = int(Opcode.MESSAGE)
 
 
 class MessageBlock(NamedTuple):
@@ -31,15 +33,6 @@ class ChunkIndexes(NamedTuple):
     offsets: dict[int, int]
 
 
-class Span(NamedTuple):
-    """Messages of a channel: how many, and their first and last log time (ns)."""
-
-    channel: int
-    messages: int
-    begin: int
-    end: int
-
-
 class ChunkUnderWay:
     """Collects records; `count` messages with log times (ns) from `begin` to `end`."""
 
@@ -48,27 +41,31 @@ class ChunkUnderWay:
         self.count = self.begin = self.end = 0
         self._entries: dict[int, bytearray] = {}   # by channel, in the order of their first messages
 
-    def add(self, message: Message) -> None:
-        """Add a message."""
-        time = message.log_time
-        self._entries.setdefault(message.channel_id, bytearray()).extend(_ENTRY.pack(time, self.records.count))
-        self._note(1, time, time)
-        message.write(self.records)
+    def add(self, channel: int, log_time: int, data: bytes, publish_time: int, sequence: int) -> None:
+        """Add a message: the bytes that the library would write, without an object for it."""
+        entries = self._entries.get(channel)
+        if entries is None:
+            entries = self._entries[channel] = bytearray()
+        entries += _ENTRY.pack(log_time, self.records.count)
+        self._note(1, log_time, log_time)
+        self.records.write(_FRAME.pack(_OPCODE, _FRAME.size - _FRONT + len(data), channel, sequence, log_time,
+                                       publish_time) + data)
 
-    def add_part(self, block: MessageBlock, first: int, last: int, end: int) -> Iterator[Span]:
-        """Add the messages of a block from one place up to another, where the data end; yield what there is of each."""
+    def add_part(self, block: MessageBlock, first: int, last: int, end: int) -> None:
+        """Add the messages of a block from one place up to another, where the data end."""
         begin = int(block.starts[first])
         channels, times = block.channels[first:last], block.times[first:last]
         places = block.starts[first:last] - begin + self.records.count
         entries = np.stack([times, places], axis=1).astype('<u8')
         _, at = np.unique(channels, return_index=True)
         for channel in channels[np.sort(at)].tolist():
-            chosen = channels == channel
-            self._entries.setdefault(channel, bytearray()).extend(entries[chosen].tobytes())
-            of = times[chosen]
-            yield Span(channel, len(of), int(of.min()), int(of.max()))
+            self._entries.setdefault(channel, bytearray()).extend(entries[channels == channel].tobytes())
         self._note(last - first, int(times.min()), int(times.max()))
         self.records.write(memoryview(block.data)[begin:end])
+
+    def counts(self) -> dict[int, int]:
+        """Return how many messages there are, by channel."""
+        return {channel: len(entries) // _ENTRY.size for channel, entries in self._entries.items()}
 
     def indexes(self) -> ChunkIndexes:
         """Return the indexes of its messages."""

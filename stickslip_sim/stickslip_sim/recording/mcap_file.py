@@ -24,7 +24,6 @@ from mcap.records import (
     DataEnd,
     Footer,
     Header,
-    Message,
     Metadata,
     MetadataIndex,
     Schema,
@@ -63,8 +62,8 @@ class McapFile:
             kind: RecordBuilder() for kind in (Opcode.SCHEMA, Opcode.CHANNEL, Opcode.CHUNK_INDEX,
                                                Opcode.ATTACHMENT_INDEX, Opcode.METADATA_INDEX)}
         self._counts: Counter[str] = Counter()               # of records
-        self._messages: Counter[int] = Counter()             # by channel
-        self._begin = self._end = 0                          # log times, ns
+        self._messages: Counter[int] = Counter()             # in those chunks, by channel
+        self._begin = self._end = 0                          # of them, log times, ns
         self._write(MCAP0_MAGIC)
         self._write(bytes_of(Header('ros2', library)))
 
@@ -103,10 +102,9 @@ class McapFile:
                         name=name, media_type=media_type).write(self._summary[Opcode.ATTACHMENT_INDEX])
         self._write(record)
 
-    def add_message(self, message: Message) -> None:
-        """Add a message."""
-        self._note(message.channel_id, 1, message.log_time, message.log_time)
-        self._chunk.add(message)
+    def add_message(self, channel: int, log_time: int, data: bytes, publish_time: int, sequence: int) -> None:
+        """Add a message; times are ns."""
+        self._chunk.add(channel, log_time, data, publish_time, sequence)
         self._end_full_chunk()
 
     def add_block(self, block: MessageBlock) -> None:
@@ -116,8 +114,7 @@ class McapFile:
         while first < len(ends):
             room = self._chunk_size - self._chunk.records.count
             last = min(int(np.searchsorted(ends, block.starts[first] + room, 'right')) + 1, len(ends))
-            for span in self._chunk.add_part(block, first, last, int(ends[last - 1])):
-                self._note(*span)
+            self._chunk.add_part(block, first, last, int(ends[last - 1]))
             self._end_full_chunk()
             first = last
 
@@ -157,11 +154,6 @@ class McapFile:
                 (Opcode.ATTACHMENT_INDEX, found[Opcode.ATTACHMENT_INDEX]),
                 (Opcode.METADATA_INDEX, found[Opcode.METADATA_INDEX])]
 
-    def _note(self, channel: int, count: int, begin: int, end: int) -> None:
-        self._begin = min(begin, self._begin) if self._messages else begin
-        self._end = max(end, self._end)
-        self._messages[channel] += count
-
     def _end_full_chunk(self) -> None:
         if self._chunk.records.count > self._chunk_size and self._chunk.count:
             self._end_chunk()
@@ -182,6 +174,9 @@ class McapFile:
             uncompressed_size=len(data)).write(self._summary[Opcode.CHUNK_INDEX])
         self._write(record)
         self._counts['chunk'] += 1
+        self._begin = min(self._begin, chunk.begin) if self.on_disk else chunk.begin
+        self._end = max(self._end, chunk.end)
+        self._messages.update(chunk.counts())
         self.on_disk += chunk.count
         self._chunk = ChunkUnderWay()
         self._write(index.records)
