@@ -22,7 +22,6 @@ with warnings.catch_warnings():   # rclpy loads it at the first message, and it 
 from diagnostic_msgs.msg import DiagnosticArray  # noqa: E402
 from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParametersAtomically  # noqa: E402
 from rclpy.context import Context  # noqa: E402
-from rclpy.event_handler import SubscriptionEventCallbacks  # noqa: E402
 from rclpy.executors import SingleThreadedExecutor  # noqa: E402
 from rclpy.node import Node  # noqa: E402
 from rclpy.parameter import Parameter  # noqa: E402
@@ -39,6 +38,7 @@ from stickslip_msgs.msg import (  # noqa: E402
     StepTiming,
 )
 from tests.support.node_processes import NodeProcess, assert_clean, running  # noqa: E402
+from tests.support.topic_ears import Ears  # noqa: E402
 from tests.support.waiting import DEADLINE, wait_for  # noqa: E402
 
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -56,7 +56,7 @@ def nanoseconds(time: Any) -> int:
 
 
 class Client:
-    """Hears all topics of a node, sends commands, calls services; its callbacks run in a thread.
+    """Hears all topics of a node, sends commands, calls services; its callbacks run in threads.
 
     `lost` counts by topic what DDS reports as lost: a node keeps its last ten states for those that are slow to listen.
     """
@@ -65,6 +65,7 @@ class Client:
         self._context = Context()
         rclpy.init(context=self._context)
         self.node = Node('client', context=self._context, namespace=namespace)
+        self._ears = Ears(self.node)
         self.heard: dict[str, list[Any]] = {name: [] for name in _HEARD}
         self.lost: Counter[str] = Counter()
         for name, (kind, qos) in _HEARD.items():
@@ -83,6 +84,7 @@ class Client:
             self._executor.spin_once(timeout_sec=0.1)
 
     def close(self) -> None:
+        self._ears.close()
         self._is_closing.set()
         self._thread.join(DEADLINE)
         self._executor.shutdown()
@@ -96,11 +98,10 @@ class Client:
 
     def hear(self, kind: Any, name: str, take: Callable[[Any], object], qos: QoSProfile, raw: bool = False) -> None:
         """Let `take` have the messages of a topic, and count what is lost of them."""
-        def lose(report: Any) -> None:
-            self.lost[name] += report.total_count_change
+        def lose(count: int) -> None:
+            self.lost[name] += count
 
-        self.node.create_subscription(kind, name, take, qos, raw=raw,
-                                      event_callbacks=SubscriptionEventCallbacks(message_lost=lose))
+        self._ears.hear(kind, name, take, qos, raw, lose)
 
     def wait_for_lost(self, name: str, count: int, before: int = 0) -> None:
         """Wait until so many messages of a topic are reported as lost since there were `before`."""

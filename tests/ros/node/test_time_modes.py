@@ -31,6 +31,7 @@ from rclpy.node import Node  # noqa: E402
 from rclpy.parameter import Parameter  # noqa: E402
 from rclpy.qos import QoSProfile  # noqa: E402
 
+from stickslip_msgs.msg import SliderState  # noqa: E402
 from stickslip_msgs.srv import Step  # noqa: E402
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
@@ -178,11 +179,12 @@ def node_with_a_clock() -> Iterator[Client]:
     with running('-p', 'time.mode:=lockstep', '-p', 'clock.rate:=300.0') as process, client() as axis:
         axis.connect(is_moving=False)
         heard = axis.heard['/clock'] = []
+        states: list[Any] = []    # heard as the ticks are, so that they come in one order
 
         def tick(message: Any) -> None:
-            states = axis.heard['slider_state']
             heard.append((nanoseconds(message.clock), nanoseconds(states[-1].header.stamp) if states else -1))
 
+        axis.node.create_subscription(SliderState, 'slider_state', states.append, QoSProfile(depth=5000))
         axis.node.create_subscription(rosgraph_msgs.Clock, '/clock', tick, QoSProfile(depth=100))
         wait_for(lambda: axis.trigger('reset').success and heard, 'a tick')
         yield axis
