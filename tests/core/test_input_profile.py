@@ -4,6 +4,7 @@
 
 import math
 import random
+from copy import deepcopy
 
 import pytest
 
@@ -49,3 +50,9 @@ def test_bad_sinusoids_are_refused(sinusoid: Sinusoid, word: str) -> None:
         InputProfile((0.0,), (0.0,), (0.0,), sinusoids=(sinusoid,))
     with pytest.raises(InputError, match='at most 100'):
         InputProfile((0.0,), (0.0,), (0.0,), sinusoids=(Sinusoid(1.0, 1.0, 0.0),) * 101)
+
+
+def test_a_copy_of_what_holds_a_profile_holds_the_same_one() -> None:
+    """What holds measured ones is copied for every fit."""
+    profile = table('force', [0.0, 1.0], [2.0, 3.0])
+    assert deepcopy({'force': profile})['force'] is profile

@@ -57,6 +57,10 @@ class InputProfile:
         if self.sinusoids:
             self._check_sinusoids()
 
+    def __deepcopy__(self, _memo: object) -> 'InputProfile':
+        """Return the profile itself, for nothing in it changes: a measured one has a hundred thousand numbers."""
+        return self
+
     def _check_sinusoids(self) -> None:
         if len(self.sinusoids) > MAX_SINUSOIDS:
             raise InputError('sinusoids', len(self.sinusoids), f'at most {MAX_SINUSOIDS} in a profile',
