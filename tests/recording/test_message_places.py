@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 
-from stickslip_sim.recording.message_places import FRAME, messages_in
+from stickslip_sim.recording.message_places import messages_in
+from stickslip_sim.recording.message_record import FRAME_SIZE as FRAME
 
 _HEAD = struct.Struct('<BQ')
 _CHANNEL = struct.Struct('<H')

@@ -20,7 +20,6 @@ CHUNK_SIZE = 64 * 1024  # a larger chunk takes longer to close than a step may w
 METADATA = 'stickslip'  # the record that says what simulated the run
 NEXT_FILE = 'stickslip_next'   # at the end of a file that was split: the one in which the bag goes on
 _MEDIA = {'.yaml': 'application/yaml', '.json': 'application/json'}
-_SEQUENCE_MASK = 0xFFFFFFFF  # MCAP has 32 bits for it; the message itself has the whole step
 
 
 class Split(NamedTuple):
@@ -78,7 +77,7 @@ class BagWriter:
         try:
             if self._is_full(log_time_ns):
                 self._go_on()
-            self._mcap.add_message(topic_index + 1, log_time_ns, data, publish_time_ns, sequence & _SEQUENCE_MASK)
+            self._mcap.add_message(topic_index + 1, log_time_ns, data, publish_time_ns, sequence)
         except OSError as error:
             _refuse(self.path, error)
         self._tally.add(topic_index, log_time_ns)

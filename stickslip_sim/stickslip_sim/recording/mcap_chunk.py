@@ -11,10 +11,9 @@ from mcap.opcode import Opcode
 from mcap.records import McapRecord
 from numpy.typing import NDArray
 
-_ENTRY = struct.Struct('<QQ')        # of an index: log time, place in the chunk
-_FRAME = struct.Struct('<BQHIQQ')    # of a message: opcode, length from the channel on, channel, sequence, times
-_FRONT = 9                           # bytes before the channel
-_OPCODE = int(Opcode.MESSAGE)
+from .message_record import record_of
+
+_ENTRY = struct.Struct('<QQ')   # of an index: log time, place in the chunk
 
 
 class MessageBlock(NamedTuple):
@@ -42,14 +41,13 @@ class ChunkUnderWay:
         self._entries: dict[int, bytearray] = {}   # by channel, in the order of their first messages
 
     def add(self, channel: int, log_time: int, data: bytes, publish_time: int, sequence: int) -> None:
-        """Add a message: the bytes that the library would write, without an object for it."""
+        """Add a message."""
         entries = self._entries.get(channel)
         if entries is None:
             entries = self._entries[channel] = bytearray()
         entries += _ENTRY.pack(log_time, self.records.count)
         self._note(1, log_time, log_time)
-        self.records.write(_FRAME.pack(_OPCODE, _FRAME.size - _FRONT + len(data), channel, sequence, log_time,
-                                       publish_time) + data)
+        self.records.write(record_of(channel, sequence, log_time, publish_time, data))
 
     def add_part(self, block: MessageBlock, first: int, last: int, end: int) -> None:
         """Add the messages of a block from one place up to another, where the data end."""

@@ -12,11 +12,11 @@ from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 from numpy.typing import NDArray
 
+from .message_record import CHANNEL_AT, FRAME_SIZE
+
 _HEAD = struct.Struct('<BQ')       # of a record: what it is, and its length without this
-_CHANNEL = 9                       # where the channel of a message stands in its record
 _LONGEST = 8                       # messages of a step whose sizes may repeat
 _WORTH_IT, _AT_ONCE = 4, 256       # steps, at least and at most
-FRAME = 31                         # bytes of the record of a message before those of the message itself
 
 
 class Messages(NamedTuple):
@@ -69,10 +69,10 @@ def messages_in(data: bytes) -> Messages:
             alone, at = [], int(again[-1])
     whole = np.concatenate([*starts, np.array([start for start, _ in alone], np.int64)])
     sizes = np.concatenate([*ends, np.array([stop for _, stop in alone], np.int64)]) - whole
-    if at != end or sizes.min(initial=FRAME) < FRAME:
+    if at != end or sizes.min(initial=FRAME_SIZE) < FRAME_SIZE:
         raise McapError('a record that does not fit into its chunk')
     raw = np.frombuffer(data, np.uint8)
-    channels = raw[whole + _CHANNEL] + 256 * raw[whole + _CHANNEL + 1].astype(np.int64)
+    channels = raw[whole + CHANNEL_AT] + 256 * raw[whole + CHANNEL_AT + 1].astype(np.int64)
     return Messages(data, whole, sizes, channels, others)
 
 

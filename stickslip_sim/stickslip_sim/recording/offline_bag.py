@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from mcap.records import Message
 from numpy.typing import NDArray
 
 from ..core.time_grid import Instants
@@ -17,7 +16,8 @@ from ..core.types import Event, EventKind, Mode, Sample
 from ..runs import Columns
 from ..runs.simulated import columns_of_rows
 from . import messages, topics
-from .mcap_chunk import MessageBlock, bytes_of
+from .mcap_chunk import MessageBlock
+from .message_record import record_of
 from .messages import Packer, numbers_of_steps
 from .rows import MessageRows
 from .run import RunFacts, open_run, receipt_file
@@ -144,7 +144,7 @@ class StepMessages:
 
     def _other(self, topic: Topic, place: int, time: int, step: int, data: bytes) -> _Other:
         channel = CHANNELS[topic]
-        return _Other(place, channel, time, bytes_of(Message(channel, time, data, time, step & 0xFFFFFFFF)))
+        return _Other(place, channel, time, record_of(channel, step, time, time, data))
 
 
 def interleaved(rows: Sequence[NDArray[Any]], times: NDArray[np.int64], others: Sequence[_Other]) -> MessageBlock:

@@ -6,23 +6,17 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from mcap.records import Message
 from numpy.typing import NDArray
 
 from .layout import Layout
-from .mcap_chunk import bytes_of
-from .message_places import FRAME
-
-FRAME_FIELDS = {'opcode': ('u1', 0), 'length': ('<u8', 1), 'channel': ('<u2', 9), 'sequence': ('<u4', 11),
-           'log_time': ('<u8', 15), 'publish_time': ('<u8', 23)}   # in the record of a message
+from .message_record import FIELDS, FRAME_SIZE, SEQUENCE_MASK, record_of
 
 
 class MessageRows:
     """The rows of a channel whose messages have a layout."""
 
     def __init__(self, channel: int, layout: Layout) -> None:
-        record = bytes_of(Message(channel_id=channel, log_time=0, data=layout.pack(0, *[0] * len(layout.names)),
-                                  publish_time=0, sequence=0))
+        record = record_of(channel, 0, 0, 0, layout.pack(0, *[0] * len(layout.names)))
         self.names = layout.names
         self._kind, self._empty = row_kind(layout), np.frombuffer(record, np.uint8)
 
@@ -30,7 +24,7 @@ class MessageRows:
                numbers: Mapping[str, NDArray[Any]]) -> NDArray[Any]:
         """Return rows of messages that are stamped with their times of publication, ns."""
         rows = np.tile(self._empty, len(log_times)).view(self._kind)
-        rows['sequence'] = sequences & 0xFFFFFFFF   # the file has 32 bits for it
+        rows['sequence'] = sequences & SEQUENCE_MASK
         rows['log_time'], rows['publish_time'] = log_times, publish_times
         rows['stamp.sec'], rows['stamp.nanosec'] = np.divmod(publish_times, 1_000_000_000)
         for name in self.names:
@@ -40,6 +34,7 @@ class MessageRows:
 
 def row_kind(layout: Layout) -> np.dtype[Any]:
     """Return the type of a row: the record of a message with such a layout."""
-    places = {**FRAME_FIELDS, **{name: (kind, place + FRAME) for name, (kind, place) in layout.places.items()}}
+    of_message = {name: (kind, place + FRAME_SIZE) for name, (kind, place) in layout.places.items()}
+    places = {**FIELDS, **of_message}
     return np.dtype({'names': list(places), 'formats': [kind for kind, _ in places.values()],
-                     'offsets': [place for _, place in places.values()], 'itemsize': FRAME + layout.size})
+                     'offsets': [place for _, place in places.values()], 'itemsize': FRAME_SIZE + layout.size})

@@ -14,9 +14,10 @@ from numpy.typing import NDArray
 from rosbags.typesys.store import Typestore
 
 from .layout import layout_of, number_fields, text_fields
-from .message_places import FRAME, Messages
+from .message_places import Messages
+from .message_record import FIELDS, FRAME_SIZE
 from .records import contents
-from .rows import FRAME_FIELDS, row_kind
+from .rows import row_kind
 
 Block = dict[str, NDArray[Any]]
 
@@ -55,7 +56,7 @@ class TopicColumns:
     def block(self, messages: Messages, chosen: NDArray[np.intp]) -> Block:
         """Return the columns of chosen messages; raises OverflowError on times beyond 64 bits."""
         layout = self._layout
-        if layout is None or (messages.sizes[chosen] != FRAME + layout.size).any():
+        if layout is None or (messages.sizes[chosen] != FRAME_SIZE + layout.size).any():
             return self._decoded([self._message(messages, int(k)) for k in chosen])
         rows = messages.rows(chosen, row_kind(layout))
         for name in _TIMES:
@@ -73,7 +74,7 @@ class TopicColumns:
         begin, size = int(messages.starts[k]), int(messages.sizes[k])
         frame = np.frombuffer(messages.data, _FRAME, 1, begin)[0]
         return RecordedMessage(self.topic, self._type, int(frame['sequence']), int(frame['log_time']),
-                               int(frame['publish_time']), messages.data[begin + FRAME:begin + size])
+                               int(frame['publish_time']), messages.data[begin + FRAME_SIZE:begin + size])
 
 
 def column_blocks(files: Iterable[Path], topics: Sequence[TopicColumns]) -> Iterator[tuple[TopicColumns, Block]]:
@@ -92,5 +93,5 @@ def column_blocks(files: Iterable[Path], topics: Sequence[TopicColumns]) -> Iter
                         yield topic, topic.block(record, chosen)
 
 
-_FRAME = np.dtype({'names': list(FRAME_FIELDS), 'formats': [kind for kind, _ in FRAME_FIELDS.values()],
-                   'offsets': [place for _, place in FRAME_FIELDS.values()], 'itemsize': FRAME})
+_FRAME = np.dtype({'names': list(FIELDS), 'formats': [kind for kind, _ in FIELDS.values()],
+                   'offsets': [place for _, place in FIELDS.values()], 'itemsize': FRAME_SIZE})
