@@ -8,6 +8,7 @@ DISTRO ?= jazzy
 MINUTES ?= 10
 PROCESSES ?= 3
 export DISTRO
+unexport PYTHONDONTWRITEBYTECODE  # pytest rewrites three hundred files, in each process: that is to be kept
 
 SHELL := /bin/bash
 HERE := ros2_ws/on_this_machine
