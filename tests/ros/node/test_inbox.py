@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The step loop takes commands from the middleware by itself: which, in which order, and when they arrived."""
 
+import itertools
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -116,6 +117,19 @@ def test_of_two_topics_the_command_that_arrived_last_counts(bench: Bench) -> Non
     assert bench.velocity.received == 2
     assert bench.velocity.latest is not None
     assert bench.velocity.latest.value == 0.1
+
+
+@pytest.mark.parametrize('pause', [0, 1_000_000, 1_000_000_000], ids=['none', 'a step', 'long'])
+def test_the_order_stays_when_taking_takes_long(bench: Bench, monkeypatch: pytest.MonkeyPatch, pause: int) -> None:
+    """As when a busy machine takes the core away between two messages."""
+    bench.send(0.1, 0.2, 0.3)
+    settle(bench)
+    looks, now = itertools.count(), time.time_ns
+    monkeypatch.setattr(time, 'time_ns', lambda: now() + next(looks) * pause)
+    offered: list[float] = []
+    monkeypatch.setattr(bench.velocity, 'offer', lambda value, _: offered.append(value))
+    bench.subscribers.hear()
+    assert offered == [0.1, 0.2, 0.3]
 
 
 def test_of_more_than_fit_the_latest_are_heard(bench: Bench) -> None:

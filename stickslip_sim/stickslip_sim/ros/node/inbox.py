@@ -6,7 +6,6 @@ An executor takes 40 to 80 µs for a message, and wants the interpreter for it a
 """
 
 import os
-import time
 from typing import Any, NamedTuple
 
 from rclpy.exceptions import InvalidHandle
@@ -35,18 +34,19 @@ class Inbox:
     def __init__(self, subscription: Any) -> None:
         self._handle, self._type = subscription.handle, subscription.msg_type
 
-    def take(self, since: int, now: int) -> list[Message]:
+    def take(self, since: int, now: int, ahead: int) -> list[Message]:
         """Return what has come since the last time, at most DEPTH messages, the oldest first.
 
         That time, `since`, and `now` are ns on the steady clock and bound the arrivals: the clock of the middleware,
-        that of the day, may be set.
+        that of the day, may be set.  The steady clock is `ahead` ns of it now; for all messages, however long taking
+        them takes, so that their order stays.
         """
         messages: list[Message] = []
         try:
             with self._handle:
                 while len(messages) < DEPTH and (taken := self._handle.take_message(self._type, True)) is not None:
-                    age = time.time_ns() - taken[1][_RECEIVED]
-                    messages.append(Message(max(since, min(now - age, now)), taken[0]))
+                    since = max(since, min(taken[1][_RECEIVED] + ahead, now))
+                    messages.append(Message(since, taken[0]))
         except InvalidHandle:    # the node is coming down
             pass
         return messages

@@ -6,6 +6,7 @@ The step loop takes what has arrived by the boundary of a step; where this rclpy
 callbacks of the executor do.
 """
 
+import time
 from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple, Protocol
 
@@ -60,7 +61,9 @@ class Subscribers:
     def hear(self) -> None:
         """Offer what has arrived to the slots, in the order of arrival."""
         now = self._now()
-        arrived = [(message, source) for inbox, source in self._inboxes for message in inbox.take(self._heard, now)]
+        ahead = now - time.time_ns()
+        arrived = [(message, source) for inbox, source in self._inboxes
+                   for message in inbox.take(self._heard, now, ahead)]
         self._heard = now
         if len(arrived) > 1:
             arrived.sort(key=_arrival)
