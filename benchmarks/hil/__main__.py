@@ -15,7 +15,7 @@ from stickslip_sim.scene import load_scene
 from ..loop import machine
 from . import yardstick
 from .measure import measure, summary
-from .page import RATE, page
+from .page import RATE, ROUNDS, page
 from .process import COMMANDS, SCENE, SIMULATING
 
 RATES = (1000, 2000, 4000, 6000, 8000, 10_000, 12_000)
@@ -47,7 +47,8 @@ def search(seconds: float, priority: int) -> dict[str, Figures]:
     """Return the figures of the node at higher and higher rates, up to the first at which steps are lost."""
     found: dict[str, Figures] = {}
     for rate in RATES:
-        found[str(rate)] = print_figures(f'{rate} 1/s', measure(SIMULATING, float(rate), seconds, priority))
+        found[str(rate)] = summary([print_figures(f'{rate} 1/s', measure(SIMULATING, float(rate), seconds, priority))
+                                    for _ in range(ROUNDS)])
         if loss(rate, found[str(rate)]):
             break
     return found
