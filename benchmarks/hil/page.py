@@ -75,7 +75,8 @@ def page(found: Mapping[str, Any]) -> str:
         *table('node', found['cases']), '', *_LEGEND, '', *verdict(found['cases']), '',
         '## The highest rate', '',
         f'`sim_node` alone, {ROUNDS} times {seconds} s at each rate, up to the first rate at which steps are lost or',
-        'lag behind the clock.  The controller, which has no priority, answers 1000 states a second.', '',
+        'lag behind the clock; medians, sums and the worst as above.  The controller, which has no priority, answers',
+        '1000 states a second.', '',
         *(line for priority, rates in found['rates'].items() for line in (
             f'{_START[priority > 0]}:', '', *table('rate, 1/s', rates), '', *highest(found['troubles'][priority]), '')),
         *section(found['yardsticks'], found['seconds'], repeats, found['no_priority']), ''])
