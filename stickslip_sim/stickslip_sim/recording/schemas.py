@@ -24,6 +24,7 @@ _PRIMITIVE = frozenset(
     ['bool', 'byte', 'char', 'string', 'wstring', 'float32', 'float64']
     + [f'{sign}int{bits}' for sign in ('', 'u') for bits in (8, 16, 32, 64)]
 )
+_INSTALLED = get_typestore(Stores.EMPTY)   # the types of `schema`, each made once: that takes milliseconds
 
 
 class Schema(NamedTuple):
@@ -38,12 +39,19 @@ class Schema(NamedTuple):
 def schema(type_name: str) -> Schema:
     """Return the schema of 'package/msg/Name'; raises RecordingError when its definition is not installed."""
     text = _full_text(type_name, set())
-    return Schema(type_name, text, store_of({type_name: text}).hash_rihs01(type_name))
+    _add(_INSTALLED, {type_name: text})
+    return Schema(type_name, text, _INSTALLED.hash_rihs01(type_name))
 
 
 def store_of(definitions: Mapping[str, str]) -> Typestore:
     """Return a rosbags type store made of definitions like `Schema.text`, by type name; raises RecordingError."""
     store = get_typestore(Stores.EMPTY)
+    _add(store, definitions)
+    return store
+
+
+def _add(store: Typestore, definitions: Mapping[str, str]) -> None:
+    """Add the types of definitions to a store, but for those that it has; raises RecordingError."""
     types: dict[str, Any] = {}
     for name, text in definitions.items():
         if len(text) > LONGEST:
@@ -52,8 +60,7 @@ def store_of(definitions: Mapping[str, str]) -> Typestore:
             types.update(get_types_from_msg(text, name))
     _check_arrays(types)
     with understood(f'the definition of {", ".join(definitions)}'):
-        store.register(types)
-    return store
+        store.register({name: fields for name, fields in types.items() if name not in store.fielddefs})
 
 
 @contextmanager
@@ -69,14 +76,17 @@ def understood(what: str, kind: type[Exception] = Exception) -> Iterator[None]:
 @cache
 def flat_layout(type_name: str) -> Layout:
     """Return the layout of an installed type that is a header without a frame and numbers."""
-    return Layout(number_fields(store_of({type_name: schema(type_name).text}), type_name))
+    schema(type_name)
+    return Layout(number_fields(_INSTALLED, type_name))
 
 
 class MessageCodec:
     """Encodes messages given as mappings, and decodes them; bytes as rclpy makes them (padding zero)."""
 
     def __init__(self, type_names: Iterable[str]) -> None:
-        self._store = store_of({name: schema(name).text for name in type_names})
+        self._store = _INSTALLED
+        for name in type_names:
+            schema(name)
 
     def encode(self, type_name: str, values: Mapping[str, Any]) -> bytes:
         """Return the CDR bytes of a message with all its fields given.
