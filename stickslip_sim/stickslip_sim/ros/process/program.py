@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The process around a node, from its arguments to the exit code."""
 
+import gc
 import sys
 from collections.abc import Callable, Sequence
 from itertools import takewhile
@@ -29,6 +30,7 @@ def live(args: Sequence[str], signals: 'Signals', program: Program) -> int:
     from .environment import check_environment
 
     sys.setswitchinterval(SWITCH_INTERVAL)
+    gc.disable()     # up to `spin`: what a start makes stays, and looking through it time and again is a tenth of it
     try:
         check_environment()
         _with_ros(args, signals, program)
@@ -38,6 +40,7 @@ def live(args: Sequence[str], signals: 'Signals', program: Program) -> int:
     except Exception as error:
         return _refuse(program, internal_error(error), 1)
     finally:
+        gc.enable()
         signals.ignore()
 
 
@@ -46,6 +49,7 @@ def spin(node: Any, signals: 'Signals', is_over: Callable[[], bool] = lambda: Fa
     """Let a node begin, hear, and end with a signal or when it is over; `look` is called every now and then."""
     executor = make_executor()
     executor.add_node(node)
+    gc.enable()
     try:
         signals.is_starting = False
         if not signals.stop:
