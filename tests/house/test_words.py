@@ -40,3 +40,14 @@ def test_another_meaning_is_one_of_its_line() -> None:
 def test_an_entry_with_an_unknown_key_is_refused() -> None:
     with pytest.raises(ValueError, match='unknown: instead'):
         rules([{'write': 'a', 'not': ['b'], 'instead': 'c'}])
+
+
+def test_an_entry_in_capitals_is_refused() -> None:
+    """Texts are searched in lower case, so that it would find nothing."""
+    with pytest.raises(ValueError, match='in lower case'):
+        rules([{'write': 'a', 'not': ['Stribeck limit']}])
+
+
+def test_a_line_has_all_its_faults() -> None:
+    assert [(fault.line, fault.word) for fault in faults('a\nThe COURSE of secondReports\n', LISTED)] == [
+        (2, 'second Reports'), (2, 'COURSE')]
