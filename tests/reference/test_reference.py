@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 import random
+from decimal import Context, Decimal, localcontext
 
 import pytest
 
@@ -13,7 +14,9 @@ mpmath = pytest.importorskip('mpmath')
 from mpmath import mpf  # noqa: E402
 
 from stickslip_sim.reference.exact_run import Run  # noqa: E402
+from stickslip_sim.reference.precision import to_binary, to_decimal, working  # noqa: E402
 from stickslip_sim.reference.roots import bernstein, first_root  # noqa: E402
+from stickslip_sim.reference.series import series  # noqa: E402
 from tests.reference.figures import agrees  # noqa: E402
 from tests.reference.inclusion import violations  # noqa: E402
 from tests.reference.objects import exact_run as simulate  # noqa: E402
@@ -108,19 +111,49 @@ def test_leine_cycle() -> None:
     assert abs(slip + stick - mpf('12.0010312948')) < 3e-5
 
 
+# ---- numbers --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize('number', [0.0, 1.0, -0.1, math.pi, 5e-324, -1.7976931348623157e308, 2.0**-200, 3e-25])
+def test_numbers_keep_the_working_digits_both_ways(number: float) -> None:
+    with working(42):
+        third = mpf(number) / 3
+        converted = to_decimal(mpf(number))
+        for given in (mpf(number), third):
+            assert abs(to_binary(to_decimal(given)) - given) <= abs(given) * mpf(10) ** -42
+        with localcontext(Context(prec=2000)):
+            assert abs(converted - Decimal(number)) <= abs(Decimal(number)) / 10**42
+
+
 # ---- root search ----------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize('depth', ['1e-4', '1e-12', '1e-24'])
 def test_grazing_minimum_is_found_and_a_miss_is_not(depth: str) -> None:
     """(τ - 0.3)² ∓ depth: two near roots, or none."""
-    with mpmath.workdps(60):
+    with working(60):
         d = mpf(depth)
         centre = mpf(3) / 10
-        touch = [centre**2 - d, -2 * centre, mpf(1)]
-        miss = [centre**2 + d, -2 * centre, mpf(1)]
+        touch = series(centre**2 - d, -2 * centre, mpf(1))
+        miss = series(centre**2 + d, -2 * centre, mpf(1))
         assert abs(first_root(touch, mpf(1), mpf(1), mpf(1)) - (centre - mpmath.sqrt(d))) < mpf(10) ** -45
         assert first_root(miss, mpf(1), mpf(1), mpf(1)) is None
+
+
+@pytest.mark.parametrize('digits', [20, 30, 40, 45])
+def test_an_acceleration_that_touches_zero_is_no_event_in_any_precision(digits: int) -> None:
+    """An undamped axis without friction under a ramp of the feed: 1 - cos ωt, zero at each period and never below."""
+    parameters = coulomb(0.0, 0.0, feed=0.0)
+    parameters['axis']['normal_force'] = 0.0
+    parameters['drive'] = [(0.0, 0.0, 0.001)]
+    assert [event.kind for event in simulate(parameters, 0.5, digits)] == ['breakaway']
+
+
+@pytest.mark.parametrize('digits', [20, 25, 30, 35, 40])
+def test_a_speed_that_touches_zero_is_a_stick_in_any_precision(digits: int) -> None:
+    """Undamped, with as much friction in motion as at rest: v (1 - cos ωt)."""
+    kinds = [event.kind for event in simulate(coulomb(824.0, 824.0), 0.5, digits)]
+    assert kinds[:4] == ['breakaway', 'decelerate', 'stick', 'breakaway']
 
 
 def test_bernstein_coefficients_of_a_parabola() -> None:

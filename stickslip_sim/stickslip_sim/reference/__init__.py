@@ -3,7 +3,7 @@
 """An independent judge: the same model in multiple precision, by other means than the engine.
 
 It shares no equation and no line of numerics with the engine: power series of the motion and roots isolated by
-Bernstein coefficients (Descartes' rule of signs), in mpmath's arithmetic of any number of digits.
+Bernstein coefficients (Descartes' rule of signs), in the arithmetic of mpmath and decimal with any number of digits.
 
     run = simulate(axis, initial, drive, force, duration=60.0, digits=30)
     run.events, run.final         # in the words of the package, floats correctly rounded

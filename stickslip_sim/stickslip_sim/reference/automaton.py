@@ -16,6 +16,7 @@ from .flow import Flow, State
 from .inputs import Input
 from .modes import ACCELERATE, COAST, DECELERATE, Mode, Slip, Stick, word
 from .physics import Physics
+from .precision import working
 from .problem import Problem
 from .search import LIMIT, SPEED_DOWN, SPEED_UP, SURPLUS_UP, Step, slip_step, stick_step
 
@@ -27,9 +28,8 @@ _ZERO = mpf(0)
 
 def run(problem: Problem, duration: float, digits: int) -> Run:
     """Return the events from t = 0 up to `duration`; raises SolverError when they do not end."""
-    working = digits + GUARD_DIGITS
-    with mpmath.workdps(working):
-        return _Automaton(problem, mpf(duration), working).run()
+    with working(digits + GUARD_DIGITS):
+        return _Automaton(problem, mpf(duration), digits + GUARD_DIGITS).run()
 
 
 class _Automaton:

@@ -8,7 +8,6 @@ from bisect import bisect_right
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-import mpmath
 from mpmath import mpf
 
 from ..core import types
@@ -16,6 +15,7 @@ from .flow import Flow, State, after
 from .inputs import Input, Signal
 from .modes import Mode, word
 from .physics import Physics
+from .precision import working
 
 
 @dataclass(frozen=True)
@@ -85,7 +85,7 @@ class Run(list[Event]):
 
     def state_at(self, times: Iterable[float | mpf]) -> list[Sample]:
         """Return position, velocity, drive force and friction force at the given times."""
-        with mpmath.workdps(self.digits):
+        with working(self.digits):
             return [self._sample(mpf(t)) for t in times]
 
     def _sample(self, t: mpf) -> Sample:

@@ -16,9 +16,10 @@ from typing import NamedTuple
 from mpmath import mp, mpf, sqrt
 
 from .inputs import Signal
-from .series import Series, combine, integral, value
+from .precision import to_decimal
+from .series import Series, combine, integral, series, value
 
-SPAN = 6  # a step is at most SPAN / ρ: longer ones need more terms, shorter ones are more
+SPAN = 4  # a step is at most SPAN / ρ: longer ones need more terms, shorter ones are more
 _UNHEARD = 4  # digits of rounding in the amplitude of a ringing contact
 _ZERO, _ONE = mpf(0), mpf(1)
 
@@ -79,7 +80,7 @@ class Flow:
         drive, force = state.drive.series(n), state.force.series(n)
         travelled = integral(drive)
         if not self.free:
-            settled = [_ZERO, state.velocity], [state.velocity]
+            settled = series(_ZERO, state.velocity), series(state.velocity)
         travel, velocity = settled or self._solve(state, travelled, drive, force, n)
         return Expansion(travel, velocity, travelled, drive, force)
 
@@ -99,14 +100,15 @@ class Flow:
         rings = abs(offset) + abs(state.velocity - slope) / sqrt(self.omega2)
         if rings > (abs(state.stretch) + abs(state.deflection)) * mpf(10) ** (_UNHEARD - mp.dps):
             return None
-        return [_ZERO, slope, bend], [slope, 2 * bend]
+        return series(_ZERO, slope, bend), series(slope, 2 * bend)
 
     def _solve(self, state: State, travelled: Series, drive: Series, force: Series, n: int) -> tuple[Series, Series]:
         share = 1 / self.mass
         push = combine((self.stiffness * share, travelled), (self.damping * share, drive), (share, force))
-        push[0] += (self.stiffness * state.stretch - self.contact * state.deflection - self.constant) * share
-        y, u = [_ZERO], [state.velocity]
-        gamma, omega2, given = self.gamma, self.omega2, len(push)
+        held = self.contact * state.deflection + self.constant
+        push[0] += to_decimal((self.stiffness * state.stretch - held) * share)
+        y, u = series(_ZERO), series(state.velocity)
+        gamma, omega2, given = to_decimal(self.gamma), to_decimal(self.omega2), len(push)
         for k in range(n):
             change = -gamma * u[k] - omega2 * y[k]
             y.append(u[k] / (k + 1))
@@ -123,12 +125,12 @@ class Place(NamedTuple):
     position: mpf
 
 
-def after(state: State, flow: Flow, series: Expansion, tau: mpf) -> Place:
+def after(state: State, flow: Flow, motion: Expansion, tau: mpf) -> Place:
     """Return the place at τ."""
-    y = value(series.travel, tau)
+    y = value(motion.travel, tau)
     return Place(
-        state.stretch + value(series.drive_travel, tau) - y,
-        value(series.velocity, tau),
+        state.stretch + value(motion.drive_travel, tau) - y,
+        value(motion.velocity, tau),
         state.deflection + y if flow.contact else state.deflection,
         state.position + y,
     )

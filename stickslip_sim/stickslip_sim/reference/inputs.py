@@ -6,12 +6,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from decimal import Decimal
 from typing import NamedTuple
 
 from mpmath import cos, inf, mpf, pi, sin
 
 from ..core.input_profile import InputProfile
-from .series import Series
+from .precision import to_decimal
+from .series import Series, series
 
 
 class Segment(NamedTuple):
@@ -30,13 +32,13 @@ class Turn(NamedTuple):
     sine: mpf
     cosine: mpf
 
-    def add_to(self, series: Series) -> None:
+    def add_to(self, terms: Series) -> None:
         """Add the terms of the sinusoid to a power series in τ, as many as it has."""
-        size = self.amplitude
-        cycle = (self.sine, self.cosine, -self.sine, -self.cosine)
-        for k in range(len(series)):
-            series[k] += size * cycle[k % 4]
-            size = size * self.omega / (k + 1)
+        size, omega = to_decimal(self.amplitude), to_decimal(self.omega)
+        cycle = [to_decimal(c) for c in (self.sine, self.cosine, -self.sine, -self.cosine)]
+        for k in range(len(terms)):
+            terms[k] += size * cycle[k % 4]
+            size = size * omega / (k + 1)
 
 
 class Signal(NamedTuple):
@@ -49,12 +51,12 @@ class Signal(NamedTuple):
 
     def series(self, order: int) -> Series:
         """Return its power series in the time since that instant: two terms, and up to `order` with sinusoids."""
-        series = [self.offset, self.slope]
+        terms = series(self.offset, self.slope)
         if self.turns:
-            series += [mpf(0)] * max(order - 1, 0)
+            terms += [Decimal(0)] * max(order - 1, 0)
             for turn in self.turns:
-                turn.add_to(series)
-        return series
+                turn.add_to(terms)
+        return terms
 
     @property
     def rate(self) -> mpf:

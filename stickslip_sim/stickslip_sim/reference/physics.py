@@ -16,6 +16,7 @@ from mpmath import mp, mpf, sqrt
 
 from .flow import Expansion, Flow, State
 from .modes import ACCELERATE, COAST, DECELERATE, Mode, Slip, Stick
+from .precision import to_binary, to_decimal
 from .problem import Line, Problem
 from .series import Series, combine, integral
 from .side import Side
@@ -55,7 +56,7 @@ class Physics:
             (-h, series.velocity),
             (_ONE, series.force),
         )
-        net[0] += c * state.stretch
+        net[0] += to_decimal(c * state.stretch)
         return net
 
     def stick_force_series(self, state: State, series: Expansion) -> Series:
@@ -64,8 +65,14 @@ class Physics:
         if a.by_drive:
             return self.net_series(state, series)
         force = combine((a.contact_stiffness, series.travel), (a.contact_damping, series.velocity))
-        force[0] += a.contact_stiffness * state.deflection
+        force[0] += to_decimal(a.contact_stiffness * state.deflection)
         return force
+
+    def stick_force(self, state: State) -> mpf:
+        """Return the force that ends a rest."""
+        a = self.axis
+        return self.net_force(state) if a.by_drive else a.contact_stiffness * state.deflection \
+            + a.contact_damping * state.velocity
 
     def friction(self, mode: Mode, state: State) -> mpf:
         """Friction (slip) or contact force (stick), positive when it opposes positive motion."""
@@ -116,10 +123,10 @@ class Physics:
         """
         a, time = self.axis, self.time_scale(state)
         drive = state.drive.series(_TIE_ORDER)
-        slip = [drive[0] - state.velocity, *drive[1:]]
+        slip = [drive[0] - to_decimal(state.velocity), *drive[1:]]
         rates = combine((a.stiffness, integral(slip)), (a.feed_damping, drive), (_ONE, state.force.series(_TIE_ORDER)))
         limit = self.tiny(state)
-        for rate in rates[1:]:
+        for rate in map(to_binary, rates[1:]):
             limit = limit / time
             if abs(rate) > limit:
                 return direction * rate

@@ -5,7 +5,8 @@
 A guard is a function g(τ) = Σ c_k τ^k on [0, h], positive while the mode lasts.  Written in the
 Bernstein basis of [0, h], the number of sign changes of its coefficients bounds its number of roots
 (Descartes): none proves there is no root, one proves there is exactly one; otherwise the interval is
-halved, left half first.  No crossing and no grazing minimum can be stepped over.
+halved, left half first.  No crossing and no grazing minimum can be stepped over.  Whether a minimum that touches zero
+within rounding counts is said by the guard, so that rounding does not decide.
 
 On the unit interval everything is in fixed point: whole numbers in units of 2^-bits of the largest
 coefficient, with as many bits more than the working precision as the sums can lose.
@@ -14,18 +15,23 @@ coefficient, with as many bits more than the working precision as the sums can l
 from __future__ import annotations
 
 import itertools
+import operator
 from collections.abc import Sequence
+from decimal import Decimal
 
 from mpmath import ldexp, mp, mpf
 
+from .precision import to_decimal
 from .series import reach, scaled
 
-_SPARE = 24  # bits, against the rounding of some thousand sums
+_SPARE = 28  # bits, against the rounding of some thousand sums
+_NOISE = 8  # bits of rounding, by which a minimum that touches zero is moved to one side of it
+_DIGITS = 0.302  # in a bit, and a little more
 _NEWTON = 400  # steps; bisection alone needs as many as there are bits
 
 
-def first_root(guard: Sequence[mpf], h: mpf, scale: mpf, time_scale: mpf) -> mpf | None:
-    """Return the first τ in [0, h] at which the guard falls below zero, or None.
+def first_root(guard: Sequence[Decimal], h: mpf, scale: mpf, time_scale: mpf, touch: bool = False) -> mpf | None:
+    """Return the first τ in [0, h] at which the guard falls below zero, or where it touches zero, or None.
 
     Leading coefficients that vanish against ``scale`` (a tie on entry) are divided out, so that the sign of
     the first derivative which differs from zero decides: negative is a root at 0, positive is no root there.
@@ -38,26 +44,28 @@ def first_root(guard: Sequence[mpf], h: mpf, scale: mpf, time_scale: mpf) -> mpf
     unit = scaled(guard[lead:], h)
     if unit[0] > reach(unit):
         return None
-    s = first_unit_root(unit)
+    s = first_unit_root(unit, touch)
     return None if s is None else s * h
 
 
-def _leading(guard: Sequence[mpf], scale: mpf, time_scale: mpf) -> int:
+def _leading(guard: Sequence[Decimal], scale: mpf, time_scale: mpf) -> int:
     """Return the index of the first coefficient with |c_k| T^k above rounding."""
-    limit = scale * mpf(10) ** (18 - mp.dps)
+    limit, time = to_decimal(scale * mpf(10) ** (18 - mp.dps)), to_decimal(time_scale)
     for k, c in enumerate(guard):
         if abs(c) > limit:
             return k
-        limit = limit / time_scale
+        limit = limit / time
     return len(guard)
 
 
-def first_unit_root(unit: Sequence[mpf]) -> mpf | None:
+def first_unit_root(unit: Sequence[Decimal], touch: bool) -> mpf | None:
     """Return the first root in (0, 1] of Σ d_k s^k with d_0 > 0."""
     bits = mp.prec + _SPARE + len(unit)  # a sum of n + 1 terms in Bernstein form grows by 2^n at the most
-    top = max(abs(d) for d in unit)
-    shift = bits - int(mp.frexp(top)[1])
-    whole = [int(ldexp(d, shift)) for d in unit]
+    places = int(_DIGITS * bits) + 1
+    up, one = places - 1 - max(map(abs, unit)).adjusted(), 10**places
+    whole = [(int(d.scaleb(up)) << bits) // one for d in unit]
+    noise = 1 << (bits - mp.prec + _NOISE)
+    whole[0] = max(1, whole[0] - noise) if touch else whole[0] + noise
     while len(whole) > 1 and not whole[-1]:
         whole.pop()
     root = _isolate(whole, bits)
@@ -77,7 +85,7 @@ def bernstein(unit: Sequence[int]) -> list[int]:
     out = []
     while diffs:
         out.append(diffs[0])
-        diffs = [a + b for a, b in itertools.pairwise(diffs)]
+        diffs = _sums(diffs)
     # each pass turned Δ^k b_j into Δ^k b_{j+1}
     return out
 
@@ -85,11 +93,16 @@ def bernstein(unit: Sequence[int]) -> list[int]:
 def _halve(b: list[int]) -> tuple[list[int], list[int]]:
     """Split at the middle (de Casteljau)."""
     left, right, row = [b[0]], [b[-1]], b
-    while len(row) > 1:
-        row = [(p + q) >> 1 for p, q in itertools.pairwise(row)]
-        left.append(row[0])
-        right.append(row[-1])
+    for halvings in range(1, len(b)):
+        row = _sums(row)
+        left.append(row[0] >> halvings)
+        right.append(row[-1] >> halvings)
     return left, right[::-1]
+
+
+def _sums(row: list[int]) -> list[int]:
+    """Return the sums of neighbours; most of the work of the reference is here."""
+    return list(map(operator.add, row, row[1:]))
 
 
 def _sign_changes(b: list[int]) -> int:

@@ -4,14 +4,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from decimal import Decimal
 
 from mpmath import mp, mpf
 
 from .flow import Expansion, Flow, Place, State, after
 from .modes import ACCELERATE, COAST, Slip, Stick
 from .physics import Physics
+from .precision import to_binary, to_decimal
 from .roots import first_root
 from .series import Series, combine, derivative, reach, scaled, value
 
@@ -40,7 +42,8 @@ def slip_step(physics: Physics, slip: Slip, flow: Flow, state: State, h: mpf) ->
     guards = _coast_guards if slip.phase == COAST else _moving_guards
     time, best, name = _time_scale(flow, state, h), h, None
     for label, guard, scale in guards(physics, slip, state, series):
-        root = first_root(guard, h, scale, time)
+        arrest = label == SPEED_DOWN and not slip.segment   # where the speed touches zero, the slider sticks
+        root = first_root(guard, h, scale, time, touch=arrest)
         if root is not None and (name is None or root < best):
             best, name = root, label
     return Step(best, after(state, flow, series, best), name)
@@ -52,6 +55,7 @@ def _time_scale(flow: Flow, state: State, h: mpf) -> mpf:
 
 
 Guard = tuple[str, Series, mpf]
+_ONE = [Decimal(1)]
 
 
 def _coast_guards(physics: Physics, slip: Slip, state: State, series: Expansion) -> list[Guard]:
@@ -59,22 +63,22 @@ def _coast_guards(physics: Physics, slip: Slip, state: State, series: Expansion)
     speed, scale = abs(state.velocity), physics.force_scale(state)
     net = physics.net_series(state, series)
     friction = physics.axis.normal * physics.side(slip.direction).kinetic_at(speed)
-    surplus = combine((mpf(slip.direction), net), (-friction, [mpf(1)]))
-    room = combine((physics.band(slip.direction, slip.excess, speed), [mpf(1)]), (mpf(-1), surplus))
+    surplus = combine((mpf(slip.direction), net), (-friction, _ONE))
+    room = combine((physics.band(slip.direction, slip.excess, speed), _ONE), (mpf(-1), surplus))
     return [(SURPLUS_UP, room, scale), (SURPLUS_DOWN, surplus, scale)]
 
 
 def _moving_guards(physics: Physics, slip: Slip, state: State, series: Expansion) -> list[Guard]:
     """σ u' keeps its sign, and |u| its table segment (or stays above zero)."""
     rising = slip.phase == ACCELERATE
-    sense = mpf(1 if rising else -1)
+    sense = 1 if rising else -1
     acceleration = [sense * slip.direction * c for c in derivative(series.velocity)]
     scale = physics.force_scale(state) / physics.axis.mass
     guards = [(SURPLUS_DOWN if rising else SURPLUS_UP, acceleration, scale)]
     side = physics.side(slip.direction)
     bound = side.upper_breakpoint(slip.segment) if rising else side.lower_breakpoint(slip.segment)
     if bound is not None:
-        distance = combine((sense * bound, [mpf(1)]), (-sense * slip.direction, series.velocity))
+        distance = combine((sense * bound, _ONE), (mpf(-sense * slip.direction), series.velocity))
         guards.append((SPEED_UP if rising else SPEED_DOWN, distance, max(bound, abs(state.velocity))))
     return guards
 
@@ -91,16 +95,17 @@ def stick_step(physics: Physics, stick: Stick, flow: Flow, state: State, t: mpf,
     laws = [side.static for side in physics.sides]
     lowest, span = [normal * law.value(age) for law in laws], min(law.span(age) for law in laws)
     if not normal:
-        return _out(state, flow, series, h, _unheld(force))
+        return _out(state, flow, series, h, _unheld(physics.stick_force(state), force))
     scale, time = physics.force_scale(state), _time_scale(flow, state, h)
+    clear = [to_decimal(low * (1 - mpf(10) ** -9)) for low in lowest]
     while True:
         way = reach(scaled(force, h))
-        if all(sign * force[0] + way < low * (1 - mpf(10) ** -9) for sign, low in zip(_SIDES, lowest)):
+        if all(sign * force[0] + way < low for sign, low in zip(_SIDES, clear)):
             return Step(h, after(state, flow, series, h), None)
         if h <= span:
-            limits = [[normal * c for c in law.series(age)] for law in laws]
+            limits = [combine((normal, law.series(age))) for law in laws]
             return _out(state, flow, series, h, _over(limits, force, h, scale, time))
-        found = _over([[low] for low in lowest], force, h, scale, time)
+        found = _over([[to_decimal(low)] for low in lowest], force, h, scale, time)
         if found is None:
             return Step(h, after(state, flow, series, h), None)
         if h < mpf(10) ** -30 * min(law.time_constant for law in laws):
@@ -112,12 +117,12 @@ Found = tuple[mpf, int]
 _SIDES = 1, -1   # of physics.sides
 
 
-def _unheld(force: Series) -> Found | None:
+def _unheld(now: mpf, force: Sequence[Decimal]) -> Found | None:
     """Return when and on which side a rest without a normal force ends: at once, if it is pushed at all.
 
     No force is small beside a limit of 0; against the other forces of the axis the contact's may be.
     """
-    first = next((c for c in force if c), None)
+    first = next((c for c in (now, *force[1:]) if c), None)
     return None if first is None else (mpf(0), 1 if first > 0 else -1)
 
 
@@ -139,7 +144,7 @@ def _at_once(physics: Physics, stick: Stick, force: Series, t: mpf, h: mpf, foun
         return all(sign * pull <= physics.axis.normal * side.static.value(age) * (1 + slack)
                    for sign, side in zip(_SIDES, physics.sides))
 
-    if holds(force[0], age, mpf(10) ** (18 - mp.dps)) and holds(value(force, h), age + h, mpf(0)):
+    if holds(to_binary(force[0]), age, mpf(10) ** (18 - mp.dps)) and holds(value(force, h), age + h, mpf(0)):
         return None
     return mpf(0), found[1]
 

@@ -14,10 +14,12 @@ logarithmic  q = ln(1 + t/tau)          (unbounded: finite rest time only)
 from __future__ import annotations
 
 from dataclasses import dataclass
+from decimal import Decimal
 
 from mpmath import exp, inf, isinf, mp, mpf
 
-from .series import Series
+from .precision import to_decimal
+from .series import Series, series
 
 LAWS = ('constant', 'exponential', 'kato', 'hyperbolic', 'logarithmic')
 _ORDER = 70
@@ -85,7 +87,7 @@ class StaticLaw:
     def series(self, age: mpf) -> Series:
         """Return the power series of mu_s(age + τ) in τ, valid on [0, span(age)]."""
         if isinf(self.span(age)) or self._waits(age):
-            return [self.value(age)]
+            return series(self.value(age))
         age = max(age - self.delay, mpf(0))
         rise = {
             'exponential': self._exponential,
@@ -93,36 +95,38 @@ class StaticLaw:
             'hyperbolic': self._hyperbolic,
             'logarithmic': self._logarithmic,
         }[self.law](age)
-        change = self.limit - self.initial
-        return [self.value(age + self.delay), *(change * c for c in rise)]
+        change = to_decimal(self.limit - self.initial)
+        return [to_decimal(self.value(age + self.delay)), *(change * c for c in rise)]
 
     def _exponential(self, age: mpf) -> Series:
-        c, out = -exp(-age / self.time_constant), []
+        c, slowness, out = to_decimal(-exp(-age / self.time_constant)), to_decimal(self.time_constant), []
         for k in range(1, _ORDER):
-            c = -c / (self.time_constant * k)
+            c = -c / (slowness * k)
             out.append(c)
         return out
 
     def _kato(self, age: mpf) -> Series:
         """Series of 1 - e^{-z}, z = ((age + τ)/tau)^n: k q_k = -Σ_{j=1..k} j z_j q_{k-j} for q = e^{-z}."""
-        z = [(age / self.time_constant) ** self.exponent]
+        first = (age / self.time_constant) ** self.exponent
+        z, exponent, at = series(first), to_decimal(self.exponent), to_decimal(age)
         for k in range(1, _ORDER):
-            z.append(z[-1] * (self.exponent - k + 1) / (k * age))
-        q = [exp(-z[0])]
+            z.append(z[-1] * (exponent - k + 1) / (k * at))
+        q, steep = series(exp(-first)), [j * c for j, c in enumerate(z)]
         for k in range(1, _ORDER):
-            q.append(-sum((j * z[j] * q[k - j] for j in range(1, k + 1)), mpf(0)) / k)
+            q.append(-sum((steep[j] * q[k - j] for j in range(1, k + 1)), Decimal(0)) / k)
         return [-c for c in q[1:]]
 
     def _hyperbolic(self, age: mpf) -> Series:
-        c, out = -self.time_constant / (age + self.time_constant), []
+        span = age + self.time_constant
+        c, span, out = to_decimal(-self.time_constant / span), to_decimal(span), []
         for _ in range(1, _ORDER):
-            c = -c / (age + self.time_constant)
+            c = -c / span
             out.append(c)
         return out
 
     def _logarithmic(self, age: mpf) -> Series:
-        c, out = mpf(-1), []
+        c, span, out = Decimal(-1), to_decimal(age + self.time_constant), []
         for k in range(1, _ORDER):
-            c = -c / (age + self.time_constant)
+            c = -c / span
             out.append(c / k)
         return out
