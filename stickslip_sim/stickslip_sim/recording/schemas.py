@@ -5,7 +5,7 @@
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any, NamedTuple
 
 from rosbags.interfaces import Nodetype
@@ -45,8 +45,13 @@ def schema(type_name: str) -> Schema:
 
 def store_of(definitions: Mapping[str, str]) -> Typestore:
     """Return a rosbags type store made of definitions like `Schema.text`, by type name; raises RecordingError."""
+    return _store_of(tuple(definitions.items()))
+
+
+@lru_cache(maxsize=64)   # most bags have the same definitions, and each takes as long as reading a thousand messages
+def _store_of(definitions: tuple[tuple[str, str], ...]) -> Typestore:
     store = get_typestore(Stores.EMPTY)
-    _add(store, definitions)
+    _add(store, dict(definitions))
     return store
 
 
