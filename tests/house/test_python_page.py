@@ -10,12 +10,11 @@ import pytest
 from tests.support.repository import ROOT
 from tests.support.tool import Capture
 
-pytest.importorskip('pandas')
-
 BLOCK = re.compile(r'^```python\n(.*?)^```$', re.MULTILINE | re.DOTALL)
 
 
 def test_the_blocks_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capture) -> None:
+    pytest.importorskip('pandas')
     monkeypatch.chdir(tmp_path)
     names: dict[str, object] = {}
     printed = []

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """`--scheduler`: real Dask processes, one of which is killed in the middle; and the report when there are none."""
 
+import importlib.util
 import json
 import os
 import signal
@@ -23,7 +24,8 @@ from tests.support.tool import Capture, restore_interrupt
 
 pytestmark = pytest.mark.slow
 
-distributed = pytest.importorskip('distributed', reason='needs the extra cluster')
+if importlib.util.find_spec('distributed') is None:   # not imported: it takes a third of a second
+    pytest.skip('needs the extra cluster', allow_module_level=True)
 LONG = ['sweep', 'paper_fig7', '--over', 'drive.velocity=1e-3:0.03:16000:log', '--duration', '60']   # eight chunks
 ABSENT = 'tcp://127.0.0.1:9'
 _PATIENCE = 30.0   # s
@@ -46,6 +48,8 @@ class Cluster:
     """A scheduler and its workers, each a process as a user starts them."""
 
     def __init__(self, folder: Path) -> None:
+        import distributed
+
         self.file = folder / 'scheduler.json'
         self.scheduler = started('dask', 'scheduler', '--host', '127.0.0.1', '--port', '0', '--no-dashboard',
                                  '--scheduler-file', self.file)

@@ -26,6 +26,7 @@ pytestmark = pytest.mark.slow
 
 SMALL = ['paper_fig7', '--over', 'drive.velocity=1e-3:0.06:6:log', '--over', 'axis.drive_stiffness=1e5:1e6:4:log']
 LONG = ['paper_fig7', '--over', 'drive.velocity=1e-3:0.03:8000:log', '--duration', '40']   # four chunks
+SHORT = [*LONG[:-1], '10']   # the same four chunks, in a third of the time
 FULL = 'import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (600_000, 600_000)); '
 
 
@@ -45,16 +46,18 @@ def wait_for_lines(path: Path, process: 'subprocess.Popen[str]') -> None:
 
 
 @pytest.fixture(scope='module')
-def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The folder of a sweep that nothing interrupted; not to be changed."""
+def uninterrupted(tmp_path_factory: pytest.TempPathFactory) -> bytes:
     folder = tmp_path_factory.mktemp('whole') / 'out'
     assert run(['sweep', *LONG, '--out', str(folder)]) == 0
-    return folder
+    return (folder / TABLE).read_bytes()
 
 
 @pytest.fixture(scope='module')
-def uninterrupted(finished: Path) -> bytes:
-    return (finished / TABLE).read_bytes()
+def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a short sweep that nothing interrupted; not to be changed."""
+    folder = tmp_path_factory.mktemp('whole') / 'out'
+    assert run(['sweep', *SHORT, '--out', str(folder)]) == 0
+    return folder
 
 
 def test_a_sweep_says_what_it_is_and_can_be_read_back(tmp_path: Path, capsys: Capture) -> None:
@@ -137,19 +140,19 @@ def test_no_worker_outlives_a_killed_sweep(tmp_path: Path) -> None:
     process.communicate(timeout=60)   # the workers hold its standard error: it ends when they are gone
 
 
-def test_a_full_disk_gets_one_line_and_keeps_whole_chunks(tmp_path: Path, uninterrupted: bytes) -> None:
-    out = tmp_path / 'out'
-    arguments = ['sweep', *LONG, '--out', str(out)]
+def test_a_full_disk_gets_one_line_and_keeps_whole_chunks(tmp_path: Path, finished: Path) -> None:
+    out, whole = tmp_path / 'out', (finished / TABLE).read_bytes()
+    arguments = ['sweep', *SHORT, '--out', str(out)]
     program = f'{FULL}from stickslip_sim.cli.main import run; raise SystemExit(run({arguments}))'
     done = subprocess.run([sys.executable, '-c', program], capture_output=True, text=True, timeout=60, check=False)
     assert (done.returncode, done.stdout, done.stderr.count('\n')) == (2, '', 1)
     assert 'File too large' in done.stderr
     assert '--resume' in done.stderr
     rows = (out / PARTIAL).read_bytes()
-    assert uninterrupted.startswith(rows)
+    assert whole.startswith(rows)
     assert rows.count(b'\n') % 2000 == 1
-    assert run(['sweep', *LONG, '--out', str(out), '--resume']) == 0
-    assert (out / TABLE).read_bytes() == uninterrupted
+    assert run(['sweep', *SHORT, '--out', str(out), '--resume']) == 0
+    assert (out / TABLE).read_bytes() == whole
 
 
 def test_a_worker_that_dies_is_reported(tmp_path: Path) -> None:
@@ -234,11 +237,10 @@ def test_a_table_of_something_else_is_not_gone_on_with(tmp_path: Path, capsys: C
 
 @pytest.mark.parametrize('flaw', ['a line is gone', 'no motion', 'zeros', 'no text', 'a number of another point',
                                   'no number'])
-def test_a_chunk_that_is_not_whole_is_run_again(flaw: str, tmp_path: Path, finished: Path,
-                                                uninterrupted: bytes) -> None:
+def test_a_chunk_that_is_not_whole_is_run_again(flaw: str, tmp_path: Path, finished: Path) -> None:
     out = tmp_path / 'out'
     shutil.copytree(finished, out)
-    rows = uninterrupted.splitlines(keepends=True)
+    rows = (finished / TABLE).read_bytes().splitlines(keepends=True)
     bad = {'a line is gone': b'', 'no motion': rows[3000].replace(b'stick-slip', b'slick-stip'), 'no text': b'\xff\n',
            'zeros': b'\0' * 100 + b'\n', 'a number of another point': b'1' + rows[3000],
            'no number': rows[3000].replace(b'slip,1.0,', b'slip,inf,')}
@@ -246,8 +248,8 @@ def test_a_chunk_that_is_not_whole_is_run_again(flaw: str, tmp_path: Path, finis
     (out / TABLE).unlink()
     (out / PARTIAL).write_bytes(b''.join([*rows[:3000], bad[flaw], *rows[3001:]]))
     assert len(Folder(out).whole_chunks(study_of(Folder(out).described()))) == 1
-    assert run(['sweep', *LONG, '--out', str(out), '--resume']) == 0
-    assert (out / TABLE).read_bytes() == uninterrupted
+    assert run(['sweep', *SHORT, '--out', str(out), '--resume']) == 0
+    assert (out / TABLE).read_bytes() == (finished / TABLE).read_bytes()
 
 
 def test_two_processes_do_not_share_a_folder(tmp_path: Path, uninterrupted: bytes, capsys: Capture) -> None:

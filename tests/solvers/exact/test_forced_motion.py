@@ -117,8 +117,9 @@ def follow(axis: Axis, drive: InputProfile, force: InputProfile, duration: float
         x0 = event.position
         parts = piece.motion(after.time, event.drive_position - x0, u0)
         for part in parts:
-            for t in np.linspace(part.t[0], part.t[-1], 60):
-                piece.check_guards(float(t), part.sol(t), 1e-7 * scale)
+            times = np.linspace(part.t[0], part.t[-1], 60)
+            for t, y in zip(times.tolist(), part.sol(times).T.tolist()):
+                piece.check_guards(t, y, 1e-7 * scale)
         x, u, s = parts[-1].y[:, -1]
         assert x + x0 == pytest.approx(after.position, abs=1e-10)
         assert u == pytest.approx(after.velocity, abs=1e-9)
