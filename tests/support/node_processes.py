@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.busy_machine import CoreWaits
+from tests.support.forked_programs import ForkedProgram
 from tests.support.tool import restore_interrupt
 from tests.support.waiting import DEADLINE
 
@@ -44,18 +45,22 @@ def with_small_files() -> None:
 
 
 class NodeProcess:
-    """A program with default signal handling, in a process group of its own, as a terminal starts it."""
+    """A program with default signal handling, in a process group of its own, as a terminal starts it.
 
-    def __init__(self, *ros_args: str, folder: Path | None = None, prepare: Callable[[], None] | None = None,
-                 program: str = 'sim_node') -> None:
-        self._process = subprocess.Popen(
-            [executable(program), '--ros-args', *ros_args], cwd=folder, stderr=subprocess.PIPE, text=True,
-            start_new_session=True, preexec_fn=prepare or restore_interrupt)
+    It is forked, which costs half as much, unless it is to start `afresh`, as a user starts the installed script.
+    """
+
+    def __init__(self, *ros_args: str, folder: Path | None = None, prepare: Callable[[], None] = restore_interrupt,
+                 program: str = 'sim_node', afresh: bool = False) -> None:
+        self._process: ForkedProgram | subprocess.Popen[str]
+        if afresh:
+            self._process = subprocess.Popen(
+                [executable(program), '--ros-args', *ros_args], cwd=folder, stderr=subprocess.PIPE, text=True,
+                start_new_session=True, preexec_fn=prepare)
+        else:
+            self._process = ForkedProgram(program, '--ros-args', *ros_args, folder=folder, prepare=prepare)
+        self.pid = self._process.pid
         self.waits = CoreWaits(self.pid)
-
-    @property
-    def pid(self) -> int:
-        return self._process.pid
 
     def send(self, number: int) -> None:
         self.waits.look()    # it may end
@@ -68,7 +73,9 @@ class NodeProcess:
         except subprocess.TimeoutExpired:
             self._process.kill()
             raise
-        return self._process.returncode, errors
+        code = self._process.poll()
+        assert code is not None
+        return code, errors
 
     def end(self, number: int = signal.SIGINT) -> tuple[int, str]:
         self.send(number)
@@ -89,9 +96,9 @@ def assert_clean(code: int, errors: str) -> None:
 
 
 @contextmanager
-def running(*ros_args: str, folder: Path | None = None, prepare: Callable[[], None] | None = None,
-            program: str = 'sim_node') -> Iterator[NodeProcess]:
-    process = NodeProcess(*ros_args, folder=folder, prepare=prepare, program=program)
+def running(*ros_args: str, folder: Path | None = None, prepare: Callable[[], None] = restore_interrupt,
+            program: str = 'sim_node', afresh: bool = False) -> Iterator[NodeProcess]:
+    process = NodeProcess(*ros_args, folder=folder, prepare=prepare, program=program, afresh=afresh)
     try:
         yield process
     finally:

@@ -36,7 +36,7 @@ needs_fifo = pytest.mark.skipif(not may_use_fifo(), reason='this machine does no
 
 
 def start_without_rights() -> None:
-    """Let a child process start as a user without rights does: for `preexec_fn`."""
+    """Let a child process start as a user without rights does: for `prepare`; it takes an `exec`."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
     for limit, value in ((resource.RLIMIT_RTPRIO, 0), (resource.RLIMIT_MEMLOCK, 1 << 20)):
         resource.setrlimit(limit, (value, value))

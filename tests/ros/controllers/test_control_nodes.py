@@ -19,8 +19,8 @@ from stickslip_sim.controllers import Moves
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.types import EventKind
 from tests.support.busy_machine import judged_by_time
+from tests.support.forked_programs import ended_at_once
 from tests.support.node_processes import assert_clean, executable, running
-from tests.support.refused_starts import ended_at_once
 from tests.support.ros_nodes import Client, client
 from tests.support.tool import Capture, answered
 from tests.support.waiting import DEADLINE, wait_for
@@ -133,8 +133,8 @@ def test_in_lock_step_it_is_the_loop_of_the_benchmark_to_the_last_bit(kind: str)
     steps = 400
     offline = close_loop(AXIS, controllers()[kind], Moves(), 0.001 * (steps + 1))
     arguments = ['-r', 'joint_commands:=answers', '-p', 'use_sim_time:=true']
-    with running(*BENCH, '-p', 'time.mode:=lockstep'), running(*arguments, program=NAMES[kind]) as controller, \
-            client() as axis:
+    with running(*BENCH, '-p', 'time.mode:=lockstep'), client() as axis, \
+            running(*arguments, program=NAMES[kind], afresh=True) as controller:
         bench = LockStep(axis)
         answer = bench.begin()
         for number in range(1, steps + 1):

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.support.forked_programs import ended_at_once
 from tests.support.node_processes import executable
-from tests.support.refused_starts import ended_at_once
 from tests.support.waiting import DEADLINE
 
 pytestmark = pytest.mark.ros

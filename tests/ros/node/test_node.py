@@ -27,7 +27,7 @@ ParameterType = {'bool': 1, 'integer': 2, 'double': 3, 'string': 4, 'double_arra
 
 @pytest.fixture(scope='module')
 def process(tmp_path_factory: pytest.TempPathFactory) -> Iterator[NodeProcess]:
-    with running(folder=tmp_path_factory.mktemp('node')) as process:
+    with running(folder=tmp_path_factory.mktemp('node'), afresh=True) as process:
         yield process
         code, errors = process.end()
         assert code == 0

@@ -72,7 +72,7 @@ class TestSignals:
     @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
     def test_the_bag_is_closed(self, tmp_path: Path, number: int) -> None:
         folder = tmp_path / 'run'
-        with running(*recording_into(folder)) as process, client() as axis:
+        with running(*recording_into(folder), afresh=True) as process, client() as axis:
             axis.connect()
             axis.send_velocity(0.004)
             axis.next('slider_state', lambda state: state.drive_velocity == 0.004)
@@ -104,7 +104,7 @@ class TestSignals:
     @pytest.mark.parametrize('delay', [0.0, 0.3, 0.6])    # s: amid its imports, and after them
     @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
     def test_while_it_starts(self, number: int, delay: float) -> None:
-        with running() as process:
+        with running(afresh=True) as process:
             wait_for(lambda: takes(signal.SIGTERM, process.pid), 'its handlers')    # Python itself takes but SIGINT
             time.sleep(delay)
             assert_clean(*process.end(number))

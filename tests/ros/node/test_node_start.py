@@ -10,8 +10,8 @@ import pytest
 
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.scene import load_scene
+from tests.support.forked_programs import ended_at_once
 from tests.support.node_processes import assert_clean, executable, running
-from tests.support.refused_starts import ended_at_once
 from tests.support.ros_nodes import client
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]

@@ -25,7 +25,7 @@ _WANTED = ('-p', 'thread_priority:=50', '-p', 'lock_memory:=true', '-p', 'cpu_af
 def test_the_steps_go_before_the_others_and_a_node_outlives_the_limit_on_it(tmp_path: Path) -> None:
     """SIGXCPU is what the kernel sends a process that has used real-time CPU time for too long; it kills by default."""
     folder = tmp_path / 'run'
-    with running(*_WANTED, *recording_into(folder), folder=tmp_path) as process:
+    with running(*_WANTED, *recording_into(folder), folder=tmp_path, afresh=True) as process:
         with client() as axis:
             axis.connect()
             threads = policies(process.pid)
@@ -51,7 +51,7 @@ def test_the_steps_go_before_the_others_and_a_node_outlives_the_limit_on_it(tmp_
 
 def test_without_rights_the_node_says_what_is_missing_and_goes_on(tmp_path: Path) -> None:
     with running('-p', 'thread_priority:=50', '-p', 'lock_memory:=true', folder=tmp_path,
-                 prepare=start_without_rights) as process:
+                 prepare=start_without_rights, afresh=True) as process:
         with client() as axis:
             axis.connect()
             assert axis.status('step loop')[1]['scheduling'] == 'as any thread'
@@ -70,7 +70,7 @@ def test_without_rights_the_node_says_what_is_missing_and_goes_on(tmp_path: Path
 ])
 def test_refused_starts(tmp_path: Path, arguments: list[str], refusal: str) -> None:
     given = [word for argument in arguments for word in ('-p', argument)]
-    with running(*given, folder=tmp_path, prepare=start_without_rights) as process:
+    with running(*given, folder=tmp_path, prepare=start_without_rights, afresh=True) as process:
         code, errors = process.wait()
     assert (code, len(errors.splitlines())) == (2, 1)
     assert errors.startswith(f'sim_node: {refusal}')

@@ -16,9 +16,9 @@ from stickslip_sim.core.errors import RecordingWarning
 from stickslip_sim.recording import open_bag, open_run, schema, write_bag
 from stickslip_sim.recording.topics import CLOCK, PARAMETER_EVENTS, RECORDED, SLIDER_STATE, Topic
 from tests.support.busy_machine import judged_by_time
+from tests.support.forked_programs import ended_at_once
 from tests.support.node_processes import assert_clean, running
 from tests.support.recorded_runs import FACTS, damage, events, samples
-from tests.support.refused_starts import ended_at_once
 from tests.support.ros_nodes import Client, client
 from tests.support.tool import Capture, answered
 from tests.support.waiting import wait_for
@@ -48,8 +48,8 @@ def bag(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def replaying(folder: Path, *arguments: str) -> Any:
-    return running('-p', f'bag:={folder}', *arguments, program='replay_node')
+def replaying(folder: Path, *arguments: str, afresh: bool = False) -> Any:
+    return running('-p', f'bag:={folder}', *arguments, program='replay_node', afresh=afresh)
 
 
 def call(viewer: Client, service: str, on: bool | None = None) -> Any:
@@ -205,7 +205,7 @@ class TestProcess:
     @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
     @pytest.mark.parametrize('arguments', [PAUSED, ('-p', 'loop:=true'), ('-p', 'delay:=1000.0')])
     def test_signals(self, bag: Path, number: int, arguments: tuple[str, ...]) -> None:
-        with client() as viewer, replaying(bag, *arguments) as process:
+        with client() as viewer, replaying(bag, *arguments, afresh=arguments == PAUSED) as process:
             assert call(viewer, 'is_paused').success is (arguments == PAUSED)
             assert_clean(*process.end(number))
 

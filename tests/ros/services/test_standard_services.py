@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from tests.support import standard_package
-from tests.support.node_processes import running
+from tests.support.node_processes import recording_into, running
 from tests.support.ros_nodes import client
 from tests.support.waiting import wait_for
 
@@ -47,7 +47,7 @@ def set_state(state: int) -> str:
 
 @pytest.mark.slow    # the first time; then the package is there
 def test_while_time_runs_by_itself(ask: Ask) -> None:
-    with running() as process, client() as axis:
+    with running(afresh=True) as process, client() as axis:
         axis.connect()
         features, *states, steps, scope = ask(
             'get_simulator_features', 'get_simulation_state', set_state(PLAYING), set_state(PAUSED),
@@ -67,7 +67,7 @@ def test_while_time_runs_by_itself(ask: Ask) -> None:
 
 
 def test_in_lock_step(ask: Ask) -> None:
-    with running('-p', 'time.mode:=lockstep') as process, client() as axis:
+    with running('-p', 'time.mode:=lockstep', afresh=True) as process, client() as axis:
         axis.connect(is_moving=False)
         state, playing, steps, too_many, none = ask(
             'get_simulation_state', set_state(PLAYING), 'step_simulation',
@@ -83,7 +83,7 @@ def test_in_lock_step(ask: Ask) -> None:
 
 
 def test_nothing_is_stopped_while_recording(ask: Ask, tmp_path: Path) -> None:
-    with running('-p', 'record.enabled:=true', '-p', f'record.folder:={tmp_path / "run"}') as process, client() as axis:
+    with running(*recording_into(tmp_path / 'run'), afresh=True) as process, client() as axis:
         axis.connect()
         stop, state = ask(set_state(STOPPED), 'get_simulation_state')
         process.end()

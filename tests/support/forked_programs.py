@@ -1,0 +1,101 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Programs of `stickslip_sim.ros` in processes forked from one that has imported what they need: at half the cost.
+
+What is left out is the start of the interpreter and of the installed script: see `node_processes`.
+"""
+
+import ctypes
+import multiprocessing
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from contextlib import suppress
+from importlib import import_module
+from pathlib import Path
+from tempfile import TemporaryFile
+from typing import NamedTuple
+
+import pytest
+
+from tests.support.tool import restore_interrupt
+from tests.support.waiting import DEADLINE
+
+pytest.importorskip('rclpy')
+
+_FORKS = multiprocessing.get_context('forkserver')
+_FORKS.set_forkserver_preload(['pytest', __name__, 'tests.support.preloaded'])
+
+
+class _Start(NamedTuple):
+    """All that a program starts with."""
+
+    program: str
+    arguments: tuple[str, ...]
+    folder: Path
+    environment: dict[str, str]
+    errors: str
+    prepare: Callable[[], None]
+
+    def run(self) -> None:
+        """Be the program, until its end."""
+        os.setsid()
+        os.chdir(self.folder)
+        os.environ.clear()
+        os.environ.update(self.environment)
+        os.dup2(os.open(self.errors, os.O_WRONLY | os.O_APPEND), 2)
+        sys.stderr = os.fdopen(2, 'w', buffering=1, encoding='utf-8', closefd=False)
+        self.prepare()
+        code = import_module(f'stickslip_sim.ros.{self.program}').main([*self.arguments])
+        ctypes.pythonapi.Py_Exit(code)    # all that an interpreter does at its end; multiprocessing leaves it out
+
+
+class ForkedProgram:
+    """A program in a session of its own, with what of `subprocess.Popen` is asked of one; standard error is kept."""
+
+    def __init__(self, program: str, *arguments: str, folder: Path | None = None,
+                 prepare: Callable[[], None] = restore_interrupt) -> None:
+        self._errors = TemporaryFile('w+', encoding='utf-8')    # noqa: SIM115  # closed when it was read
+        start = _Start(program, arguments, folder or Path.cwd(), dict(os.environ),
+                       f'/proc/{os.getpid()}/fd/{self._errors.fileno()}', prepare)
+        self._process = _FORKS.Process(target=start.run, daemon=True)
+        self._process.start()
+        self._said = ''
+        assert self._process.pid is not None
+        self.pid = self._process.pid
+
+    def poll(self) -> int | None:
+        """Return the exit code, once there is one."""
+        return self._process.exitcode
+
+    def send_signal(self, number: int) -> None:
+        with suppress(ProcessLookupError):    # it has ended
+            os.kill(self.pid, number)
+
+    def kill(self) -> None:
+        self._process.kill()
+
+    def communicate(self, timeout: float | None = None) -> tuple[None, str]:
+        """Wait for its end; return nothing for standard output, and standard error; it can be asked again."""
+        self._process.join(timeout)
+        if self.poll() is None:
+            raise subprocess.TimeoutExpired(str(self._process), timeout or 0.0)
+        if not self._errors.closed:
+            with self._errors as errors:
+                errors.seek(0)
+                self._said = errors.read()
+        return None, self._said
+
+
+def ended_at_once(program: str, *arguments: str | Path) -> tuple[int, str]:
+    """Return the exit code of a program that is to end at once, and what it wrote on standard error."""
+    process = ForkedProgram(program, *map(str, arguments))
+    try:
+        _, errors = process.communicate(DEADLINE)
+    except subprocess.TimeoutExpired:    # it goes on
+        process.kill()
+        _, errors = process.communicate()
+    code = process.poll()
+    assert code is not None
+    return code, errors
