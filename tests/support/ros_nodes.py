@@ -39,14 +39,14 @@ from stickslip_msgs.msg import (  # noqa: E402
 )
 from tests.support.node_processes import NodeProcess, assert_clean, running  # noqa: E402
 from tests.support.topic_ears import Ears  # noqa: E402
-from tests.support.waiting import DEADLINE, wait_for  # noqa: E402
+from tests.support.waiting import DEADLINE, first_of, wait_for  # noqa: E402
 
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _ALL = QoSProfile(depth=5000)
 _COMMAND = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 _HEARD = {
-    'slider_state': (SliderState, _ALL), 'friction_force': (FrictionForce, _ALL), 'mode_event': (ModeEvent, _ALL),
-    'timing': (StepTiming, _ALL), 'run_info': (RunInfo, _LATCHED), '/diagnostics': (DiagnosticArray, _ALL),
+    'slider_state': (SliderState, _ALL), 'mode_event': (ModeEvent, _ALL), 'timing': (StepTiming, _ALL),
+    'run_info': (RunInfo, _LATCHED), '/diagnostics': (DiagnosticArray, _ALL),
 }
 
 
@@ -56,7 +56,9 @@ def nanoseconds(time: Any) -> int:
 
 
 class Client:
-    """Hears all topics of a node, sends commands, calls services; its callbacks run in threads.
+    """Hears the topics of a node, sends commands, calls services; its callbacks run in threads.
+
+    It hears the friction when asked to: a node makes and sends nothing that nobody hears, a thousand times a second.
 
     `lost` counts by topic what DDS reports as lost: a node keeps its last ten states for those that are slow to listen.
     """
@@ -103,6 +105,10 @@ class Client:
 
         self._ears.hear(kind, name, take, qos, raw, lose)
 
+    def hear_friction(self) -> None:
+        heard = self.heard['friction_force'] = []
+        self.hear(FrictionForce, 'friction_force', heard.append, _ALL)
+
     def wait_for_lost(self, name: str, count: int, before: int = 0) -> None:
         """Wait until so many messages of a topic are reported as lost since there were `before`."""
         wait_for(lambda: self.lost[name] - before >= count, f'a report of {count} lost messages on {name}')
@@ -144,8 +150,9 @@ class Client:
     def next(self, topic: str, is_it: Callable[[Any], bool] = lambda _: True, deadline: float = DEADLINE,
              begin: int | None = None) -> Any:
         """Return the next message of a topic that fulfils a condition, from now or from the message `begin` on."""
-        begin = len(self.heard[topic]) if begin is None else begin
-        return wait_for(lambda: next(filter(is_it, self.heard[topic][begin:]), None), f'a message on {topic}', deadline)
+        heard = self.heard[topic]
+        find = first_of(heard, is_it, len(heard) if begin is None else begin)
+        return wait_for(find, f'a message on {topic}', deadline)
 
     def send_velocity(self, velocity: float) -> None:
         self._velocity.publish(DriveVelocity(velocity=velocity))

@@ -17,7 +17,7 @@ from rclpy.qos import QoSProfile
 
 from tests.support.waiting import DEADLINE
 
-_PAUSE = 0.005    # s between two looks, for the sake of the CPU alone: what comes meanwhile waits in the middleware
+_PAUSE = 0.01    # s between two looks, for the sake of the CPU alone: what comes meanwhile waits in the middleware
 
 
 class _Hidden(CallbackGroup):  # type: ignore[misc]

@@ -16,3 +16,18 @@ def wait_for(look: Callable[[], Any], what: str, deadline: float = DEADLINE) -> 
         assert time.monotonic() < end, f'waited {deadline} s for {what}'
         time.sleep(0.01)
     return found
+
+
+def first_of(growing: list[Any], is_it: Callable[[Any], bool], begin: int) -> Callable[[], Any]:
+    """Return a look for the first item from `begin` on that fulfils a condition; each goes on where the last ended."""
+    seen = begin
+
+    def find() -> Any:
+        nonlocal seen
+        for item in growing[seen:]:
+            seen += 1
+            if is_it(item):
+                return item
+        return None
+
+    return find

@@ -37,6 +37,7 @@ def process(tmp_path_factory: pytest.TempPathFactory) -> Iterator[NodeProcess]:
 @pytest.fixture(scope='module')
 def connected(process: NodeProcess) -> Iterator[Client]:
     with client() as it:
+        it.hear_friction()
         it.connect()
         yield it
 

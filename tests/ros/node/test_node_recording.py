@@ -94,6 +94,7 @@ class TestRecording:
         rules = [word for rule in ('slider_state:=/mill/state', 'drive_velocity:=command', 'rig_event:=~/rig_event')
                  for word in ('-r', rule)]
         with running(*rules, *recording_into(folder)) as process, client() as axis:
+            axis.hear_friction()
             names = {'/mill/state', '/command', '/feed_axis/rig_event', '/friction_force'}
             wait_for(lambda: names <= {name for name, _ in axis.node.get_topic_names_and_types()}, 'the topics')
             axis.next('friction_force', lambda message: message.step > 10)
