@@ -17,7 +17,7 @@ from stickslip_sim.recording import open_bag
 from tests.support.node_processes import executable
 from tests.support.repository import ROOT
 from tests.support.ros_nodes import client
-from tests.support.tool import restore_interrupt
+from tests.support.tool import Capture, answered, restore_interrupt
 from tests.support.waiting import DEADLINE
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
@@ -41,16 +41,13 @@ AXIS, CONTROLLER, CHECK, STEPPED_AXIS, STEPPER = commands()
 def as_here(command: list[str], folder: Path) -> list[str]:
     """Return a command of the page for this machine: with programs and examples where they are, and no globs."""
     program, *words = command
-    if program.endswith('sim_node'):
-        programs = [executable('sim_node')]
-    else:
-        programs = {'python3': [sys.executable], 'stickslip': [sys.executable, '-m', 'stickslip_sim']}[program]
+    here = [executable('sim_node') if program.endswith('sim_node') else program.replace('python3', sys.executable)]
     for word in words:
         if '*' in word:
-            programs += map(str, folder.glob(word))
+            here += map(str, folder.glob(word))
         else:
-            programs.append(str(ROOT / word) if word.startswith('examples/') else word)
-    return programs
+            here.append(str(ROOT / word) if word.startswith('examples/') else word)
+    return here
 
 
 @contextmanager
@@ -77,6 +74,13 @@ def done(command: list[str], folder: Path) -> 'subprocess.CompletedProcess[str]'
                           check=False)
 
 
+def of_the_tool(capsys: Capture, command: list[str], folder: Path) -> tuple[int, str, str]:
+    """Give a command to the tool in this process; return its exit code, standard output and standard error."""
+    program, *words = as_here(command, folder)
+    assert program == 'stickslip'
+    return answered(capsys, *words)
+
+
 def test_the_run_is_not_taken_for_that_of_make_run() -> None:
     """A reader has that one in the same folder already."""
     from stickslip_sim.ros.demo import SCENE
@@ -84,7 +88,7 @@ def test_the_run_is_not_taken_for_that_of_make_run() -> None:
     assert not CHECK[2].startswith(f'runs/{SCENE}_')
 
 
-def test_a_controller_that_is_started_by_hand_is_judged(tmp_path: Path) -> None:
+def test_a_controller_that_is_started_by_hand_is_judged(tmp_path: Path, capsys: Capture) -> None:
     with started(AXIS, tmp_path) as axis, client() as listener:
         listener.next('slider_state', lambda state: state.time > HUMAN)
         assert listener.latest('slider_state').drive_velocity == 0.0    # it rests until the first command
@@ -93,32 +97,35 @@ def test_a_controller_that_is_started_by_hand_is_judged(tmp_path: Path) -> None:
             listener.next('slider_state', lambda state: state.time > first + JUDGED + 0.1)
             assert re.fullmatch(AT_MOST, interrupt(controller))
         said = interrupt(axis)
-    checked = done(CHECK, tmp_path)
-    assert checked.returncode == 3, checked.stderr
-    head, verdict, *_, last = checked.stdout.splitlines()
+    code, out, errors = of_the_tool(capsys, CHECK, tmp_path)
+    assert code == 3, errors
+    head, verdict, *_, last = out.splitlines()
     assert float(head.rpartition('first command at t = ')[2].removesuffix(' s')) > HUMAN
     assert verdict.startswith('real-time valid: ')
     assert verdict in said
     assert re.match(r'FAILED: \d of 5: .*overshoot.*sticks', last)
-    assert 'no controller was judged' not in checked.stdout
-    from_start = done([*CHECK[:-1], 'examples/limits.yaml'], tmp_path)    # whose window ends before it comes
-    assert (from_start.returncode, 'no controller was judged' in from_start.stderr) == (3, True)
+    assert 'no controller was judged' not in out
+    code, _, errors = of_the_tool(capsys, [*CHECK[:-1], 'examples/limits.yaml'], tmp_path)    # it ends before
+    assert (code, 'no controller was judged' in errors) == (3, True)
 
 
-def test_lock_step_gives_the_same_recorded_run_each_time(tmp_path: Path) -> None:
+def test_lock_step_gives_the_same_recorded_run_each_time(tmp_path: Path, capsys: Capture) -> None:
     with started(STEPPED_AXIS, tmp_path) as axis:
-        made = [done(STEPPER, tmp_path)]
-        made += [done(shlex.split(f'stickslip call {words}'), tmp_path) for words in ('record off', 'reset', 'record')]
-        made.append(done([*STEPPER, '--duration', '0.2'], tmp_path))
-        assert [each.returncode for each in made] == [0] * len(made), made
+        whole_run = done(STEPPER, tmp_path)
+        assert whole_run.returncode == 0, whole_run
+        for words in ('record off', 'reset', 'record'):
+            code, _, errors = of_the_tool(capsys, ['stickslip', 'call', *words.split()], tmp_path)
+            assert code == 0, errors
+        part_of_it = done([*STEPPER, '--duration', '0.2'], tmp_path)
+        assert part_of_it.returncode == 0, part_of_it
         interrupt(axis)
     first, second = sorted((tmp_path / 'runs').iterdir())
     whole, part = (open_bag(run).columns('/slider_state')['position'].tolist() for run in (first, second))
     assert part == whole[:201]
-    assert done(['stickslip', 'verify', str(first)], tmp_path).returncode == 0
-    checked = done([*CHECK[:2], str(first), *CHECK[3:]], tmp_path)
-    assert checked.returncode == 3, checked.stderr
-    head, verdict, *_ = checked.stdout.splitlines()
+    assert of_the_tool(capsys, ['stickslip', 'verify', str(first)], tmp_path)[0] == 0
+    code, out, errors = of_the_tool(capsys, [*CHECK[:2], str(first), *CHECK[3:]], tmp_path)
+    assert code == 3, errors
+    head, verdict, *_ = out.splitlines()
     assert '0 to 2 s, 2001 states' in head
     assert head.endswith('first command at t = 0 s')
     assert verdict.startswith('not in real time (time.mode lockstep); commands: 400 received, 0 refused')
