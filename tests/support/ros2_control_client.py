@@ -27,7 +27,7 @@ from tests.support.repository import ROOT
 SHIPPED = ROOT / 'stickslip_sim' / 'ros2_control'
 THRESHOLD = 'trigger_joint_command_threshold'
 _ARRAYS = ('position', 'velocity', 'effort')
-_PERIOD = 0.002   # s
+_PERIOD = 0.01    # s
 
 States = dict[str, float]
 Update = Callable[[States], float | None]   # states in, a velocity for the drive out; None: none yet
@@ -79,8 +79,8 @@ def always(velocity: float) -> Update:
 class HardwareInterface:
     """Reads joint_states, lets a controller update its command, and writes joint_commands, over and over."""
 
-    def __init__(self, description: Description, update: Update, rule: Rule, name: str) -> None:
-        self._description, self._update, self._rule = description, update, rule
+    def __init__(self, description: Description, update: Update, rule: Rule, name: str, period: float) -> None:
+        self._description, self._update, self._rule, self._period = description, update, rule, period
         parameters = description.parameters
         self._threshold = float(parameters.get(THRESHOLD, '1e-5'))
         unset = 0.0 if rule is Rule.ALL_POSITIONS else math.nan
@@ -109,7 +109,7 @@ class HardwareInterface:
         self._context.try_shutdown()
 
     def _run(self) -> None:
-        while not self._is_over.wait(_PERIOD):
+        while not self._is_over.wait(self._period):
             self._executor.spin_once(timeout_sec=0.0)
             self.read()
             self._command(self._update(self.states))
@@ -155,8 +155,8 @@ class HardwareInterface:
 
 @contextmanager
 def hardware_interface(update: Update, description: Description | None = None, rule: Rule = Rule.ALL_COMMANDED,
-                       name: str = 'topic_based_ros2_control') -> Iterator[HardwareInterface]:
-    it = HardwareInterface(description or Description(), update, rule, name)
+                       name: str = 'topic_based_ros2_control', period: float = _PERIOD) -> Iterator[HardwareInterface]:
+    it = HardwareInterface(description or Description(), update, rule, name, period)
     try:
         yield it
     finally:

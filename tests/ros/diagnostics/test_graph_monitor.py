@@ -17,7 +17,8 @@ from tests.support.waiting import wait_for
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
-ON = ('-p', 'joint_interface.enabled:=true')
+SLOW = ('-p', 'time.rate:=200.0')    # who is there does not depend on it
+ON = (*SLOW, '-p', 'joint_interface.enabled:=true')
 
 
 def trouble(axis: Client, text: str) -> Any:
@@ -60,7 +61,7 @@ class TestGraphMonitor:
 
     def test_what_a_time_out_has_ended_does_not_stay_in_force(self) -> None:
         """Nor does a force trouble anybody: no time-out ends it, and it is meant to act until the next."""
-        with running('-p', 'command.timeout:=0.05', '-p', 'command.on_timeout:=ramp_to_zero') as process, \
+        with running(*SLOW, '-p', 'command.timeout:=0.05', '-p', 'command.on_timeout:=ramp_to_zero') as process, \
                 client() as axis:
             axis.connect()
             axis.send_velocity(0.004)

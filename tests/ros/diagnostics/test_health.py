@@ -10,12 +10,15 @@ import pytest
 from diagnostic_msgs.msg import DiagnosticStatus
 
 from stickslip_sim.core.errors import StickslipError
+from tests.support.forked_programs import ended_at_once
 from tests.support.node_processes import executable, recording_into, running, with_small_files
 from tests.support.ros_nodes import client
 
 from stickslip_sim.ros.diagnostics.health_node import health_of  # isort: skip  # after ros_nodes, which skips without ROS
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
+
+SLOW = ('-p', 'time.rate:=200.0')    # how an axis is does not depend on it
 
 
 def health(*ros_args: str) -> tuple[int, str, str]:
@@ -27,22 +30,24 @@ def health(*ros_args: str) -> tuple[int, str, str]:
 
 class TestAxis:
     def test_one_that_runs_is_well(self) -> None:
-        with running('-r', '__ns:=/press'):
+        with running(*SLOW, '-r', '__ns:=/press'):
             code, out, errors = health('-r', '__ns:=/press', '-p', 'patience:=20.0')
         assert (code, errors) == (0, '')
         assert out.startswith('/press/feed_axis is well')
 
     def test_one_that_hangs_says_nothing(self) -> None:
-        with running() as process, client() as axis:
-            axis.connect()
+        with running(*SLOW) as process:
+            with client() as axis:
+                axis.connect()
             process.send(signal.SIGSTOP)
             code, out, errors = health('-p', 'patience:=3.0')
         assert (code, out) == (1, '')
         assert errors.startswith('health: /feed_axis said nothing on /diagnostics within 3 s')
 
     def test_one_of_another_namespace_is_not_meant(self) -> None:
-        with running('-r', '__ns:=/press') as process, client('/press') as axis:
-            axis.connect()
+        with running(*SLOW, '-r', '__ns:=/press') as process:
+            with client('/press') as axis:
+                axis.connect()
             code, _, errors = health('-p', 'patience:=3.0')
             process.end()
         assert code == 1
@@ -50,8 +55,9 @@ class TestAxis:
 
     def test_one_whose_recording_failed_is_not_well(self, tmp_path: Path) -> None:
         folder = tmp_path / 'run'
-        with running(*recording_into(folder), prepare=with_small_files) as process, client() as axis:
-            axis.status('recorder', lambda values: int(values['dropped']) > 0)
+        with running(*recording_into(folder), prepare=with_small_files) as process:
+            with client() as axis:
+                axis.status('recorder', lambda values: int(values['dropped']) > 0)
             code, out, errors = health('-p', 'patience:=20.0')
             process.end()
         assert (code, out) == (1, '')
@@ -65,7 +71,7 @@ class TestAxis:
     (['--', 'now'], "argument = 'now'"),
 ])
 def test_refused(words: list[str], reported: str) -> None:
-    code, _, errors = health(*words)
+    code, errors = ended_at_once('health', '--ros-args', *words)
     assert code == 2
     assert reported in errors
     assert len(errors.splitlines()) == 1

@@ -26,7 +26,7 @@ FAILED = 'fault after a time-out: the drive takes no command until ~/clear_fault
 def reported(folder: Path, *ros_args: str) -> Iterator[tuple[Client, Callable[[str], Any]]]:
     """Run a node; yield its client, and what waits for a refusal with a text and returns its name, count and text."""
     from stickslip_msgs.msg import RigEvent
-    with node_and_client(folder, 'realtime', *ros_args) as (_, axis):
+    with node_and_client(folder, 'realtime', '-p', 'time.rate:=200.0', *ros_args) as (_, axis):
         heard: list[Any] = []
         axis.node.create_subscription(RigEvent, 'rig_event', heard.append, 100)
         axis.greet()

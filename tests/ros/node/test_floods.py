@@ -100,7 +100,7 @@ class TestFlood:
 class TestController:
     def test_that_dies_is_noticed_and_one_that_restarts_is_obeyed(self, tmp_path: Path) -> None:
         wanted = ['-p', 'command.timeout:=2.0', '-p', 'command.on_timeout:=ramp_to_zero', '-p',
-                  'command.timeout_deceleration:=0.1']
+                  'command.timeout_deceleration:=0.1', '-p', 'time.rate:=200.0']
         with node_and_client(tmp_path, 'realtime', *wanted, *recording_into(tmp_path / 'run')) as (_, axis):
             for count, velocity in enumerate((0.004, 0.006), 1):
                 with Controller(200.0, velocity, tmp_path / 'sent'):

@@ -141,7 +141,7 @@ class TestCommands:
 
         with running(*ON, '-p', 'scene:=positioning') as process, client() as axis:
             axis.connect()
-            with hardware_interface(update) as hardware:
+            with hardware_interface(update, period=0.002) as hardware:
                 _, values = axis.status('command', lambda values: int(values['velocity refused']) > 10)
                 assert values['velocity / (m/s)'] == 'none'
                 assert 'velocity = nan is refused' in values['velocity last refusal']
@@ -172,7 +172,7 @@ class TestCommands:
 
 class TestSilence:
     def test_a_command_near_the_state_is_not_sent_and_the_time_out_says_why(self) -> None:
-        with running(*ON, '-p', 'command.timeout:=0.3') as process, client() as axis:
+        with running(*ON, '-p', 'time.rate:=200.0', '-p', 'command.timeout:=0.3') as process, client() as axis:
             notes: list[RigEvent] = []
             axis.node.create_subscription(RigEvent, 'rig_event', notes.append, 10)
             axis.connect()

@@ -5,7 +5,8 @@
 import signal
 import statistics
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,7 @@ from stickslip_sim.recording import open_bag, open_run, schema, write_bag
 from stickslip_sim.recording.topics import CLOCK, PARAMETER_EVENTS, RECORDED, SLIDER_STATE, Topic
 from tests.support.busy_machine import judged_by_time
 from tests.support.forked_programs import ended_at_once
-from tests.support.node_processes import assert_clean, running
+from tests.support.node_processes import NodeProcess, assert_clean, running
 from tests.support.recorded_runs import FACTS, damage, events, samples
 from tests.support.ros_nodes import Client, client
 from tests.support.tool import Capture, answered
@@ -50,6 +51,15 @@ def bag(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def replaying(folder: Path, *arguments: str, afresh: bool = False) -> Any:
     return running('-p', f'bag:={folder}', *arguments, program='replay_node', afresh=afresh)
+
+
+@contextmanager
+def viewed(folder: Path, *arguments: str) -> Iterator[tuple[Client, NodeProcess]]:
+    """Replay beside a viewer who leaves before its end: it takes seconds to be sure that one who listens has it all."""
+    with replaying(folder, *arguments) as process:
+        with client() as viewer:
+            yield viewer, process
+        assert_clean(*process.wait())
 
 
 def call(viewer: Client, service: str, on: bool | None = None) -> Any:
@@ -119,12 +129,11 @@ class TestStates:
     def test_again_and_again(self, bag: Path) -> None:
         """Transitions, of which none is lost: the publisher keeps more of them than come in these rounds."""
         arguments = ('-p', 'loop:=true', '-p', 'topics:=[mode_event]')
-        with client() as viewer, replaying(bag, *arguments, *PAUSED) as process:
+        with viewed(bag, *arguments, *PAUSED) as (viewer, _):
             ears = Ears(viewer, *TOPICS)
             assert call(viewer, 'toggle_paused').message.startswith('running')
             ears.wait_for('/mode_event', 3 * recorded(bag, '/mode_event'))
             assert call(viewer, 'stop').success
-            assert_clean(*process.wait())
 
 
 def assert_offered_as_recorded(viewer: Client, topic: Topic) -> None:
@@ -138,7 +147,7 @@ def assert_offered_as_recorded(viewer: Client, topic: Topic) -> None:
 class TestTime:
     def test_each_message_in_its_time(self, bag: Path) -> None:
         """0.3 s at a third of the speed: 301 states, one in 3 ms; the host may be late now and then."""
-        with client() as viewer, replaying(bag, *PAUSED, '-p', 'rate:=0.3333333333333333') as process:
+        with viewed(bag, *PAUSED, '-p', 'rate:=0.3333333333333333') as (viewer, process):
             times: dict[int, float] = {}
             viewer.hear(SliderState, '/slider_state', lambda state: times.setdefault(state.step, time.monotonic()),
                         QoSProfile(depth=500))
@@ -149,7 +158,6 @@ class TestTime:
                 delays = [at - times[first] - 0.003 * (step - first) for step, at in times.items()]
                 assert abs(statistics.median(delays)) < 0.05
                 assert times[last] - times[first] > 0.85 / 300 * (last - first)
-            assert_clean(*process.wait())
 
     def test_clock_is_that_of_the_stamps(self, tmp_path: Path) -> None:
         start = 1_700_000_000 * SECOND
@@ -172,7 +180,7 @@ class TestTime:
 
     def test_paused_message_by_message(self, bag: Path, capsys: Capture) -> None:
         slowly = ('-p', 'rate:=0.02', '-p', 'topics:=[/slider_state]')   # 15 s
-        with client() as viewer, replaying(bag, *PAUSED, *slowly) as process:
+        with viewed(bag, *PAUSED, *slowly) as (viewer, _):
             ears = Ears(viewer, SLIDER_STATE.resolved())
             wanted = recorded(bag, '/slider_state')
             for count in range(1, 4):
@@ -188,17 +196,15 @@ class TestTime:
             assert call(viewer, 'toggle_paused').success
             ears.wait_for('/slider_state', wanted)
             assert 3 <= count < len(wanted)
-            assert_clean(*process.wait())
 
     def test_rate_is_a_parameter(self, bag: Path) -> None:
-        with client() as viewer, replaying(bag, '-p', 'rate:=0.001') as process:
+        with viewed(bag, '-p', 'rate:=0.001') as (viewer, _):
             refused = viewer.set_parameters('replay', rate=0.0)
             assert not refused.successful
             assert 'rate = 0.0 is refused: must be a number, > 0' in refused.reason
             assert 'cannot change' in viewer.set_parameters('replay', loop=True).reason
             assert not call(viewer, 'play_next').success
             assert viewer.set_parameters('replay', rate=1).successful
-            assert_clean(*process.wait())
 
 
 class TestProcess:

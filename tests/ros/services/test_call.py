@@ -22,8 +22,9 @@ AXIS = '/cell/feed_axis'
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     """Return where an axis runs."""
     folder = tmp_path_factory.mktemp('axis')
-    with running('-r', '__ns:=/cell', folder=folder), client('/cell') as axis:
-        axis.connect()
+    with running('-r', '__ns:=/cell', folder=folder):
+        with client('/cell') as axis:
+            axis.connect()
         yield folder
 
 
