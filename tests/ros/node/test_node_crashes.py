@@ -2,31 +2,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """What nodes say of a defect of their own, in any thread: one line, or with STICKSLIP_DEBUG=1 where it is."""
 
-import os
 import signal
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 
 import pytest
 
 from stickslip_sim.recording import open_bag, write_bag
+from tests.support.defects import break_method
 from tests.support.recorded_runs import FACTS, samples
 
-pytest.importorskip('rclpy')
+from tests.support.node_processes import recording_into, running  # isort: skip  # skips without ROS
+
 pytestmark = pytest.mark.ros
 
-PROGRAM = """
-import sys
-from importlib import import_module
-
-def broken(*_):
-    raise ZeroDivisionError('first\\nsecond')
-
-module, owner, method, program = sys.argv[1:5]
-setattr(getattr(import_module('stickslip_sim.' + module), owner), method, broken)
-sys.exit(import_module('stickslip_sim.ros.' + program).main(sys.argv[5:]))
-"""
 IN_THE_STEP_LOOP = ('rig.rig', 'Rig', 'make_step', 'sim_node')
 IN_THE_PLAYER = ('ros.replay.states', 'States', 'acts', 'replay_node')
 IN_THE_EXECUTOR = ('ros.diagnostics.periodic_report', 'PeriodicReport', 'report', 'sim_node')
@@ -34,14 +25,23 @@ PLACES = {'step loop': IN_THE_STEP_LOOP, 'player': IN_THE_PLAYER, 'executor': IN
 
 
 @pytest.mark.parametrize('place', PLACES)
-def test_a_defect_is_reported_and_shown_where(tmp_path: Path, place: str) -> None:
+def test_a_defect_is_reported_and_shown_where(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, place: str) -> None:
     write_bag(tmp_path / 'run', FACTS, samples(3), [], {})
-    bag = ['--ros-args', '-p', f'bag:={tmp_path}/run'] if place == 'player' else []
-    command = [sys.executable, '-c', PROGRAM, *PLACES[place], *bag]
-    *before, line = errors_of(command, '0')
+    *method, program = PLACES[place]
+    bag = ['-p', f'bag:={tmp_path}/run'] if place == 'player' else []
+
+    def errors() -> list[str]:
+        with running(*bag, program=program, folder=tmp_path, prepare=partial(break_method, *method)) as process:
+            code, errors = process.wait()
+        assert code == 1, errors
+        return errors.splitlines()
+
+    monkeypatch.setenv('STICKSLIP_DEBUG', '0')
+    *before, line = errors()
     assert not any('Traceback' in text for text in before)
-    assert line == f'{PLACES[place][-1]}: internal error: ZeroDivisionError: first (STICKSLIP_DEBUG=1 shows where)'
-    shown = errors_of(command, '1')
+    assert line == f'{program}: internal error: ZeroDivisionError: first (STICKSLIP_DEBUG=1 shows where)'
+    monkeypatch.setenv('STICKSLIP_DEBUG', '1')
+    shown = errors()
     assert 'Traceback (most recent call last):' in shown
     assert any(text.endswith('in broken') for text in shown)
     assert shown[-2:] == ['ZeroDivisionError: first', 'second']
@@ -67,9 +67,8 @@ sys.exit(sim_node.main(sys.argv[1:]))
 
 def test_a_run_that_contradicts_itself_stands_still(tmp_path: Path) -> None:
     """The judge of runs finds it at the next event; the node says so and waits, and its bag is whole."""
-    record = ['-p', 'record.enabled:=true', '-p', f'record.folder:={tmp_path}/run']
-    with subprocess.Popen([sys.executable, '-c', CORRUPTED, '--ros-args', *record], stderr=subprocess.PIPE,
-                          text=True) as node:
+    with subprocess.Popen([sys.executable, '-c', CORRUPTED, '--ros-args', *recording_into(tmp_path / 'run')],
+                          stderr=subprocess.PIPE, text=True) as node:
         assert node.stderr is not None
         line = next(line for line in node.stderr if 'stands still' in line)
         node.send_signal(signal.SIGINT)
@@ -79,10 +78,3 @@ def test_a_run_that_contradicts_itself_stands_still(tmp_path: Path) -> None:
     bag = open_bag(tmp_path / 'run')
     assert bag.is_complete
     assert len(list(bag.messages(['/slider_state']))) > 5
-
-
-def errors_of(command: list[str], debug: str) -> list[str]:
-    done = subprocess.run(command, stderr=subprocess.PIPE, text=True, timeout=60, check=False,
-                          env={**os.environ, 'STICKSLIP_DEBUG': debug})
-    assert done.returncode == 1, done.stderr
-    return done.stderr.splitlines()

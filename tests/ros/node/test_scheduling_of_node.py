@@ -12,6 +12,7 @@ from stickslip_sim.core.errors import InputError
 from stickslip_sim.recording import open_bag
 from stickslip_sim.scene import load_scene
 from stickslip_sim.scene.load import parse_scene
+from tests.support.forked_programs import ended_at_once
 from tests.support.node_processes import recording_into, running
 from tests.support.rights import name_of, needs_fifo, policies, start_without_rights
 from tests.support.ros_nodes import client
@@ -61,17 +62,24 @@ def test_without_rights_the_node_says_what_is_missing_and_goes_on(tmp_path: Path
     assert errors.count('memory is not locked: RLIMIT_MEMLOCK is 1024 KiB') == 1
 
 
+def test_a_start_without_what_it_requires_is_refused(tmp_path: Path) -> None:
+    with running('-p', 'thread_priority:=50', '-p', 'require_real_time:=true', folder=tmp_path,
+                 prepare=start_without_rights, afresh=True) as process:
+        refused_in_one_line(*process.wait(), 'require_real_time = True is refused: must be false, or all that is wanted'
+                            ' granted; SCHED_FIFO 50 is not granted')
+
+
 @pytest.mark.parametrize(('arguments', 'refusal'), [
-    (['thread_priority:=50', 'require_real_time:=true'],
-     'require_real_time = True is refused: must be false, or all that is wanted granted; SCHED_FIFO 50 is not granted'),
     (['thread_priority:=100'], 'thread_priority = 100 is refused: must be a whole number, >= 0 and <= 99'),
     (['thread_priority:=50', 'time.mode:=lockstep'],
      'thread_priority = 50 is refused: must be 0 with time.mode: lockstep'),
 ])
-def test_refused_starts(tmp_path: Path, arguments: list[str], refusal: str) -> None:
+def test_refused_starts(arguments: list[str], refusal: str) -> None:
     given = [word for argument in arguments for word in ('-p', argument)]
-    with running(*given, folder=tmp_path, prepare=start_without_rights, afresh=True) as process:
-        code, errors = process.wait()
+    refused_in_one_line(*ended_at_once('sim_node', '--ros-args', *given), refusal)
+
+
+def refused_in_one_line(code: int, errors: str, refusal: str) -> None:
     assert (code, len(errors.splitlines())) == (2, 1)
     assert errors.startswith(f'sim_node: {refusal}')
 
