@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Programs of `stickslip_sim.ros` in processes forked from one that has imported what they need: at half the cost.
+"""Programs of `stickslip_sim.ros`, forked from a process that has imported what they need: a quarter of the cost.
 
 What is left out is the start of the interpreter and of the installed script: see `node_processes`.
 """

@@ -47,7 +47,7 @@ def with_small_files() -> None:
 class NodeProcess:
     """A program with default signal handling, in a process group of its own, as a terminal starts it.
 
-    It is forked, which costs half as much, unless it is to start `afresh`, as a user starts the installed script.
+    It is forked, which costs a quarter as much, unless it is to start `afresh`, as a user starts the installed script.
     """
 
     def __init__(self, *ros_args: str, folder: Path | None = None, prepare: Callable[[], None] = restore_interrupt,
