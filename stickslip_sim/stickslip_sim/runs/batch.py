@@ -28,6 +28,7 @@ from .batch_columns import array_of, check_range, common_length, parameter_rows
 Numbers = NDArray[np.float64]
 
 _ROWS = 64          # of the event table
+_AT_THE_START = astuple(AxisFigures())
 _AT_A_TIME = 250    # axes that a thread takes
 
 
@@ -154,7 +155,7 @@ def _run(parameters: Numbers, inputs: Numbers, starts: Numbers, duration: float,
 
 def new_rows(count: int, window: int = 0) -> Numbers:
     """Return rows for so many axes, with room for their latest `window` rounds, for `solvers.exact.run_axes`."""
-    return np.tile([*astuple(AxisFigures()), *[np.nan] * (ROUND_SIZE * window)], (count, 1))
+    return np.tile([*_AT_THE_START, *[np.nan] * (ROUND_SIZE * window)], (count, 1))
 
 
 def figures_in(out: Numbers) -> BatchFigures:
