@@ -11,6 +11,7 @@ import pytest
 from stickslip_sim.axis import CompliantContact, RigidContact
 from stickslip_sim.scene import PARAMETERS, load_scene, parse_override, scene_from_values, scene_names
 from stickslip_sim.scene.document import document
+from stickslip_sim.scene.load import read_scene
 from stickslip_sim.scene.schema import BY_NAME
 from tests.support.repository import ROOT
 from tests.support.scene_files import refusal, write
@@ -42,6 +43,15 @@ def test_paper_data_arrive_in_the_axis() -> None:
     assert axis.friction.static.coefficient(math.inf) == 0.24
     assert load_scene('paper_fig7').axis.contact == RigidContact()
     assert load_scene('paper_fig4_falling').axis.friction.excess is None
+
+
+def test_what_is_read_of_a_shipped_scene_belongs_to_its_reader() -> None:
+    values = read_scene('paper_fig8').values
+    coefficients = values['friction.kinetic.coefficients']
+    assert isinstance(coefficients, list)
+    coefficients.clear()
+    values.clear()
+    assert load_scene('paper_fig8').values['friction.kinetic.coefficients'] == (0.12, 0.05)
 
 
 def test_what_is_left_out_is_not_modelled(tmp_path: pathlib.Path) -> None:

@@ -6,6 +6,7 @@ import os
 import pathlib
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from functools import cache
 from typing import NamedTuple
 
 from ..config.ros_yaml import LISTS_LIMIT, read_yaml
@@ -55,7 +56,8 @@ def read_scene(name_or_path: str) -> SceneFile:
     """Return what the file of a shipped scene, or another one, says; raises InputError."""
     path = _find(name_or_path)
     text = read_text(path)
-    return SceneFile(parameters_of(read_yaml(text)), _first_comment(text), path.parent)
+    values = _shipped_parameters(text) if path.parent == _SHIPPED else parameters_of(read_yaml(text))
+    return SceneFile(values, _first_comment(text), path.parent)
 
 
 def parse_scene(text: str, overrides: Mapping[str, object] | None = None) -> Scene:
@@ -86,7 +88,7 @@ def merged_parameters(values: Mapping[str, object], overrides: Mapping[str, obje
     name = values.get('scene')
     if not describes_an_axis(values) and isinstance(name, str):
         if name in scene_names():
-            values = overridden(parameters_of(read_yaml(read_text(_find(name)))), values)
+            values = overridden(_shipped_parameters(read_text(_find(name))), values)
         elif name.endswith(_ENDINGS):
             raise InputError('scene', name, 'a name in a file', 'give the file of that scene itself')
     return overridden(values, overrides)
@@ -121,6 +123,16 @@ def parse_override(text: str) -> tuple[str, object]:
     if isinstance(value, dict) or value is None:
         raise InputError(name, word.strip(), 'a number, a word, or a list of numbers', 'give one parameter at a time')
     return name, value
+
+
+def _shipped_parameters(text: str) -> dict[str, object]:
+    """Return the parameters of a shipped scene; each is parsed once, which takes most of the time of loading it."""
+    return {name: list(value) if isinstance(value, list) else value for name, value in _parsed(text).items()}
+
+
+@cache
+def _parsed(text: str) -> dict[str, object]:
+    return parameters_of(read_yaml(text))
 
 
 def _find(name: str) -> pathlib.Path:
