@@ -24,6 +24,8 @@ GREY = '#666666'
 MODE_COLOURS = {Mode.STICK: SKY, Mode.ACCELERATING: ORANGE, Mode.COASTING: GREEN, Mode.DECELERATING: PURPLE}
 MILLI = 1e3          # m to mm
 _UNDATED: dict[str, dict[str, Any]] = {'svg': {'Date': None}, 'pdf': {'CreationDate': None}}
+_SAVED: dict[str, Any] = {   # the same picture is the same file, and no other layout is made
+    'svg.hashsalt': 'stickslip', 'figure.autolayout': False, 'figure.constrained_layout.use': False}
 _POINTS_PER_INCH = 72.0
 _POINTS = 8000       # per line: more than a picture can show
 JOURNAL: dict[str, Any] = {   # for pictures that are printed at the width of one or two columns
@@ -39,9 +41,9 @@ def save(figure: Figure, *paths: Path | str) -> None:
     """Write a picture; the ending of each path (.png, .pdf, .svg) says how.  All have the layout of the first."""
     for path in map(Path, paths):
         kind = path.suffix[1:].lower()
-        with rc_context({'svg.hashsalt': 'stickslip'}):   # the same picture is the same file
+        with rc_context(_SAVED):
             figure.savefig(path, format=kind, metadata=_UNDATED.get(kind))
-        figure.set_layout_engine('none')
+            figure.set_layout_engine(None)   # unlike 'none' it spares the next one a drawing for a layout
 
 
 def thinned(time: Numbers, values: Numbers) -> tuple[Numbers, Numbers]:
