@@ -17,6 +17,7 @@ from stickslip_sim.verify.verification import Verdict, verify
 from tests.support.node_processes import running
 from tests.support.rewritten_bags import rewritten
 from tests.support.ros_nodes import Client, client
+from tests.support.waiting import wait_for
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
@@ -48,10 +49,22 @@ def stir(axis: Client) -> None:
     axis.next('slider_state', lambda state: state.drive_velocity == 0.0)    # the time-out
     axis.send_velocity(0.02)                                                # not taken
     assert axis.trigger('clear_faults').success
+    keep_going(axis)
     axis.send_velocity(0.01)
     axis.next('slider_state', lambda state: state.drive_velocity == 0.01)
     inject(axis, '', 'drive_freeze', 0.02, 0.0, 0.1)
     inject(axis, 'wet', 'friction_scale', 0.3, 0.5, 0.5)                    # planned when the recording ends
+
+
+def keep_going(axis: Client) -> None:
+    """Command the drive, again and again, until the slider has let go and stuck: a command lasts for 0.4 s."""
+    events = len(axis.heard['mode_event'])
+
+    def has_moved() -> bool:
+        axis.send_velocity(0.006)
+        return len(axis.heard['mode_event']) > events + 2
+
+    wait_for(has_moved, 'events')
 
 
 def inject(axis: Client, name: str, kind: str, start: float, value: float, duration: float = math.inf) -> None:
