@@ -6,7 +6,7 @@
 
 DISTRO ?= jazzy
 MINUTES ?= 10
-PROCESSES ?= 3
+PROCESSES ?= 4
 export DISTRO
 unexport PYTHONDONTWRITEBYTECODE  # pytest rewrites three hundred files, in each process: that is to be kept
 
@@ -25,7 +25,7 @@ build:  ## set up ros2_ws: ROS 2 from wheels, both packages with colcon
 run: build  ## run the node on the paper's scene, drive it, record it, show what happened
 	@$(HERE) python3 -m stickslip_sim.ros.demo
 
-test: tools  ## all tests, PROCESSES=3 at once, each in a ROS domain of its own
+test: tools  ## all tests, PROCESSES=4 at once, each in a ROS domain of its own
 	@OPENBLAS_NUM_THREADS=1 $(HERE) python3 -m pytest tests --dist loadfile --no-loadscope-reorder --tx '$(PROCESSES)*popen//python=$(HERE) --own-domain python3'
 
 check: tools  ## style, types, architecture, dead code, spelling, words and links
