@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs of the tool that end otherwise: wrong use, full disks, readers that leave, signals; one line, nothing left."""
 
+import os
 import signal
 import subprocess
 import sys
@@ -73,14 +74,16 @@ def test_a_full_disk_gets_one_line(capsys: Capture) -> None:
     assert 'No space left' in line
 
 
-@pytest.mark.parametrize('arguments', [
-    ['scenes'], ['--help'], ['simulate', 'paper_fig7', '--duration', '1'],
-    ['simulate', 'paper_fig7', '--duration', '9', '--samples', '-'], ['extremes', '--only', 'X4', '--quick'],
+@pytest.mark.parametrize(('arguments', 'unbuffered'), [
+    (['scenes'], ''), (['--help'], ''), (['simulate', 'paper_fig7', '--duration', '1'], ''),
+    (['simulate', 'paper_fig7', '--duration', '9', '--samples', '-'], ''),
+    (['simulate', 'paper_fig7', '--duration', '9', '--samples', '-'], '1'),
+    (['extremes', '--only', 'X4', '--quick'], ''),
 ])
-def test_full_standard_output_gets_one_line(arguments: list[str]) -> None:
+def test_full_standard_output_gets_one_line(arguments: list[str], unbuffered: str) -> None:
     with open('/dev/full', 'w') as full:
         done = subprocess.run([sys.executable, '-m', 'stickslip_sim', *arguments], stdout=full, stderr=subprocess.PIPE,
-                              text=True, timeout=60, check=False)
+                              env={**os.environ, 'PYTHONUNBUFFERED': unbuffered}, text=True, timeout=60, check=False)
     assert done.returncode == 2
     assert done.stderr.startswith('stickslip: ')
     assert 'standard output' in done.stderr

@@ -99,13 +99,12 @@ def whole(path: str) -> Iterator[Path]:
 
 
 def write_text(path: str, lines: Iterable[str]) -> None:
-    """Write lines to a file, or to standard output for '-'."""
+    """Write lines to a file, or to standard output for '-', whose errors are left to the end of the tool (`main`)."""
     if path == STDOUT:
         if sys.stdout is None:
             raise InputError('output', 'standard output', 'open', 'the process that started this closed it')
-        with _refusing('standard output'):
-            sys.stdout.writelines(lines)
-            sys.stdout.flush()
+        sys.stdout.writelines(lines)
+        sys.stdout.flush()
         return
     with whole(path) as temporary, open(temporary, 'w', encoding='utf-8', newline='\n') as file:
         file.writelines(lines)
