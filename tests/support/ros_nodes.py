@@ -94,9 +94,10 @@ class Client:
         self._context.try_shutdown()
 
     def connect(self, is_moving: bool = True) -> None:
-        """Wait until a node hears the commands and is heard; without states while its time stands still."""
+        """Wait until a node knows who commands it and is heard; without states while its time stands still."""
         wait_for(lambda: self._velocity.get_subscription_count() and self._force.get_subscription_count()
                  and (self.heard['slider_state'] or not is_moving) and self.heard['run_info'], 'the node')
+        self.greet()
 
     def hear(self, kind: Any, name: str, take: Callable[[Any], object], qos: QoSProfile, raw: bool = False) -> None:
         """Let `take` have the messages of a topic, and count what is lost of them."""
