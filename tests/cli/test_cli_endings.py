@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs of the tool that end otherwise: wrong use, full disks, readers that leave, signals; one line, nothing left."""
 
-import os
 import signal
 import subprocess
 import sys
@@ -72,32 +71,6 @@ def test_unwritable_folder(capsys: Capture) -> None:
 def test_a_full_disk_gets_one_line(capsys: Capture) -> None:
     line = refused(capsys, 'simulate', 'paper_fig7', '--duration', '1', '--events', '/dev/full')
     assert 'No space left' in line
-
-
-@pytest.mark.parametrize(('arguments', 'unbuffered'), [
-    (['scenes'], ''), (['--help'], ''), (['simulate', 'paper_fig7', '--duration', '1'], ''),
-    (['simulate', 'paper_fig7', '--duration', '9', '--samples', '-'], ''),
-    (['simulate', 'paper_fig7', '--duration', '9', '--samples', '-'], '1'),
-    (['extremes', '--only', 'X4', '--quick'], ''),
-])
-def test_full_standard_output_gets_one_line(arguments: list[str], unbuffered: str) -> None:
-    with open('/dev/full', 'w') as full:
-        done = subprocess.run([sys.executable, '-m', 'stickslip_sim', *arguments], stdout=full, stderr=subprocess.PIPE,
-                              env={**os.environ, 'PYTHONUNBUFFERED': unbuffered}, text=True, timeout=60, check=False)
-    assert done.returncode == 2
-    assert done.stderr.startswith('stickslip: ')
-    assert 'standard output' in done.stderr
-    assert 'No space left' in done.stderr
-    assert done.stderr.count('\n') == 1
-
-
-def test_closed_standard_output() -> None:
-    command = f'{sys.executable} -m stickslip_sim simulate paper_fig7 --duration 1'
-    assert subprocess.run(['sh', '-c', f'{command} >&-'], timeout=60, check=False).returncode == 0
-    done = subprocess.run(['sh', '-c', f'{command} --events - >&-'], stderr=subprocess.PIPE, text=True, timeout=60,
-                          check=False)
-    assert (done.returncode, done.stderr.count('\n')) == (2, 1)
-    assert 'standard output' in done.stderr
 
 
 def test_internal_errors_get_one_line(monkeypatch: pytest.MonkeyPatch, capsys: Capture) -> None:

@@ -7,8 +7,6 @@ Exit codes: 0 done; 1 internal error, or no node answers; 2 wrong use, scene, pa
 STICKSLIP_DEBUG=1 shows the traceback.
 """
 
-import errno
-import os
 import signal
 import sys
 from collections.abc import Sequence
@@ -20,6 +18,7 @@ import click
 
 from ..core.errors import StickslipError, internal_error
 from ..core.version import __version__
+from . import standard_output
 from .advise import advise
 from .bench import bench
 from .call import call
@@ -51,7 +50,6 @@ _SECTIONS: dict[str, tuple[click.Command, ...]] = {   # each verb by what a read
     'Measure the engine': (advise, bench, extremes),
 }
 _INTERRUPTED = 130
-_UNWRITABLE = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EBADF, errno.EPIPE)
 _TERMINATED = 143
 
 
@@ -74,6 +72,7 @@ for title, verbs in _SECTIONS.items():
 def main(arguments: Sequence[str] | None = None) -> NoReturn:
     """Run the tool and exit with its code."""
     signal.signal(signal.SIGTERM, _leave)
+    standard_output.buffer()
     code = complete_for_shell(stickslip)
     if code is not None:
         sys.exit(code)
@@ -82,15 +81,16 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
 
 def run(arguments: Sequence[str]) -> int:
     """Run the tool and return its exit code."""
+    code = 0
     try:
         code = _invoked(arguments)
-        _flush()
+        standard_output.flush()
         return code
     except BrokenPipeError:     # the reader has seen enough
-        _give_up_output()
-        return 0
+        standard_output.give_up()
+        return code
     except OSError as error:
-        _give_up_output()
+        standard_output.give_up()
         return _refuse(f'standard output cannot be written: {error.strerror}; send it somewhere else', 2)
 
 
@@ -109,7 +109,7 @@ def _invoked(arguments: Sequence[str]) -> int:
     except KeyboardInterrupt as stop:
         return _refuse(str(stop) or 'interrupted', _INTERRUPTED)
     except Exception as error:
-        if _is_of_output(error):
+        if standard_output.is_its(error):
             raise
         return _refuse(internal_error(error), 1)
 
@@ -124,21 +124,6 @@ def _usage(error: click.ClickException) -> str:
     context = getattr(error, 'ctx', None)
     command = context.command_path if context else 'stickslip'
     return f'{error.format_message()} See {command} --help'
-
-
-def _is_of_output(error: Exception) -> bool:
-    """Return whether standard output failed; a file that fails is refused by its name (`files`)."""
-    return isinstance(error, OSError) and error.filename is None and error.errno in _UNWRITABLE
-
-
-def _flush() -> None:
-    if sys.stdout is not None:    # None: closed by the process that started this
-        sys.stdout.flush()
-
-
-def _give_up_output() -> None:
-    """Drop the rest of the standard output: Python would fail to write it at its end."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _leave(signum: int, frame: FrameType | None) -> NoReturn:
