@@ -32,7 +32,7 @@ def python(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
 
 @pytest.fixture(scope='class')
 def axis(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
-    with running(folder=tmp_path_factory.mktemp('axis')), client() as it:
+    with running(folder=tmp_path_factory.mktemp('axis'), afresh=True), client() as it:
         it.connect()
         yield it
 
@@ -92,7 +92,7 @@ ENCODERS = ('-p', 'drive.velocity:=0.0', '-p', 'joint_interface.enabled:=true', 
 
 
 def test_a_setpoint_is_followed_on_the_encoders(tmp_path: Path) -> None:
-    with running(*ENCODERS, folder=tmp_path), client() as axis:
+    with running(*ENCODERS, folder=tmp_path, afresh=True), client() as axis:
         axis.connect()
         done = python(SETPOINT)
         assert done.returncode == 0, done.stderr

@@ -127,7 +127,7 @@ def look(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
     assert run(['simulate', 'positioning', '--duration', '0.1', '--bag', str(folder / BAG)]) == 0
     with client() as looking, ExitStack() as stack:
         for program in PROGRAMS:
-            stack.enter_context(running(*program.ros_arguments, program=program.executable, folder=folder))
+            stack.enter_context(running(*program.ros_arguments, program=program.executable, folder=folder, afresh=True))
         yield looking
 
 

@@ -12,13 +12,16 @@ import subprocess
 import sys
 from collections.abc import Callable
 from contextlib import suppress
+from functools import cache
 from importlib import import_module
+from multiprocessing.forkserver import ensure_running
 from pathlib import Path
 from tempfile import TemporaryFile
 from typing import NamedTuple
 
 import pytest
 
+from tests.support.repository import ROOT
 from tests.support.tool import restore_interrupt
 from tests.support.waiting import DEADLINE
 
@@ -26,6 +29,17 @@ pytest.importorskip('rclpy')
 
 _FORKS = multiprocessing.get_context('forkserver')
 _FORKS.set_forkserver_preload(['pytest', __name__, 'tests.support.preloaded'])
+
+
+@cache
+def _start_server() -> None:
+    """Start the process that programs are forked from, where it finds what it is to import."""
+    folder = Path.cwd()
+    os.chdir(ROOT)
+    try:
+        ensure_running()
+    finally:
+        os.chdir(folder)
 
 
 class _Start(NamedTuple):
@@ -59,6 +73,7 @@ class ForkedProgram:
         self._errors = TemporaryFile('w+', encoding='utf-8')    # noqa: SIM115  # closed when it was read
         start = _Start(program, arguments, folder or Path.cwd(), dict(os.environ),
                        f'/proc/{os.getpid()}/fd/{self._errors.fileno()}', prepare)
+        _start_server()
         self._process = _FORKS.Process(target=start.run, daemon=True)
         self._process.start()
         self._said = ''

@@ -50,8 +50,8 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def replaying(folder: Path, *arguments: str) -> AbstractContextManager[NodeProcess]:
-    return running('-p', f'bag:={folder}', '-p', 'mode:=commands', *arguments, program='replay_node')
+def replaying(folder: Path, *arguments: str, afresh: bool = False) -> AbstractContextManager[NodeProcess]:
+    return running('-p', f'bag:={folder}', '-p', 'mode:=commands', *arguments, program='replay_node', afresh=afresh)
 
 
 def ended(process: NodeProcess) -> str:
@@ -137,7 +137,7 @@ class TestLockStep:
     def test_a_time_out_is_left_to_the_axis_and_reported(self, tmp_path: Path) -> None:
         timeout = RigEvent(kind=RigEvent.KIND_COMMAND_TIMEOUT, step=20, value=0.5)
         folder = commanded(tmp_path / 'silent', {20: (RIG_EVENT, serialize_message(timeout))})
-        with running(*LOCKSTEP) as axis, replaying(folder) as process:
+        with running(*LOCKSTEP) as axis, replaying(folder, afresh=True) as process:
             code, errors = process.wait()
             assert_clean(*axis.end())
         assert code == 0
