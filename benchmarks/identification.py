@@ -19,10 +19,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip_sim.identification.cycle_phases import slip_share, usual_cycles
-from stickslip_sim.identification.fit import identify
-from stickslip_sim.identification.report_friction import known_friction
-from stickslip_sim.identification.result_folder import fitted_channels
+from stickslip_sim.identification.identify import identify
+from stickslip_sim.identification.report.cycle_phases import slip_share, usual_cycles
+from stickslip_sim.identification.report.known_friction import known_friction
+from stickslip_sim.identification.report.results import fitted_channels
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.plots.identified_motion import plot_fit, plot_residuals
 from stickslip_sim.plots.known_friction import plot_known_friction

@@ -5,7 +5,6 @@
 A test compares the page with them, so that no name changes unseen.
 """
 
-import importlib
 import inspect
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -129,8 +128,6 @@ def _kind(value: Any) -> str:
         return 'a text'
     if hasattr(value, '_fields'):
         return 'a tuple of ' + ', '.join(f'`{name}`' for name in value._fields)
-    if inspect.ismodule(value):   # a room that can be called, in the place of its function
-        value = importlib.import_module(f'{value.__name__}.fit').identify
     if inspect.isfunction(value):
         return f'`({_signature(value)})`'
     if issubclass(value, BaseException):

@@ -15,8 +15,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stickslip_sim.identification.fit import identify
-from stickslip_sim.identification.identification import SlipFit
+from stickslip_sim.identification.identified import SlipFit
+from stickslip_sim.identification.identify import identify
 from stickslip_sim.runs import Columns, simulate
 from stickslip_sim.runs.slips import slips_of
 from stickslip_sim.scene import Scene, scene_from_values

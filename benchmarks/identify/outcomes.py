@@ -11,8 +11,8 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from stickslip_sim.identification.fit import identify
-from stickslip_sim.identification.identification import Identification
+from stickslip_sim.identification.identified import Identification
+from stickslip_sim.identification.identify import identify
 
 from .axes import SyntheticAxis
 from .machines import DURATION

@@ -32,7 +32,7 @@ class Room(NamedTuple):
 def floors() -> list[list[Room]]:
     """Return the rooms of each floor, from the roof down."""
     contracts = read_configuration(str(ROOT / 'pyproject.toml'))['contracts_options']
-    layers, = (contract['layers'] for contract in contracts if contract['type'] == 'layers')
+    layers, = (contract['layers'] for contract in contracts if contract.get('containers') == [PACKAGE])
     doors = [(contract['name'].removeprefix('One door to '), contract['ignore_imports'])
              for contract in contracts if contract['name'].startswith('One door to ')]
     return [[Room(name, purpose(name), [door for door, ways in doors if any(name == _room(way) for way in ways)])

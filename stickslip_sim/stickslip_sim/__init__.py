@@ -55,7 +55,7 @@ if TYPE_CHECKING:
         VerdictError,
     )
     from .core.types import Event, EventKind, Instant, Mode, Sample
-    from .identification.fit import identify
+    from .identification.identify import identify
     from .inputs import load_scene
     from .recording import read_run
     from .runs import Run, simulate, simulate_events
@@ -79,7 +79,7 @@ if not TYPE_CHECKING:   # a type checker knows the names from above, and finds a
         '.core.errors': ('InputError', 'RecordingError', 'RecordingWarning', 'SolverError', 'StickslipError',
                          'UnsoundError', 'VerdictError'),
         '.core.types': ('Event', 'EventKind', 'Instant', 'Mode', 'Sample'),
-        '.identification.fit': ('identify',),
+        '.identification.identify': ('identify',),
         '.inputs': ('load_scene',),
         '.recording': ('read_run',),
         '.runs': ('Run', 'simulate', 'simulate_events'),

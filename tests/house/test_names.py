@@ -35,8 +35,8 @@ SAME_NAMES = {
 }
 SAME_FILES = {
     'blocks.py': 'messages in blocks: packed for a bag; compared with those of a bag',
-    'critical.py': VERB, 'sweep.py': VERB, 'uncertainty.py': f'{VERB}; {PICTURE}',
-    'bifurcation.py': PICTURE, 'characteristics.py': PICTURE, 'what_if.py': PICTURE,
+    'critical.py': VERB, 'identify.py': VERB, 'sweep.py': VERB, 'uncertainty.py': f'{VERB}; {PICTURE}',
+    'bifurcation.py': PICTURE, 'characteristics.py': PICTURE, 'known_friction.py': PICTURE, 'what_if.py': PICTURE,
     'friction.py': 'the command; friction as faults change it',
     'run.py': f'{PICTURE}: of a run, and its folder',
     'pictures.py': 'all pictures of a room',

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import stickslip_sim as stickslip
-from stickslip_sim.identification.identification import FOUND, Identification
+from stickslip_sim.identification.identified import FOUND, Identification
 from stickslip_sim.recording import write_measured
 
 MICROMETRE = 1e-6

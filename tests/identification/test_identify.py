@@ -10,8 +10,8 @@ import pytest
 
 import stickslip_sim as stickslip
 from stickslip_sim.cli.identify_lines import result_lines
-from stickslip_sim.identification.free_parameters import free_parameters
-from stickslip_sim.identification.identification import AT_BOUND, NOT_IDENTIFIABLE, Identification
+from stickslip_sim.identification.given.free_parameters import free_parameters
+from stickslip_sim.identification.identified import AT_BOUND, NOT_IDENTIFIABLE, Identification
 from stickslip_sim.scene import changed
 from tests.identification.measured_axis import (
     COMPLIANT,

@@ -13,9 +13,9 @@ from .files import check_distinct, check_file, check_picture, say_written, whole
 from .friction_lines import curve_lines, fit_lines, law_lines, points_lines
 
 if TYPE_CHECKING:
-    from ..identification.curve_fit import Fit
-    from ..identification.curve_laws import Fits
-    from ..identification.curve_scene import Origin
+    from ..identification.curve.best_law import Fits
+    from ..identification.curve.law_fit import Fit
+    from ..identification.curve.law_in_scene import Origin
     from ..scene import Scene
 
 _BEST, _POINTS = 'best', 'points'
@@ -49,10 +49,10 @@ def friction(curve: str, speed_unit: str, force_unit: str | None, normal_force: 
     _check(out, plot, scene, changes)
     if backward and (scene is None or direction == 'forward'):
         raise click.UsageError('--backward writes backward points into a scene: give --scene, no --direction forward.')
-    from ..identification.curve_laws import fit_laws
-    from ..identification.curve_scene import origin_of, short_text
-    from ..identification.friction_curve import load_curve, units_of
-    from ..identification.table_fit import points_table
+    from ..identification.curve.best_law import fit_laws
+    from ..identification.curve.law_in_scene import origin_of, short_text
+    from ..identification.curve.measured_curve import load_curve, units_of
+    from ..identification.curve.table_fit import points_table
 
     units = units_of(speed_unit, force_unit, normal_force)
     measured = load_curve(curve, units, 'backward' if backward else direction, meant)
@@ -90,7 +90,7 @@ def _check(out: str | None, plot: str | None, scene: str | None, changes: tuple[
 def _chosen(law: str, fits: 'Fits') -> 'Fit':
     """Return the fit of a law, the best for the points themselves; raises InputError when they are too few for it."""
     from ..core.errors import InputError
-    from ..identification.curve_fit import SPARE
+    from ..identification.curve.law_fit import SPARE
 
     if law in (_BEST, _POINTS):
         return fits.by_rank[0]
@@ -106,7 +106,7 @@ def _chosen(law: str, fits: 'Fits') -> 'Fit':
 def _scene(kinetic: Mapping[str, object], scene: str | None, changes: tuple[str, ...], backward: bool,
            origin: 'Origin') -> 'Scene':
     """Return the scene with a law; raises InputError."""
-    from ..identification.curve_scene import scene_with_friction, scene_with_friction_backwards
+    from ..identification.curve.law_in_scene import scene_with_friction, scene_with_friction_backwards
     from ..inputs import load_scene
     from ..scene import parse_override
 
@@ -118,7 +118,7 @@ def _scene(kinetic: Mapping[str, object], scene: str | None, changes: tuple[str,
 
 def _summary(curve: str, law: str, chosen: 'Fit', scene: str | None) -> str:
     """Return the first line of the scene: from which file it is, and how far the law is from the points."""
-    from ..identification.curve_fit import MISSED
+    from ..identification.curve.law_fit import MISSED
 
     missed = f', {100.0 * chosen.miss:.0f} % of the range of the points' if chosen.miss > MISSED else ''
     what = 'its points' if law == _POINTS else f'the law {chosen.name}, rms of the residuals {chosen.rms:.2g}{missed}'

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 from .count_words import counted
 
 if TYPE_CHECKING:
-    from ..identification.curve_fit import Fit
-    from ..identification.curve_laws import Fits
-    from ..identification.friction_curve import FrictionCurve, Units
+    from ..identification.curve.best_law import Fits
+    from ..identification.curve.law_fit import Fit
+    from ..identification.curve.measured_curve import FrictionCurve, Units
 
 _PATTERN = 0.05   # a chance below it is called a pattern
 _DIFFER = 3.0     # standard errors
@@ -33,7 +33,7 @@ def curve_lines(curve: str, measured: 'FrictionCurve', units: 'Units') -> list[s
 
 def fit_lines(fits: 'Fits') -> list[str]:
     """Return a table of the laws by rank, and what the rank means."""
-    from ..identification.curve_fit import MISSED, SPARE
+    from ..identification.curve.law_fit import MISSED, SPARE
 
     best = fits.by_rank[0]
     lines = [f'{"law":12}{"parameters":>11}{"rms residual":>15}{"largest":>11}{"AICc":>10}{"above best":>12}']
@@ -57,7 +57,7 @@ def fit_lines(fits: 'Fits') -> list[str]:
 
 def law_lines(fit: 'Fit') -> list[str]:
     """Return the parameters of a law with their intervals, and what the residuals say."""
-    from ..identification.curve_laws import sides, sign_changes
+    from ..identification.curve.best_law import sides, sign_changes
     from ..scene.schema import BY_NAME
 
     lines = [f'{fit.name:22} {"value":>12}   95 % interval']
@@ -104,8 +104,8 @@ def _rest_lines(fit: 'Fit') -> list[str]:
 
 def _miss_lines(fit: 'Fit') -> list[str]:
     """Return a warning when a law misses the points, unless enough of them show that it is noise."""
-    from ..identification.curve_fit import MISSED
-    from ..identification.curve_laws import sign_changes
+    from ..identification.curve.best_law import sign_changes
+    from ..identification.curve.law_fit import MISSED
 
     if fit.miss <= MISSED or (len(fit.curve.speeds) >= _ENOUGH and sign_changes(fit).chance >= _PATTERN):
         return []

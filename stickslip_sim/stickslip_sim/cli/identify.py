@@ -16,7 +16,7 @@ from .scene_changes import SceneChanges, scene_changes
 from .sweeping import process_count
 
 if TYPE_CHECKING:
-    from ..identification.work_folder import WorkFolder
+    from ..identification.search.work_folder import WorkFolder
 
 
 @click.command(short_help='Find the parameters of an axis from a measured run.')
@@ -41,9 +41,9 @@ def identify(run: str, scene: str, free: str, out: str, laws: bool, workers: str
         check_new_folder('--out', out)
     count = process_count('1' if workers is None else workers)
     from ..core.errors import VerdictError
-    from ..identification.fit import identify as find
-    from ..identification.result_folder import PAGE, write_results
-    from ..identification.work_folder import WorkFolder, facts_of
+    from ..identification.identify import identify as find
+    from ..identification.report.results import PAGE, write_results
+    from ..identification.search.work_folder import WorkFolder, facts_of
     from ..scene.load import read_text
     from .identify_lines import result_lines
     from .progress import progress_bar

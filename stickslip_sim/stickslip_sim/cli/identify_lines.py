@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ..identification.identification import Identification
+    from ..identification.identified import Identification
 
 _NAME, _NUMBER = 36, 14
 _BETTER = 10.0      # of the criterion: laws so far below are better (Kass and Raftery 1995: very strong evidence)
@@ -43,8 +43,8 @@ def _misfits(found: 'Identification') -> Iterator[str]:
 
 
 def _estimates(found: 'Identification') -> Iterator[str]:
-    from ..identification.identification import FOUND
-    from ..identification.identified_scene import interval_words, number_words
+    from ..identification.identified import FOUND
+    from ..identification.report.identified_scene import interval_words, number_words
 
     for one in found.estimates:
         kind = '' if one.kind == FOUND else f', {one.kind}'

@@ -10,9 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..scene import Scene, changed
-from .certainty import QUANTILE, Certainty, certainty_of, combinations_of
-from .free_parameters import FreeParameter
-from .identification import (
+from .certainty.covariance import QUANTILE, Certainty, certainty_of, combinations_of
+from .certainty.noisy_inputs import changes_by_inputs, covariance_by_inputs, more_by_inputs
+from .certainty.profiles import with_profile_intervals
+from .certainty.residual_tests import correlation_length, inflation_of, misfits_of
+from .fit.problem import FitProblem
+from .given.free_parameters import FreeParameter
+from .given.measured_scene import with_measured_inputs
+from .identified import (
     AT_BOUND,
     FOUND,
     NOT_IDENTIFIABLE,
@@ -23,13 +28,9 @@ from .identification import (
     SlipFit,
     StartEnd,
 )
-from .input_certainty import changes_by_inputs, covariance_by_inputs, more_by_inputs
-from .measured_scene import with_measured_inputs
-from .problem import FitProblem
-from .profiles import with_profile_intervals
-from .residual_tests import correlation_length, inflation_of, misfits_of
-from .slip_features import shown_break_away
-from .stages import Ended, effective_count
+from .search.criterion import CRITERION, criterion_of
+from .search.stages import Ended
+from .trial.slip_features import shown_break_away
 
 Numbers = NDArray[np.float64]
 
@@ -41,7 +42,6 @@ _OF_SLIPS = ('the model does not follow the whole run: single slips are fitted, 
 _ALONG = ('the model does not fit sample by sample: of what they leave open, numbers are taken with which the position'
           ' follows the whole run')
 _WHOLE, _SINGLE = 'fit of the whole run', 'fit of single slips, each from a measured arrest'
-CRITERION = 'BIC'
 
 
 def identification_of(problem: FitProblem, scene: Scene, ends: Sequence[Ended], began: float) -> Identification:
@@ -86,11 +86,6 @@ def identification_of(problem: FitProblem, scene: Scene, ends: Sequence[Ended], 
         notes=(*problem.measurement.notes, *([] if best.solution.is_settled else [_UNSETTLED]),
                *([] if best.of_slips is None else [_OF_SLIPS]), *([_ALONG] if best.is_along else [])),
         shift=problem.measurement.shift)
-
-
-def criterion_of(problem: FitProblem, cost: float) -> float:
-    """Return the criterion of Bayes of a fit with a sum of squares: the lower, the better."""
-    return cost + len(problem.parameters) * float(np.log(effective_count(problem)))
 
 
 def _channels(problem: FitProblem, fitted: Sequence[Numbers]) -> tuple[ChannelFit, ...]:

@@ -1,0 +1,131 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Profile intervals: how far a parameter may go before the best fit of all the others is worse than chance makes it.
+
+Where the sum of squares is a parabola this is the interval of the covariance.  So the profile is computed only where it
+is none: where the sum of squares at an end of that interval differs from what the parabola says, where the interval is
+cut by the range, and where the data do not determine the parameter by itself.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..fit.least_squares import Solution, minimise
+from ..fit.problem import FitProblem, Stretches
+from ..identified import Estimate
+from .covariance import QUANTILE, Certainty
+
+Numbers = NDArray[np.float64]
+
+_DIFFERS = 0.2       # of the rise of the sum of squares at an end: so far a parabola may be off
+_TOUCHES = 1e-6      # of a range
+_NEAR = 0.02         # of the score: so well an end is found
+_STEEP = 3.0         # a score from which on the interval is halved, as where the range of another parameter ends
+_FITS = 20           # at most for an end
+_FIRST = 0.1         # of the range: the first step, at most
+_FARTHER = 2.0       # times, at most, from one step to the next
+
+
+class _Place(NamedTuple):
+    """A value of the fixed parameter, as the fit sees it: its score, and the best point (k,) there.
+
+    The score is the root of the rise of the sum of squares over that at the ends of an interval: 1 is an end.
+    """
+
+    at: float
+    score: float
+    point: Numbers
+
+
+class Profile:
+    """The sum of squares over one parameter, `k`, the others fitted; from the best fit of the whole run."""
+
+    def __init__(self, problem: FitProblem, best: Solution, known: Certainty, inflation: float, k: int) -> None:
+        self._problem, self._best, self._k = problem, best, k
+        self._stretches: Stretches = problem.stretches()
+        self._limit = QUANTILE * inflation
+        self._slope = known.covariance[:, k] / known.covariance[k, k]
+        self._reach = float(np.sqrt(QUANTILE) * known.deviations[k])
+
+    def needs(self) -> bool:
+        """Return whether the parabola does not hold at an end of the interval of the covariance, within the range."""
+        low, high = self._problem.region.low[self._k], self._problem.region.high[self._k]
+        margin = _TOUCHES * (high - low)
+        for side in (-1.0, 1.0):
+            end = self._best.point[self._k] + side * self._reach
+            if not low + margin < end < high - margin:
+                return True
+            point = self._moved(_Place(self._best.point[self._k], 0.0, self._best.point), end)
+            rise = self._cost(point) - self._best.cost
+            if not abs(rise - self._limit) <= _DIFFERS * self._limit:
+                return True
+        return False
+
+    def interval(self) -> tuple[float, float]:
+        """Return the ends, in the unit of the parameter."""
+        one = self._problem.parameters[self._k]
+        return one.outer(self._end(-1.0)), one.outer(self._end(1.0))
+
+    def _end(self, side: float) -> float:
+        """Return where the score is 1 on a side: by the secant of the score, which is nearly a straight line."""
+        begin = float(self._best.point[self._k])
+        region = self._problem.region
+        bound = float((region.low if side < 0.0 else region.high)[self._k])
+        width = float(region.high[self._k] - region.low[self._k])
+        inside, outside = _Place(begin, 0.0, self._best.point), None
+        step = min(self._reach, _FIRST * width)
+        for _ in range(_FITS):
+            if outside is not None:
+                if abs(outside.at - inside.at) < _NEAR * abs(outside.at - begin):
+                    break
+                share = (1.0 - inside.score) / (outside.score - inside.score) if outside.score < _STEEP else 0.5
+                at = inside.at + min(max(share, 0.1), 0.9) * (outside.at - inside.at)
+            else:
+                at = inside.at + side * step
+                at = max(at, bound) if side < 0.0 else min(at, bound)
+                if at == inside.at:
+                    return bound
+            place = self._fitted(at, inside)
+            if abs(place.score - 1.0) < _NEAR:
+                return at
+            if place.score > 1.0:
+                outside = place
+                continue
+            gone = abs(at - begin)
+            wanted = gone / max(place.score, 1e-9) - gone
+            inside, step = place, min(max(wanted, 0.1 * gone), _FARTHER * gone)
+        return inside.at if outside is None else outside.at
+
+    def _fitted(self, at: float, near: _Place) -> _Place:
+        """Return the best fit with the parameter at a value, begun from the fit at another one."""
+        region = self._problem.region.holding(self._k, at)
+        begin = self._moved(near, at)
+        if not np.isfinite(self._cost(begin)):
+            begin = region.inside(near.point)
+        cost, point = self._cost(begin), begin
+        if np.isfinite(cost):
+            found = minimise(partial(self._problem.of_stretches, stretches=self._stretches), begin, region, most=10,
+                             tolerance=1e-3 * self._limit)
+            cost, point = found.cost, found.point
+        return _Place(at, float(np.sqrt(max(cost - self._best.cost, 0.0) / self._limit)), point)
+
+    def _moved(self, near: _Place, at: float) -> Numbers:
+        """Return a point with the parameter at a value, the others moved along as the covariance says."""
+        return self._problem.region.holding(self._k, at).inside(near.point + (at - near.at) * self._slope)
+
+    def _cost(self, point: Numbers) -> float:
+        residuals = self._problem.of_stretches(point, self._stretches)
+        return float(residuals @ residuals) if np.isfinite(residuals[0]) else np.inf
+
+
+def with_profile_intervals(estimates: Sequence[Estimate], problem: FitProblem, best: Solution, known: Certainty,
+                           inflation: float) -> tuple[Estimate, ...]:
+    """Return estimates with their profile intervals, where those of the covariance do not hold."""
+    profiles = [Profile(problem, best, known, inflation, k) for k in range(len(estimates))]
+    return tuple(replace(one, profile=profile.interval() if profile.needs() else None)
+                 for one, profile in zip(estimates, profiles, strict=True))

@@ -1,0 +1,119 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""All laws fitted to a measured friction curve, the best first, and what speaks against the best."""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy import special
+
+from ...core.errors import InputError
+from .law_fit import MISSED, Fit, enough_points
+from .measured_curve import FrictionCurve
+from .smooth_fit import fit_smooth
+from .smooth_laws import SMOOTH_FORMS
+from .table_fit import fit_table
+
+AS_GOOD = 2.0       # of the criterion: nearer than that, two laws are as good (Burnham and Anderson)
+FEWEST = 5          # points, at FEWEST_SPEEDS speeds or more: for Coulomb's law with a viscous slope
+_FEWEST_SPEEDS = 2
+
+
+class Fits(NamedTuple):
+    """The fitted laws, the best first, and the names of those that the curve has too few points for.
+
+    They rank by rising criterion; but a law that misses the points comes after those that do not.  With few points the
+    last term of the criterion is larger than what even a perfect fit gains, and a constant would win over any shape.
+    """
+
+    by_rank: tuple[Fit, ...]
+    left_out: tuple[str, ...]
+
+    @property
+    def as_good(self) -> list[str]:
+        """The names of the laws that are as good by these points."""
+        best, *others = self.by_rank
+        return [fit.name for fit in others
+                if fit.criterion - best.criterion < AS_GOOD and fit.name not in self.passed_over]
+
+    @property
+    def passed_over(self) -> list[str]:
+        """The names of the laws with a lower criterion than the best, which miss the points."""
+        best, *others = self.by_rank
+        return [fit.name for fit in others if fit.criterion < best.criterion]
+
+
+def fit_laws(curve: FrictionCurve) -> Fits:
+    """Return the fits of every law; raises InputError when the points are too few for any."""
+    speeds = len(np.unique(curve.speeds))
+    if len(curve.speeds) < FEWEST or speeds < _FEWEST_SPEEDS:
+        raise InputError('friction curve', f'{len(curve.speeds)} points at {speeds} speeds',
+                         f'at least {FEWEST} points, at {_FEWEST_SPEEDS} speeds or more', 'measure more of them')
+    fits = [fit_table(curve)]
+    fits += [fit_smooth(form, curve) for form in SMOOTH_FORMS if enough_points(len(form.names), curve)]
+    left_out = [form.name for form in SMOOTH_FORMS if not enough_points(len(form.names), curve)]
+    return Fits(tuple(sorted(fits, key=lambda fit: (fit.miss > MISSED, fit.criterion))), tuple(left_out))
+
+
+class SignChanges(NamedTuple):
+    """How often the residuals change their sign along the speed, and the `chance` of as few if they were noise.
+
+    `least` is the chance of a single change: where it is not small, no residuals can show a pattern.
+    """
+
+    changes: int
+    chance: float
+    least: float
+
+
+def sign_changes(fit: Fit) -> SignChanges:
+    """Return the test of runs (Wald and Wolfowitz 1940), exactly: few changes mean that the law misses a shape.
+
+    Of each direction the mean is taken off, and the backward points go before the forward ones, by rising velocity.
+    """
+    left, forward = fit.residuals.copy(), fit.curve.forward
+    for side in (forward, ~forward):
+        if side.any() and not side.all():
+            left[side] -= left[side].mean()
+    above = np.concatenate([left[~forward][::-1], left[forward]]) > 0.0
+    changes = int(np.sum(above[1:] != above[:-1]))
+    first, second = int(above.sum()), int((~above).sum())
+    if not first or not second:
+        return SignChanges(0, 1.0, 1.0)
+    total = _log_choices(first + second, first)
+    chances = [float(np.exp(_log_arrangements(first, second, runs) - total)) for runs in range(2, changes + 2)]
+    return SignChanges(changes, min(sum(chances), 1.0), chances[0])
+
+
+def _log_arrangements(first: int, second: int, runs: int) -> float:
+    """Return the logarithm of how many sequences of `first` and `second` signs have so many runs."""
+    half, odd = divmod(runs, 2)
+    if not odd:
+        return float(np.log(2.0) + _log_choices(first - 1, half - 1) + _log_choices(second - 1, half - 1))
+    return float(np.logaddexp(_log_choices(first - 1, half) + _log_choices(second - 1, half - 1),
+                              _log_choices(first - 1, half - 1) + _log_choices(second - 1, half)))
+
+
+def _log_choices(n: int, k: int) -> float:
+    """Return the logarithm of the number of choices of k among n; −infinity where there is none."""
+    return float(special.gammaln(n + 1) - special.gammaln(k + 1) - special.gammaln(n - k + 1)) if k <= n else -np.inf
+
+
+class CurveSide(NamedTuple):
+    """A direction of motion beside the curve of both: mean of measured over fitted, and its standard error."""
+
+    name: str
+    points: int
+    ratio: float
+    error: float
+
+
+def sides(fit: Fit) -> list[CurveSide]:
+    """Return both directions of a curve beside the fit; none when all points are of one."""
+    forward = fit.curve.forward
+    if forward.all() or not forward.any():
+        return []
+    ratios = fit.curve.coefficients / fit.at(fit.curve.speeds)
+    return [CurveSide(name, int(chosen.sum()), float(ratios[chosen].mean()),
+                 float(ratios[chosen].std() / np.sqrt(chosen.sum())))
+            for name, chosen in (('forward', forward), ('backward', ~forward))]

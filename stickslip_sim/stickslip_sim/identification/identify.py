@@ -1,0 +1,64 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""From a measured run to the scene that reproduces it, with how well each of its numbers is known."""
+
+import os
+import time
+from collections.abc import Mapping
+from contextlib import closing
+from dataclasses import replace
+from pathlib import Path
+
+from ..inputs import load_scene
+from ..recording import read_run
+from ..runs import Run
+from ..scene import Scene, SceneOrName
+from .findings import identification_of
+from .fit.direct_motion import with_delay
+from .fit.problem import FitProblem
+from .given.free_parameters import free_parameters
+from .given.input_checks import check_data, check_parameters
+from .given.motions import motions_of, track_of
+from .given.readings import drives_directly, readings_of
+from .given.run_start import from_measured_start
+from .identified import Identification
+from .search.law_comparison import with_laws
+from .search.many_fits import Keeper, fits_from
+from .search.slip_fit import best_of_slips
+from .search.stages import Progress, best_fit
+from .search.starts import starts_of
+from .search.whole_position import along_the_run
+from .trial.axis_model import AxisModel
+
+
+def identify(run: Run | str | os.PathLike[str], start: SceneOrName, free: str | Path | Mapping[str, object], *,
+             resolutions: Mapping[str, float] | None = None, seed: int = 0, workers: int = 1,
+             laws: bool = False, progress: Progress | None = None, keeper: Keeper | None = None) -> Identification:
+    """Return the scene that reproduces a measured or recorded run, found from the scene `start`.
+
+    `free` is a file as `uncertainty --with` takes it, or its section of parameters, and names beside parameters of the
+    scene `sensor.CHANNEL.offset` and `sensor.CHANNEL.scale`.  `resolutions` are standard deviations of the noise by
+    channel, in its unit, where they are known.  `progress` is called with a stage and the share of it that is done.
+    With `laws` the run is fitted with other laws of friction, too, and a criterion says which is best.  Fits from
+    several starts are shared out to `workers` processes, and kept by a `keeper`, if there is one.
+    What is not known of the start of the run is taken from it, and noted.  Raises InputError and RecordingError.
+    """
+    began = time.perf_counter()
+    say = progress or (lambda stage, share: None)
+    scene = start if isinstance(start, Scene) else load_scene(start)
+    parameters = free_parameters(scene, free)
+    found = read_run(os.fspath(run)) if isinstance(run, str | os.PathLike) else run
+    measurement = readings_of(found, scene, resolutions or {})
+    motions = motions_of(track_of(measurement, measurement.drive or scene.drive))
+    check_parameters(parameters, measurement)
+    check_data(parameters, measurement, motions, scene)
+    scene, parameters, notes = from_measured_start(scene, parameters, measurement, motions)
+    measurement = replace(measurement, notes=(*measurement.notes, *notes))
+    if drives_directly(scene):
+        parameters, measurement = with_delay(parameters, measurement, scene.axis.mass)
+    model = AxisModel(scene, parameters, measurement)
+    problem = FitProblem(model, parameters, measurement, motions)
+    with closing(fits_from(problem, starts_of(problem, seed), workers, keeper)) as fits:
+        ends = best_fit(fits, say)
+    identified = identification_of(problem, scene, best_of_slips(problem, along_the_run(problem, ends)), began)
+    return with_laws(identified, problem, workers, keeper, say) if laws else identified

@@ -1,0 +1,96 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Fits from many starts: on several processes at once, and kept, so that an interrupted identification goes on.
+
+Which fits there are and in which order they end does not depend on the processes: the result is the same to the last
+bit.
+"""
+
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+from contextlib import ExitStack
+from copy import deepcopy
+from functools import partial
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...study.workers import processes
+from ..fit.least_squares import Solution
+from ..fit.problem import FitProblem
+from .stages import Ended, fit_from
+
+Numbers = NDArray[np.float64]
+Arrays = Mapping[str, Numbers]
+
+
+class Keeper(Protocol):
+    """Keeps the arrays of fits that are done, each under a key."""
+
+    def found(self, key: str) -> Arrays | None:
+        """Return what is kept, None where there is nothing."""
+
+    def keep(self, key: str, arrays: Arrays) -> None:
+        """Keep the arrays of a fit."""
+
+
+class KeyedFit(NamedTuple):
+    """A fit to be made, of a problem from a start, and the key under which it is kept."""
+
+    key: str
+    problem: FitProblem
+    start: Numbers
+
+
+class _Fitted(NamedTuple):
+    """The end of a fit, and how many simulations it took."""
+
+    end: Ended
+    runs: int
+
+
+def fits_from(problem: FitProblem, starts: Iterator[Numbers], workers: int, keeper: Keeper | None
+              ) -> Generator[Ended, None, None]:
+    """Yield the fit from each start, in their order; the first is made alone, for it may be good enough."""
+    yield from kept_fits([KeyedFit('fit_0', problem, next(starts))], 1, keeper)
+    yield from kept_fits([KeyedFit(f'fit_{k}', problem, start) for k, start in enumerate(starts, 1)], workers, keeper)
+
+
+def kept_fits(fits: Sequence[KeyedFit], workers: int, keeper: Keeper | None) -> Generator[Ended, None, None]:
+    """Yield where fits end, in their order; those that are kept are not made again."""
+    with ExitStack() as stack:
+        works: list[Callable[[], _Fitted]] = [partial(_fit, one.problem, one.start) for one in fits]
+        if min(workers, len(fits)) > 1:
+            pool = stack.enter_context(processes(min(workers, len(fits)))).pool
+            works = [pool.submit(work).result for work in works]
+        for one, work in zip(fits, works, strict=True):
+            yield _kept(one.problem, one.key, work, keeper)
+
+
+def _kept(problem: FitProblem, key: str, work: Callable[[], _Fitted], keeper: Keeper | None) -> Ended:
+    arrays = None if keeper is None else keeper.found(key)
+    fitted = work() if arrays is None else _of_arrays(arrays)
+    if arrays is None and keeper is not None:
+        keeper.keep(key, _arrays(fitted))
+    problem.model.runs += fitted.runs
+    return fitted.end
+
+
+def _fit(problem: FitProblem, start: Numbers) -> _Fitted:
+    """Return the fit of a copy of a problem: what one fit leaves in it changes no other, as between processes."""
+    own = deepcopy(problem)
+    end = fit_from(own, start)
+    return _Fitted(end, own.model.runs - problem.model.runs)
+
+
+def _arrays(fitted: _Fitted) -> Arrays:
+    end = fitted.end
+    numbers = np.array([end.solution.cost, end.mean_square, float(end.solution.is_settled), float(fitted.runs)])
+    return {'start': end.start, 'point': end.solution.point, 'information': end.solution.information,
+            'numbers': numbers}
+
+
+def _of_arrays(arrays: Arrays) -> _Fitted:
+    cost, mean_square, is_settled, runs = arrays['numbers'].tolist()
+    solution = Solution(arrays['point'], cost, arrays['information'], bool(is_settled))
+    return _Fitted(Ended(arrays['start'], solution, mean_square), int(runs))

@@ -1,0 +1,70 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""A model that is not that of the axis: single slips fitted, each from a measured arrest.
+
+In the whole run its slips come ever more too late or too early, and the least sum of squares means nothing.  It still
+can have the right rests and break-aways, and these weigh most here: they are what such a model is used for.
+"""
+
+from collections.abc import Callable, Sequence
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..fit.least_squares import minimise
+from ..fit.problem import FitProblem
+from .stages import LOST, Ended, worst_square
+
+Numbers = NDArray[np.float64]
+
+_FEWEST_SLIPS, _MOST_SLIPS = 3, 30
+_POINTS = 2             # to begin from, of those where fits began and ended, and with what the force says directly
+_AGAIN = 2              # times that the best is sought from once more: a simplex that has shrunk stands still
+_TRIALS = 60            # at each of them, for each parameter
+_STEP, _STEEPEST = 1e-5, 1e4
+_ROBUST = 10.0          # figures of slips: beyond, their size counts
+_NEAR = 1e-3            # of a logarithm or of a range: so well a point is sought
+
+
+def best_of_slips(problem: FitProblem, ends: Sequence[Ended]) -> list[Ended]:
+    """Return the ends, before them the best fit of single slips where no fit of the whole run is near the data."""
+    count = len(problem.sharp_slips)
+    if ends[0].mean_square < LOST or count < _FEWEST_SLIPS:
+        return [*ends]
+    rows = np.unique(np.linspace(0, count - 1, min(count, _MOST_SLIPS)).round().astype(int))
+    residuals = partial(problem.of_slips, slips=[problem.sharp_slips[k] for k in rows], telling=True)
+    ended = [point for end in ends for point in (end.start, end.solution.point)]
+    direct = [problem.region.inside(problem.with_direct(point)) for point in (*ended, problem.start)]
+    points = [point for of in (ended, direct)
+              for point in sorted(of, key=lambda point: _cost(residuals(point)))[:_POINTS]]
+    nearest = min((_nearest(residuals, point, problem) for point in points), key=lambda point: _cost(residuals(point)))
+    for _ in range(_AGAIN):
+        nearest = _nearest(residuals, nearest, problem)
+    best = minimise(residuals, nearest, problem.region, most=10, tolerance=1e-3, share=1e-4, robust=_ROBUST,
+                    step=_STEP, steepest=_STEEPEST)
+    whole = problem.of_stretches(best.point, problem.stretches())
+    if not np.isfinite(whole).all():
+        return [*ends]
+    figures = residuals(best.point)
+    cost = float(whole @ whole)
+    return [Ended(ends[0].start, best._replace(cost=cost), worst_square(problem, best.point),
+                  float(figures @ figures) / len(figures)), *ends]
+
+
+def _nearest(residuals: Callable[[Numbers], Numbers], start: Numbers, problem: FitProblem) -> Numbers:
+    """Return where the figures are best, by the simplex of Nelder and Mead.
+
+    A slip that is another one from a point on, and a contact that rings, make steps on which slopes mean nothing.
+    """
+    from scipy.optimize import Bounds, minimize  # takes a while, and only a wrong model needs it
+
+    region = problem.region
+    found = minimize(lambda point: _cost(residuals(region.inside(point))), start, method='Nelder-Mead',
+                     bounds=Bounds(region.low, region.high),
+                     options={'maxfev': _TRIALS * len(start), 'xatol': _NEAR, 'fatol': _NEAR, 'adaptive': True})
+    return region.inside(np.asarray(found.x))
+
+
+def _cost(residuals: Numbers) -> float:
+    return float(np.sum(np.sqrt(1.0 + (residuals / _ROBUST)**2) - 1.0)) if np.isfinite(residuals).all() else np.inf

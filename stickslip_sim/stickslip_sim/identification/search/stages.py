@@ -1,0 +1,157 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The way from a start far off to the best fit: single slips from many starts, stretches, and the whole run.
+
+The sum of squares over a whole run has a minimum wherever another number of slips fits into it.  The figures of single
+slips, each from a measured arrest, have few; what they find is near enough for the samples of the same stretches, and
+these for longer ones, up to the whole run, which knows the parameters best.
+"""
+
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..fit.least_squares import STEP, Solution, minimise
+from ..fit.problem import FitProblem, Stretches
+from ..given.motions import MeasuredMotion
+from .starts import N_STARTS, ROBUST
+
+Numbers = NDArray[np.float64]
+Progress = Callable[[str, float], None]
+
+_SAMPLES = 4000         # about so many are enough until the last stage
+_FIRST_SLIPS = 1, 3, 8, 20, 50   # that are fitted as one, before the whole run
+_MOST_STEPS = 60
+_ROUNDS, _GAIN = 4, 0.1 # of further fits at most, and what each must gain
+_OFF, _TIMES_OFF = 4.0, 100.0    # a mean square of a stretch: of 2 % of a slip, and of the median of all
+_GOOD = 1.2             # a mean square up to that, and no other start is tried
+LOST = 100.0            # a mean square from which on the whole run is not followed
+_TRIED = 40             # values of a parameter over its range
+
+
+class Ended(NamedTuple):
+    """A start, where the fit from it ended, and the mean square of the residuals of the worst channel there.
+
+    `of_slips` has the mean square of the figures of single slips where these alone were fitted (`best_of_slips`); one
+    that `is_along` the run was moved to where the position follows it (`along_the_run`).
+    """
+
+    start: Numbers
+    solution: Solution
+    mean_square: float
+    of_slips: float | None = None
+    is_along: bool = False
+
+    @property
+    def is_off(self) -> bool:
+        """Whether the residuals are larger than the noise."""
+        return self.mean_square >= _GOOD
+
+
+def fit_from(problem: FitProblem, start: Numbers) -> Ended:
+    """Return the best fit of the whole run from a point near it."""
+    point = start if problem.is_direct else _nearer(problem, start)   # the filtered residuals lead there from any point
+    solution = _of_whole(problem, point)
+    if (better := _beyond_noise(problem, solution)) is not None:
+        solution = _of_whole(problem, better)
+    for _ in range(_ROUNDS):
+        before = solution.cost
+        if not problem.take_input_noise_of(problem.values(solution.point)):
+            break
+        solution = _of_whole(problem, solution.point)
+        if abs(solution.cost - before) < _GAIN:
+            break
+    solution = _polished(problem, solution)
+    return Ended(start, solution, worst_square(problem, solution.point))
+
+
+def _nearer(problem: FitProblem, start: Numbers) -> Numbers:
+    """Return a point from which the whole run may be fitted: by single slips, then by ever more of them as one."""
+    stride = max(1, len(problem.measurement.times) // _SAMPLES)
+    single = problem.stretches(0, stride)
+    near = problem.stretches(0, stride, _not_followed(problem, start, single))
+    point = _fitted_to(problem, start, near, ROBUST).point
+    wrong = _not_followed(problem, point, single)
+    for first in (first for first in _FIRST_SLIPS if first < len(problem.motions)):
+        point = _fitted_to(problem, point, problem.stretches(first, stride, wrong), np.inf).point
+    return point
+
+
+def _of_whole(problem: FitProblem, start: Numbers) -> Solution:
+    return minimise(partial(problem.of_stretches, stretches=problem.stretches()), start, problem.region,
+                    most=_MOST_STEPS, tolerance=1e-3, step=problem.steps)
+
+
+def _polished(problem: FitProblem, found: Solution) -> Solution:
+    """Return a better end of a fit that follows the run but has not come to rest, or is not good.
+
+    The table of a smooth law has now and then a breakpoint more or less, a step that bars the way: held as it is, it
+    lets the fit by.
+    """
+    for _ in range(_ROUNDS):
+        square = worst_square(problem, found.point)
+        if square > LOST or (square < _GOOD and found.is_settled):
+            break
+        has_table = problem.model.hold_table(problem.values(found.point))
+        again = _of_whole(problem, found.point)
+        is_settled = again.is_settled
+        if has_table:
+            problem.model.hold_table(None)
+            again = _of_whole(problem, again.point)
+        gained = found.cost - again.cost
+        if gained > 0.0:
+            found = again
+        if gained < _GAIN:
+            return found._replace(is_settled=is_settled or found.is_settled)
+    return found
+
+
+def worst_square(problem: FitProblem, point: Numbers) -> float:
+    """Return the mean square of the weighted residuals of the whole run, of the channel where it is the largest."""
+    channels = problem.measurement.channels
+    residuals = problem.of_stretches(point, problem.stretches())[:-len(point)].reshape(len(channels), -1)
+    squares = [float(own @ own / channel.weights.sum()) for own, channel in zip(residuals, channels, strict=True)]
+    return max(squares) if np.isfinite(squares).all() else np.inf
+
+
+def _fitted_to(problem: FitProblem, start: Numbers, part: Stretches, robust: float) -> Solution:
+    return minimise(partial(problem.of_stretches, stretches=part), start, problem.region, most=10, tolerance=1.0,
+                    share=1e-3, robust=robust)
+
+
+def _not_followed(problem: FitProblem, point: Numbers, single: Stretches) -> list[MeasuredMotion]:
+    """Return the motions after which a stretch is far off while most are near: what ended there was no rest."""
+    squares = problem.mean_squares(point, single)
+    limit = max(_OFF, _TIMES_OFF * float(np.median(squares)))
+    return [part.before for part, square in zip(single.parts, squares) if part.before is not None and square > limit]
+
+
+def _beyond_noise(problem: FitProblem, found: Solution) -> Numbers | None:
+    """Return a point that is better than where a fit ended, by a parameter whose derivative is that of noise.
+
+    The sum of squares over such a one has steps, on which a fit comes to rest: its whole range is tried.
+    """
+    residuals = partial(problem.of_stretches, stretches=problem.stretches())
+    best, cost = found.point, found.cost
+    for k in np.flatnonzero(problem.steps > STEP):
+        for number in np.linspace(problem.region.low[k], problem.region.high[k], _TRIED):
+            trial = problem.region.holding(int(k), float(number)).inside(best)
+            left = residuals(trial)
+            if np.isfinite(left[0]) and float(left @ left) < cost:
+                best, cost = trial, float(left @ left)
+    return None if best is found.point else best
+
+
+def best_fit(ends: Iterator[Ended], progress: Progress) -> list[Ended]:
+    """Return the ends of the fits that were made, the best first; others are tried only where the first is not good."""
+    ended: list[Ended] = []
+    progress('fit', 0.0)
+    for k, end in enumerate(ends, 1):
+        progress('fit', k / (1 + N_STARTS))
+        ended.append(end)
+        if end.mean_square < _GOOD:
+            break
+    return sorted(ended, key=lambda end: end.solution.cost)

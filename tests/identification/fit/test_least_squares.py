@@ -1,0 +1,88 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Least squares within a region: at borders, and over plateaus beyond them."""
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.optimize import lsq_linear
+
+from stickslip_sim.identification.fit.bounded_step import bounded_step
+from stickslip_sim.identification.fit.least_squares import minimise
+from stickslip_sim.identification.fit.region import Region, region_of
+from stickslip_sim.identification.given.free_parameters import FreeParameter
+
+Numbers = NDArray[np.float64]
+
+KINETIC, STATIC, LIMIT = 'friction.kinetic.initial', 'friction.static.initial', 'friction.static.limit'
+VALUES = {KINETIC: 0.1, STATIC: 0.15, LIMIT: 0.2, 'friction.static.law': 'exponential'}
+
+
+def parameters(*names: str, low: float = 0.05, high: float = 0.5) -> list[FreeParameter]:
+    return [FreeParameter(name, '', VALUES[name], low, high) for name in names]   # type: ignore[arg-type]
+
+
+def test_a_step_in_ranges_is_that_of_scipy() -> None:
+    random = np.random.default_rng(0)
+    for _ in range(50):
+        slopes, residuals = random.normal(size=(12, 5)), 3.0 * random.normal(size=12)
+        point = random.uniform(-1.0, 1.0, 5)
+        point[random.integers(5)] = 1.0
+        region = Region(np.full(5, -1.0), np.full(5, 1.0))
+        step = bounded_step(slopes.T @ slopes, slopes.T @ residuals, 0.0, point, region)
+        right = lsq_linear(slopes, -residuals, (-1.0 - point, 1.0 - point), tol=1e-14).x
+        assert step == pytest.approx(right, abs=1e-6)
+
+
+def test_a_step_in_order_is_the_best_of_those_in_order() -> None:
+    random = np.random.default_rng(1)
+    region = Region(np.zeros(4), np.full(4, 9.0), (0, 2, 3))
+    for _ in range(30):
+        slopes, residuals = random.normal(size=(9, 4)), 5.0 * random.normal(size=9)
+        point = region.inside(random.uniform(0.0, 9.0, 4))
+        end = point + bounded_step(slopes.T @ slopes, slopes.T @ residuals, 0.0, point, region)
+        assert end == pytest.approx(region.inside(end), abs=1e-12)
+        others = [region.inside(end + size * random.normal(size=4)) for size in (1e-3, 0.1, 3.0) for _ in range(100)]
+        costs = [float(np.sum((residuals + slopes @ (other - point))**2)) for other in [end, *others]]
+        assert costs[0] <= min(costs) + 1e-9
+
+
+def test_a_fit_leaves_a_border_beyond_which_a_number_does_nothing() -> None:
+    """Static friction as the model sees it is never below kinetic friction: from a start below, it must be found."""
+    region = region_of(parameters(KINETIC, STATIC, LIMIT), VALUES)
+    true = np.log([0.11, 0.13, 0.19])
+
+    def residuals(point: Numbers) -> Numbers:
+        kinetic, static, limit = np.maximum.accumulate(point)
+        return 1e3 * np.array([kinetic + 0.1 * static, static - 0.3 * limit, limit + static * kinetic])
+
+    for start in ([0.4, 0.06, 0.06], [0.2, 0.2, 0.2], [0.5, 0.5, 0.5], [0.05, 0.3, 0.1]):
+        found = minimise(lambda point: residuals(point) - residuals(true), np.log(start), region, most=40,
+                         tolerance=1e-9)
+        assert np.exp(found.point) == pytest.approx([0.11, 0.13, 0.19], rel=1e-6), start
+        assert found.is_settled
+
+
+def test_slopes_at_a_corner_of_the_order_are_those_of_each_number() -> None:
+    region = region_of(parameters(KINETIC, STATIC, LIMIT), VALUES)
+    matrix = np.array([[3.0, 1.0, 0.5], [0.2, 2.0, -1.0], [1.0, 0.0, 4.0]])
+    corner = np.full(3, np.log(0.1))
+    found = minimise(lambda point: matrix @ (np.maximum.accumulate(point) - corner), corner, region, most=1,
+                     tolerance=1e-3)
+    assert found.information == pytest.approx(matrix.T @ matrix, rel=1e-6)
+
+
+def test_numbers_that_are_not_free_are_borders() -> None:
+    region = region_of(parameters(STATIC, LIMIT), VALUES)
+    assert np.exp(region.inside(np.log([0.06, 0.06]))) == pytest.approx([0.1, 0.1])
+    assert np.exp(region_of(parameters(LIMIT), VALUES).low) == pytest.approx([0.15])
+    held = region_of(parameters(KINETIC, STATIC, LIMIT), VALUES).holding(1, float(np.log(0.12)))
+    assert np.exp(held.high) == pytest.approx([0.12, 0.12, 0.5])
+    assert np.exp(held.low) == pytest.approx([0.05, 0.12, 0.12])
+    assert np.exp(held.at(np.full(3, 0.5))) == pytest.approx([(0.05 * 0.12)**0.5, 0.12, (0.12 * 0.5)**0.5])
+
+
+def test_ranges_that_begin_at_0_are_in_order_too() -> None:
+    free = [FreeParameter(KINETIC, '', 0.1, 0.0, 0.4), FreeParameter(STATIC, '', 0.15, 0.0, 0.8)]
+    inside = region_of(free, VALUES).inside(np.array([0.75, 0.1]))   # shares of the ranges: 0.3 and 0.08
+    assert [one.outer(number) for one, number in zip(free, inside)] == pytest.approx([0.3, 0.3])
