@@ -5,19 +5,18 @@
 import re
 from itertools import chain, pairwise
 
+from tests.support.floors import floors
 from tests.support.repository import ROOT
 
 
 def test_the_rooms_are_those_of_the_floors() -> None:
     """From the top, as import-linter keeps them; __main__ is no room."""
-    project = (ROOT / 'pyproject.toml').read_text(encoding='utf-8')
-    (layers,) = re.findall(r'^layers = \[\n(.*?)^\]', project, re.MULTILINE | re.DOTALL)
-    floors = [set(re.findall(r'\w+', layer)) for layer in re.findall(r'"(.*?)"', layers)[1:]]
+    rooms = floors('stickslip_sim')[1:]
     page = (ROOT / 'CONTRIBUTING.md').read_text(encoding='utf-8')
     _, _, table = page.partition('| floor, from the top | rooms |\n|---|---|\n')
     shown = [re.findall(r'`(\w+)`', row) for row in table.partition('\n\n')[0].splitlines()]
-    assert sorted(chain(*shown)) == sorted(set().union(*floors))
+    assert sorted(chain(*shown)) == sorted(chain(*rooms))
     # A floor of the table is one or more of those of the contract, whole.
-    order = {room: number for number, floor in enumerate(floors) for room in floor}
+    order = {room: number for number, floor in enumerate(rooms) for room in floor}
     assert [max(order[room] for room in row) < min(order[room] for room in following)
             for row, following in pairwise(shown)] == [True] * (len(shown) - 1)

@@ -3,6 +3,7 @@
 """`import stickslip_sim`: the names for users, that they cost nothing until they are used, and the map of the rooms."""
 
 import re
+from itertools import chain
 from pathlib import Path
 
 import pytest
@@ -10,7 +11,7 @@ import pytest
 import stickslip_sim
 from stickslip_sim import identification
 from tests.conftest import Program
-from tests.support.repository import ROOT
+from tests.support.floors import floors
 
 NAMES = [
     'Cycle', 'Event', 'EventKind', 'InputError', 'Instant', 'Mode', 'RecordingError', 'RecordingWarning', 'Run',
@@ -18,15 +19,6 @@ NAMES = [
     'VerdictError', '__version__', 'critical', 'error_estimate', 'identify', 'load_scene', 'read_run',
     'run_batch', 'scene_names', 'sensitivities', 'simulate', 'simulate_events', 'sweep', 'uncertainty']
 ROOM = re.compile(r'^ {4}(\w+) {2,}\S', re.MULTILINE)   # a line of the map
-
-
-def layers(package: str) -> list[str]:
-    """Return what a package has from the top floor down; those of one floor in the order of their listing."""
-    text = (ROOT / 'pyproject.toml').read_text(encoding='utf-8')
-    listed = re.search(rf'^containers = \["{package}"\]\nexhaustive = true\nlayers = \[\n(.*?)^\]', text,
-                       re.MULTILINE | re.DOTALL)
-    assert listed is not None
-    return re.findall(r'\w+', listed[1])
 
 
 def test_the_names_are_those_of_this_list() -> None:
@@ -44,13 +36,13 @@ def test_an_unknown_name_is_refused() -> None:
 def test_the_map_has_the_rooms_in_the_order_of_the_floors() -> None:
     rooms = ROOM.findall(stickslip_sim.__doc__ or '')
     package = Path(stickslip_sim.__file__).parent
-    assert ['__main__', *rooms] == layers('stickslip_sim')
+    assert ['__main__', *rooms] == [*chain(*floors('stickslip_sim'))]
     assert sorted(rooms) == sorted(path.parent.name for path in package.glob('*/__init__.py'))
 
 
 def test_the_map_of_identification_has_its_floors() -> None:
     """What is not on it, import-linter finds: its list is exhaustive."""
-    assert ROOM.findall(identification.__doc__ or '') == layers('stickslip_sim.identification')
+    assert ROOM.findall(identification.__doc__ or '') == [*chain(*floors('stickslip_sim.identification'))]
 
 
 def test_importing_costs_nothing(in_a_process: Program) -> None:
