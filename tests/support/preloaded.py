@@ -15,7 +15,7 @@ from stickslip_sim.recording import flat_layout, schema, topics
 from stickslip_sim.ros.node.topics import message_type
 
 for room in ('sim_node', 'cascade_controller', 'compensating_controller', 'replay_node', 'health', 'process.program',
-             'node.feed_axis', 'controllers.controller_node', 'replay.replay_node', 'diagnostics.health_node'):
+             'node.feed_axis', 'controllers.controller_node', 'replay.node', 'diagnostics.health_node'):
     importlib.import_module(f'stickslip_sim.ros.{room}')
 for topic in topics.RECORDED:
     schema(topic.type)

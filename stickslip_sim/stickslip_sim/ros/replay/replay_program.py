@@ -20,7 +20,7 @@ playback_duration, clock, delay, start_paused, topics.
 
 
 def _run(_: None, signals: 'Signals') -> None:
-    from .replay_node import Replay
+    from .node import Replay
 
     node = Replay()
     spin(node, signals, lambda: node.player.is_over)
