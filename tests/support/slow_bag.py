@@ -7,8 +7,7 @@ import time
 from typing import Any
 
 from stickslip_sim.core.types import Sample
-from stickslip_sim.recording import open_run
-from stickslip_sim.ros.node import recordings
+from stickslip_sim.recording import open_run, recordings
 from stickslip_sim.ros.node.axis_program import PROGRAM
 from stickslip_sim.ros.node.publishers import Publishers
 from stickslip_sim.ros.process.program import live

@@ -38,11 +38,6 @@ class SteadyClock:
     sleep = staticmethod(time.sleep)
 
 
-def utc_stamp() -> str:
-    """Return the time of day as a part of a folder name, to the second."""
-    return time.strftime('%Y%m%dT%H%M%SZ', time.gmtime())
-
-
 def wake_precisely() -> None:
     """Let the kernel wake this thread when it is due; it may be 50 µs late by default (docs/loop.md has the effect)."""
     with suppress(OSError, AttributeError):    # of Linux only

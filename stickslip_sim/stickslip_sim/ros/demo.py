@@ -21,10 +21,9 @@ from stickslip_msgs.msg import DriveVelocity, ExternalForce, SliderState
 
 from ..core.errors import RecordingError, StickslipError
 from ..core.types import Mode
-from ..realtime.pacing import utc_stamp
 from ..recording import topics as names
+from ..recording.stamped_folder import stamped_folder
 from .demo_report import report
-from .node.recordings import first_free
 from .node.topics import publisher, subscription
 
 SCENE = 'paper_fig8'
@@ -87,7 +86,7 @@ class Driver(Node):  # type: ignore[misc]
 def main() -> int:
     """Run the demonstration; return the exit code."""
     options = _options()
-    folder = first_free(lambda number: options.out / f'{SCENE}_{utc_stamp()}{f"_{number}" if number > 1 else ""}')
+    folder = stamped_folder(options.out, SCENE)
     try:
         print(f'starting sim_node on {SCENE} for {options.duration:g} s of real time')
         with _driver(options.duration) as driver, _node_process(folder) as process:

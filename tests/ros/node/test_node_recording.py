@@ -10,16 +10,11 @@ from typing import Any
 import pytest
 
 from stickslip_sim.core.errors import RecordingWarning
-from stickslip_sim.recording import Bag, open_bag, read_run, schema
-from stickslip_sim.scene import load_scene
+from stickslip_sim.recording import Bag, open_bag, read_run
 from stickslip_sim.verify.verification import verify
 from tests.support.node_processes import assert_clean, recording_into, running, with_small_files
 from tests.support.ros_nodes import client
 from tests.support.waiting import DEADLINE, wait_for
-
-from stickslip_sim.ros.node.recordings import (  # isort: skip  # after tests.support.ros_nodes, which skips without ROS
-    Recordings,
-)
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
@@ -127,25 +122,6 @@ class TestRecording:
             process.end()
         assert {path.name for path in tmp_path.iterdir()} == {'runs'}
         assert len(list((tmp_path / 'runs').iterdir())) == 4
-
-    @pytest.mark.parametrize('ending', ['/', '//', '/.'])
-    def test_a_folder_as_a_shell_completes_it(self, tmp_path: Path, ending: str) -> None:
-        scene = load_scene('paper_fig8', {'record.folder': f'{tmp_path}/runs/first{ending}'})
-        recordings = Recordings('/', scene)
-        recordings.begin(scene)
-        recordings.end({})
-        assert open_bag(tmp_path / 'runs' / 'first').is_complete
-
-    def test_no_message_definition_is_read_while_the_axis_runs(self, tmp_path: Path) -> None:
-        """It takes longer than a step."""
-        scene = load_scene('paper_fig8', {'record.folder': f'{tmp_path}/runs/first'})
-        recordings = Recordings('/', scene)
-        schema.cache_clear()
-        recordings.prepare()
-        read = schema.cache_info().misses
-        recordings.begin(scene)
-        recordings.end({})
-        assert schema.cache_info().misses == read > 0
 
     def test_a_scene_whose_name_is_a_path(self, tmp_path: Path) -> None:
         scene = tmp_path / 'scene.yaml'

@@ -14,9 +14,9 @@ from ...realtime.refusals import Refusal, Refusals
 from ...realtime.step_loop import StepLoop
 from ...realtime.timing_statistics import TimingWindow
 from ...realtime.verdict import TimingVerdict
+from ...recording.recordings import Recordings
 from ...rig import FAILED, SILENT_BRIDGE
 from ..node.conversion import set_stamp
-from ..node.recordings import Recordings
 
 OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
 _MANY_OVERRUNS = 0.05    # share of the steps; the odd one is what a desktop kernel does

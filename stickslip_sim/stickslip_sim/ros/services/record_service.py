@@ -10,9 +10,9 @@ from std_srvs.srv import SetBool
 from ...core.errors import RecordingError
 from ...realtime.step_loop import StepLoop
 from ...recording import RECORDED
+from ...recording.recordings import Recordings
 from ..node.parameters import SceneNode
 from ..node.publishers import Publishers
-from ..node.recordings import Recordings
 from .answers import BUSY, answer
 
 

@@ -1,29 +1,21 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Recordings of the node: begun, watched and ended while the axis runs."""
+"""Recordings of a node: begun, watched and ended while the axis runs."""
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from ...core.errors import InputError, RecordingError
-from ...realtime.pacing import utc_stamp
-from ...recording import (
-    RECORDED,
-    MessageCodec,
-    RecorderThread,
-    RunFacts,
-    Split,
-    Topic,
-    checkpoint_file,
-    open_run,
-    receipt_file,
-    schema,
-)
-from ...recording.topics import PARAMETER_EVENTS
-from ...scene.model import Scene
-from ...scene.text import file_name
+from ..core.errors import InputError, RecordingError
+from ..scene.model import Scene
+from ..scene.text import file_name
+from .bag import Split
+from .run import RunFacts, checkpoint_file, open_run, receipt_file
+from .schemas import MessageCodec, schema
+from .stamped_folder import stamped_folder
+from .thread import RecorderThread
+from .topics import PARAMETER_EVENTS, RECORDED, Topic
 
 _RUNS = 'runs'
 
@@ -104,9 +96,9 @@ class Recordings:
 
         Raises InputError on one that lies elsewhere.
         """
-        if not scene.record.folder:    # axes may start in the same second
-            name = '_'.join([*filter(None, self._namespace.split('/')), file_name(scene.name), utc_stamp()])
-            return first_free(lambda number: self._root / (f'{name}_{number}' if number > 1 else name))
+        if not scene.record.folder:
+            names = [*filter(None, self._namespace.split('/')), file_name(scene.name)]
+            return stamped_folder(self._root, '_'.join(names))
         return self.allowed(scene.record.folder)
 
     def allowed(self, folder: str) -> Path:
@@ -125,11 +117,3 @@ def split_of(scene: Scene) -> Split:
     """Return when the scene lets a bag go on in another file."""
     duration = scene.record.max_duration
     return Split(scene.record.max_size, None if duration is None else round(duration * 1e9))
-
-
-def first_free(name: Callable[[int], Path]) -> Path:
-    """Return the first of the names for 1, 2, ... that is not in use."""
-    number = 1
-    while os.path.lexists(name(number)):
-        number += 1
-    return name(number)
