@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The common part of `sweep` and `uncertainty`: the folder of a study, and the processes that work on it."""
+"""What verbs of many runs have in common: the folder of a study, the processes that work on it, points that failed."""
 
 import os
 import shlex

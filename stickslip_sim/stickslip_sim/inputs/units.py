@@ -39,7 +39,7 @@ def unit_of(option: str, word: str, units: Mapping[str, Fraction]) -> str:
 
 
 def named_unit(heading: str, units: Mapping[str, Fraction]) -> str | None:
-    """Return the unit in the heading of a column, as in `speed [mm/s]` or `speed_mm_per_s`; None without one."""
+    """Return the unit in the heading of a column, as in "speed [mm/s]" or "speed_mm_per_s"; None without one."""
     words = heading.replace('µ', 'u').replace('μ', 'u').replace('_per_', '/')
     for unit in sorted(units, key=len, reverse=True):
         if re.search(rf'(?<![A-Za-z/]){re.escape(unit)}(?![A-Za-z/])', words):

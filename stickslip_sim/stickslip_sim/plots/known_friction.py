@@ -54,7 +54,7 @@ class Bins(NamedTuple):
 
 
 class KnownFriction(NamedTuple):
-    """Coefficients of friction: identified with bands, before (`start_`), and measured.
+    """Coefficients of friction: identified with bands, those of the start, and measured.
 
     `accelerating` is the branch of a slip after the rest that is usual in the run; None without one.
     """

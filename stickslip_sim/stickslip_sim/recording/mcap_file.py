@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """An MCAP file as it is written: the records are those of the library, messages come one by one or in blocks.
 
-The file is the same to the last byte as that of `mcap.writer.Writer` with chunks of zstd, all indexes and checksums.
-That writer takes messages only one by one, and holds an object for each chunk until the end.
+The file is to the last byte what the library writes with chunks of zstd, all indexes and checksums.  Its writer
+takes messages only one by one, and holds an object for each chunk until the end.
 """
 
 from collections import Counter

@@ -27,9 +27,9 @@ _BACKWARD = 'backward_'
 def kinetic_rows(axis: Axis, count: int, given: Mapping[str, Numbers]) -> Numbers:
     """Return a row of `pack` for each axis with the kinetic friction of its own, all of one length.
 
-    `given` has arrays by names as `coefficients` and `backward_end_slope`, with one entry an axis or one for all.  An
-    excess that ends linearly at v_gr, as it does where none is given, follows v_gr.  Static friction is left to who
-    calls it.  Raises InputError.
+    `given` has arrays by names as `coefficients`, and those with `backward_` before them, with one entry an axis or one
+    for all.  An excess that ends linearly at v_gr, as it does where none is given, follows v_gr.  Static friction is
+    left to who calls it.  Raises InputError.
     """
     friction, rows = _held(axis.friction), []
     for k in range(count):

@@ -8,7 +8,7 @@ limit, rounded up to a power of two.  It runs twice as long, from the start, unt
 * it sticks and slips for ever: in this run and in the one before the latest rounds repeat, one by one or in groups,
   and end alike (`repetition`);
 * it never sticks again: the least speed of the slip that goes on grows from swing to swing (the argument is that of
-  `solvers.exact.cycles`), or a slip took more than half of the run and twice the time brought no event more, nor
+  `solvers.exact.many_axes`), or a slip took more than half of the run and twice the time brought no event more, nor
   will more time, as it does where the slider coasts a little faster or slower than its drive;
 * it is at rest for ever: nothing pulls.
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Where a fit may go: within the ranges, static friction not below kinetic friction, nor its limit below its start.
 
-Beyond such a border the axis stays what it is (`trial_friction.put_in_order` raises the lower number), so that a fit
+Beyond such a border the axis stays what it is (`friction_tables.put_in_order` raises the lower number), so that a fit
 which goes there finds no way back: its sum of squares does not change with the number that is too low.
 """
 

@@ -30,7 +30,7 @@ _ORDER = ('fit', 'residuals', 'friction')
 
 def report_page(found: Identification, run: str, start: str, pictures: Mapping[str, str], versions: Mapping[str, str]
                 ) -> str:
-    """Return the page; `pictures` are parts of HTML by the names of `captions`."""
+    """Return the page; `pictures` are parts of HTML by the names that `caption` takes."""
     title = f'{found.scene.name}, identified from {run}'
     body = [f'<h1>{escape(title)}</h1>', _verdict(found), *_facts(found, run, start), _estimates(found.estimates),
             *_open(found), *(pictures[name] for name in _ORDER), _channels(found), _slips(found),

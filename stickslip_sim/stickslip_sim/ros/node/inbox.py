@@ -26,10 +26,7 @@ class Message(NamedTuple):
 
 
 class Inbox:
-    """A subscription that no executor knows; for the thread of the step loop.
-
-    `now` returns the time on the steady clock, ns.
-    """
+    """A subscription that no executor knows; for the thread of the step loop."""
 
     def __init__(self, subscription: Any) -> None:
         self._handle, self._type = subscription.handle, subscription.msg_type
