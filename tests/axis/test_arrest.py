@@ -1,0 +1,91 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""How a slip ends, ẋ = 0: stick, or a reversal at once where a rigid contact cannot hold |F_d + F_e| at N mu_s(0)."""
+
+from dataclasses import replace
+
+import pytest
+
+from stickslip_sim.axis.codes import ACCELERATING, ARREST, DECELERATING, REVERSE, STICK
+from stickslip_sim.axis.layout import Parameters
+from stickslip_sim.axis.rows import EventRow, Events
+from stickslip_sim.axis.state_record import State
+from stickslip_sim.axis.transitions import arrest
+from tests.support.plain_axes import COMPLIANT, CONVENTIONAL, FRICTION, SIDED, STATIC, parameters, slip
+
+both_ways = pytest.mark.parametrize('direction', [1.0, -1.0])
+HIGHER = replace(FRICTION, static=replace(STATIC, initial=0.375))      # above mu_k(0) = 0.25
+
+
+def arrested(p: Parameters, s: State) -> EventRow:
+    events = Events(1)
+    arrest(p, s, events, 0)
+    return events.rows[0]
+
+
+@both_ways
+@pytest.mark.parametrize('push', [0.0, 16.0, -16.0, 5.0])
+def test_a_force_within_the_limit_is_held(push: float, direction: float) -> None:
+    """Also one that is exactly on it; the event has the friction of the slip, N mu_k(0)."""
+    p = parameters()
+    s = slip(p, DECELERATING, 0.0, direction=direction, push=push, excess=0.25, acceleration=-direction, rest=9.0,
+             second=2.0, fraction=0.25, origin=5.0, position=0.5, drive=0.75, spring=0.25)
+    row = arrested(p, s)
+    assert (row.kind, row.mode, row.direction) == (ARREST, STICK, direction)
+    assert (row.friction, row.static) == (direction * 16.0, 0.25)
+    assert (row.second, row.fraction, row.position, row.drive, row.velocity) == (2.0, 0.25, 5.5, 5.75, 0.0)
+    assert row.drive_force == 1024.0 * 0.25
+    assert (s.mode, s.velocity, s.rest, s.acceleration) == (STICK, 0.0, 0.0, 0.0)
+
+
+@both_ways
+@pytest.mark.parametrize('friction', [FRICTION, HIGHER])
+def test_a_force_beyond_the_limit_turns_the_slider_round(friction: object, direction: float) -> None:
+    """It breaks away with mu_s(0) of the new direction, and E = mu_s(0) − mu_k(0)."""
+    p = parameters(friction=friction)
+    static = p.static_initial
+    s = slip(p, DECELERATING, 0.0, direction=direction, push=-(64.0 * static + 6.0), excess=0.125)
+    row = arrested(p, s)
+    assert (row.kind, row.mode, row.direction, row.static) == (REVERSE, ACCELERATING, -direction, static)
+    assert row.friction == direction * 16.0          # that of the slip which ends
+    assert (s.mode, s.direction, s.excess) == (ACCELERATING, -direction, static - 0.25)
+    assert s.acceleration == -direction * 6.0 / 2.0
+
+
+def test_without_branches_friction_drops_as_the_slider_turns() -> None:
+    p = parameters(friction=replace(HIGHER, excess=None))
+    s = slip(p, DECELERATING, 0.0, push=-(24.0 + 6.0))
+    assert arrested(p, s).kind == REVERSE
+    assert (s.excess, s.acceleration) == (0.0, -(6.0 + 64.0 * (0.375 - 0.25)) / 2.0)
+    assert arrested(parameters(friction=CONVENTIONAL), slip(p, DECELERATING, 0.0, push=-16.0)).kind == ARREST
+
+
+@pytest.mark.parametrize(('direction', 'force', 'kind', 'static'), [
+    (1.0, -20.0, ARREST, 0.25), (1.0, -24.0, ARREST, 0.25), (1.0, -26.0, REVERSE, 0.375), (-1.0, 15.0, ARREST, 0.375),
+    (-1.0, 18.0, REVERSE, 0.25)])
+def test_the_limit_is_that_against_the_force(direction: float, force: float, kind: float, static: float) -> None:
+    """16 N against a force forwards, 24 N against one backwards; the event states mu_s(0) of its own direction."""
+    p = parameters(friction=SIDED)
+    s = slip(p, DECELERATING, 0.0, direction=direction, push=direction * force)
+    row = arrested(p, s)
+    assert (row.kind, row.static, row.direction) == (kind, static, direction if kind == ARREST else -direction)
+    assert row.friction == direction * 64.0 * (0.25 if direction > 0.0 else 0.125)
+
+
+@both_ways
+def test_a_compliant_contact_holds_any_force_at_first(direction: float) -> None:
+    """It goes on from the friction force, and yields: F_c decides, unless the drive is judged."""
+    p = parameters(contact=COMPLIANT)
+    s = slip(p, DECELERATING, 0.0, direction=direction, push=-30.0)
+    assert arrested(p, s).kind == ARREST
+    assert (s.mode, s.deflection) == (STICK, direction * 16.0 / 4096.0)
+    assert s.acceleration == -direction * (30.0 + 16.0) / 2.0
+    p = parameters(contact=replace(COMPLIANT, judges_drive=True))
+    s = slip(p, DECELERATING, 0.0, direction=direction, push=-30.0)
+    assert arrested(p, s).kind == REVERSE
+    assert (s.direction, s.acceleration) == (-direction, -direction * (30.0 - 16.0) / 2.0)
+
+
+def test_what_rounding_left_of_the_speed_is_gone() -> None:
+    s = slip(parameters(), DECELERATING, 1e-17, push=3.0)
+    assert (arrested(parameters(), s).velocity, s.velocity) == (0.0, 0.0)

@@ -1,0 +1,137 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""What an axis refuses at its edge: one line with the name, the value, the range and the fix."""
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from stickslip_sim.axis import CompliantContact, Friction, InitialState, check_start
+from stickslip_sim.core.errors import InputError
+from stickslip_sim.friction import StaticLaw, StaticLawKind
+from tests.support.plain_axes import AXIS, BACKWARD, COMPLIANT, CONVENTIONAL, FRICTION, KINETIC, SIDED, STATIC
+
+NOT_NUMBERS = (math.nan, math.inf, -math.inf)
+
+
+def refusal(make: Any, **given: Any) -> str:
+    with pytest.raises(InputError) as caught:
+        make(**given)
+    assert '\n' not in str(caught.value)
+    return str(caught.value)
+
+
+def axis(**changes: Any) -> object:
+    return replace(AXIS, **changes)
+
+
+@pytest.mark.parametrize('value', [0.0, -1.0, -1e-300, *NOT_NUMBERS])
+def test_a_mass_is_above_0(value: float) -> None:
+    assert refusal(axis, mass=value) == (f'axis.mass = {value!r} is refused: must be finite and > 0 kg; '
+                                         'give the mass of the slider')
+
+
+@pytest.mark.parametrize('value', [-1.0, -1e-300, *NOT_NUMBERS])
+@pytest.mark.parametrize(('name', 'unit'), [('drive_stiffness', 'N/m'), ('drive_damping', 'N s/m'),
+                                            ('normal_force', 'N')])
+def test_spring_damper_and_normal_force_are_0_or_above(name: str, unit: str, value: float) -> None:
+    assert refusal(axis, **{name: value}) == (f'axis.{name} = {value!r} is refused: must be finite and >= 0 {unit}; '
+                                              'use 0 to leave it out')
+    assert axis(**{name: 0.0}) != AXIS
+
+
+@pytest.mark.parametrize('value', [0.0, -1.0, *NOT_NUMBERS])
+def test_a_contact_that_yields_has_a_spring(value: float) -> None:
+    assert refusal(CompliantContact, stiffness=value, damping=1.0).startswith(
+        f'contact.stiffness = {value!r} is refused: must be finite and > 0 N/m; use contact.model: rigid')
+
+
+@pytest.mark.parametrize('value', [-1.0, *NOT_NUMBERS])
+def test_the_damping_of_a_contact_is_0_or_above(value: float) -> None:
+    assert refusal(CompliantContact, stiffness=1.0, damping=value).startswith(
+        f'contact.damping = {value!r} is refused: must be finite and >= 0 N s/m')
+    assert CompliantContact(1.0, 0.0).damping == 0.0
+
+
+def test_kinetic_friction_at_rest_is_not_above_static_friction() -> None:
+    """Equal, as the paper has it, is allowed."""
+    lower = replace(STATIC, initial=0.2)
+    assert refusal(Friction, static=lower, kinetic=KINETIC, excess=None).startswith(
+        'friction.kinetic.coefficients[0] = 0.25 is refused: must be <= friction.static.initial (0.2)')
+    assert STATIC.initial == KINETIC.coefficients[0]
+    back = Friction(lower, replace(KINETIC, coefficients=(0.1, 0.05, 0.05)), None)
+    with pytest.raises(InputError, match=r'friction\.kinetic\.coefficients\[0\] = 0\.25'):
+        replace(CONVENTIONAL, static=lower, backward=back)
+
+
+@pytest.mark.parametrize(('backward', 'said'), [
+    (SIDED, 'friction.backward = '),
+    (replace(BACKWARD, static=StaticLaw(StaticLawKind.CONSTANT, 0.375, 0.375)), 'must be the same law as forwards'),
+    (replace(BACKWARD, static=replace(BACKWARD.static, delay=1.0)), 'friction.static.backward.delay = 1.0'),
+    (replace(BACKWARD, excess=None), 'given in both directions or in none')])
+def test_the_two_directions_are_of_one_kind(backward: Friction, said: str) -> None:
+    with pytest.raises(InputError) as caught:
+        replace(FRICTION, backward=backward)
+    assert said in str(caught.value)
+
+
+@pytest.mark.parametrize('value', NOT_NUMBERS)
+@pytest.mark.parametrize(('name', 'unit'), [('position', 'm'), ('velocity', 'm/s'), ('stretch', 'm'),
+                                            ('deflection', 'm')])
+def test_a_start_is_finite(name: str, unit: str, value: float) -> None:
+    assert refusal(InitialState, **{name: value}).startswith(
+        f'initial.{name} = {value!r} is refused: must be finite, in {unit}')
+
+
+@pytest.mark.parametrize('value', [-1.0, math.nan, -math.inf])
+def test_a_rest_time_is_0_or_above(value: float) -> None:
+    assert refusal(InitialState, rest_time=value).startswith(
+        f'initial.rest_time = {value!r} is refused: must be >= 0 s')
+    assert InitialState(rest_time=math.inf) == InitialState()
+
+
+def test_prolonged_rest_needs_a_law_with_a_limit() -> None:
+    grows = replace(AXIS, friction=Friction(replace(STATIC, kind=StaticLawKind.LOGARITHMIC), KINETIC, None))
+    assert refusal(check_start, axis=grows, initial=InitialState()).startswith(
+        'initial.rest_time = inf is refused: must be finite with the logarithmic static law')
+    check_start(grows, InitialState(rest_time=1e9))
+
+
+def test_a_rigid_contact_starts_undeflected() -> None:
+    assert refusal(check_start, axis=AXIS, initial=InitialState(deflection=1e-6)).startswith(
+        'initial.deflection = 1e-06 is refused: must be 0 with a rigid contact')
+    check_start(AXIS, InitialState())
+
+
+@pytest.mark.parametrize('side', [1.0, -1.0])
+@pytest.mark.parametrize(('load', 'velocity', 'rest', 'carried'), [
+    (0.0, 0.0, math.inf, 32.0), (64.0, 0.0, math.inf, 64.0), (0.0, 0.0, 0.0, 16.0), (0.0, 0.125, math.inf, 32.0)])
+def test_a_contact_starts_with_what_it_holds(load: float, velocity: float, rest: float, carried: float, side: float
+                                             ) -> None:
+    """|c_c δ + h_c ẋ| <= N mu_s(t⁻), with a load on top of N; just on the limit it holds."""
+    compliant = replace(AXIS, contact=COMPLIANT)
+    deflection = (carried - 64.0 * velocity) / 4096.0
+    start = InitialState(velocity=side * velocity, rest_time=rest, deflection=side * deflection)
+    check_start(compliant, start, load)
+    beyond = replace(start, deflection=side * (deflection + 1.0 / 4096.0))
+    assert refusal(check_start, axis=compliant, initial=beyond, load=load).startswith(
+        f'initial.deflection = {beyond.deflection!r} is refused: must be such that the contact carries at most '
+        f'N mu_s = {carried:g} N; it would carry {side * (carried + 1.0):g} N')
+
+
+def test_the_limit_of_a_start_is_that_against_its_force() -> None:
+    compliant = replace(AXIS, contact=COMPLIANT, friction=SIDED)
+    check_start(compliant, InitialState(deflection=-48.0 / 4096.0))
+    with pytest.raises(InputError, match='at most N mu_s = 32 N'):
+        check_start(compliant, InitialState(deflection=33.0 / 4096.0))
+
+
+def test_friction_turned_round() -> None:
+    """The two directions change places; friction without a direction stays."""
+    assert (SIDED.mirrored.along(1.0), SIDED.mirrored.along(-1.0)) == (
+        replace(BACKWARD, backward=FRICTION), FRICTION)
+    assert FRICTION.mirrored is FRICTION
+    assert SIDED.sides == (FRICTION, BACKWARD)
+    assert (SIDED.along(-1.0), SIDED.along(0.0), FRICTION.along(-1.0)) == (BACKWARD, SIDED, FRICTION)

@@ -1,0 +1,163 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The motion of each mode, against the power series of its balance of forces and against forms written by hand."""
+
+import math
+from typing import Any
+
+import pytest
+
+from stickslip_sim.axis import motion
+from stickslip_sim.axis.codes import ACCELERATING, COASTING, DECELERATING, STICK
+from stickslip_sim.axis.layout import Parameters
+from stickslip_sim.axis.state_record import State
+from stickslip_sim.linear.oscillator import short_integrals
+from tests.support.plain_axes import COMPLIANT, CONVENTIONAL, parameters, slip, state
+from tests.support.slider_balance import Balance, Motion
+
+EXCESS = 0.25
+# F at standstill and its slope on the first segment of the tables, N and N s/m: 16 N falling to 8 N at 0.25 m/s, and
+# the excess on top, 16 N falling to 0 at 0.5 m/s
+FRICTION = {DECELERATING: (16.0, -32.0), ACCELERATING: (32.0, -64.0)}
+INPUTS = [{'v': 0.125}, {'v': 0.125, 'f_rate': 8.0}, {'v': 0.125, 'v_rate': 0.5, 'f_rate': -8.0},
+          {'v': -0.0625, 'f': 3.0}]
+AXES: list[dict[str, Any]] = [
+    {}, {'drive_damping': 0.0}, {'drive_stiffness': 0.0}, {'drive_stiffness': 0.0, 'drive_damping': 0.0},
+    {'damper_on_slideway': True}, {'drive_damping': 512.0}]
+
+
+def balance(axis: dict[str, Any], **numbers: float) -> Balance:
+    return Balance(stiffness=axis.get('drive_stiffness', 1024.0), damping=axis.get('drive_damping', 32.0),
+                   is_on_slideway=axis.get('damper_on_slideway', False), **numbers)
+
+
+def begun(p: Parameters, s: State, start: Motion) -> State:
+    """Return the state with the acceleration of its balance and its closed form."""
+    s.acceleration = start.acceleration
+    motion.begin_motion(p, s)
+    return s
+
+
+@pytest.mark.parametrize('direction', [1.0, -1.0])
+@pytest.mark.parametrize('mode', [DECELERATING, ACCELERATING])
+@pytest.mark.parametrize('inputs', INPUTS, ids=str)
+@pytest.mark.parametrize('axis', AXES, ids=str)
+def test_a_slip_follows_its_balance_of_forces(axis: dict[str, Any], inputs: dict[str, float], mode: float,
+                                              direction: float) -> None:
+    """Before a radian is over and after it; all that the segment start has moves along."""
+    p = parameters(**axis)
+    at_rest, slope = FRICTION[mode]
+    inputs = {name: direction * number for name, number in inputs.items()}
+    numbers = {'velocity': direction * 0.0625, **inputs}
+    truth = balance(axis, friction=direction * at_rest, viscous=slope, stretch=direction * 0.03125, **numbers)
+    for t in (0.001, 0.03, 0.2):
+        s = begun(p, state(mode=mode, direction=direction, excess=EXCESS, spring=direction * 0.03125, position=1.0,
+                           drive=2.0, **numbers), truth.after(0.0))
+        expected = truth.after(t)
+        assert motion.travel(p, s, t) == pytest.approx(expected.of_slider, rel=1e-12, abs=1e-14)
+        assert motion.drive_travel(s, t) == pytest.approx(expected.drive_travel, rel=1e-14)
+        motion.move_start(p, s, 3.0, 0.25, t)
+        assert (s.second, s.fraction, s.rest, s.mode) == (3.0, 0.25, 0.0, mode)
+        assert (s.position, s.drive, s.velocity, s.acceleration, s.spring, s.inputs.v, s.inputs.f) == pytest.approx(
+            (1.0 + expected.travel, 2.0 + expected.drive_travel, expected.velocity, expected.acceleration,
+             expected.stretch, expected.v, expected.f), rel=1e-12, abs=1e-14)
+
+
+@pytest.mark.parametrize('inputs', [*INPUTS, {'f': 5.0}], ids=str)
+@pytest.mark.parametrize('axis', AXES, ids=str)
+def test_a_compliant_stick_rings(axis: dict[str, Any], inputs: dict[str, float]) -> None:
+    """At √((c + c_c)/m), damped by h + h_c; the rest time and the deflection go on."""
+    p = parameters(contact=COMPLIANT, **axis)
+    numbers = {'velocity': -0.0625, 'deflection': 0.00390625, **inputs}
+    truth = balance(axis, stretch=0.015625, contact_stiffness=4096.0, contact_damping=64.0, **numbers)
+    for t in (0.001, 0.03, 0.2):
+        s = begun(p, state(mode=STICK, spring=0.015625, rest=0.5, **numbers), truth.after(0.0))
+        expected = truth.after(t)
+        motion.move_start(p, s, 0.0, t, t)
+        assert (s.position, s.velocity, s.acceleration, s.spring, s.deflection) == pytest.approx(
+            (expected.travel, expected.velocity, expected.acceleration, expected.stretch, expected.deflection),
+            rel=1e-12, abs=1e-14)
+        assert s.rest == 0.5 + t
+
+
+def test_an_undamped_slip_is_a_cosine() -> None:
+    """Constant friction, a drive that stands: x about (c w − F)/c, at √(c/m)."""
+    p = parameters(drive_damping=0.0, friction=CONVENTIONAL, normal_force=0.0)
+    s = state(mode=DECELERATING, direction=1.0, spring=0.125, velocity=0.25)
+    s.acceleration = 1024.0 * 0.125 / 2.0
+    motion.begin_motion(p, s)
+    omega = math.sqrt(1024.0 / 2.0)
+    for t in (0.01, 0.1, 1.0):
+        y, u, a = motion.travel(p, s, t)
+        sine, cosine = math.sin(omega * t), math.cos(omega * t)
+        assert y == pytest.approx(0.125 * (1.0 - cosine) + 0.25 / omega * sine, rel=1e-12)
+        assert u == pytest.approx(0.125 * omega * sine + 0.25 * cosine, abs=1e-13)
+        assert a == pytest.approx(omega * (0.125 * omega * cosine - 0.25 * sine), abs=1e-12)
+
+
+def test_a_slip_without_a_spring_and_a_damper_is_a_parabola() -> None:
+    p = parameters(drive_stiffness=0.0, drive_damping=0.0, normal_force=0.0)
+    s = state(mode=ACCELERATING, direction=1.0, velocity=0.25, acceleration=3.0)
+    motion.begin_motion(p, s)
+    assert motion.travel(p, s, 2.0) == (0.25 * 2.0 + 3.0 * 2.0, 0.25 + 3.0 * 2.0, 3.0)
+
+
+def test_coasting_goes_on_and_rigid_stick_stands() -> None:
+    """The spring is stretched by the drive less the slider; only stick has a rest time."""
+    p = parameters()
+    s = state(mode=COASTING, direction=-1.0, velocity=-0.25, v=0.5, v_rate=1.0, f=2.0, f_rate=3.0, spring=0.125)
+    motion.begin_motion(p, s)
+    assert motion.travel(p, s, 2.0) == (-0.5, -0.25, 0.0)
+    motion.move_start(p, s, 2.0, 0.0, 2.0)
+    assert (s.position, s.drive, s.spring, s.velocity, s.rest) == (-0.5, 3.0, 0.125 + 3.0 + 0.5, -0.25, 0.0)
+    assert (s.inputs.v, s.inputs.f) == (2.5, 8.0)
+    s = state(mode=STICK, v=0.5, spring=0.125, rest=1.0)
+    motion.begin_motion(p, s)
+    assert motion.travel(p, s, 2.0) == (0.0, 0.0, 0.0)
+    motion.move_start(p, s, 2.0, 0.0, 2.0)
+    assert (s.position, s.drive, s.spring, s.velocity, s.rest, s.deflection) == (0.0, 1.0, 1.125, 0.0, 3.0, 0.0)
+
+
+def test_a_contact_that_is_held_for_a_year_stays_where_it_is() -> None:
+    """It has come to (F_e − F_c)/(c + c_c), and stays there."""
+    p = parameters(contact=COMPLIANT)
+    s = state(mode=STICK, f=10.0, acceleration=5.0)
+    motion.begin_motion(p, s)
+    for t in (1e2, 3e7):
+        assert motion.travel(p, s, t) == pytest.approx((10.0 / (1024.0 + 4096.0), 0.0, 0.0), rel=1e-14, abs=1e-30)
+
+
+def test_a_spring_keeps_its_digits_through_a_long_slide() -> None:
+    """A slider follows its drive for a million metres: c w = N mu_k, to the last digits."""
+    p = parameters(friction=CONVENTIONAL)
+    s = slip(p, DECELERATING, 4.5, v=4.5, f_rate=0.0)
+    s.inputs.f = s.inputs.base_f = 0.0
+    friction = 64.0 * (0.0625 + 0.5 * 4.0)
+    s.spring = 0.125
+    s.acceleration = (1024.0 * 0.125 - friction) / 2.0
+    motion.begin_motion(p, s)
+    motion.move_start(p, s, 2e5, 0.0, 2e5)
+    assert (s.velocity, s.spring) == pytest.approx((4.5, friction / 1024.0), rel=1e-13)
+    p = parameters(damper_on_slideway=True)
+    s = state(mode=COASTING, direction=1.0, velocity=4.5, v=4.5, spring=0.125)
+    motion.begin_motion(p, s)
+    motion.move_start(p, s, 2e5, 0.0, 2e5)
+    assert s.spring == 0.125
+
+
+@pytest.mark.parametrize('off', [0.0, 1e-6, -1e-6])
+def test_an_event_beside_the_last_evaluation_is_read_off_it(off: float) -> None:
+    """As the search for events leaves it: what it evaluated last, and the event at a distance from there."""
+    numbers = {'velocity': 0.0625, 'v': 0.125, 'f_rate': 8.0}
+    p, truth = parameters(), balance({}, friction=16.0, viscous=-32.0, stretch=0.03125, **numbers)
+    s = begun(p, state(mode=DECELERATING, direction=1.0, spring=0.03125, **numbers), truth.after(0.0))
+    at = s.cache.at
+    at.time = 0.03
+    at.g, at.rate, at.first, at.second = short_integrals(motion.oscillator_of(s), at.time)
+    assert motion.travel_at(p, s) == pytest.approx(truth.after(0.03).of_slider, rel=1e-12)
+    s.next.time = 0.03 + off
+    expected = truth.after(0.03 + off)
+    assert motion.travel_to_event(p, s, s.next.time) == pytest.approx(expected.of_slider, rel=1e-12)
+    motion.move_start(p, s, 0.0, s.next.time, s.next.time)
+    assert (s.position, s.velocity, s.spring) == pytest.approx((expected.travel, expected.velocity, expected.stretch),
+                                                               rel=1e-12)
