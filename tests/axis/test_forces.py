@@ -95,11 +95,16 @@ def test_a_rate_within_rounding_is_none() -> None:
     """Steady sliding at the drive's velocity, but for a rounding; not where a millionth part is left."""
     v = 0.1
     assert forces.force_rate(parameters(), state(v=v, velocity=v * (1.0 + 2.0 ** -52))) == (0.0, 0.0)
+    assert forces.force_rate(parameters(), state(v=0.25, f_rate=-256.0 * (1.0 + 2.0 ** -50))) == (0.0, 0.0)
     rate, _ = forces.force_rate(parameters(), state(v=v, velocity=v * (1.0 + 1e-12)))
     assert rate == pytest.approx(-1024.0 * v * 1e-12, rel=1e-3)
 
 
-def test_rounding_is_of_the_terms_of_the_sum() -> None:
-    terms = 1024.0 * 0.5 + 32.0 * (0.25 + 0.125) + 9.0 + 64.0 * 0.5
-    s = state(spring=-0.5, v=-0.25, velocity=0.125, f=-9.0)
-    assert 1.0 <= forces.force_rounding(parameters(), s, 0.5) / (terms * sys.float_info.epsilon) <= 32.0
+@pytest.mark.parametrize(('numbers', 'friction', 'terms'), [
+    ({'spring': -0.5}, 0.0, 512.0), ({'v': -0.25}, 0.0, 8.0), ({'velocity': -0.125}, 0.0, 4.0), ({'f': -9.0}, 0.0, 9.0),
+    ({}, 0.5, 32.0), ({'spring': 0.5, 'v': 0.25, 'velocity': 0.125, 'f': -9.0}, 0.5, 565.0)])
+def test_rounding_is_of_the_terms_of_the_sum(numbers: dict[str, float], friction: float, terms: float) -> None:
+    """Of each alike, of either sign: a few units in the last place of c w, h v, h ẋ, F_e and N mu."""
+    units = forces.force_rounding(parameters(), state(**numbers), friction) / (terms * sys.float_info.epsilon)
+    assert units == forces.force_rounding(parameters(), state(), 1.0) / (64.0 * sys.float_info.epsilon)
+    assert 1.0 <= units <= 32.0

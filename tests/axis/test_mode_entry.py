@@ -140,6 +140,15 @@ def test_a_compliant_contact_breaks_away_in_motion_and_keeps_its_acceleration() 
     assert s.excess == (0.5 - 0.1875) / 0.75
 
 
+@pytest.mark.parametrize(('share', 'mode'), [(-2e-15, COASTING), (-5e-16, ACCELERATING), (2e-15, ACCELERATING)])
+def test_a_coast_too_short_to_be_known_is_left_out(share: float, mode: float) -> None:
+    """A residual below 1e-15 of the friction force, 32 N: the force rises, so the slip accelerates."""
+    p = parameters(contact=COMPLIANT)
+    s = slip(p, STICK, 0.125, push=32.0, v=0.5, acceleration=share * 32.0 / 2.0)
+    break_away(p, s, 1.0, 0.5, 0.0)
+    assert s.mode == mode
+
+
 @both_ways
 def test_a_rigid_contact_rests(direction: float) -> None:
     s = slip(parameters(), DECELERATING, 0.125, direction=direction, acceleration=3.0, rest=5.0)
