@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """mu_k and psi are linear between breakpoints, mu_k goes on with its last slope, and each direction has its tables."""
 
+from dataclasses import replace
+
 import pytest
 
 from stickslip_sim.axis.codes import ACCELERATING, DECELERATING
@@ -15,7 +17,8 @@ from stickslip_sim.axis.friction_segments import (
     segment_end,
     slip_friction,
 )
-from tests.support.plain_axes import CONVENTIONAL, SIDED, parameters, slip
+from stickslip_sim.friction import ExcessTable
+from tests.support.plain_axes import CONVENTIONAL, FRICTION, SIDED, parameters, slip
 
 # speed in m/s, mu_k, psi: by hand from the tables of `plain_axes`
 FORWARDS = [(0.0, 0.25, 1.0), (0.125, 0.1875, 0.75), (0.25, 0.125, 0.5), (0.375, 0.09375, 0.25), (0.5, 0.0625, 0.0),
@@ -59,6 +62,12 @@ def test_the_branch_of_a_slip_is_a_line(mode: float, at_rest: float, slope: floa
     """mu_k on the lower branch, mu_k + E psi on the upper one."""
     p = parameters()
     assert slip_friction(p, slip(p, mode, 0.125, excess=0.125)) == (at_rest, slope)
+
+
+def test_the_excess_has_breakpoints_of_its_own() -> None:
+    """psi falls to a quarter at 0.25 m/s, so that its line from there begins at 0.5; mu_k + E psi, E = 0.5."""
+    p = parameters(friction=replace(FRICTION, excess=ExcessTable((0.0, 0.25, 0.5), (1.0, 0.25, 0.0))))
+    assert slip_friction(p, slip(p, ACCELERATING, 0.375, excess=0.5)) == (0.1875 + 0.5 * 0.5, -0.25 - 0.5 * 1.0)
 
 
 def test_the_conventional_friction_has_one_branch() -> None:

@@ -145,6 +145,45 @@ def test_a_spring_keeps_its_digits_through_a_long_slide() -> None:
     assert s.spring == 0.125
 
 
+def test_a_spring_keeps_its_digits_behind_a_drive_that_speeds_up() -> None:
+    """Without friction c w = m v′ − F_e at ẋ = v, after billions of metres, too."""
+    p = parameters(normal_force=0.0)
+    s = state(mode=ACCELERATING, direction=1.0, velocity=4.5, v=4.5, v_rate=0.5, f=-9.0, acceleration=0.5,
+              spring=(2.0 * 0.5 + 9.0) / 1024.0)
+    motion.begin_motion(p, s)
+    motion.move_start(p, s, 1e5, 0.0, 1e5)
+    assert (s.inputs.v, s.velocity, s.spring) == pytest.approx((50004.5, 50004.5, 10.0 / 1024.0), rel=1e-10)
+    s = state(mode=ACCELERATING, direction=1.0, velocity=4.5, v=4.5, f_rate=-0.0009765625, spring=0.5, f=-512.0,
+              acceleration=0.0)
+    p = parameters(normal_force=0.0, drive_damping=0.0)
+    motion.begin_motion(p, s)
+    motion.move_start(p, s, 1e3, 0.0, 1e3)       # F_e falls by a newton, and c w rises by one, but for a ringing
+    assert s.spring == pytest.approx((512.0 + 0.9765625) / 1024.0, abs=1e-4)
+    assert motion.spring_after(p, s, 1.0, 1e9, 1e9, 4.5, 3.0) == pytest.approx(
+        (2.0 * 3.0 + 512.0 + 0.9765625 + 0.0009765625) / 1024.0, rel=1e-13)
+
+
+def test_what_is_kept_of_other_motions_changes_nothing() -> None:
+    """A tick of one length in one mode, in another, and in the first again."""
+    p = parameters()
+    s = slip(p, DECELERATING, 0.0625, push=9.0, v=0.125, acceleration=-3.5)
+    motion.begin_motion(p, s)
+    first = motion.travel(p, s, 0.01)
+    for changes in ({'mode': ACCELERATING, 'excess': 0.25}, {'mode': DECELERATING, 'excess': 0.0}):
+        for name, number in changes.items():
+            setattr(s, name, number)
+        motion.begin_motion(p, s)
+        fresh = state(direction=1.0, velocity=0.0625, v=0.125, acceleration=-3.5, f=s.inputs.f, **changes)
+        motion.begin_motion(p, fresh)
+        assert motion.travel(p, s, 0.01) == motion.travel(p, fresh, 0.01)
+    assert motion.travel(p, s, 0.01) == first
+    harder = parameters(drive_stiffness=4096.0)
+    fresh = state(mode=DECELERATING, direction=1.0, velocity=0.0625, v=0.125, acceleration=-3.5, f=s.inputs.f)
+    for one in (s, fresh):
+        motion.begin_motion(harder, one)
+    assert motion.travel(harder, s, 0.01) == motion.travel(harder, fresh, 0.01) != first
+
+
 @pytest.mark.parametrize(('off', 'error'), [(0.0, 1e-12), (1e-6, 1e-12), (-1e-6, 1e-12), (1e-4, 1e-10), (-1e-4, 1e-10)])
 def test_an_event_beside_the_last_evaluation_is_read_off_it(off: float, error: float) -> None:
     """As the search for events leaves it: what it evaluated last, and the event beside it."""

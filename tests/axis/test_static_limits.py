@@ -44,7 +44,9 @@ def test_the_limit_rises_from_the_delay_on() -> None:
     assert static_limit(late, math.inf, 1.0) == 0.5
 
 
-@pytest.mark.parametrize(('side', 'expected'), [(1.0, 0.25), (-1.0, 0.375)])
+@pytest.mark.parametrize(('side', 'expected'), [(1.0, 0.25), (-1.0, 0.375), (0.0, 0.25)])
 def test_at_once_it_is_that_of_no_rest(side: float, expected: float) -> None:
+    """Without a force as forwards, with a rest time too."""
+    assert static_limit(parameters(friction=SIDED), 0.0, side) == expected
     assert static_at_once(parameters(friction=SIDED), side) == expected
     assert static_at_once(parameters(), side) == 0.25
