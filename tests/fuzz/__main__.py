@@ -14,7 +14,8 @@ from tempfile import TemporaryDirectory
 
 from hypothesis import HealthCheck, given, settings
 
-from .bounds import limit_memory
+from tests.support.time_and_memory import limit_memory
+
 from .targets import Target, targets
 
 _EXAMPLES = 100        # between two looks at the clock

@@ -4,7 +4,6 @@
 
 import shutil
 import warnings
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +11,7 @@ from stickslip_sim.check.limits import limits_of
 from stickslip_sim.check.observed_run import gaps_in, observed_motion, timing_of
 from stickslip_sim.cli.export import csv_lines
 from stickslip_sim.config.ros_yaml import read_yaml
-from stickslip_sim.core.errors import LINE_LIMIT, RecordingWarning, StickslipError
+from stickslip_sim.core.errors import RecordingWarning
 from stickslip_sim.recording import Bag, RecordedRun, open_bag, read_run
 from stickslip_sim.recording.playback import Recording
 from stickslip_sim.scene import load_scene, parse_override, parse_scene
@@ -23,20 +22,10 @@ from stickslip_sim.study.uncertain_file import uncertain_of
 from stickslip_sim.study.variation import range_of
 from stickslip_sim.verify.origin import doubts_about
 from stickslip_sim.verify.verification import verify
+from tests.support.refusals import accepts_or_refuses
 
 from .studies import Edited
 from .tool import tool
-
-
-def accepts_or_refuses(read: Callable[..., object], *arguments: object) -> object:
-    """Return what a reader returns, None when it refused in a line; anything else that it raises is a mistake."""
-    try:
-        return read(*arguments)
-    except StickslipError as error:
-        text = str(error)
-        assert 0 < len(text) <= LINE_LIMIT + 1, text
-        assert '\n' not in text, text
-        return None
 
 
 def scene(text: str) -> None:

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from hypothesis.strategies import DrawFn, SearchStrategy
 
 from stickslip_sim.study.folder import PARTIAL, SIDECAR, TABLE
+from tests.support import made_up_texts
 
-from . import texts
 from .tool import tool
 
 _SCENE = 'paper_fig7'
@@ -23,8 +23,8 @@ _DISTRIBUTIONS = ('seed: 0\nparameters:\n  axis.normal_force: {distribution: uni
                   ' between: [0.18, 0.3]}\n')
 _ODD: SearchStrategy[Any] = (
     st.none() | st.booleans() | st.sampled_from((0, -1, 1, 10**30, 10**400, 0.5, 1e400, -0.0, '', [], {}, [[]]))
-    | st.floats() | st.text(max_size=20) | texts.NAMES)
-_CELLS = st.sampled_from(('', 'inf', '-1', 'stick-slip', '2', '7', '1e308')) | texts.WORDS
+    | st.floats() | st.text(max_size=20) | made_up_texts.NAMES)
+_CELLS = st.sampled_from(('', 'inf', '-1', 'stick-slip', '2', '7', '1e308')) | made_up_texts.WORDS
 
 
 class Edited(NamedTuple):
@@ -43,14 +43,15 @@ def folders(where: Path) -> SearchStrategy[Edited]:
     return _edited(made)
 
 
-DISTRIBUTIONS = texts.changed([_DISTRIBUTIONS]) | texts.ANYTHING
-_ENDS = st.sampled_from(('0.001', '0.1', '1', '-1', '0', '1e400', 'nan', '1e-320', ' 2', '')) | texts.WORDS
+DISTRIBUTIONS = made_up_texts.changed([_DISTRIBUTIONS]) | made_up_texts.ANYTHING
+_ENDS = st.sampled_from(('0.001', '0.1', '1', '-1', '0', '1e400', 'nan', '1e-320', ' 2', '')) | made_up_texts.WORDS
 _RANGES = st.builds('{}:{}'.format, _ENDS, _ENDS)
 _ELEMENTS = st.sampled_from(('', '', '[1]', '[0]', '[99]', '[-1]', '[1_0]', '[' + '9' * 50 + ']', '[]', '[\u0661]'))
-VARIATIONS = st.builds('{}{}{}{}{}'.format, texts.NAMES | st.text(max_size=9), _ELEMENTS,
+VARIATIONS = st.builds('{}{}{}{}{}'.format, made_up_texts.NAMES | st.text(max_size=9), _ELEMENTS,
                        st.sampled_from(('=', '=', '=', ' = ', '')), _RANGES,
                        st.sampled_from(('', ':3', ':2:log', ':1', ':x', ':1e3', ':log', ':3:log:log', ':' + '9' * 60)))
-OPTIONS = st.tuples(VARIATIONS, _RANGES, st.builds('{},{}'.format, _ENDS, _ENDS) | texts.WORDS, texts.WORDS)
+OPTIONS = st.tuples(VARIATIONS, _RANGES, st.builds('{},{}'.format, _ENDS, _ENDS) | made_up_texts.WORDS,
+                    made_up_texts.WORDS)
 
 
 def _made(folder: Path, command: Sequence[str]) -> Edited:
@@ -75,7 +76,7 @@ def _edited(draw: DrawFn, made: Sequence[Edited]) -> Edited:
 def _changed_json(draw: DrawFn, text: str) -> str:
     """Return JSON with other values in some places, or changed as any text."""
     if draw(st.integers(0, 3)) == 0:
-        return draw(texts.changed([text]))
+        return draw(made_up_texts.changed([text]))
     tree = json.loads(text)
     for _ in range(draw(st.integers(1, 3))):
         _change_a_value(draw, tree)
@@ -86,7 +87,7 @@ def _changed_json(draw: DrawFn, text: str) -> str:
 def _changed_table(draw: DrawFn, text: str) -> str:
     """Return CSV with other words in some cells, or changed as any text."""
     if draw(st.integers(0, 3)) == 0:
-        return draw(texts.changed([text]))
+        return draw(made_up_texts.changed([text]))
     rows = [line.split(',') for line in text.splitlines()]
     for _ in range(draw(st.integers(1, 3))):
         row = draw(st.sampled_from(rows))

@@ -10,10 +10,11 @@ from hypothesis import strategies as st
 from hypothesis.strategies import SearchStrategy
 
 from stickslip_sim.scene import scene_names
+from tests.support import made_up_bags, made_up_texts, small_recordings
 from tests.support.repository import ROOT
+from tests.support.time_and_memory import within
 
-from . import axes, bags, engine, judge, readers, recordings, studies, texts
-from .bounds import within
+from . import axes, engine, judge, readers, studies
 
 _PATIENCE = 20.0   # s for one input; the host may stand still for a while
 
@@ -29,7 +30,7 @@ def targets(folder: Path) -> Mapping[str, Target]:
     """Return all targets; bags are put into a folder."""
     scenes = [(ROOT / f'stickslip_sim/stickslip_sim/scenes/{name}.yaml').read_text() for name in scene_names()]
     limits = [(ROOT / 'examples/limits.yaml').read_text()]
-    changes = st.tuples(st.sampled_from(scene_names()), texts.OVERRIDES, texts.OVERRIDES)
+    changes = st.tuples(st.sampled_from(scene_names()), made_up_texts.OVERRIDES, made_up_texts.OVERRIDES)
     file = folder / 'run.mcap'
 
     def bag(data: bytes) -> None:
@@ -37,10 +38,10 @@ def targets(folder: Path) -> Mapping[str, Target]:
         readers.bag(file)
 
     found: dict[str, tuple[SearchStrategy[Any], Callable[..., None]]] = {
-        'scene': (texts.changed(scenes) | texts.ANYTHING, readers.scene),
-        'limits': (texts.changed(limits) | texts.ANYTHING, readers.limits),
+        'scene': (made_up_texts.changed(scenes) | made_up_texts.ANYTHING, readers.scene),
+        'limits': (made_up_texts.changed(limits) | made_up_texts.ANYTHING, readers.limits),
         'override': (changes, lambda given: readers.override(*given)),
-        'bag': (bags.changed(recordings.files(folder)), bag),
+        'bag': (made_up_bags.changed(small_recordings.files(folder)), bag),
         'distributions': (studies.DISTRIBUTIONS, readers.distributions),
         'options': (studies.OPTIONS, lambda given: readers.options(*given)),
         'study': (studies.folders(folder), lambda given: readers.study(given, folder / 'study')),

@@ -13,7 +13,7 @@ import time
 from collections import Counter
 from pathlib import Path
 
-from tests.fuzz.bounds import limit_memory
+from tests.support.time_and_memory import limit_memory
 
 from . import report
 from .attack import PER_ROUND, REFERENCE_SHARE, Found, Tally, judge_again, one_round

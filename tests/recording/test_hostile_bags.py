@@ -16,7 +16,7 @@ from mcap.opcode import Opcode
 
 from stickslip_sim.core.errors import RecordingError
 from stickslip_sim.recording import open_bag
-from tests.fuzz.bags import Record, file_of
+from tests.support.made_up_bags import Record, file_of
 
 HUGE = 1 << 30          # bytes
 MOST = 200 << 20        # that reading may take

@@ -17,7 +17,7 @@ from stickslip_sim.recording import read_run, records, topic_columns
 from stickslip_sim.rig.marks import Mark
 from stickslip_sim.runs import COLUMNS, Run, simulate, simulate_events
 from stickslip_sim.scene import load_scene
-from tests.fuzz.recordings import files
+from tests.support.small_recordings import files
 
 
 def test_a_recorded_run_reads_like_the_simulation(fig8_bag: Path) -> None:

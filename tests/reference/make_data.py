@@ -24,10 +24,10 @@ from mpmath import mpf
 from stickslip_sim.reference import automaton
 from stickslip_sim.reference.exact_run import Run
 from stickslip_sim.reference.problem import problem
+from tests.support.stored_objects import exact_run, inputs_of
+from tests.support.stored_runs import FILE
 
-from .objects import exact_run, inputs_of
 from .scenes import Scene, named_scenes, random_scenes, shipped_scenes
-from .stored import FILE
 
 SEED = 2026
 RANDOM_SCENES = 56

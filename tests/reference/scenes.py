@@ -13,8 +13,7 @@ import random
 from typing import Any, NamedTuple
 
 from stickslip_sim.scene import load_scene, scene_names
-
-from .objects import parameters_of
+from tests.support.stored_objects import parameters_of
 
 Parameters = dict[str, Any]
 Segments = list[tuple[float, float, float]]

@@ -19,8 +19,8 @@ from stickslip_sim.reference.roots import bernstein, first_root  # noqa: E402
 from stickslip_sim.reference.series import series  # noqa: E402
 from tests.reference.figures import agrees  # noqa: E402
 from tests.reference.inclusion import violations  # noqa: E402
-from tests.reference.objects import exact_run as simulate  # noqa: E402
 from tests.reference.scenes import Parameters, Scene, paper, random_scenes  # noqa: E402
+from tests.support.stored_objects import exact_run as simulate  # noqa: E402
 
 # ---- closed forms ---------------------------------------------------------------------------------
 

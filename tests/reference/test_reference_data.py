@@ -10,9 +10,9 @@ import pytest
 
 mpmath = pytest.importorskip('mpmath')
 
-from tests.reference.objects import exact_run as simulate  # noqa: E402
 from tests.reference.scenes import random_scenes, shipped_scenes  # noqa: E402
-from tests.reference.stored import stored  # noqa: E402
+from tests.support.stored_objects import exact_run as simulate  # noqa: E402
+from tests.support.stored_runs import stored  # noqa: E402
 
 
 def test_stored_data_is_not_stale() -> None:

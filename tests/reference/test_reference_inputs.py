@@ -25,8 +25,8 @@ mpmath = pytest.importorskip('mpmath')
 from mpmath import mpf  # noqa: E402
 
 from tests.reference.inclusion import violations  # noqa: E402
-from tests.reference.objects import exact_run  # noqa: E402
 from tests.reference.scenes import Parameters, paper  # noqa: E402
+from tests.support.stored_objects import exact_run  # noqa: E402
 
 NEVER = math.inf
 FEED = InputProfile((0.0,), (0.002,), (0.0,), NEVER, (Sinusoid(0.01, 3.0, 0.3),))

@@ -13,9 +13,9 @@ from mpmath import mpf
 
 from stickslip_sim.reference.exact_run import Run
 from tests.reference.figures import agrees
-from tests.reference.objects import exact_run as simulate
 from tests.reference.scenes import Parameters, paper
-from tests.reference.stored import stored
+from tests.support.stored_objects import exact_run as simulate
+from tests.support.stored_runs import stored
 
 # kind, t, x, velocity, drive force: every digit counts
 RIGID = [

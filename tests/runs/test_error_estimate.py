@@ -21,8 +21,8 @@ from stickslip_sim.runs import simulate_events
 from stickslip_sim.runs.error_estimate import error_estimate
 from stickslip_sim.runs.perturbation import ROUNDING_UNIT, perturbed
 from stickslip_sim.scene import Scene, SolverSettings, load_scene
-from tests.reference.objects import axis_of, profile_of
 from tests.solvers.exact.test_against_reference import RUNS
+from tests.support.stored_objects import axis_of, profile_of
 
 
 def scene_of(values: dict[str, Any]) -> Scene:

@@ -13,7 +13,7 @@ from stickslip_sim.core.types import Event, EventKind
 from stickslip_sim.extremes.against import error_of_events
 from stickslip_sim.extremes.outcome import Missed
 from stickslip_sim.reference import simulate
-from tests.fuzz.bounds import within
+from tests.support.time_and_memory import within
 
 from ..case import Find, Parts, Run, Undecided, all_events
 from .rounded_data import rounded_data

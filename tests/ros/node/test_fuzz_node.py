@@ -10,7 +10,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from tests.fuzz.texts import NAMES
+from tests.support.made_up_texts import NAMES
 from tests.support.node_processes import running
 from tests.support.ros_nodes import Client, client
 

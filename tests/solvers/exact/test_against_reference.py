@@ -12,9 +12,9 @@ from itertools import pairwise
 import pytest
 
 from stickslip_sim.simulation.simulator import Simulator
-from tests.reference.objects import inputs_of
-from tests.reference.stored import stored
 from tests.support.axes import instant
+from tests.support.stored_objects import inputs_of
+from tests.support.stored_runs import stored
 
 RUNS = stored()
 ROUNDING = 2.220446049250313e-16

@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 from stickslip_sim.simulation.simulator import Simulator
-from tests.reference.objects import exact_run, inputs_of
 from tests.support.axes import instant
+from tests.support.stored_objects import exact_run, inputs_of
 
 OVERDAMPED_SLIP: dict[str, Any] = {
     'axis': {'mass': 16.446948494982106, 'drive_stiffness': 175885.98157369555, 'drive_damping': 170081.97082383372,

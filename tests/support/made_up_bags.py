@@ -16,7 +16,7 @@ from mcap.opcode import Opcode
 from mcap.records import Chunk
 from mcap.stream_reader import get_chunk_data_stream
 
-from .texts import WORDS
+from .made_up_texts import WORDS
 
 MAGIC = b'\x89MCAP0\r\n'
 _KEPT = (Opcode.HEADER, Opcode.SCHEMA, Opcode.CHANNEL, Opcode.MESSAGE, Opcode.ATTACHMENT, Opcode.METADATA)
