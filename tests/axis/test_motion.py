@@ -143,6 +143,10 @@ def test_a_spring_keeps_its_digits_through_a_long_slide() -> None:
     motion.begin_motion(p, s)
     motion.move_start(p, s, 2e5, 0.0, 2e5)
     assert s.spring == 0.125
+    s = state(mode=COASTING, direction=1.0, velocity=4.5, v=4.5, v_rate=2.0 ** -40, spring=0.125)
+    motion.begin_motion(p, s)
+    motion.move_start(p, s, 4096.0, 0.0, 4096.0)
+    assert s.spring == 0.125 + 2.0 ** -40 / 2.0 * 4096.0 ** 2
 
 
 def test_a_spring_keeps_its_digits_behind_a_drive_that_speeds_up() -> None:
@@ -188,7 +192,8 @@ def test_what_is_kept_of_other_motions_changes_nothing() -> None:
 def test_an_event_beside_the_last_evaluation_is_read_off_it(off: float, error: float) -> None:
     """As the search for events leaves it: what it evaluated last, and the event beside it."""
     numbers = {'velocity': 0.0625, 'v': 0.125, 'f_rate': 8.0}
-    p, truth = parameters(), balance({}, friction=16.0, viscous=-32.0, stretch=0.03125, **numbers)
+    p = parameters(drive_damping=96.0)
+    truth = balance({'drive_damping': 96.0}, friction=16.0, viscous=-32.0, stretch=0.03125, **numbers)
     s = begun(p, state(mode=DECELERATING, direction=1.0, spring=0.03125, **numbers), truth.after(0.0))
     at = s.cache.at
     at.time = 0.03

@@ -12,6 +12,7 @@ from stickslip_sim.axis.codes import COASTING, DECELERATING, STICK
 from stickslip_sim.axis.forces import force_rate
 from stickslip_sim.axis.rows import Sinusoids
 from stickslip_sim.axis.state_record import State
+from stickslip_sim.linear.oscillator import integrals
 from tests.support.plain_axes import COMPLIANT, parameters
 from tests.support.slider_balance import Balance, sine_of
 
@@ -101,11 +102,38 @@ def test_the_rate_of_the_force_under_sines(on_slideway: bool) -> None:
 @pytest.mark.parametrize(('phase', 'f_rate', 'expected'), [
     (0.25, 0.0, (0.0, -6.0 * (TURN * 2.0) ** 2)),                         # at its peak it falls from now on
     (0.75, 0.0, (0.0, 6.0 * (TURN * 2.0) ** 2)),
-    (0.0, -6.0 * TURN * 2.0, (0.0, -6.0 * (TURN * 2.0) ** 3))])           # the ramp takes the first rate away
+    (0.0, -6.0 * TURN * 2.0 * (1.0 + 2.0 ** -52), (0.0, -6.0 * (TURN * 2.0) ** 3))])    # the ramp takes one away
 def test_a_tie_is_decided_by_the_first_rate_that_is_left(phase: float, f_rate: float, expected: tuple[float, float]
                                                          ) -> None:
     s = waved((2.0, phase, 0.0, 6.0), mode=COASTING, f_rate=f_rate)
     assert sinusoids.forced_rate(parameters(), s) == pytest.approx(expected, rel=1e-12)
+
+
+def test_the_last_rate_that_is_looked_at_is_the_fourth() -> None:
+    """Two peaks at once whose second rates make up for each other; where all four do, there is none."""
+    w = TURN * 2.0
+    s = waved((2.0, 0.25, 0.0, 4.0), (4.0, 0.25, 0.0, -1.0), mode=COASTING)
+    assert sinusoids.forced_rate(parameters(), s) == pytest.approx((0.0, 4.0 * w ** 4 - 16.0 * w ** 4), rel=1e-12)
+    s = waved((2.0, 0.25, 0.0, 4.0), (2.0, 0.75, 0.0, 4.0), mode=COASTING, v=0.25, f_rate=-256.0 * (1.0 + 2.0 ** -50))
+    assert sinusoids.forced_rate(parameters(), s) == (0.0, 0.0)
+
+
+def test_the_sizes_of_the_sums_are_those_of_each_sinusoid() -> None:
+    """Bounds of rounding: no term takes from another."""
+    p, t = parameters(), 0.05
+    other: Given = (3.0, 0.6, -0.25, 2.0)
+
+    def sizes(*given: Given) -> tuple[float, ...]:
+        s = waved(*given, mode=DECELERATING, direction=1.0)
+        motion.begin_motion(p, s)
+        g, rate, first, _, _ = integrals(motion.oscillator_of(s), t)
+        found = sinusoids.sinusoid_travel(p, s, motion.oscillator_of(s), t, g, rate, first)
+        of_motion = found.size_y, found.size_u, found.size_a
+        assert all(abs(total) <= size for total, size in zip((found.y, found.u, found.a), of_motion))
+        return (*of_motion, sinusoids.sinusoid_force(p, s, t)[2])
+
+    assert sizes(BOTH, other) == pytest.approx([a + b for a, b in zip(sizes(BOTH), sizes(other))], rel=1e-14)
+    assert min(sizes(BOTH)) > 0.0
 
 
 @pytest.mark.parametrize('given', [BOTH, (2.0, 0.6, 0.0, 6.0), (math.sqrt(512.0) / TURN, 0.0, 0.25, 0.0)],
