@@ -14,6 +14,8 @@ from stickslip_sim.cli import progress
 from stickslip_sim.cli.progress import progress_bar
 from tests.support.waiting import wait_for
 
+SOON = {'patience': 0.01, 'every': 0.01}
+
 
 class Terminal:
     """Standard error of this process, and what was written to it."""
@@ -36,28 +38,26 @@ class Terminal:
 def terminal(monkeypatch: pytest.MonkeyPatch) -> Iterator[Terminal]:
     found = Terminal()
     monkeypatch.setattr(progress, 'sys', SimpleNamespace(stderr=found.stream))   # pytest sets that of sys once more
-    monkeypatch.setattr(progress, '_PATIENCE', 0.01)
-    monkeypatch.setattr(progress, '_EVERY', 0.01)
     yield found
     found.stream.close()
 
 
 def test_work_that_says_nothing_shows_how_long_it_takes(terminal: Terminal) -> None:
-    with progress_bar('waiting'):
+    with progress_bar('waiting', **SOON):
         wait_for(lambda: 'waiting  0 s' in terminal.text, 'the bar')
     wait_for(lambda: terminal.text.endswith('\x1b[?25h\r\n'), 'its end, with a cursor')
 
 
 def test_work_shows_its_share(terminal: Terminal) -> None:
-    with progress_bar('working') as take:
+    with progress_bar('working', **SOON) as take:
         assert take is not None
         take(0.5)
         wait_for(lambda: '#' * 15 + '-' * 15 in terminal.text, 'half of the bar')
 
 
 def test_there_is_one_bar_at_a_time(terminal: Terminal) -> None:
-    with progress_bar('outer'):
-        with progress_bar('inner') as take:
+    with progress_bar('outer', **SOON):
+        with progress_bar('inner', **SOON) as take:
             assert take is None
         wait_for(lambda: 'outer' in terminal.text, 'the bar')
     assert 'inner' not in terminal.text
@@ -65,9 +65,8 @@ def test_there_is_one_bar_at_a_time(terminal: Terminal) -> None:
         assert take is not None
 
 
-def test_short_work_shows_nothing(terminal: Terminal, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(progress, '_PATIENCE', 60.0)
-    with progress_bar('short'):
+def test_short_work_shows_nothing(terminal: Terminal) -> None:
+    with progress_bar('short', patience=60.0):
         pass
     assert not terminal.text
 

@@ -68,16 +68,15 @@ def test_what_is_not_granted_is_said_with_its_fix(monkeypatch: pytest.MonkeyPatc
         raise PermissionError
 
     monkeypatch.setattr(os, 'sched_setscheduler', refuse)
-    monkeypatch.setattr('stickslip_sim.realtime.rights._has', lambda capability: False)
     monkeypatch.setattr(resource, 'getrlimit', lambda limit: (0, 0))
     monkeypatch.setattr(scheduling, 'raise_soft', lambda limit: float('inf'))
-    step_thread = StepThread(Scheduling(thread_priority=50, lock_memory=False))
+    step_thread = StepThread(Scheduling(thread_priority=50, lock_memory=False), lambda capability: False)
     assert (step_thread.granted, step_thread.is_fifo) == ('', False)
     assert step_thread.missing == [
         'SCHED_FIFO 50 is not granted: RLIMIT_RTPRIO is 0, and CAP_SYS_NICE is missing; grant it in limits.conf'
         ' (rtprio 99), or with docker --cap-add=sys_nice --ulimit rtprio=99 (docs/realtime.md)']
     with pytest.raises(InputError, match='require_real_time = True is refused: must be false, or all that is wanted'):
-        StepThread(Scheduling(thread_priority=50, require_real_time=True))
+        StepThread(Scheduling(thread_priority=50, require_real_time=True), lambda capability: False)
 
 
 def test_capable_but_refused_names_the_control_group(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -85,8 +84,7 @@ def test_capable_but_refused_names_the_control_group(monkeypatch: pytest.MonkeyP
         raise PermissionError
 
     monkeypatch.setattr(os, 'sched_setscheduler', refuse)
-    monkeypatch.setattr('stickslip_sim.realtime.rights._has', lambda capability: True)
-    assert 'cpu.rt_runtime_us' in StepThread(Scheduling(thread_priority=50)).missing[0]
+    assert 'cpu.rt_runtime_us' in StepThread(Scheduling(thread_priority=50), lambda capability: True).missing[0]
 
 
 def test_a_kernel_without_it_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -105,9 +103,8 @@ def test_a_limit_that_would_kill_is_not_run_into(monkeypatch: pytest.MonkeyPatch
 
 
 def test_memory_is_not_locked_under_a_limit_that_later_growth_would_meet(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr('stickslip_sim.realtime.rights._has', lambda capability: False)
     monkeypatch.setattr('stickslip_sim.realtime.rights.raise_soft', lambda limit: 1 << 20)
-    assert StepThread(Scheduling(lock_memory=True)).missing == [
+    assert StepThread(Scheduling(lock_memory=True), lambda capability: False).missing == [
         'memory is not locked: RLIMIT_MEMLOCK is 1024 KiB, and CAP_IPC_LOCK is missing; grant it in limits.conf'
         ' (memlock unlimited), or with docker --cap-add=ipc_lock --ulimit memlock=-1 (docs/realtime.md)']
 

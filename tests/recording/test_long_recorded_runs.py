@@ -27,7 +27,7 @@ def _short_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(recorded_run, 'MOST_HELD', 10)
     monkeypatch.setattr(run_part, 'MOST_HELD', 2500)
     monkeypatch.setattr(reduced, 'MOST_HELD', 2500)
-    monkeypatch.setattr(records, '_GATHERED', 1 << 14)
+    monkeypatch.setattr(records, 'GATHERED_BYTES', 1 << 14)
     for module in (paired_steps, run_outline):
         monkeypatch.setattr(module, 'GATHERED', 200)
 

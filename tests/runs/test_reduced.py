@@ -13,6 +13,7 @@ from stickslip_sim.runs.reduced import reduced as rows_for
 Numbers = NDArray[np.float64]
 NAMES = 'position', 'drive_position', 'velocity'
 WHOLE = (0.0, 1e9)
+PARTS = 20
 
 
 def motion(count: int) -> Columns:
@@ -34,7 +35,6 @@ def blocks(columns: Columns, size: int) -> list[Columns]:
 @pytest.fixture
 def _few(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(reduced, 'MOST_HELD', 200)
-    monkeypatch.setattr(reduced, '_PARTS', 20)
 
 
 def test_few_rows_remain_as_they_are() -> None:
@@ -49,13 +49,13 @@ def test_few_rows_remain_as_they_are() -> None:
 def test_the_extremes_of_each_part_remain(size: int) -> None:
     columns = motion(5000)
     begin, end = columns['time'][[0, -1]]
-    found = rows_for(blocks(columns, size), [(begin, end)], NAMES)
-    assert len(found['time']) <= 20 * 12
+    found = rows_for(blocks(columns, size), [(begin, end)], NAMES, PARTS)
+    assert len(found['time']) <= PARTS * 12
     assert (np.diff(found['time']) > 0.0).all()
     assert found['time'][[0, -1]].tolist() == [begin, end]
-    parts, kept = ((20.0 * (each['time'] - begin) / (end - begin)).astype(int) for each in (columns, found))
+    parts, kept = ((PARTS * (each['time'] - begin) / (end - begin)).astype(int) for each in (columns, found))
     for values, shown in ((columns['velocity'], found['velocity']), (error_of(columns), error_of(found))):
-        for part in range(20):
+        for part in range(PARTS):
             assert shown[kept == part].min() == values[parts == part].min()
             assert shown[kept == part].max() == values[parts == part].max()
 
@@ -65,13 +65,13 @@ def test_what_remains_does_not_grow_with_the_run() -> None:
     lengths = []
     for count in (20_000, 80_000):
         columns = motion(count)
-        window = ReducedWindow(columns['time'][0], columns['time'][-1], NAMES)
+        window = ReducedWindow(columns['time'][0], columns['time'][-1], NAMES, parts=PARTS)
         most = 0
         for block in blocks(columns, 100):
             window.take(block)
             most = max(most, len(window.columns['time']))
         lengths.append(most)
-    assert max(lengths) <= 200 + 20 * 12
+    assert max(lengths) <= 200 + PARTS * 12
 
 
 @pytest.mark.usefixtures('_few')
@@ -80,7 +80,7 @@ def test_a_window_has_all_of_its_rows_and_a_neighbour_on_either_side() -> None:
     first, last = 1000, 1100
     begin, end = columns['time'][first], columns['time'][last]
     for size in (1, 64, 5000):
-        found = rows_for(blocks(columns, size), [(columns['time'][0], columns['time'][-1]), (begin, end)], NAMES)
+        found = rows_for(blocks(columns, size), [(columns['time'][0], columns['time'][-1]), (begin, end)], NAMES, PARTS)
         inside = np.searchsorted(found['time'], columns['time'][first - 1:last + 2])
         assert np.array_equal(found['time'][inside], columns['time'][first - 1:last + 2])
 
@@ -88,7 +88,7 @@ def test_a_window_has_all_of_its_rows_and_a_neighbour_on_either_side() -> None:
 @pytest.mark.usefixtures('_few')
 def test_the_first_rows_may_all_remain() -> None:
     columns = motion(2000)
-    window = ReducedWindow(columns['time'][0], columns['time'][-1], NAMES, is_whole_first=True)
+    window = ReducedWindow(columns['time'][0], columns['time'][-1], NAMES, is_whole_first=True, parts=PARTS)
     for block in blocks(columns, 50):
         window.take(block)
     assert np.array_equal(window.columns['velocity'][:200], columns['velocity'][:200])
@@ -100,7 +100,7 @@ def test_what_was_not_measured_is_no_hindrance() -> None:
     columns = motion(1000)
     columns['velocity'][:] = np.nan
     columns['position'][::3] = np.nan
-    found = rows_for(blocks(columns, 100), [tuple(columns['time'][[0, -1]])], NAMES)
+    found = rows_for(blocks(columns, 100), [tuple(columns['time'][[0, -1]])], NAMES, PARTS)
     assert np.isnan(found['velocity']).all()
     assert np.nanmax(found['position']) == np.nanmax(columns['position'])
 

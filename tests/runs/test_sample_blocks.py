@@ -97,7 +97,7 @@ def test_a_long_run_makes_its_samples_again(monkeypatch: pytest.MonkeyPatch) -> 
     scene = load_scene('cutting_force')
     held = simulate(scene, 2.0)
     monkeypatch.setattr(simulated, 'MOST_HELD', 100)
-    monkeypatch.setattr(simulated, '_BLOCK', 7)
+    monkeypatch.setattr(simulated, 'GATHERED', 7)
     again = simulate(scene, 2.0)
     assert len(list(again.sample_blocks())) > 100
     assert all(np.array_equal(again.samples[name], column) for name, column in held.samples.items())

@@ -11,24 +11,22 @@ from typing import Any
 
 import click
 
-_PATIENCE = 1.0   # s before a bar appears
-_EVERY = 0.5      # s
 _STEPS = 1000
 _WITHOUT_SHARE = '%(label)s  %(info)s'
 _WITH_SHARE = '%(label)s  [%(bar)s]  %(info)s'
 
 
 @contextmanager
-def progress_bar(label: str) -> Iterator[Callable[[float], None] | None]:
+def progress_bar(label: str, patience: float = 1.0, every: float = 0.5) -> Iterator[Callable[[float], None] | None]:
     """Yield a function that takes the share that is done; None when nobody looks.
 
     A thread draws, so that one sees how long it takes also where the work does not come round to say how far it is.
-    Within a bar there is no other.
+    It draws after `patience` (s), and `every` so many seconds.  Within a bar there is no other.
     """
     if _Bar.is_up or not sys.stderr.isatty():
         yield None
         return
-    bar = _Bar(label)
+    bar = _Bar(label, patience, every)
     try:
         yield bar.take
     finally:
@@ -38,9 +36,9 @@ def progress_bar(label: str) -> Iterator[Callable[[float], None] | None]:
 class _Bar:
     is_up = False
 
-    def __init__(self, label: str) -> None:
+    def __init__(self, label: str, patience: float, every: float) -> None:
         _Bar.is_up = True
-        self._label = label
+        self._label, self._patience, self._every = label, patience, every
         self._begin = time.monotonic()
         self._share: float | None = None
         self._ended = threading.Event()
@@ -56,7 +54,7 @@ class _Bar:
         _Bar.is_up = False
 
     def _draw(self) -> None:
-        if self._ended.wait(_PATIENCE):
+        if self._ended.wait(self._patience):
             return
         without_share, with_share = self._drawn(_WITHOUT_SHARE, False), self._drawn(_WITH_SHARE, True)
         while True:
@@ -64,7 +62,7 @@ class _Bar:
             bar = without_share if share is None else with_share
             bar.update(round((share or 0.0) * _STEPS) - bar.pos)
             bar.render_progress()
-            if self._ended.wait(_EVERY):
+            if self._ended.wait(self._every):
                 break
         bar.render_finish()
 

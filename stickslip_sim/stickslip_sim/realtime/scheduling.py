@@ -17,7 +17,7 @@ from contextlib import suppress
 from typing import NamedTuple
 
 from ..core.errors import InputError
-from .rights import no_priority, raise_soft, short_of_memory
+from .rights import has_capability, no_priority, raise_soft, short_of_memory
 
 _MCL_CURRENT, _MCL_FUTURE = 1, 2
 _LEAST_RTTIME = 200_000     # µs: twice the longest stretch without a wait (core_share)
@@ -35,18 +35,19 @@ class Scheduling(NamedTuple):
 class StepThread:
     """Asks the kernel for what is wanted; `granted` says in words what is in force, `missing` what is not and why.
 
-    Raises InputError on cores that the machine does not have, and with `require_real_time` when anything is missing.
+    `is_capable` says whether the process has a capability.  Raises InputError on cores that the machine does not have,
+    and with `require_real_time` when anything is missing.
     """
 
-    def __init__(self, wanted: Scheduling) -> None:
+    def __init__(self, wanted: Scheduling, is_capable: Callable[[int], bool] = has_capability) -> None:
         self.missing: list[str] = []
         self.granted = ''
         self.is_fifo = False
-        self._wanted = wanted
+        self._wanted, self._is_capable = wanted, is_capable
         self._give_notice: Callable[[str], None] = lambda text: None
         self._check_cores(wanted.cpu_affinity)
         if wanted.lock_memory:
-            self.missing += filter(None, [_lock_memory()])
+            self.missing += filter(None, [_lock_memory(is_capable)])
         self._is_locked = wanted.lock_memory and not self.missing
         trial = threading.Thread(target=self._trial, name='trial')
         trial.start()
@@ -82,7 +83,7 @@ class StepThread:
         """Let the calling thread have what is wanted; return what it does not get."""
         wanted, missing, granted = self._wanted, [], []
         if wanted.thread_priority:
-            missing.append(_take_priority(wanted.thread_priority))
+            missing.append(_take_priority(wanted.thread_priority, self._is_capable))
             self.is_fifo = not missing[-1]
             granted += [f'SCHED_FIFO {wanted.thread_priority}'] if self.is_fifo else []
         if self._is_locked:
@@ -109,7 +110,7 @@ def _schedule_all(policy: int, priority: int) -> None:
             os.sched_setscheduler(int(thread), policy, os.sched_param(priority))
 
 
-def _take_priority(priority: int) -> str:
+def _take_priority(priority: int, is_capable: Callable[[int], bool]) -> str:
     """Put the calling thread under SCHED_FIFO; return why not, or an empty text."""
     if raise_soft(resource.RLIMIT_RTTIME) < _LEAST_RTTIME:
         return (f'SCHED_FIFO {priority} is not used: RLIMIT_RTTIME would kill the process; let its hard limit be at'
@@ -119,7 +120,7 @@ def _take_priority(priority: int) -> str:
     try:
         os.sched_setscheduler(0, os.SCHED_FIFO | os.SCHED_RESET_ON_FORK, os.sched_param(priority))
     except PermissionError:
-        return no_priority(priority)
+        return no_priority(priority, is_capable)
     except (AttributeError, OSError) as error:
         return f'SCHED_FIFO {priority} is not granted: {error}; this kernel has none'
     return ''
@@ -135,10 +136,10 @@ def _take_cores(cores: Sequence[int]) -> str:
             ' have it (docker --cpuset-cpus, AllowedCPUs of systemd)')
 
 
-def _lock_memory() -> str:
+def _lock_memory(is_capable: Callable[[int], bool]) -> str:
     """Keep all memory in RAM, now and later; return why not, or an empty text."""
     try:
-        missing = short_of_memory()
+        missing = short_of_memory(is_capable)
         if missing:
             return missing
         libc = ctypes.CDLL(None, use_errno=True)

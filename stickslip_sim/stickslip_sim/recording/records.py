@@ -33,7 +33,7 @@ COMPRESSIONS = ('', 'zstd', 'lz4')
 _FOOTER = struct.Struct('<QQI')   # where the summary begins, and its part of offsets; checksum of all that but itself
 _CHECKSUM_SIZE = 4
 _BLOCK = 1 << 20
-_GATHERED = 1 << 19   # bytes of chunks that are looked at together
+GATHERED_BYTES = 1 << 19   # bytes of chunks that are looked at together
 
 # What a file that ends or is damaged anywhere makes the libraries stumble over (RuntimeError: lz4).
 CUT_OFF = (McapError, CRCValidationError, struct.error, zstandard.ZstdError, RuntimeError, UnicodeDecodeError,
@@ -161,7 +161,7 @@ class _GatheredChunks:
             raise CRCValidationError(record.uncompressed_crc, found, record)
         self._held.append(data)
         self._size += len(data)
-        if self._size >= _GATHERED:
+        if self._size >= GATHERED_BYTES:
             yield from self.rest()
 
     def rest(self) -> Iterator[McapRecord | Messages]:

@@ -11,24 +11,25 @@ from .run import Columns
 from .samples import MOST_HELD, joined
 
 _ROW = 'row'     # the number of a row
-_PARTS = 4000    # of a window with more rows than are held, each with its least and largest values
+PARTS = 4000     # of a window with more rows than are held, each with its least and largest values
 
 
 class ReducedWindow:
     """The rows of a window (s), with one more on either side; of the named columns those that there are.
 
     Of more than MOST_HELD those remain in which one of the columns, or the error of the position, has its least or its
-    largest value in one of many equal parts of the window; with `is_whole_first` they remain after the first of them.
+    largest value in one of the equal `parts` of the window; with `is_whole_first` they remain after the first of them.
     """
 
-    def __init__(self, begin: float, end: float, names: Sequence[str], is_whole_first: bool = False) -> None:
+    def __init__(self, begin: float, end: float, names: Sequence[str], is_whole_first: bool = False,
+                 parts: int = PARTS) -> None:
         self.begin, self.end = begin, end
         self._names = 'time', *(name for name in names if name != 'time')
         self._whole: list[Columns] = []
         self._done: list[Columns] = []       # behind them: reduced, up to the part under way
         self._open: Columns | None = None    # of which this remains
         self._count = 0
-        self._is_whole_first = is_whole_first
+        self._is_whole_first, self._parts = is_whole_first, parts
         self._neighbour: Columns | None = None   # the latest row before the window
         self.is_over = False                 # the row behind the window was taken
 
@@ -66,9 +67,9 @@ class ReducedWindow:
             self._whole = []
         if self._open:
             rows = joined([self._open, rows])
-        parts = np.floor((rows['time'] - self.begin) * (_PARTS / (self.end - self.begin)))
+        parts = np.floor((rows['time'] - self.begin) * (self._parts / (self.end - self.begin)))
         rows = self._rows(rows, _extreme_rows(rows, parts))
-        under_way = int(np.searchsorted(rows['time'], self.begin + parts[-1] * (self.end - self.begin) / _PARTS))
+        under_way = int(np.searchsorted(rows['time'], self.begin + parts[-1] * (self.end - self.begin) / self._parts))
         self._done.append(self._rows(rows, slice(under_way)))
         self._open = self._rows(rows, slice(under_way, None))
 
@@ -80,8 +81,9 @@ class ReducedWindow:
 class ReducedWindows:
     """The rows of several windows (s) of a run, each row once."""
 
-    def __init__(self, windows: Iterable[tuple[float, float]], names: Sequence[str]) -> None:
-        self._windows = [ReducedWindow(*window, (*names, _ROW)) for window in windows]
+    def __init__(self, windows: Iterable[tuple[float, float]], names: Sequence[str],
+                 parts: int = PARTS) -> None:
+        self._windows = [ReducedWindow(*window, (*names, _ROW), parts=parts) for window in windows]
         self._nothing: Columns = {}
         self._count = 0
 
@@ -102,9 +104,10 @@ class ReducedWindows:
         return {name: column[rows] for name, column in columns.items() if name != _ROW}
 
 
-def reduced(blocks: Iterable[Columns], windows: Iterable[tuple[float, float]], names: Sequence[str]) -> Columns:
+def reduced(blocks: Iterable[Columns], windows: Iterable[tuple[float, float]], names: Sequence[str],
+            parts: int = PARTS) -> Columns:
     """Return rows of columns of a run, which come in at least one block, for a picture of windows of it."""
-    taken = ReducedWindows(windows, names)
+    taken = ReducedWindows(windows, names, parts)
     for block in blocks:
         taken.take(block)
     return taken.columns

@@ -21,14 +21,13 @@ from ..simulation.cycles import Summary, summary
 from .normal_force import normal_force_of
 from .receipt import CostMeter, receipt_of
 from .run import Columns
-from .samples import MOST_HELD, HeldSamples, RemadeSamples, Samples
+from .samples import GATHERED, MOST_HELD, HeldSamples, RemadeSamples, Samples
 from .views import Views
 
 MAX_DURATION = 1e9         # s
 MAX_SAMPLES = 1_000_000_000   # 120 GB as a bag, made block by block
 MAX_EVENTS = 5_000_000     # 1 GB
 _PARTS = 200               # of a run: progress is reported, and Ctrl-C heard, this often
-_BLOCK = 16_384            # samples at a time
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,8 +152,8 @@ def _passage(rig: Rig, duration: float, period: Fraction | None, progress: Progr
     for part in range(1, _PARTS + 1):
         end = _decimal(duration) * part / _PARTS
         taken = int(end / period) + 1 if period else 0
-        for first in range(done, taken, _BLOCK):
-            at = instants(period or Fraction(0), first, min(first + _BLOCK, taken))
+        for first in range(done, taken, GATHERED):
+            at = instants(period or Fraction(0), first, min(first + GATHERED, taken))
             rows = np.empty((len(at.seconds), len(Sample._fields)))
             yield rig.take_samples(at, rows), rows
         yield rig.advance(instant_of(end)), np.empty((0, len(Sample._fields)))
