@@ -34,7 +34,6 @@ SAME_NAMES = {
     'Problem': 'the task of the contestants of a race; that of the judge',
 }
 SAME_FILES = {
-    'blocks.py': 'messages in blocks: packed for a bag; compared with those of a bag',
     'critical.py': VERB, 'identify.py': VERB, 'sweep.py': VERB, 'uncertainty.py': f'{VERB}; {PICTURE}',
     'bifurcation.py': PICTURE, 'characteristics.py': PICTURE, 'known_friction.py': PICTURE, 'what_if.py': PICTURE,
     'friction.py': 'the command; friction as faults change it',

@@ -9,12 +9,12 @@ from typing import NamedTuple, NoReturn
 
 from ..core.errors import RecordingError
 from ..core.version import __version__
-from .blocks import to_yaml
 from .mcap_chunk import MessageBlock
 from .mcap_file import McapFile
 from .metadata import BagFile, MessageTally, information, write_metadata
 from .schemas import schema
 from .topics import Topic
+from .yaml_text import to_yaml
 
 CHUNK_SIZE = 64 * 1024  # a larger chunk takes longer to close than a step may wait
 METADATA = 'stickslip'  # the record that says what simulated the run

@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .blocks import to_yaml
 from .topics import Topic, Yaml
+from .yaml_text import to_yaml
 
 
 @dataclass(slots=True)
