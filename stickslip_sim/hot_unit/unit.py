@@ -18,7 +18,7 @@ from .sources import Source, Sources, digest_of
 ENTRIES = {
     'solvers/exact/engine.py': ('start', 'advance', 'set_inputs', 'set_parameters', 'set_load', 'sample',
                                 'energy'),
-    'solvers/exact/judge.py': ('is_sound',),
+    'solvers/exact/soundness.py': ('is_sound',),
     'solvers/fixed_step/loop.py': ('start', 'advance', 'set_inputs', 'set_parameters', 'set_load', 'sample'),
 }
 _MANY_AXES = 'solvers/exact/many_axes.py'

@@ -121,7 +121,7 @@ def run(parts: Parts) -> Run:
         first = 0
         stretches.append((events, sim.sample()))
         count += len(events)
-    sim.judge()
+    sim.require_sound()
     energy = sim.energy
     assert energy is not None
     return Run(parts, at_start, start, stretches, energy, count)

@@ -70,8 +70,8 @@ def applied_force(p: Parameters, s: State) -> float:
 
 @inlined
 def holds_by_drive(p: Parameters) -> bool:
-    """Whether F_d + F_e is what the static limit holds: in a rigid contact, and where a compliant one is so judged."""
-    return p.compliant == 0.0 or p.judges_drive != 0.0
+    """Whether F_d + F_e is what the static limit holds: in a rigid contact, and in a compliant one that ends by it."""
+    return p.compliant == 0.0 or p.ends_by_drive != 0.0
 
 
 @inlined

@@ -37,7 +37,7 @@ class Parameters:
     contact_stiffness: float  # N/m
     contact_damping: float    # N s/m
     arrest_share: float       # of the friction force, that a compliant contact carries as stick begins: 1, or 0
-    judges_drive: float       # 1 where such a stick ends by the drive's force, 0 where by that of the contact
+    ends_by_drive: float      # 1 where such a stick ends by the drive's force, 0 where by that of the contact
     static_law: float         # `friction.StaticLawKind`
     static_initial: float     # mu_s at rest time 0, forwards: against a force along +x
     static_limit: float       # mu_s at infinite rest time

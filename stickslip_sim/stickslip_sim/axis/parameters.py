@@ -22,13 +22,13 @@ class CompliantContact:
     """Tangential contact spring c_c `stiffness` (N/m) and damper h_c `damping` (N s/m), in stick only (Fig. 8).
 
     A stick begins with the deflection that goes on with the friction force, or `undeflected`.  It ends where the force
-    of the contact reaches the static limit, or F_d + F_e: `judges_drive`.
+    of the contact reaches the static limit, or F_d + F_e: `ends_by_drive`.
     """
 
     stiffness: float
     damping: float
     undeflected: bool = False
-    judges_drive: bool = False
+    ends_by_drive: bool = False
 
     def __post_init__(self) -> None:
         ranges.CONTACT_STIFFNESS.check_meaning('contact.stiffness', self.stiffness, 'N/m',
@@ -185,7 +185,7 @@ def pack(axis: Axis) -> Sequence[float]:
     return [axis.mass, axis.drive_stiffness, axis.drive_damping, axis.feed_share, axis.normal_force,
             float(contact is not None), contact.stiffness if contact else 0.0, contact.damping if contact else 0.0,
             0.0 if contact is not None and contact.undeflected else 1.0,
-            float(contact is not None and contact.judges_drive),
+            float(contact is not None and contact.ends_by_drive),
             float(static.kind), static.initial, static.limit, static.time_constant, static.exponent,
             static.delay,
             float(friction.excess is not None), friction.kinetic.end_slope, float(sum(map(len, tables))),

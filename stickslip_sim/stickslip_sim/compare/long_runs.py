@@ -22,7 +22,7 @@ def last_cycles(axis: Axis, initial: InitialState, inputs: SteadyInputs, period:
     simulator = Simulator(axis, initial, constant(inputs.velocity), constant(inputs.force), accounting=True)
     end = Instant(float(int(CYCLES * period) + 1), 0.0)
     cycles = cycle_figures(simulator.advance(end))
-    simulator.judge()
+    simulator.require_sound()
     return cycles[-_IN_TURN:] if lasts(cycles, end.seconds) else []
 
 

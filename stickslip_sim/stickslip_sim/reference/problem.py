@@ -111,7 +111,7 @@ def problem(axis: product.Axis, initial: product.InitialState, drive: profiles.I
         contact_stiffness=mpf(contact.stiffness if contact else 0.0),
         contact_damping=mpf(contact.damping if contact else 0.0),
         undeflected=contact is not None and contact.undeflected,
-        by_drive=contact is None or contact.judges_drive,
+        by_drive=contact is None or contact.ends_by_drive,
         forward=_side(axis.friction),
         backward=_side(axis.friction.backward or axis.friction),
         drive=drive,

@@ -135,7 +135,7 @@ def _simulated(scene: Scene, duration: float, sample_period: float | Fraction | 
         if few:
             held.append(rows)
     spent = cost.so_far()
-    simulator.judge()
+    simulator.require_sound()
     figures = summary(events, duration, start)
     receipt = receipt_of(scene, duration, float(sample_period) if sample_period else None, figures,
                          simulator.root_iterations, simulator.sample(), simulator.energy, *spent)

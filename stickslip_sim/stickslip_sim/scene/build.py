@@ -102,9 +102,9 @@ def _check_load(axis: Axis, solver: SolverSettings, load: InputProfile) -> None:
 
 def _axis(values: Mapping[str, Any]) -> Axis:
     contact = section_of(values, 'contact')
-    model, arrest, judged = (contact.pop(name, None) for name in ('model', 'arrest', 'break_away'))
+    model, arrest, ends_by = (contact.pop(name, None) for name in ('model', 'arrest', 'break_away'))
     compliant = model == 'compliant' and CompliantContact(**contact, undeflected=arrest == 'undeflected',
-                                                          judges_drive=judged == 'drive_force')
+                                                          ends_by_drive=ends_by == 'drive_force')
     given = section_of(values, 'axis')
     on_slideway = given.pop('damper', None) == 'slideway'
     axis = Axis(**given, friction=friction_of(values), contact=compliant or RigidContact(),

@@ -42,7 +42,7 @@ class Trace:
             return
         second = float(np.floor(end))
         self._take(self._rig.advance(Instant(second, end - second)))
-        self._rig.simulator.judge()
+        self._rig.simulator.require_sound()
         self.end = end
 
     def extend_until(self, is_enough: Callable[['Trace'], bool], least: float) -> bool:

@@ -77,12 +77,12 @@ class Simulator:
         """The energies from the start up to the present time; None without an account."""
         return self._solved.energy
 
-    def judge(self) -> None:
+    def require_sound(self) -> None:
         """Raise UnsoundError when the state contradicts its own mode or balance of energy; needs an account.
 
-        Each event is judged as the run goes on; this is for its end, or any time that its figures are looked at.
+        Each event is checked as the run goes on; this is for its end, or any time that its figures are looked at.
         """
-        self._solved.judge()
+        self._solved.require_sound()
 
     def advance(self, to: Instant) -> list[Event]:
         """Bring the state to a time that is not before the present one; return the events up to then.

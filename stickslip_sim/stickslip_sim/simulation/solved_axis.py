@@ -74,7 +74,7 @@ class SolvedAxis:
         self._solver.energy(self._parameters, self._state, *self.time, self._energies)
         return EnergyBalance(*self._energies.tolist())
 
-    def judge(self) -> None:
+    def require_sound(self) -> None:
         """Raise UnsoundError when the state contradicts its own mode or balance of energy; needs an account."""
         if self._solver.is_sound is not None and self._state.accounting and not self._solver.is_sound(
                 self._parameters, self._state, *self.time):

@@ -80,7 +80,7 @@ class Solver(Protocol):
     def energy(self) -> Callable[[Parameters, State, float, float, EnergyRow], None] | None:
         """What fills a row with the energies up to a time, as `sample` does; None of a solver without an account.
 
-        A solver with `energy` and `is_sound` keeps the account, and judges its run by it, while `accounting` of the
+        A solver with `energy` and `is_sound` keeps the account, and holds its run to it, while `accounting` of the
         state, which `start` leaves as it is, is not 0.
         """
 

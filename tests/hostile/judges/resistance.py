@@ -74,9 +74,9 @@ def _of_coasting(normal: Any, table: Table, begin: Node) -> Resistance:
 
 
 def _of_contact(contact: CompliantContact, begin: Node) -> Resistance:
-    """Return the force of a contact that gives; the guards are the force that is judged; the static limit is added."""
+    """Return the force of a contact that gives; the guards are the force that ends a stick, and the limit."""
     stiffness, damping = Long(contact.stiffness), Long(contact.damping)
     offset = stiffness * Long(begin.deflection)
-    guard = {U: damping, Y: stiffness, ONE: offset, F: Long(contact.judges_drive)}   # F_d + F_e is that force and f
+    guard = {U: damping, Y: stiffness, ONE: offset, F: Long(contact.ends_by_drive)}   # F_d + F_e is that force and f
     return Resistance(offset + damping * Long(begin.velocity), {at: -share for at, share in guard.items()}, guard,
                       offset=offset, damping=damping, stiffness=stiffness, slope_size=damping)

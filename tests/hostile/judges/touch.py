@@ -24,7 +24,7 @@ def judge(run: Run) -> None:
     contact, friction = axis.contact, axis.friction
     if not isinstance(contact, CompliantContact) or contact.damping > 0.0 or axis.drive_damping > 0.0:
         return
-    if contact.undeflected or contact.judges_drive:   # it does not begin on its limit
+    if contact.undeflected or contact.ends_by_drive:   # it does not begin on its limit
         return
     if any(drive.values) or any(drive.rates) or drive.sinusoids or force.sinusoids or any(force.rates) \
             or len(force.values) > 1 or run.parts.load is not None:

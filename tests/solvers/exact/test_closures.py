@@ -52,7 +52,7 @@ def closed(axis: Axis, closure: str) -> Axis:
     assert isinstance(axis.contact, CompliantContact)
     if closure == 'undeflected':
         return replace(axis, contact=replace(axis.contact, undeflected=True))
-    return replace(axis, contact=replace(axis.contact, judges_drive=True))
+    return replace(axis, contact=replace(axis.contact, ends_by_drive=True))
 
 
 def random_problem(closure: str, seed: int) -> tuple[Axis, InputProfile, InputProfile]:
@@ -94,7 +94,7 @@ def test_random_axes_have_the_events_of_the_reference(closure: str, seed: int) -
         axis = replace(axis, friction=of_two_directions(axis.friction))
     simulator = Simulator(axis, START, drive, force, accounting=True)
     found = simulator.advance(instant(SHORT))
-    simulator.judge()
+    simulator.require_sound()
     agree(found, axis, drive, force, SHORT, 1e-11)
     energy = simulator.energy
     assert energy is not None
@@ -107,7 +107,7 @@ def test_under_sinusoids_too(closure: str) -> None:
     drive, force = replace(constant(FEED), sinusoids=SINES[:1]), replace(constant(0.0), sinusoids=SINES[1:])
     simulator = Simulator(axis, START, drive, force, accounting=True)
     found = simulator.advance(instant(SHORT))
-    simulator.judge()
+    simulator.require_sound()
     assert len(found) > 20
     agree(found, axis, drive, force, SHORT, 1e-11)
 
@@ -174,7 +174,7 @@ def test_an_undeflected_contact_begins_without_a_force_and_gains_no_energy() -> 
 
 
 @pytest.mark.parametrize('sines', [(), SINES[1:]])
-def test_a_break_away_judged_by_the_drive_is_where_its_force_meets_the_limit(sines: tuple[Sinusoid, ...]) -> None:
+def test_a_break_away_by_the_drive_is_where_its_force_meets_the_limit(sines: tuple[Sinusoid, ...]) -> None:
     force = replace(constant(0.0), sinusoids=sines)
     axis = closed(paper_axis(COMPLIANT), 'drive_force')
     released = [event for event in run_events(axis, 5.0 * FEED, SHORT, force) if event.kind == EventKind.BREAKAWAY]

@@ -127,7 +127,7 @@ def test_splits_and_checkpoints_change_no_bit_and_energy_closes(seed: int) -> No
     seen += parts.advance(instant(4.0))
     assert seen == wanted
     assert parts.sample() == whole.sample()
-    whole.judge()
+    whole.require_sound()
     assert whole.energy is not None
     assert abs(whole.energy.residual) <= 1e-9 * max(whole.energy.throughput, 1e-9)
 

@@ -51,11 +51,11 @@ class TestOrder:
 
     @pytest.mark.parametrize('method', METHODS)
     def test_under_sinusoids(self, method: str) -> None:
-        """Sinusoids at the stages of a step; the adaptive solver, at a tight tolerance, is the judge."""
+        """Sinusoids at the stages of a step; the adaptive solver, at a tight tolerance, is the measure."""
         drive = InputProfile((0.0,), (0.05,), (0.0,), sinusoids=(Sinusoid(0.005, 3.0, 0.3),))
         force = InputProfile((0.0,), (0.0,), (0.0,), sinusoids=(Sinusoid(100.0, 5.0, 0.0), Sinusoid(50.0, 2.0, 1.0)))
-        judge = adaptive.solver('DOP853', 1e-13, 1e-15)
-        expected = simulate(judge, smooth_axis(), drive, 0.4, force, SLIDING)[1]
+        tight = adaptive.solver('DOP853', 1e-13, 1e-15)
+        expected = simulate(tight, smooth_axis(), drive, 0.4, force, SLIDING)[1]
         self._check(method, smooth_axis(), drive, expected.position, expected.velocity, force)
 
     @pytest.mark.parametrize('contact', [RIGID, COMPLIANT])

@@ -15,9 +15,12 @@ from ..node.publishers import Publishers
 
 def run_receipt(scene: Scene, loop: StepLoop, publishers: Publishers, dropped: int, cost: tuple[float, float]
                 ) -> dict[str, Any]:
-    """Return the receipt of the run up to now; `cost` is CPU and wall time, s.  Raises SolverError, see `judge`."""
+    """Return the receipt of the run up to now; `cost` is CPU and wall time, s.
+
+    Raises UnsoundError when the run contradicts itself.
+    """
     simulator = loop.rig.simulator
-    simulator.judge()
+    simulator.require_sound()
     period = 1.0 / scene.time.rate
     duration = max(simulator.time.seconds, period)
     figures = publishers.events.summary(duration)
@@ -29,10 +32,10 @@ def run_receipt(scene: Scene, loop: StepLoop, publishers: Publishers, dropped: i
 
 
 def _timing(scene: Scene, loop: StepLoop) -> dict[str, Any]:
-    judged, counters = verdict(scene, loop), loop.pacing_counters
+    timing, counters = verdict(scene, loop), loop.pacing_counters
     worst = {f'worst_{name}': _plain(loop.timing_statistics.worst(name)) for name in ('cost', 'lateness', 'latency')}
-    return {**asdict(counters), 'skipped': counters.skipped * 1e-9, **worst, 'valid': judged.valid,
-            'verdict': judged.text, 'scheduling': loop.step_thread.granted, 'not_granted': loop.step_thread.missing}
+    return {**asdict(counters), 'skipped': counters.skipped * 1e-9, **worst, 'valid': timing.valid,
+            'verdict': timing.text, 'scheduling': loop.step_thread.granted, 'not_granted': loop.step_thread.missing}
 
 
 def _plain(worst: Worst) -> dict[str, float] | None:

@@ -5,12 +5,12 @@
 from ...axis.records import RECORDS
 from ...core.hot_path import UNIT, entry
 from .. import PieceWalk, SolverOfFunctions
-from . import engine, judge, many_axes
+from . import engine, many_axes, soundness
 
 start, advance = entry(engine.start), entry(engine.advance)
 set_inputs, set_parameters = entry(engine.set_inputs), entry(engine.set_parameters)
 set_load = entry(engine.set_load)
-sample, energy, is_sound = entry(engine.sample), entry(engine.energy), entry(judge.is_sound)
+sample, energy, is_sound = entry(engine.sample), entry(engine.energy), entry(soundness.is_sound)
 walk = None if UNIT is None else PieceWalk(UNIT.Pieces, UNIT.walk, UNIT.sample_pieces)
 run_axes = getattr(RECORDS, 'run_axes', many_axes.run_axes)
 

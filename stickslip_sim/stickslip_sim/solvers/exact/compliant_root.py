@@ -11,7 +11,7 @@ from ...axis.static_limits import static_numbers
 from ...core.hot_path import compiled, inlined
 from ...linear.oscillator import Oscillator, amplitude, short_integrals
 from ...linear.root_steps import EPSILON, halley, halley_settles
-from .contact_force import ContactForce, ContactMotion, envelope_room, judged_force, judged_part
+from .contact_force import ContactForce, ContactMotion, envelope_room, limited_force, limited_part
 from .static_guards import STEPS, law
 
 _DIRECT_STEPS = 8
@@ -70,10 +70,10 @@ def _guard_at(p: Parameters, s: State, osc: Oscillator, t: float, side: float) -
     else:
         y, u, a = travel(p, s, t)
     jerk = s.jerk + s.snap * t + osc.omega2 * (s.velocity - u) - 2.0 * osc.gamma * a
-    force, rate = judged_force(p, s, t, y, u, a)
-    stiffness, damping = judged_part(p)
+    force, rate = limited_force(p, s, t, y, u, a)
+    stiffness, damping = limited_part(p)
     second_rate = stiffness * a + damping * jerk
-    if p.judges_drive != 0.0:
+    if p.ends_by_drive != 0.0:
         second_rate += p.stiffness * s.inputs.v_rate
     limit, growth, curvature = law(p, s.rest + t, side)
     return (p.normal_force * limit - side * force, p.normal_force * growth - side * rate,

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """When the force of a compliant stick reaches N mu_s(t⁻) of its direction.
 
-It is F_c, or F_d + F_e where that is judged (`contact_force`), and P(t) + H(t): P is linear (quadratic under a ramp of
+It is F_c, or F_d + F_e where it ends by that (`contact_force`), and P(t) + H(t): P is linear (quadratic under a ramp of
 the drive), H a decaying free motion with |H| <= A exp(−d t).
 
 1. Safe steps with a bound on the curvature that is left, from a contact that may sit on its limit when it begins,
@@ -56,7 +56,7 @@ _GO_ON, _IS_ROOT, _IN_BRACKET = 0.0, 1.0, 2.0
 def compliant_stick(p: Parameters, s: State, horizon: float) -> float:
     """Return when F_c reaches N mu_s of its direction, infinity when that is behind the horizon, or GAVE_UP."""
     osc = oscillator_of(s)
-    if horizon < TICK and p.judges_drive == 0.0 and _keeps_off(p, s, osc, horizon):
+    if horizon < TICK and p.ends_by_drive == 0.0 and _keeps_off(p, s, osc, horizon):
         return math.inf
     if p.normal_force * max(p.static_limit, p.backward_limit) == 0.0:
         return 0.0 if moves(s) else math.inf
@@ -71,7 +71,7 @@ def compliant_stick(p: Parameters, s: State, horizon: float) -> float:
             p, s, osc, motion, p.normal_force * limit + 2.0 * rounding, p.normal_force * back + 2.0 * rounding_back):
         s.next.searched = math.inf
         return math.inf
-    if p.judges_drive == 0.0:
+    if p.ends_by_drive == 0.0:
         rounding = min(rounding, contact_rounding(p, s, motion, limit))
         rounding_back = min(rounding_back, contact_rounding(p, s, motion, back)) if p.sided != 0.0 else rounding
     may_leap = leaps_far = motion.second == 0.0 and is_concave(p)

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The force that ends a compliant stick, P(t) + H(t), see `compliant_stick`.
 
-It is F_c = c_c δ + h_c ẋ.  Where a stick is judged by the drive it is F_d + F_e = F_c + m ẍ; H is then −c y − h ẏ of
+It is F_c = c_c δ + h_c ẋ.  Where a stick ends by the drive it is F_d + F_e = F_c + m ẍ; H is then −c y − h ẏ of
 the free motion y.
 """
 
@@ -57,7 +57,7 @@ def contact_motion(p: Parameters, s: State, osc: Oscillator) -> ContactMotion:
     y1 = force_rate / (p.stiffness + stiffness) - 2.0 * gamma * y2 / omega2
     y0 = (s.acceleration + 2.0 * gamma * (u - y1) - y2) / omega2
     steady = stiffness * (s.deflection + y0) + damping * y1
-    if p.judges_drive != 0.0:
+    if p.ends_by_drive != 0.0:
         steady += p.mass * y2
     return ContactMotion(y0, u - y1, s.acceleration - y2, s.jerk - 2.0 * gamma * y2, steady,
                          stiffness * y1 + damping * y2, stiffness * y2)
@@ -69,7 +69,7 @@ def contact_at(p: Parameters, osc: Oscillator, motion: ContactMotion, t: float) 
 
     Far over-damped, 2γ v and ω² y leave nothing of their difference; there the acceleration moves freely by itself.
     """
-    stiffness, damping = judged_part(p)
+    stiffness, damping = limited_part(p)
     gamma, omega2 = osc.gamma, osc.omega2
     y0, free_u, free_a, free_push, steady, rate, second = motion
     g, slope = impulse(osc, t)
@@ -90,22 +90,22 @@ def contact_at(p: Parameters, osc: Oscillator, motion: ContactMotion, t: float) 
 def force_at(p: Parameters, s: State, t: float) -> tuple[float, float]:
     """Return F_c and its rate at t, from the travel: P + H may cancel."""
     y, u, a = (0.0, s.velocity, s.acceleration) if t == 0.0 else travel(p, s, t)
-    return judged_force(p, s, t, y, u, a)
+    return limited_force(p, s, t, y, u, a)
 
 
 @inlined
-def judged_part(p: Parameters) -> tuple[float, float]:
+def limited_part(p: Parameters) -> tuple[float, float]:
     """Return what part of the force a deflection and a velocity are, N/m and N s/m."""
-    if p.judges_drive != 0.0:
+    if p.ends_by_drive != 0.0:
         return -p.stiffness, -p.damping
     return p.contact_stiffness, p.contact_damping
 
 
 @inlined
-def judged_force(p: Parameters, s: State, t: float, y: float, u: float, a: float) -> tuple[float, float]:
+def limited_force(p: Parameters, s: State, t: float, y: float, u: float, a: float) -> tuple[float, float]:
     """Return the force and its rate at t, after the travel y at the velocity u with the acceleration a."""
     stiffness, damping = p.contact_stiffness, p.contact_damping
-    if p.judges_drive == 0.0:
+    if p.ends_by_drive == 0.0:
         return stiffness * (s.deflection + y) + damping * u, stiffness * u + damping * a
     v = s.inputs.v + s.inputs.v_rate * t
     held = drive_force(p, s.spring + (drive_travel(s, t) - y), v, u)
@@ -140,8 +140,8 @@ def moves(s: State) -> bool:
 @inlined
 def second_at_start(p: Parameters, s: State, osc: Oscillator) -> float:
     """Return the second derivative of the force at the segment start."""
-    stiffness, damping = judged_part(p)
-    of_drive = p.stiffness * s.inputs.v_rate if p.judges_drive != 0.0 else 0.0
+    stiffness, damping = limited_part(p)
+    of_drive = p.stiffness * s.inputs.v_rate if p.ends_by_drive != 0.0 else 0.0
     return stiffness * s.acceleration + damping * (s.jerk - 2.0 * osc.gamma * s.acceleration) + of_drive
 
 
@@ -151,9 +151,9 @@ def gives_way(p: Parameters, s: State, osc: Oscillator) -> bool:
 
     The first derivative of its force that is not 0 says which way it is pushed.
     """
-    stiffness, damping = judged_part(p)
+    stiffness, damping = limited_part(p)
     u, a = s.velocity, s.acceleration
-    force, push = judged_force(p, s, 0.0, 0.0, u, a)
+    force, push = limited_force(p, s, 0.0, 0.0, u, a)
     if force != 0.0:
         return False
     jerk = s.jerk - 2.0 * osc.gamma * a
@@ -162,7 +162,7 @@ def gives_way(p: Parameters, s: State, osc: Oscillator) -> bool:
         push = second_at_start(p, s, osc)
     if push == 0.0:
         push = stiffness * jerk + damping * snap
-    if push == 0.0 and p.judges_drive == 0.0:
+    if push == 0.0 and p.ends_by_drive == 0.0:
         push = snap
     return push != 0.0 and p.normal_force * static_limit(p, math.inf, push) == 0.0
 

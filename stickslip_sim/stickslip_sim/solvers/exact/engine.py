@@ -27,8 +27,8 @@ from .. import DONE, FULL, NO_PROGRESS, UNSOUND
 from ..sampling import write_sample
 from ..state import is_stuck
 from .account import book_contact, book_parameters, book_works, read_account
-from .judge import event_is_sound
 from .search import RENEWAL, STAMP, find_event
+from .soundness import event_is_sound
 from .works import contact_energy, stored_energy
 
 _SAME_INSTANT = 64   # events without progress in time; a sound model needs three

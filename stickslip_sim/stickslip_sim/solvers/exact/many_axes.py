@@ -27,7 +27,7 @@ from ...core.hot_path import compiled
 from .. import DONE, FULL
 from .axis_figures import FIGURE_NAMES, ROUND_SIZE, AxisFigures, KeptRound, KeptRounds
 from .engine import advance, start
-from .judge import is_sound
+from .soundness import is_sound
 
 SETTLED = 1e-6       # relative change of the period from one cycle to the next
 LEAST_STICK = 1e-6   # of a round: less is a slip that only touches rest, as in motion without any damping

@@ -3,7 +3,7 @@
 """The first event of the present mode: which guard is reached first, and when.
 
 No guard is scanned; `linear.roots` gives the arguments why none of its roots can be missed, and what they assume of
-floating point; `judge` holds each event of a run to it.
+floating point; `soundness` holds each event of a run to it.
 
 * Slip: the acceleration of a linear mode vanishes at a closed-form time, and until then the speed is monotone; so the
   sign of (speed − breakpoint) at that time decides whether the breakpoint, or standstill, is reached before.

@@ -131,7 +131,7 @@ def _slip_signal(p: Parameters, s: State, osc: Oscillator) -> GuardSignal:
 @inlined
 def inertia(p: Parameters) -> float:
     """Return what the acceleration of a compliant stick adds to the force that ends it, kg."""
-    return p.mass if p.judges_drive != 0.0 else 0.0
+    return p.mass if p.ends_by_drive != 0.0 else 0.0
 
 
 @compiled

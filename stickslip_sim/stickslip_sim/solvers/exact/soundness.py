@@ -4,7 +4,7 @@
 
 The engine goes from root to root.  A root that is none leaves a state off the limit that it was to reach; one that was
 passed over leaves a state beyond the ends of its mode; an overflow leaves the balance open.  A run with an account is
-judged at each event, before that is written, and at its end; one that is off ends there, and has no figures to give.
+checked at each event, before that is written, and at its end; one that is off ends there, and has no figures to give.
 What is allowed is far above rounding, and far below what a figure would show.
 """
 

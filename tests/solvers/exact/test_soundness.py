@@ -41,11 +41,11 @@ def doctored(change: Doctor, mode: Mode | None = None) -> Solver:
 
 
 def run_in_steps(axis: Axis, solver: Solver, end: float = 3.0) -> None:
-    """Run at 1 kHz, and judge the end."""
+    """Run at 1 kHz, and check the end."""
     simulator = Simulator(axis, InitialState(), constant(0.002), constant(0.0), solver, accounting=True)
     for tick in range(1, round(1000 * end) + 1):
         simulator.advance(instant(tick / 1000))
-    simulator.judge()
+    simulator.require_sound()
 
 
 def event_too_early(s: Any) -> None:
@@ -133,7 +133,7 @@ def test_a_load_that_comes_and_goes_within_one_stick_is_sound(contact: Contact) 
     simulator = Simulator(paper_axis(contact), InitialState(), drive, constant(0.0), accounting=True)
     for tick in range(1, 1001):
         simulator.advance(instant(tick / 1000))
-        simulator.judge()
+        simulator.require_sound()
 
 
 def test_a_contact_that_gives_way_against_its_motion_obeys_newton() -> None:
@@ -150,7 +150,7 @@ def test_a_contact_that_gives_way_against_its_motion_obeys_newton() -> None:
         pull = after.drive_force + after.external_force - after.friction_force
         assert axis.mass * after.acceleration == pytest.approx(pull, abs=1e-9)
         simulator.advance(instant(1.2))
-        simulator.judge()
+        simulator.require_sound()
     assert turned > 20
 
 
@@ -168,6 +168,6 @@ def test_a_speed_that_peaks_on_a_breakpoint_turns_there() -> None:
         'drive.velocity': 0.011023211591484136})
     simulator = Simulator(scene.axis, scene.initial, scene.drive, scene.force, accounting=True)
     events = simulator.advance(instant(0.2))
-    simulator.judge()
+    simulator.require_sound()
     assert [event.kind for event in events] == [EventKind.BREAKAWAY, EventKind.KNOT, EventKind.DECELERATE]
     assert events[2].time - events[1].time < 1e-9
