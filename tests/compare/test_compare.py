@@ -23,7 +23,7 @@ from stickslip_sim.compare.fresh import simulate_densely
 from stickslip_sim.compare.look import look_at
 from stickslip_sim.compare.ring_down import RING_DOWN, closed_form, identified
 from stickslip_sim.compare.statement import StatementOutcome
-from stickslip_sim.compare.statements import judged, observed
+from stickslip_sim.compare.statements import findings_on, observed
 from stickslip_sim.core.types import EventKind
 from stickslip_sim.plots.characteristics import plot_characteristics
 from stickslip_sim.plots.paper_panels import plot_motion
@@ -177,7 +177,7 @@ def test_a_recording_that_began_later(bag: Path, tmp_path: Path) -> None:
     assert late.cycles() == whole.cycles()[-len(late.cycles()):]
     assert 0 < len(late.cycles()) < len(whole.cycles())
     assert 0.6 < late.summary.stick_share < 0.9
-    verdicts = {statement.name: finding for statement, finding in judged(late)}
+    verdicts = {statement.name: finding for statement, finding in findings_on(late)}
     assert verdicts['long rest'].outcome == StatementOutcome.NOT_APPLICABLE
     assert verdicts['continuous friction force'].outcome == StatementOutcome.HOLDS
 

@@ -11,7 +11,7 @@ import pytest
 from stickslip_sim.cli.main import run
 from stickslip_sim.compare.fresh import simulate_densely
 from stickslip_sim.compare.statement import Finding, StatementOutcome
-from stickslip_sim.compare.statements import STATEMENTS, judged
+from stickslip_sim.compare.statements import STATEMENTS, findings_on
 from stickslip_sim.core.types import EventKind
 from stickslip_sim.recording import read_run
 from stickslip_sim.runs import Run, SimulatedRun
@@ -31,11 +31,11 @@ def densely(scene: str, duration: float = 10.0, **changes: object) -> SimulatedR
 
 
 def findings(run: Run) -> dict[str, Finding]:
-    return {statement.name: finding for statement, finding in judged(run)}
+    return {statement.name: finding for statement, finding in findings_on(run)}
 
 
 def outcomes(run: Run) -> list[StatementOutcome]:
-    return [finding.outcome for _, finding in judged(run)]
+    return [finding.outcome for _, finding in findings_on(run)]
 
 
 @pytest.mark.parametrize(('scene', 'expected'), [
@@ -48,13 +48,13 @@ def test_what_the_paper_says_holds_on_its_scenes(scene: str, expected: list[Stat
     assert outcomes(densely(scene)) == expected
 
 
-def test_a_bag_is_judged_like_the_run_it_holds(tmp_path: Path) -> None:
+def test_a_bag_is_compared_like_the_run_it_holds(tmp_path: Path) -> None:
     for scene in ('paper_fig7', 'paper_fig8'):
         assert run(['simulate', scene, '--duration', '5', '--bag', str(tmp_path / scene)]) == 0
         assert outcomes(read_run(tmp_path / scene)) == outcomes(densely(scene))
 
 
-def test_a_run_whose_parameters_changed_is_not_judged(fig8_bag: Path) -> None:
+def test_a_run_whose_parameters_changed_is_not_compared(fig8_bag: Path) -> None:
     recorded = read_run(fig8_bag)
     assert NOT_APPLICABLE not in outcomes(recorded)
     recorded.is_changed = True

@@ -14,21 +14,21 @@ from .run_or_scene import is_recorded, recorded_run
 from .scene_changes import SceneChanges, scene_changes
 
 if TYPE_CHECKING:
-    from ..compare.report_folder import Judged
+    from ..compare.report_folder import Compared
     from ..runs import Run
 
 _MOST = 8        # runs, rows of a picture
 _OF_RUNS = 0.2   # of the time, about
 
 
-@click.command(short_help="Draw the paper's figures for a run, and judge its statements.")
+@click.command(short_help="Draw the paper's figures for a run, and hold it to the statements.")
 @click.argument('runs', nargs=-1, required=True, metavar='RUN_OR_SCENE...', shell_complete=completion.complete_scenes)
 @click.option('--out', required=True, metavar='FOLDER', help='New folder for the report and the pictures.')
 @click.option('--duration', type=float, metavar='S',
               help='Simulated time of a scene, s [default: 10 s, or more for 20 cycles].')
 @scene_changes('Change a parameter of every scene.')
 def compare(runs: tuple[str, ...], out: str, duration: float | None, changes: SceneChanges) -> None:
-    """Draw runs as the paper's figures 4, 6, 7 and 8, and judge what the paper says on each.
+    """Draw runs as the paper's figures 4, 6, 7 and 8, and say which statements of the paper hold on each.
 
     A run is the folder of a recorded one, or a scene, which is simulated.  Exit with 3 when a statement that applies
     to a run does not hold.  With a measured run (see import) the others are drawn over it, and differences of their
@@ -47,15 +47,15 @@ def compare(runs: tuple[str, ...], out: str, duration: float | None, changes: Sc
                 progress(_OF_RUNS * (k + 1) / len(runs))
         if not _is_measured(sources):
             with new_folder('--out', out) as folder:
-                judged = write_report(named_apart(sources), folder, progress and (
+                compared = write_report(named_apart(sources), folder, progress and (
                     lambda share: progress(_OF_RUNS + (1.0 - _OF_RUNS) * share)))
     if _is_measured(sources):
         _print_beside(sources, out)
         return
-    for each in judged:
-        _print_judged(each)
+    for each in compared:
+        _print_compared(each)
     say_written(str(Path(out) / 'report.html'))
-    failed = [f'{found.name}: {name}' for found in judged for name in found.failed]
+    failed = [f'{found.name}: {name}' for found in compared for name in found.failed]
     if failed:
         raise VerdictError(f'{len(failed)} of the statements that apply do not hold ({"; ".join(failed)})')
 
@@ -123,11 +123,11 @@ def _print_beside(runs: list['Run'], out: str) -> None:
     say_written(str(Path(out) / 'report.html'))
 
 
-def _print_judged(judged: 'Judged') -> None:
+def _print_compared(compared: 'Compared') -> None:
     from ..runs.wording import headline
 
-    print(f'{judged.name}: {headline(judged.run.summary)}')
-    for note in judged.run.notes:
+    print(f'{compared.name}: {headline(compared.run.summary)}')
+    for note in compared.run.notes:
         print(f'  note: {note}')
-    for statement, finding in judged.findings:
+    for statement, finding in compared.findings:
         print(f'  {finding.outcome.value:15} {statement.name}: {finding.text}')

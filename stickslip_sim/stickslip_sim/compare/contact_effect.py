@@ -18,7 +18,7 @@ _FIGURES = {'period': 'period', 'stick time': 'stick_time', 'slip time': 'slip_t
             'peak speed': 'peak_speed', 'break-away force': 'break_away_force'}
 
 
-def judge(run: Run, _: Sequence[object]) -> Finding:
+def _finding(run: Run, _: Sequence[object]) -> Finding:
     """Compare the limit cycles of this axis with a rigid and with a compliant contact."""
     axis, inputs = run.scene.axis, look_at(run).steady
     if axis.friction.excess is None:
@@ -52,4 +52,4 @@ def _change(rigid: Cycle, compliant: Cycle, field: str) -> float:
 
 CONTACT_EFFECT = Statement('the contact is not essential',
                            'The contact changes the course of the motion not essentially: every figure of the limit '
-                           f'cycle by at most {100.0 * _NOT_ESSENTIALLY:g} %.', judge)
+                           f'cycle by at most {100.0 * _NOT_ESSENTIALLY:g} %.', _finding)

@@ -34,8 +34,8 @@ def jumps_in(part: RunPart) -> _Jumps:
     return _Jumps(*(list(_jumps(part, kind)) for kind in (EventKind.BREAKAWAY, EventKind.STICK)))
 
 
-def judge(run: Run, jumps: Sequence[_Jumps]) -> Finding:
-    """Judge the jumps of the friction force."""
+def _finding(run: Run, jumps: Sequence[_Jumps]) -> Finding:
+    """Return what comes of the jumps of the friction force."""
     axis, seen = run.scene.axis, look_at(run)
     there, back = (list(chain(*each)) for each in zip(*jumps))
     if not there and not back:
@@ -79,4 +79,4 @@ def _just_after(part: RunPart, event: Event, first: int) -> float:
 
 CONTINUITY = Statement('continuous friction force',
                        'With the contact, the friction force is continuous from stick to slip and back.',
-                       judge, jumps_in)
+                       _finding, jumps_in)

@@ -15,7 +15,7 @@ from .statement import Finding, Statement, found, not_applicable
 _SAME = 1e-6   # relative difference of two limit cycles that are one
 
 
-def judge(run: Run, _: Sequence[object]) -> Finding:
+def _finding(run: Run, _: Sequence[object]) -> Finding:
     """Start the axis of this run in other ways, with the same inputs, and compare the cycles that it ends in."""
     inputs = look_at(run).steady
     if inputs is None:
@@ -51,4 +51,4 @@ def _starts(run: Run, own: Cycle) -> Iterator[tuple[str, InitialState]]:
 
 
 LIMIT_CYCLE = Statement('stable limit cycle', 'From several starts the motion converges to one stable limit cycle.',
-                        judge)
+                        _finding)

@@ -12,7 +12,7 @@ from .statement import Finding, Statement, found, not_applicable
 _EQUAL = 1e-3   # relative; the exact solver has rounding only, others their step
 
 
-def judge(run: Run, _: Sequence[object]) -> Finding:
+def _finding(run: Run, _: Sequence[object]) -> Finding:
     """Compare the first break-away of a run that begins after prolonged rest with those that follow."""
     axis = run.scene.axis
     break_aways = [event for event in run.events if _is_break_away(event)]
@@ -38,4 +38,4 @@ def _is_break_away(event: Event) -> bool:
     return event.kind == EventKind.BREAKAWAY and event.mode != Mode.STICK
 
 
-LONG_REST = Statement('long rest', 'A long rest raises the first break-away to mu_s(inf) N.', judge)
+LONG_REST = Statement('long rest', 'A long rest raises the first break-away to mu_s(inf) N.', _finding)

@@ -49,8 +49,8 @@ def sticks_in(part: RunPart) -> _SticksSeen:
                         if stop in begins and _is_fit(part, ring, begins[stop], stop, end)], [])
 
 
-def judge(run: Run, seen: Sequence[_SticksSeen]) -> Finding:
-    """Judge the motion in the sticks."""
+def _finding(run: Run, seen: Sequence[_SticksSeen]) -> Finding:
+    """Return what comes of the motion in the sticks."""
     ring = closed_form(run.scene.axis)
     if not isinstance(run.scene.axis.contact, CompliantContact) or ring is None:
         return _without_contact(run, list(chain(*(part.speeds for part in seen))))
@@ -69,7 +69,7 @@ def judge(run: Run, seen: Sequence[_SticksSeen]) -> Finding:
 
 
 def _without_contact(run: Run, speeds: Sequence[float]) -> Finding:
-    """Judge the largest speeds in the sticks of a rigid contact: there must be no motion."""
+    """Return what comes of the largest speeds in the sticks of a rigid contact: there must be no motion."""
     if not any(event.kind == EventKind.STICK for event in run.events):
         return not_applicable('no slip ends in this run')
     moving = max(speeds, default=0.0)
@@ -103,4 +103,4 @@ def _part(part: RunPart, begin: Event, end: Event, name: str) -> Numbers:
 
 OSCILLATION = Statement('oscillation after a slip',
                         'After the end of a slip there is a small, vanishing oscillation, with the contact only.',
-                        judge, sticks_in)
+                        _finding, sticks_in)

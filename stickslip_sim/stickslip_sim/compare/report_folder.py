@@ -13,12 +13,12 @@ from .cycle_figures import figures_of
 from .page import page
 from .pictures import draw
 from .statement import Finding, Statement, StatementOutcome
-from .statements import judged
+from .statements import findings_on
 
-_OF_JUDGING = 0.3   # of the time, about
+_OF_FINDINGS = 0.3   # of the time, about
 
 
-class Judged(NamedTuple):
+class Compared(NamedTuple):
     """A run under the name that it has in the report, and what came of the paper's statements on it."""
 
     name: str
@@ -32,15 +32,18 @@ class Judged(NamedTuple):
 
 
 def write_report(runs: Mapping[str, Run], folder: Path, progress: Callable[[float], None] | None = None
-                 ) -> list[Judged]:
-    """Draw and judge runs by their names into a folder that exists.  Raises OSError when the disk refuses."""
+                 ) -> list[Compared]:
+    """Draw runs by their names, and hold them to the statements, into a folder that exists.
+
+    Raises OSError when the disk refuses.
+    """
     found = []
     for k, (name, run) in enumerate(runs.items()):
-        found.append(Judged(name, run, judged(run)))
+        found.append(Compared(name, run, findings_on(run)))
         if progress:
-            progress(_OF_JUDGING * (k + 1) / len(runs))
+            progress(_OF_FINDINGS * (k + 1) / len(runs))
     report: dict[str, Any] = {'versions': versions(), 'runs': [figures_of(*each) for each in found]}
-    pictures = draw(runs, folder, progress and (lambda share: progress(_OF_JUDGING + (1.0 - _OF_JUDGING) * share)))
+    pictures = draw(runs, folder, progress and (lambda share: progress(_OF_FINDINGS + (1.0 - _OF_FINDINGS) * share)))
     report['pictures'] = [picture._asdict() for picture in pictures]
     (folder / 'report.json').write_text(json.dumps(report, indent=1, allow_nan=False) + '\n', encoding='utf-8')
     (folder / 'report.html').write_text(page(report, pictures, folder), encoding='utf-8')

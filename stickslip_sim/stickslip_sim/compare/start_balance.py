@@ -14,7 +14,7 @@ from .statement import Finding, Statement, found, not_applicable
 _EQUAL = 1e-9   # relative: rounding of the forces
 
 
-def judge(run: Run, _: Sequence[object]) -> Finding:
+def _finding(run: Run, _: Sequence[object]) -> Finding:
     """Compare the forces that displacements make at the start: of the drive spring, of the contact, and from outside.
 
     The drive damper is left out: a drive that sets off at a velocity has its force from the first instant on.
@@ -37,4 +37,4 @@ def judge(run: Run, _: Sequence[object]) -> Finding:
 
 
 START_BALANCE = Statement('start in balance', 'The initial displacements correspond to the stick balance condition.',
-                          judge)
+                          _finding)

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""What the paper says, as something to be judged on a run."""
+"""What the paper says, as something that holds on a run, or not."""
 
 from collections.abc import Callable, Sequence
 from enum import Enum
@@ -27,11 +27,14 @@ class Finding(NamedTuple):
 
 
 class Statement(NamedTuple):
-    """One statement of the paper, in our words, and who judges it, with what a watch found of each part of the run."""
+    """One statement of the paper, in our words, and the function that finds whether it holds.
+
+    That has what the `watch` found of each part of the run.
+    """
 
     name: str
     text: str
-    judge: Callable[[Run, Sequence[Any]], Finding]
+    finding: Callable[[Run, Sequence[Any]], Finding]
     watch: Watch | None = None
 
 

@@ -20,13 +20,13 @@ STATEMENTS: tuple[Statement, ...] = (START_BALANCE, CONTINUITY, TWO_VALUES, OSCI
                                      LONG_REST)
 
 
-def judged(run: Run) -> list[tuple[Statement, Finding]]:
+def findings_on(run: Run) -> list[tuple[Statement, Finding]]:
     """Return what comes of every statement on a run."""
     if run.is_changed:
         changed = not_applicable('parameters were changed while it ran: it is no run of one axis')
         return [(statement, changed) for statement in STATEMENTS]
     found = observed(run).found
-    return [(statement, statement.judge(run, found.get(statement.name, ()))) for statement in STATEMENTS]
+    return [(statement, statement.finding(run, found.get(statement.name, ()))) for statement in STATEMENTS]
 
 
 @kept

@@ -32,8 +32,8 @@ def branch_gaps(part: RunPart) -> list[_Gap]:
     return [gap for slip in complete_slips(part.events) if _is_raised(part, *slip) and (gap := _gap(part, *slip))]
 
 
-def judge(run: Run, found_gaps: Sequence[list[_Gap]]) -> Finding:
-    """Judge the gaps between the branches."""
+def _finding(run: Run, found_gaps: Sequence[list[_Gap]]) -> Finding:
+    """Return what comes of the gaps between the branches."""
     if run.scene.axis.friction.excess is None:
         return not_applicable('without acceleration dependence friction has one value at each velocity')
     gaps = list(chain(*found_gaps))
@@ -72,4 +72,4 @@ def _rising(speed: Numbers, force: Numbers) -> tuple[Numbers, Numbers]:
 
 TWO_VALUES = Statement('two-valued friction',
                        'Within a slip the friction force over velocity has two values: more while the slider '
-                       'accelerates than while it decelerates.', judge, branch_gaps)
+                       'accelerates than while it decelerates.', _finding, branch_gaps)

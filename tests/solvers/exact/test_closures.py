@@ -14,7 +14,7 @@ from stickslip_sim.axis import Axis, CompliantContact, Friction, InitialState
 from stickslip_sim.compare.continuity import CONTINUITY
 from stickslip_sim.compare.fresh import simulate_densely
 from stickslip_sim.compare.statement import StatementOutcome
-from stickslip_sim.compare.statements import judged
+from stickslip_sim.compare.statements import findings_on
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant, steps
 from stickslip_sim.core.types import Event, EventKind
@@ -150,10 +150,10 @@ def test_a_recorded_run_is_verified(closure: str, tmp_path: Path, capsys: Captur
 
 
 @pytest.mark.parametrize('closure', CLOSURES)
-def test_the_statements_of_the_paper_are_judged(closure: str) -> None:
+def test_the_statements_of_the_paper_apply(closure: str) -> None:
     """The balance of forces that they go by leaves a constant drive constant."""
     run = simulate_densely(load_scene('paper_fig8', CLOSURES[closure]), 5.0)
-    found = {statement.name: finding.outcome for statement, finding in judged(run)}
+    found = {statement.name: finding.outcome for statement, finding in findings_on(run)}
     assert StatementOutcome.NOT_APPLICABLE not in found.values()
     assert (found[CONTINUITY.name] == StatementOutcome.FAILS) == (closure == 'undeflected')
 
