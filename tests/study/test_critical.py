@@ -16,12 +16,12 @@ from stickslip_sim.extremes.shared_axes import make, of_kind
 from stickslip_sim.runs import simulate_events
 from stickslip_sim.scene import Scene, load_scene
 from stickslip_sim.study import Variation
+from stickslip_sim.study.answer_changes import FAILED, NO, OPEN, YES, Answers, Doubt, Findings, find_transitions
 from stickslip_sim.study.critical import Critical, critical, default_range
 from stickslip_sim.study.points import scene_at
 from stickslip_sim.study.table_facts import table_fact
 from stickslip_sim.study.theory import critical_drop, critical_feed, feed_of_theory, healing_critical_feed
 from stickslip_sim.study.variation import Numbers
-from stickslip_sim.study.verdict_changes import FAILED, NO, OPEN, YES, Doubt, Findings, Verdicts, find_transitions
 from tests.support.axes import instant
 from tests.support.repository import ROOT
 from tests.support.tool import Capture
@@ -143,44 +143,44 @@ def test_several_changes_are_all_found() -> None:
 
 
 def test_what_cannot_be_decided_stays_open() -> None:
-    def judge(values: Numbers) -> Verdicts:
+    def question(values: Numbers) -> Answers:
         return np.where(abs(values - 2.0) < 1e-3, OPEN, values > 2.0).astype(np.int64)
 
-    (one,) = find_transitions(judge, 1.0, 3.5, False, 1e-9).transitions
+    (one,) = find_transitions(question, 1.0, 3.5, False, 1e-9).transitions
     assert not one.resolved
     assert one.low == pytest.approx(1.999, abs=3e-4)
     assert one.high == pytest.approx(2.001, abs=3e-4)
-    for verdict in (OPEN, FAILED):
-        found = find_transitions(lambda values: np.full(len(values), verdict), 1.0, 2.0, False, 1e-9)  # noqa: B023
-        assert found == Findings(verdict, (), (Doubt(1.0, 2.0, verdict == FAILED),))
+    for answer in (OPEN, FAILED):
+        found = find_transitions(lambda values: np.full(len(values), answer), 1.0, 2.0, False, 1e-9)  # noqa: B023
+        assert found == Findings(answer, (), (Doubt(1.0, 2.0, answer == FAILED),))
 
 
-def test_what_cannot_be_decided_between_two_equal_verdicts_or_at_an_end_is_reported() -> None:
-    def judge(values: Numbers) -> Verdicts:
+def test_what_cannot_be_decided_between_two_equal_answers_or_at_an_end_is_reported() -> None:
+    def question(values: Numbers) -> Answers:
         found = np.where((values > 2.0) & (values < 3.0), OPEN, YES)
         return np.where(values > 8.0, FAILED, found).astype(np.int64)
 
-    found = find_transitions(judge, 1.0, 9.0, False, 1e-9)
+    found = find_transitions(question, 1.0, 9.0, False, 1e-9)
     assert (found.first, found.transitions) == (YES, ())
     assert [(one.low, one.high, one.failed) for one in found.doubts] == [(2.0, 3.0, False), (8.0, 9.0, True)]
     assert [found.at(value) for value in (1.5, 2.5, 5.0, 8.5)] == [YES, OPEN, YES, OPEN]
 
 
-def test_a_failed_run_between_two_verdicts_is_reported() -> None:
-    def judge(values: Numbers) -> Verdicts:
+def test_a_failed_run_between_two_answers_is_reported() -> None:
+    def question(values: Numbers) -> Answers:
         return np.where(abs(values - 2.0) < 1e-3, FAILED, values > 2.0).astype(np.int64)
 
-    (one,) = find_transitions(judge, 1.0, 3.5, False, 1e-9).transitions
+    (one,) = find_transitions(question, 1.0, 3.5, False, 1e-9).transitions
     assert (one.resolved, one.failed) == (False, True)
 
 
-def test_verdicts_that_come_by_turns_are_no_figure() -> None:
-    """As near a motion that sticks by chance: beyond the ends of what is reported no verdict contradicts."""
-    def judge(values: Numbers) -> Verdicts:
+def test_answers_that_come_by_turns_are_no_figure() -> None:
+    """As near a motion that sticks by chance: beyond the ends of what is reported no answer contradicts."""
+    def question(values: Numbers) -> Answers:
         by_chance = np.mod(1e9 * np.sin(12345.0 * values), 1.0) > 0.5
         return np.where(abs(values - 2.0) < 3e-3, by_chance, values > 2.0).astype(np.int64)
 
-    (one,) = find_transitions(judge, 1.0, 3.5, False, 1e-9).transitions
+    (one,) = find_transitions(question, 1.0, 3.5, False, 1e-9).transitions
     assert not one.resolved
     assert one.rises
     assert 1.99 < one.low <= 1.997 + 1e-4
@@ -188,24 +188,24 @@ def test_verdicts_that_come_by_turns_are_no_figure() -> None:
 
 
 @pytest.mark.parametrize('seed', range(40))
-def test_both_ends_of_what_is_reported_have_the_verdict_that_is_reported(seed: int) -> None:
+def test_both_ends_of_what_is_reported_have_the_answer_that_is_reported(seed: int) -> None:
     rng = np.random.default_rng(seed)
     width, likely = 10.0 ** rng.uniform(-6.0, -1.0), rng.uniform(0.1, 0.9)
 
-    def judge(values: Numbers) -> Verdicts:
+    def question(values: Numbers) -> Answers:
         by_chance = np.mod(1e9 * np.sin(12345.0 * values + seed), 1.0) < likely
         found = np.where(abs(values - 2.0) < width, by_chance, values > 2.0)
         return np.where(abs(values - 2.0) < 0.1 * width, OPEN, found).astype(np.int64)
 
-    for one in find_transitions(judge, 1.0, 3.5, False, 1e-9).transitions:
-        assert judge(np.array([one.low, one.high])).tolist() == [int(not one.rises), int(one.rises)]
+    for one in find_transitions(question, 1.0, 3.5, False, 1e-9).transitions:
+        assert question(np.array([one.low, one.high])).tolist() == [int(not one.rises), int(one.rises)]
 
 
 def test_three_clear_changes_between_two_values_of_the_scan_are_three() -> None:
-    def judge(values: Numbers) -> Verdicts:
+    def question(values: Numbers) -> Answers:
         return (((values > 2.03) & (values < 2.05)) | (values > 2.07)).astype(np.int64)
 
-    found = find_transitions(judge, 1.0, 6.0, False, 1e-12).transitions
+    found = find_transitions(question, 1.0, 6.0, False, 1e-12).transitions
     assert [one.value for one in found] == pytest.approx([2.03, 2.05, 2.07], rel=1e-11)
     assert [(one.rises, one.resolved) for one in found] == [(True, True), (False, True), (True, True)]
 

@@ -13,13 +13,13 @@ import pytest
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.scene import changed, load_scene
 from stickslip_sim.study import Saltelli, Study, Variation
+from stickslip_sim.study.answer_changes import NO, OPEN, YES, Answers
 from stickslip_sim.study.critical import critical
 from stickslip_sim.study.critical_sample import ACCURACY, CriticalStudy, critical_values, spreads_of
 from stickslip_sim.study.distribution import Distribution
 from stickslip_sim.study.highest_change import ALL_OVER, NOWHERE, Places, highest_changes
 from stickslip_sim.study.theory import feed_of_theory
 from stickslip_sim.study.variation import Numbers
-from stickslip_sim.study.verdict_changes import NO, OPEN, YES, Verdicts
 from stickslip_sim.study.workers import processes
 from tests.support.repository import ROOT
 from tests.support.tool import Capture, answered, refused
@@ -73,22 +73,22 @@ def test_the_spread_counts_what_has_no_value() -> None:
     assert spread.percentiles[2] == pytest.approx(np.median(spread.values))
 
 
-def judge_of(changes: list[float], unknown: tuple[float, float] = (math.inf, math.inf)) -> Numbers:
-    def judge(rows: Places, numbers: Numbers) -> Verdicts:
-        verdicts = np.where(numbers < np.array(changes)[rows], YES, NO)
-        return np.where((unknown[0] < numbers) & (numbers < unknown[1]), OPEN, verdicts)
+def asked_about(changes: list[float], unknown: tuple[float, float] = (math.inf, math.inf)) -> Numbers:
+    def question(rows: Places, numbers: Numbers) -> Answers:
+        answers = np.where(numbers < np.array(changes)[rows], YES, NO)
+        return np.where((unknown[0] < numbers) & (numbers < unknown[1]), OPEN, answers)
 
-    return highest_changes(judge, len(changes), Variation('drive.velocity', 1.0, 100.0, 0, True), 1e-6)
+    return highest_changes(question, len(changes), Variation('drive.velocity', 1.0, 100.0, 0, True), 1e-6)
 
 
 def test_changes_are_found_side_by_side() -> None:
-    assert judge_of([2.0, 50.0, 0.5, 200.0, 99.9]) == pytest.approx([2.0, 50.0, NOWHERE, ALL_OVER, 99.9], rel=1e-6)
+    assert asked_about([2.0, 50.0, 0.5, 200.0, 99.9]) == pytest.approx([2.0, 50.0, NOWHERE, ALL_OVER, 99.9], rel=1e-6)
 
 
 def test_what_is_open_is_known_as_far_as_it_is() -> None:
-    assert judge_of([10.0], (9.99, 10.01)) == pytest.approx([10.0], rel=2e-3)
-    assert np.isnan(judge_of([10.0], (8.0, 12.0)))
-    assert np.isnan(judge_of([200.0], (50.0, 60.0)))   # in there it might have changed twice
+    assert asked_about([10.0], (9.99, 10.01)) == pytest.approx([10.0], rel=2e-3)
+    assert np.isnan(asked_about([10.0], (8.0, 12.0)))
+    assert np.isnan(asked_about([200.0], (50.0, 60.0)))   # in there it might have changed twice
 
 
 def test_the_tool_prints_draws_and_writes_it(tmp_path: Path, capsys: Capture) -> None:

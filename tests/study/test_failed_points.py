@@ -99,9 +99,9 @@ def test_a_figure_that_is_no_number_is_a_failure(name: str, monkeypatch: pytest.
 
 @pytest.mark.usefixtures('heavy_fail')
 @pytest.mark.parametrize(('between', 'said'), [
-    ('300:400', r'from 349[.0-9]* to 400[.0-9]* kg: not judged, the exact engine gave up'),
-    ('360:400', r'from 360[.0-9]* to 400[.0-9]* kg: not judged, the exact engine gave up')])
-def test_critical_says_where_it_cannot_judge(between: str, said: str, capsys: Capture) -> None:
+    ('300:400', r'from 349[.0-9]* to 400[.0-9]* kg: not known, the exact engine gave up'),
+    ('360:400', r'from 360[.0-9]* to 400[.0-9]* kg: not known, the exact engine gave up')])
+def test_critical_says_where_it_does_not_know(between: str, said: str, capsys: Capture) -> None:
     assert run(['critical', 'paper_fig7', '--of', 'axis.mass', '--between', between]) == 0
     from_rest = [line for line in capsys.readouterr().out.splitlines() if line.startswith('from rest')]
     assert any(re.search(said, line) for line in from_rest), from_rest

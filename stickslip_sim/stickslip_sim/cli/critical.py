@@ -12,9 +12,9 @@ from .scene_changes import SceneChanges, scene_changes
 
 if TYPE_CHECKING:
     from ..scene import Scene
+    from ..study.answer_changes import Findings, Transition
     from ..study.critical import Critical
     from ..study.variation import Variation
-    from ..study.verdict_changes import Findings, Transition
 
 _ACCURACY = 1e-9
 _DIGITS = 12   # of ends that are too small or large to be written out
@@ -92,7 +92,7 @@ def _table_lines(scene: 'Scene', found: 'Critical', unit: str, digits: int) -> l
 
 def _start_lines(start: str, findings: 'Findings', unit: str, digits: int, yes: str, no: str) -> list[str]:
     """Return a line for each transition of the findings, or one that there is none, and for each stretch in doubt."""
-    from ..study.verdict_changes import NO, YES
+    from ..study.answer_changes import NO, YES
 
     found = [(one.low, f'{_value(one, unit, digits)}: '
               + (f'{no} below, {yes} above' if one.rises else f'{yes} below, {no} above'))
@@ -112,7 +112,7 @@ def _value(one: 'Transition', unit: str, digits: int) -> str:
 
 
 def _why(failed: bool) -> str:
-    return 'not judged, the exact engine gave up' if failed else 'undecided'
+    return 'not known, the exact engine gave up' if failed else 'undecided'
 
 
 def _stretch(words: str, low: float, high: float, unit: str) -> str:

@@ -23,7 +23,7 @@ from .scales import late_far_slow_fast
 from .shaken import shaken
 from .splits import events_inside_a_tick, splits
 from .stiffness import stiff_contacts
-from .study_verdicts import verdicts
+from .study_answers import answers
 from .ties import guards_at_their_limit, meeting_events
 
 EXTREMES = (
@@ -82,9 +82,9 @@ EXTREMES = (
     Extreme('X23', 'slips critically damped to 1e-5 to 1e-13, from both sides',
             'stickslip 0.1.0: the same product underflowed, and 1 axis of 1000 missed its events',
             'the events of the reference, <= 1e-12', near_critical),
-    Extreme('X24', 'verdicts of sweep and critical: sticks and reversals by turns, sticks after long pauses, a cycle '
+    Extreme('X24', 'answers of sweep and critical: sticks and reversals by turns, sticks after long pauses, a cycle '
             'about to vanish', 'looking at the last cycle, or for two equal ones: wrong for 3 of 41 masses, and '
-            'borders "to 1e-9" that do not exist or that 937 sticks contradict', 'what 10,000 s show', verdicts),
+            'borders "to 1e-9" that do not exist or that 937 sticks contradict', 'what 10,000 s show', answers),
     Extreme('X25', 'the energy account: sinusoids of 1 Hz to 1 MHz; stiff, over-damped, undamped, resonant contacts',
             'not reported; 0.1.0 of this engine: a hold of 1000 s under 1 kHz 2.3 s for 54 us of motion, 1 MHz no end',
             'the account costs at most as much again as the motion; balance <= 1e-12', cost_of_the_account),

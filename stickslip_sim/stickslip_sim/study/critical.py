@@ -15,12 +15,12 @@ import numpy as np
 
 from ..core.errors import InputError
 from ..scene import Scene
+from .answer_changes import FAILED, NO, OPEN, YES, Answers, Findings, find_transitions
 from .point_figures import Motion, Numbers, figures_of_runs
 from .points import batches, runs_in_batches, scene_at, works_in_batches
 from .steady import sliding_slope
 from .table_facts import TableFact, table_fact
 from .variation import Variation, checked, number_at, parameter_of
-from .verdict_changes import FAILED, NO, OPEN, YES, Findings, Verdicts, find_transitions
 
 _PATIENCE = 20_000   # cycles that a motion is given to settle
 _DOUBLINGS = 20      # of its first run
@@ -61,10 +61,10 @@ def critical(scene: Scene, over: Variation, accuracy: float,
                          'a critical value belongs to a motion that settles')
     for end in (over.low, over.high):
         scene_at(scene.values, [over.name], np.array([end]))
-    judge = _Judge(scene.values, over.name)
+    ask = _Questions(scene.values, over.name)
     limits = over.low, over.high, over.log, accuracy
-    rest = find_transitions(judge.sticks, *limits, progress)    # it takes nearly all the time
-    sliding = find_transitions(judge.loses_sliding, *limits)
+    rest = find_transitions(ask.sticks, *limits, progress)    # it takes nearly all the time
+    sliding = find_transitions(ask.loses_sliding, *limits)
     facts = [table_fact(scene.values, over.name, one.value, accuracy, found is sliding)
              for found in (rest, sliding) for one in found.transitions if one.resolved]
     return Critical(over, accuracy, rest, sliding, tuple(fact for fact in facts if fact is not None))
@@ -83,32 +83,32 @@ def default_range(scene: Scene, name: str) -> Variation:
 
 
 @dataclass(frozen=True)
-class _Judge:
-    """Judges values of one parameter of a scene."""
+class _Questions:
+    """What is asked of values of one parameter of a scene."""
 
     values: Mapping[str, object]
     name: str
 
-    def sticks(self, numbers: Numbers) -> Verdicts:
+    def sticks(self, numbers: Numbers) -> Answers:
         """Whether stick-slip goes on, from the start of the scene."""
-        return stick_verdicts(self.values, [self.name], numbers[:, None])
+        return stick_answers(self.values, [self.name], numbers[:, None])
 
-    def loses_sliding(self, numbers: Numbers) -> Verdicts:
+    def loses_sliding(self, numbers: Numbers) -> Answers:
         """Whether a disturbance of steady sliding grows."""
-        return lost_verdicts(self.values, [self.name], numbers[:, None])
+        return lost_answers(self.values, [self.name], numbers[:, None])
 
 
-def stick_verdicts(values: Mapping[str, object], names: Sequence[str], points: Numbers) -> Verdicts:
+def stick_answers(values: Mapping[str, object], names: Sequence[str], points: Numbers) -> Answers:
     """Return for each point whether stick-slip goes on, from the start of the scene."""
     runs = runs_in_batches(values, names, points, None, _PATIENCE, _DOUBLINGS)
     figures = figures_of_runs(runs)
-    verdicts = np.where(figures.motion == Motion.STICK_SLIP, YES, NO)
-    verdicts[(figures.motion == Motion.UNDECIDED) | runs.late] = OPEN   # late: a value beside it may never slide
-    verdicts[figures.motion == Motion.FAILED] = FAILED
-    return verdicts
+    answers = np.where(figures.motion == Motion.STICK_SLIP, YES, NO)
+    answers[(figures.motion == Motion.UNDECIDED) | runs.late] = OPEN   # late: a value beside it may never slide
+    answers[figures.motion == Motion.FAILED] = FAILED
+    return answers
 
 
-def lost_verdicts(values: Mapping[str, object], names: Sequence[str], points: Numbers) -> Verdicts:
+def lost_answers(values: Mapping[str, object], names: Sequence[str], points: Numbers) -> Answers:
     """Return for each point whether a disturbance of steady sliding grows."""
     slopes = np.empty(len(points))
     for members, scene, inputs in batches(values, names, points):

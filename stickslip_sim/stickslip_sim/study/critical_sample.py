@@ -14,13 +14,13 @@ from typing import NamedTuple
 import numpy as np
 
 from ..core.errors import InputError
-from .critical import lost_verdicts, stick_verdicts
+from .answer_changes import Answers
+from .critical import lost_answers, stick_answers
 from .highest_change import ALL_OVER, NOWHERE, Places, highest_changes
 from .sample import Saltelli
 from .study import Study
 from .uncertainty import PERCENTS, Index, sobol_indices
 from .variation import Numbers, Variation
-from .verdict_changes import Verdicts
 from .workers import Workers
 
 ACCURACY = 1e-4        # of the value
@@ -51,14 +51,14 @@ class CriticalStudy:
         points = self.study.points(first, last)
         names = (*self.study.names, self.over.name)
 
-        def sticks(rows: Places, numbers: Numbers) -> Verdicts:
-            return stick_verdicts(self.study.values, names, np.column_stack([points[rows], numbers]))
+        def sticks(rows: Places, numbers: Numbers) -> Answers:
+            return stick_answers(self.study.values, names, np.column_stack([points[rows], numbers]))
 
-        def loses_sliding(rows: Places, numbers: Numbers) -> Verdicts:
-            return lost_verdicts(self.study.values, names, np.column_stack([points[rows], numbers]))
+        def loses_sliding(rows: Places, numbers: Numbers) -> Answers:
+            return lost_answers(self.study.values, names, np.column_stack([points[rows], numbers]))
 
-        return np.column_stack([highest_changes(judge, last - first, self.over, ACCURACY)
-                                for judge in (sticks, loses_sliding)])
+        return np.column_stack([highest_changes(question, last - first, self.over, ACCURACY)
+                                for question in (sticks, loses_sliding)])
 
 
 class CriticalSpread(NamedTuple):

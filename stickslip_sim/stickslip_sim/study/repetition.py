@@ -3,7 +3,7 @@
 """Whether rounds of stick-slip repeat: each the one before, or a group of them the group before.
 
 A round is known by its stick time, its period, and drive force and speed at the break-away that ends it; the last two
-and the friction law decide all that follows.  A group of n rounds repeats when every one of the rounds that are judged
+and the friction law decide all that follows.  A group of n rounds repeats when every one of the rounds that count
 is the one n before it to REPEATED, and in the later half of them the differences have come down to those of rounding
 (_STILL).  Small alone is not enough: just beyond the border at which a cycle vanishes, rounds change ever less
 for thousands of times, as if they settled, and then leave.
@@ -22,36 +22,36 @@ _NEARLY = 1e-2       # the same
 _LONGEST = 16        # rounds in a group
 
 
-def group_size(window: Numbers, judged: Numbers, force: Numbers) -> Numbers:
+def group_size(window: Numbers, counts: Numbers, force: Numbers) -> Numbers:
     """Return of how many rounds the shortest group is that repeats, 0 without one.
 
-    `window` has the latest rounds of each axis, as `batch.Rounds`; so many of them as `judged` says count, and `force`
+    `window` has the latest rounds of each axis, as `batch.Rounds`; so many of them as `counts` says matter, and `force`
     (N) is the scale of drive forces.
     """
     found: Numbers = np.zeros(len(window))
-    some = np.flatnonzero(judged >= _TURNS)
+    some = np.flatnonzero(counts >= _TURNS)
     if not len(some):
         return found
     longest = min(_LONGEST, window.shape[1] // _TURNS)
     ends = window[some, -1 - longest:]   # looked at first: mostly that is enough
     likely = _within(np.abs(ends[:, -1:] - ends[:, -2::-1]) / _sizes(ends, force[some]), REPEATED)
     for size in range(1, longest + 1):
-        tried = some[likely[:, size - 1] & (judged[some] >= _TURNS * size) & (found[some] == 0.0)]
+        tried = some[likely[:, size - 1] & (counts[some] >= _TURNS * size) & (found[some] == 0.0)]
         if len(tried):
-            found[tried[_repeats(window[tried], judged[tried], force[tried], size)]] = size
+            found[tried[_repeats(window[tried], counts[tried], force[tried], size)]] = size
     return found
 
 
-def drifts(window: Numbers, judged: Numbers, force: Numbers) -> Flags:
+def drifts(window: Numbers, counts: Numbers, force: Numbers) -> Flags:
     """Return whether rounds are nearly those before them, one by one: an axis that has not settled drifts."""
-    counted = (np.arange(window.shape[1]) >= window.shape[1] - judged[:, None])[:, :-1]
-    return (judged >= _TURNS) & _agree(window / _sizes(window, force), 1, counted, _NEARLY)
+    counted = (np.arange(window.shape[1]) >= window.shape[1] - counts[:, None])[:, :-1]
+    return (counts >= _TURNS) & _agree(window / _sizes(window, force), 1, counted, _NEARLY)
 
 
-def _repeats(window: Numbers, judged: Numbers, force: Numbers, size: int) -> Flags:
+def _repeats(window: Numbers, counts: Numbers, force: Numbers, size: int) -> Flags:
     """Return whether groups of one size repeat."""
     sizes = _sizes(window, force)
-    counted = (np.arange(window.shape[1]) >= window.shape[1] - judged[:, None])[:, :-size]   # the earlier of the two
+    counted = (np.arange(window.shape[1]) >= window.shape[1] - counts[:, None])[:, :-size]   # the earlier of the two
     order = np.cumsum(counted, axis=1)
     late = counted & (2 * order > order[:, -1:])
     still = window / np.concatenate([sizes[:, :, 1:2], sizes[:, :, 1:]], axis=2)

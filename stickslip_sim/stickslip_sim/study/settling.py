@@ -130,8 +130,8 @@ def _swings(before: Runs, now: Runs, speed: Numbers) -> tuple[Flags, Flags, Flag
 
 def _repeats(before: _Stage, now: _Stage, force: Numbers) -> Flags:
     """Return which runs stick and slip in a cycle, or a group of cycles, that stays."""
-    judged = np.where(before.runs.duration > 0.0, now.runs.round_count - before.runs.round_count, 0.0)
-    size = group_size(now.windows, np.minimum(judged, _WINDOW), force)
+    counts = np.where(before.runs.duration > 0.0, now.runs.round_count - before.runs.round_count, 0.0)
+    size = group_size(now.windows, np.minimum(counts, _WINDOW), force)
     if not size.any():
         return size > 0.0
     repeats: Flags = (size > 0.0) & ~now.runs.slides_on & ends_alike(before.windows, now.windows, size, force)
@@ -140,8 +140,8 @@ def _repeats(before: _Stage, now: _Stage, force: Numbers) -> Flags:
 
 def _drifts(before: _Stage, now: _Stage, axis: Axis, inputs: Mapping[str, Numbers]) -> Flags:
     """Return which runs change little from round to round, by which a cycle may still vanish."""
-    judged = np.minimum(now.runs.round_count - before.runs.round_count, _WINDOW)
-    return drifts(now.windows, judged, _static_force(axis, inputs)) & ~(now.runs.lasts | now.runs.rests_on)
+    counts = np.minimum(now.runs.round_count - before.runs.round_count, _WINDOW)
+    return drifts(now.windows, counts, _static_force(axis, inputs)) & ~(now.runs.lasts | now.runs.rests_on)
 
 
 def _is_open(before: Runs, now: Runs) -> Flags:

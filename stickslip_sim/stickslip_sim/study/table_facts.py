@@ -4,7 +4,7 @@
 
 Sliding is lost by the slope of mu_k at the drive's speed.  On a table that slope is the same all along a segment and
 jumps at a breakpoint; so a critical feed lies on a breakpoint, wherever a smooth curve through the same points would
-have it.  A smooth law is judged by its own slope, and has none of this.
+have it.  With a smooth law its own slope decides, and it has none of this.
 """
 
 import math

@@ -12,9 +12,9 @@ from ..core.types import EventKind, Mode
 from ..scene import Scene, load_scene
 from ..solvers import Solver
 from ..study import Grid, Motion, Study, Variation
+from ..study.answer_changes import Transition
 from ..study.critical import critical
 from ..study.points import scene_at
-from ..study.verdict_changes import Transition
 from .outcome import Measurement, Setup, Tally, require
 from .shared_axes import instant, make, of_kind
 
@@ -43,7 +43,7 @@ _BORDERS: tuple[tuple[str, Mapping[str, object], str, float, float], ...] = (
 )
 
 
-def verdicts(setup: Setup) -> Measurement:
+def answers(setup: Setup) -> Measurement:
     """X24: sticks and reversals by turns, sticks after long pauses, cycles about to vanish; sweep and critical."""
     tally = Tally(0.0)
     for mass in np.linspace(*_HEAVY, setup.count(41, 5)).tolist():

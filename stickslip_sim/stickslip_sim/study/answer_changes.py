@@ -1,9 +1,9 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Where the verdict on a number changes: a scan, then nested sections of each stretch in which it does.
+"""Where the answer of a number changes: a scan, then nested sections of each stretch in which it does.
 
-Where there is no verdict, or verdicts alternate however close the values, the change lies in between; beyond both ends
-of such a stretch more values are judged, until none of them contradicts.
+Where there is no answer, or answers alternate however close the values, the change lies in between; beyond both ends
+of such a stretch more values are looked at, until none of them contradicts.
 """
 
 import math
@@ -16,20 +16,20 @@ from numpy.typing import NDArray
 
 from .point_figures import Numbers
 
-NO, YES, OPEN, FAILED = 0, 1, -1, -2   # verdicts; OPEN: there is none; FAILED: the run went wrong
-Verdicts = NDArray[np.int64]
-Judge = Callable[[Numbers], Verdicts]
+NO, YES, OPEN, FAILED = 0, 1, -1, -2   # answers; OPEN: there is none; FAILED: the run went wrong
+Answers = NDArray[np.int64]
+Question = Callable[[Numbers], Answers]
 
 _SCAN = 65       # values
-_SECTIONS = 16   # of a stretch, all judged at once
+_SECTIONS = 16   # of a stretch, all at once
 _GAIN = 0.9      # a stretch that shrinks less is as short as it gets
 _SPLITS = 1      # so often a stretch may turn out to have several changes
 _BEYOND = 8.0    # lengths of a stretch, so far beyond it is looked
-_PROBES = 64     # values there, so that verdicts that are rare by chance are met
+_PROBES = 64     # values there, so that answers that are rare by chance are met
 
 
 class Transition(NamedTuple):
-    """The verdict is `not rises` at `low` and `rises` at `high`; in between it is not known.
+    """The answer is `not rises` at `low` and `rises` at `high`; in between it is not known.
 
     `resolved`: the two are as close as was asked for.  `failed`: in between are runs that went wrong.
     """
@@ -47,7 +47,7 @@ class Transition(NamedTuple):
 
 
 class Doubt(NamedTuple):
-    """Between `low` and `high`, with one verdict on either side or an end of the range, are values without any.
+    """Between `low` and `high`, with one answer on either side or an end of the range, are values without any.
 
     `failed`: their runs went wrong.
     """
@@ -58,14 +58,14 @@ class Doubt(NamedTuple):
 
 
 class Findings(NamedTuple):
-    """The verdict over a range: that at its low end, where it changes, and where it is not known."""
+    """The answer over a range: that at its low end, where it changes, and where it is not known."""
 
     first: int
     transitions: tuple[Transition, ...]
     doubts: tuple[Doubt, ...] = ()
 
     def at(self, value: float) -> int:
-        """Return the verdict at a value; OPEN where it is not known."""
+        """Return the answer at a value; OPEN where it is not known."""
         unknown = [(one.low, one.high) for one in self.doubts]
         unknown += [(one.low, one.high) for one in self.transitions if not one.resolved]
         if self.first < NO or any(low < value < high for low, high in unknown):
@@ -81,32 +81,32 @@ class Findings(NamedTuple):
 
 
 class _Scan(NamedTuple):
-    """Values in their order, and the verdicts on them."""
+    """Values in their order, and the answers on them."""
 
     values: Numbers
-    verdicts: Verdicts
+    answers: Answers
 
     def known(self) -> list[int]:
-        """Return the places of the values that have a verdict."""
-        return [int(place) for place in np.flatnonzero(self.verdicts >= NO)]
+        """Return the places of the values that have an answer."""
+        return [int(place) for place in np.flatnonzero(self.answers >= NO)]
 
     def changes(self) -> list[tuple[int, int]]:
-        """Return the places of adjacent values with verdicts that differ."""
-        return [(a, b) for a, b in pairwise(self.known()) if self.verdicts[a] != self.verdicts[b]]
+        """Return the places of adjacent values with answers that differ."""
+        return [(a, b) for a, b in pairwise(self.known()) if self.answers[a] != self.answers[b]]
 
     def has_failed(self, first: int, last: int) -> bool:
         """Whether a run from a place to another went wrong."""
-        return bool((self.verdicts[first:last + 1] == FAILED).any())
+        return bool((self.answers[first:last + 1] == FAILED).any())
 
 
-def find_transitions(judge: Judge, low: float, high: float, log: bool, accuracy: float,
+def find_transitions(question: Question, low: float, high: float, log: bool, accuracy: float,
                      progress: Callable[[float], None] | None = None) -> Findings:
-    """Return how the verdict goes from `low` to `high`, each change within a relative `accuracy`.
+    """Return how the answer goes from `low` to `high`, each change within a relative `accuracy`.
 
     Two changes between adjacent values of the scan (65, even or in steps of one ratio with `log`) cancel each other.
     """
     values = np.asarray((np.geomspace if log else np.linspace)(low, high, _SCAN), dtype=np.float64)
-    scan = _Scan(values, judge(values))
+    scan = _Scan(values, question(values))
     known, changes = scan.known(), scan.changes()
     if not known:
         failed = scan.has_failed(0, _SCAN)
@@ -118,26 +118,26 @@ def find_transitions(judge: Judge, low: float, high: float, log: bool, accuracy:
                 progress((before + share) / len(changes))
 
         narrowing(0.0)
-        found += _narrowed(judge, _part(scan, a, b), accuracy, _SPLITS, narrowing)
-    return Findings(int(scan.verdicts[known[0]]), tuple(found), tuple(_doubts(scan)))
+        found += _narrowed(question, _part(scan, a, b), accuracy, _SPLITS, narrowing)
+    return Findings(int(scan.answers[known[0]]), tuple(found), tuple(_doubts(scan)))
 
 
 def _doubts(scan: _Scan) -> list[Doubt]:
-    """Return where a scan has no verdict, but where the verdict changes."""
+    """Return where a scan has no answer, but where the answer changes."""
     found, last = [], len(scan.values) - 1
-    for is_known, group in groupby(range(last + 1), lambda place: scan.verdicts[place] >= NO):
+    for is_known, group in groupby(range(last + 1), lambda place: scan.answers[place] >= NO):
         places = list(group)
         before, after = max(places[0] - 1, 0), min(places[-1] + 1, last)
         at_an_end = places[0] == 0 or places[-1] == last
-        if not is_known and (at_an_end or scan.verdicts[before] == scan.verdicts[after]):
+        if not is_known and (at_an_end or scan.answers[before] == scan.answers[after]):
             found.append(Doubt(float(scan.values[before]), float(scan.values[after]), scan.has_failed(before, after)))
     return found
 
 
-def _narrowed(judge: Judge, scan: _Scan, accuracy: float, splits: int,
+def _narrowed(question: Question, scan: _Scan, accuracy: float, splits: int,
               progress: Callable[[float], None] = lambda _: None) -> list[Transition]:
-    """Return the transitions in a scan at whose ends the verdicts differ: one, or more where each of them is clear."""
-    rises, whole = bool(scan.verdicts[-1]), scan
+    """Return the transitions in a scan at whose ends the answers differ: one, or more where each of them is clear."""
+    rises, whole = bool(scan.answers[-1]), scan
     first = float(scan.values[-1] - scan.values[0])
     while True:
         low, high = float(scan.values[0]), float(scan.values[-1])
@@ -146,14 +146,14 @@ def _narrowed(judge: Judge, scan: _Scan, accuracy: float, splits: int,
         if high - low <= max(accuracy * size, 2.0 * math.ulp(size)):
             return [Transition(low, high, rises, True)]
         inner = np.unique(np.linspace(low, high, _SECTIONS + 1)[1:-1])
-        scan = _Scan(np.array([low, *inner, high]), np.array([int(not rises), *judge(inner), int(rises)]))
+        scan = _Scan(np.array([low, *inner, high]), np.array([int(not rises), *question(inner), int(rises)]))
         changes = scan.changes()
         if len(changes) > 1:
-            clear = _each(judge, scan, changes, accuracy, splits)
-            return clear or [_widened(judge, scan, changes[0][0], changes[-1][1], whole)]
+            clear = _each(question, scan, changes, accuracy, splits)
+            return clear or [_widened(question, scan, changes[0][0], changes[-1][1], whole)]
         (a, b), = changes
         if scan.values[b] - scan.values[a] > _GAIN * (high - low):
-            return [_widened(judge, scan, a, b, whole)]
+            return [_widened(question, scan, a, b, whole)]
         scan = _part(scan, a, b)
 
 
@@ -162,21 +162,21 @@ def _share_of_digits(first: float, now: float, last: float) -> float:
     return min(math.log(first / now) / math.log(first / last), 1.0) if last < first else 1.0
 
 
-def _each(judge: Judge, scan: _Scan, changes: Sequence[tuple[int, int]], accuracy: float,
+def _each(question: Question, scan: _Scan, changes: Sequence[tuple[int, int]], accuracy: float,
           splits: int) -> list[Transition]:
     """Return the transition of each of several changes; nothing unless all are clear."""
     found: list[Transition] = []
     for a, b in changes if splits else ():
-        parts = _narrowed(judge, _part(scan, a, b), accuracy, splits - 1)
+        parts = _narrowed(question, _part(scan, a, b), accuracy, splits - 1)
         if not all(one.resolved for one in parts):
             return []
         found += parts
     return found
 
 
-def _widened(judge: Judge, scan: _Scan, first: int, last: int, whole: _Scan) -> Transition:
+def _widened(question: Question, scan: _Scan, first: int, last: int, whole: _Scan) -> Transition:
     """Return the transition between two places of a scan, moved apart until the values beyond agree with its ends."""
-    rises, failed = bool(whole.verdicts[-1]), scan.has_failed(first, last)
+    rises, failed = bool(whole.answers[-1]), scan.has_failed(first, last)
     ends = [float(scan.values[first]), float(scan.values[last])]
     for side, limit, wanted in ((0, float(whole.values[0]), int(not rises)), (1, float(whole.values[-1]), int(rises))):
         contradicts = False   # the end itself
@@ -184,9 +184,9 @@ def _widened(judge: Judge, scan: _Scan, first: int, last: int, whole: _Scan) -> 
             reach = _BEYOND * (ends[1] - ends[0])
             far = max(ends[0] - reach, limit) if side == 0 else min(ends[1] + reach, limit)
             beyond = np.linspace(ends[side], far, _PROBES + 1)[1:]
-            verdicts = judge(np.asarray(beyond, dtype=np.float64))
-            against = np.flatnonzero(verdicts != wanted)
-            failed |= bool((verdicts == FAILED).any())
+            answers = question(np.asarray(beyond, dtype=np.float64))
+            against = np.flatnonzero(answers != wanted)
+            failed |= bool((answers == FAILED).any())
             if not len(against):
                 ends[side] = float(beyond[0]) if contradicts else ends[side]
                 break
@@ -197,4 +197,4 @@ def _widened(judge: Judge, scan: _Scan, first: int, last: int, whole: _Scan) -> 
 
 def _part(scan: _Scan, first: int, last: int) -> _Scan:
     """Return the values from one place to another, with both."""
-    return _Scan(scan.values[first:last + 1], scan.verdicts[first:last + 1])
+    return _Scan(scan.values[first:last + 1], scan.answers[first:last + 1])
