@@ -62,7 +62,7 @@ soak: build  ## the node, recording, with a controller beside it for MINUTES=10;
 fuzz: tools  ## made-up files and runs for MINUTES=10; fails when one is not read or refused in one line, or runs wrong
 	@$(HERE) python3 -m tests.fuzz --minutes $(MINUTES)
 
-hostile: tools  ## scenes near all that an event search may miss, for MINUTES=10, with SEED=; fails when a judge finds one wrong
+hostile: tools  ## scenes near all that an event search may miss, for MINUTES=10, with SEED=; fails when one is found wrong
 	@$(HERE) python3 -m tests.hostile --minutes $(MINUTES) $(if $(SEED),--seed $(SEED))
 
 pictures: tools  ## the schematic pictures of README and docs, from dev/pictures/

@@ -45,8 +45,8 @@ CHOICES = [
     *_numbers('contact spring c_c', 'contact.stiffness', (2.5e6, 1e7), ' kN/mm', 1e-6),
     *_numbers('contact damper h_c', 'contact.damping', (0.0, 7500.0, 30000.0), ' Ns/mm', 1e-3),
     Choice('contact as stick begins', 'undeflected', {'contact.arrest': 'undeflected'}),
-    Choice('break-away judged by', 'F_d + F_e', {'contact.break_away': 'drive_force'}),
-    Choice('break-away judged by', 'F_d + F_e, at 10 mm/s', {'drive.velocity': 0.01,
+    Choice('break-away decided by', 'F_d + F_e', {'contact.break_away': 'drive_force'}),
+    Choice('break-away decided by', 'F_d + F_e, at 10 mm/s', {'drive.velocity': 0.01,
            'contact.break_away': 'drive_force'}),
     *(Choice('rest time begins', f'ring-down over to {share:g} %', {f'{_STATIC}.delay': ring_down_time(0.01 * share)})
       for share in (10.0, 1.0)),

@@ -27,7 +27,7 @@ from .loop import machine
 RATE = 1000.0    # 1/s
 PERIOD = 1.0     # s between two looks at the memory
 PARTS = 12       # of the recording
-WARM_UP = 2      # parts, before the memory is judged
+WARM_UP = 2      # parts, before the memory is looked at
 BELOW = 2        # priority of the controller, below that of the step thread; the node's other threads are 1 below
 
 
@@ -133,7 +133,7 @@ def page(minutes: float, priority: int, figures: Mapping[str, float], verdict: s
         '| figure | measured | at most |', '|---|---|---|', *rows, '',
         'Missed: ' + '; '.join(failures) + '.' if failures else
         'Memory, drift and loss are within their limits.', '',
-        'The lateness of steps depends on the machine, and has no limit here.  The node judges it by the section',
+        'The lateness of steps depends on the machine, and has no limit here.  The node holds it to the section',
         '`timing` of its scene ([hil.md](hil.md)); its verdict on this run:', '', f'    {verdict}', ''])
 
 

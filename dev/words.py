@@ -30,6 +30,7 @@ class Rule(NamedTuple):
     words: str
     refused: re.Pattern[str]
     right: re.Pattern[str] | None
+    right_in: tuple[str, ...]
     pages_only: bool
 
 
@@ -61,25 +62,28 @@ def rules(entries: Iterable[dict[str, Any]]) -> Rules:
     """Return the rules of the list; raises ValueError for a key that means nothing, and for a capital in a word."""
     found = []
     for entry in entries:
-        if unknown := set(entry) - {'write', 'not', 'but', 'only'}:
+        if unknown := set(entry) - {'write', 'not', 'but', 'only', 'right'}:
             raise ValueError(f'{LIST.name}: {entry["write"]}: unknown: {", ".join(unknown)}')
         words = '|'.join(entry['not'])
         if words != words.lower():
             raise ValueError(f'{LIST.name}: {entry["write"]}: in lower case, which finds capitals, too: {words}')
         found.append(Rule(entry['write'], words, re.compile(_whole(words), re.IGNORECASE),
-                          re.compile('|'.join(entry['but'])) if 'but' in entry else None,
+                          re.compile('|'.join(entry['but'])) if 'but' in entry else None, tuple(entry.get('right', ())),
                           entry.get('only') == 'pages'))
     return Rules(found)
 
 
-def faults(text: str, refusals: Rules) -> Iterator[Fault]:
-    """Yield the words of a text that are refused, a line after the other; names are read as the words in them."""
+def faults(text: str, refusals: Rules, file: str = '') -> Iterator[Fault]:
+    """Yield the words of a text that are refused, a line after the other; names are read as the words in them.
+
+    `file` is the name that the text has in the repository.
+    """
     lines = text.splitlines()
     words = _CAPITAL.sub(' ', '\n'.join(lines)).replace('_', ' ')
     in_lines = words.split('\n')
     for number in refusals.lines(words):
         for rule in refusals.listed:
-            for match in rule.refused.finditer(in_lines[number - 1]):
+            for match in () if file.startswith(rule.right_in) else rule.refused.finditer(in_lines[number - 1]):
                 if not (rule.right and rule.right.search(lines[number - 1])):
                     yield Fault(number, match.group(), rule.write)
 
@@ -89,7 +93,8 @@ def all_faults() -> Iterator[tuple[Path, Fault]]:
     listed = rules(yaml.safe_load(LIST.read_text(encoding='utf-8')))
     elsewhere = Rules(rule for rule in listed.listed if not rule.pages_only)
     for file in texts(*_OUTSIDE):
-        for fault in faults(file.read_text(encoding='utf-8'), listed if file.suffix == '.md' else elsewhere):
+        refusals = listed if file.suffix == '.md' else elsewhere
+        for fault in faults(file.read_text(encoding='utf-8'), refusals, file.relative_to(ROOT).as_posix()):
             yield file, fault
 
 

@@ -10,7 +10,16 @@ from scipy.optimize import brentq
 
 from stickslip_sim.runs import simulate
 from stickslip_sim.scene import load_scene, scene_from_values
-from tests.support.check_files import DECAY, FREE, FREQUENCY, START_VELOCITY, free_position, judged, measured, simulated
+from tests.support.check_files import (
+    DECAY,
+    FREE,
+    FREQUENCY,
+    START_VELOCITY,
+    free_position,
+    measured,
+    of_limits,
+    simulated,
+)
 
 PEAK_TIME = math.atan2(FREQUENCY, DECAY) / FREQUENCY   # of the first swing; between two samples
 
@@ -30,7 +39,7 @@ class TestClosedForms:
     def test_following_error_of_a_reference(self) -> None:
         text = 'reference: {times: [0.1, 0.2], positions: [0.0, 1.0e-2]}\nlimits: {following_error: {max: 1.0}}'
         errors = [abs(0.01 * min(max(k / 100 - 1.0, 0.0), 1.0) - free_position(k / 1000)) for k in range(501)]
-        assert judged(text, simulated(FREE, 0.5))['following_error'].value == pytest.approx(max(errors), rel=1e-12)
+        assert of_limits(text, simulated(FREE, 0.5))['following_error'].value == pytest.approx(max(errors), rel=1e-12)
 
     def test_end_position_error(self) -> None:
         value = measured('end_position_error: {target: 0.001, max: 1.0, window: {end: 0.25}}', simulated(FREE, 0.5))
@@ -62,7 +71,7 @@ class TestClosedForms:
 
     def test_settling_that_never_comes_or_is_always_there(self) -> None:
         found = simulated(FREE, 0.1)
-        outcome = judged('limits: {settling_time: {target: 0.0, band: 1.0e-6, max: 1.0e+6}}', found)['settling_time']
+        outcome = of_limits('limits: {settling_time: {target: 0.0, band: 1.0e-6, max: 1.0e+6}}', found)['settling_time']
         assert (outcome.value, outcome.passed) == (math.inf, False)
         assert measured('settling_time: {target: 0.0, band: 1.0, max: 0.0}', found) == 0.0
 
@@ -116,7 +125,7 @@ class TestStickSlip:
         assert value <= expected
 
     def test_no_limit_cycle_without_cycles(self) -> None:
-        outcome = judged('limits: {limit_cycle_amplitude: {max: 0.0}}', simulated('fast_feed', 1.0))
+        outcome = of_limits('limits: {limit_cycle_amplitude: {max: 0.0}}', simulated('fast_feed', 1.0))
         assert outcome['limit_cycle_amplitude'].value == 0.0
         assert 'no complete cycle' in outcome['limit_cycle_amplitude'].remark
 
@@ -124,16 +133,16 @@ class TestStickSlip:
 def test_a_limit_may_be_met_exactly_and_not_exceeded() -> None:
     found = simulated(FREE, 0.5)
     for maximum, passed in ((START_VELOCITY, True), (math.nextafter(START_VELOCITY, 0.0), False)):
-        outcome = judged(f'limits: {{peak_speed: {{max: {maximum!r}}}}}', found)['peak_speed']
+        outcome = of_limits(f'limits: {{peak_speed: {{max: {maximum!r}}}}}', found)['peak_speed']
         assert (outcome.passed, outcome.margin == 0.0) == (passed, passed)
 
 
 def test_windows_and_targets_of_the_file_hold_for_limits_without_their_own() -> None:
     found = simulated('positioning', 3.0)
-    outcomes = judged('window: {begin: 1.0, end: 2.0}\ntarget: 0.01\nlimits:\n'
+    outcomes = of_limits('window: {begin: 1.0, end: 2.0}\ntarget: 0.01\nlimits:\n'
                       '  end_position_error: {max: 1.0}\n'
                       '  later: {check: end_position_error, max: 1.0, window: {end: 3.0}, target: 0.0}\n', found)
-    assert outcomes['end_position_error'].value == judged(
+    assert outcomes['end_position_error'].value == of_limits(
         'limits: {x: {check: end_position_error, target: 0.01, max: 1.0, window: {end: 2.0}}}', found)['x'].value
     assert outcomes['later'].span == (1.0, 3.0)
     assert outcomes['later'].value == measured('end_position_error: {target: 0.0, max: 1.0}', found)

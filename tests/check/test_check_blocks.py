@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from stickslip_sim.check.judgement import outcomes_of
 from stickslip_sim.check.limits import limits_of
+from stickslip_sim.check.outcomes import outcomes_of
 from stickslip_sim.config.ros_yaml import read_yaml
 from stickslip_sim.recording import RunFacts, read_run, write_bag
 from stickslip_sim.recording.reader import Bag

@@ -116,7 +116,7 @@ class TestOutcome:
 
 
 class TestSeveral:
-    def test_each_is_judged_and_one_that_fails_fails_all(self, tmp_path: Path, bag: Path, capsys: Capture) -> None:
+    def test_each_is_checked_and_one_that_fails_fails_all(self, tmp_path: Path, bag: Path, capsys: Capture) -> None:
         limits = limits_file(tmp_path, 'limits: {sticks: {max: 1}, peak_speed: {max: 0.014}}')
         xml, found = tmp_path / 'c.xml', tmp_path / 'c.json'
         code, out, err = checked(capsys, bag, 'fast_feed', '--duration', DURATION, '--set', 'drive.velocity=0.0',

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""`stickslip check` on runs of a controller that comes late, or never: no limit passes that did not judge it."""
+"""`stickslip check` on runs of a controller that comes late, or never: no limit passes that did not see it."""
 
 import json
 from pathlib import Path
@@ -39,7 +39,7 @@ class TestLate:
         code, out, err = checked(capsys, late, '--limits', limits_file(tmp_path, text))
         assert code == 3
         assert 'first command at t = 1.5 s' in out.splitlines()[0]
-        assert 'FAIL  no drive velocity came until t = 1 s: no controller was judged' in out
+        assert 'FAIL  no drive velocity came until t = 1 s: no controller was checked' in out
         assert out.splitlines()[-1] == 'FAILED: 1 of 2: sticks'
         assert 'no drive velocity came within the window of sticks' in err
         assert 'first_command' in err
@@ -51,20 +51,20 @@ class TestLate:
                 '  later: {check: following_error, max: 1.0, window: {begin: 0.3}}\n'
                 '  sticks: {max: 9}\n')
         expected = found(capsys, prompt, tmp_path, 'window: {end: 0.5}\n' + text)
-        judged = found(capsys, late, tmp_path, FROM_COMMAND + text)
-        assert (expected.pop('first'), judged.pop('first')) == (0.0, 1.5)
-        assert judged['settling_time']['window'] == {'begin': 1.5, 'end': 2.0}
-        assert judged['later']['window'] == {'begin': 1.8, 'end': 2.0}
+        counted = found(capsys, late, tmp_path, FROM_COMMAND + text)
+        assert (expected.pop('first'), counted.pop('first')) == (0.0, 1.5)
+        assert counted['settling_time']['window'] == {'begin': 1.5, 'end': 2.0}
+        assert counted['later']['window'] == {'begin': 1.8, 'end': 2.0}
         for name, entry in expected.items():
-            assert judged[name]['measured'] == pytest.approx(entry['measured'], rel=1e-9), name
+            assert counted[name]['measured'] == pytest.approx(entry['measured'], rel=1e-9), name
 
     def test_the_reference_counts_from_there_too(self, late: Path, tmp_path: Path, capsys: Capture) -> None:
         """The drive itself is such a reference: 10 mm/s from the first command on."""
         limits = 'limits: {following_error: {max: 1.0}}'
         reference = 'reference: {times: [0.0, 0.6], positions: [0.0, 6.0e-3]}\n'
         of_drive = found(capsys, late, tmp_path, FROM_COMMAND + limits)['following_error']['measured']
-        judged = found(capsys, late, tmp_path, FROM_COMMAND + reference + limits)['following_error']['measured']
-        assert judged == pytest.approx(of_drive, rel=1e-9)
+        counted = found(capsys, late, tmp_path, FROM_COMMAND + reference + limits)['following_error']['measured']
+        assert counted == pytest.approx(of_drive, rel=1e-9)
 
     def test_a_run_that_ends_too_soon_after_it(self, late: Path, tmp_path: Path, capsys: Capture) -> None:
         limits = limits_file(tmp_path, 'window: {begin: first_command, end: 2.0}\nlimits: {sticks: {max: 9}}')

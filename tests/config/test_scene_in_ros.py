@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""ROS reads scene files as this package does: the parser of rcl is the judge."""
+"""ROS reads scene files as this package does: the parser of rcl says so."""
 
 import array
 import pathlib

@@ -45,13 +45,13 @@ def test_a_tally_calls_wrong_what_is_wrong() -> None:
     assert not Tally(1e-12).finding().passed, 'no case is no success'
     for wrong in (gives, fails):
         tally = Tally(1e-12)
-        tally.judge(gives, 1e-13)
+        tally.measure(gives, 1e-13)
         assert tally.finding().passed
-        tally.judge(wrong, *([float('nan')] if wrong is gives else []))
+        tally.measure(wrong, *([float('nan')] if wrong is gives else []))
         finding = tally.finding()
         assert (finding.passed, finding.misses, finding.cases) == (False, 1, 2)
     too_much = Tally(1e-12)
-    too_much.judge(gives, 2e-12)
+    too_much.measure(gives, 2e-12)
     assert too_much.finding().misses == 1
 
 

@@ -24,7 +24,7 @@ pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
 PAGE = ROOT / 'docs' / 'hil.md'
 HUMAN = 3.0      # s from the start of the axis to that of the controller: beyond the window of any limits from 0 on
-JUDGED = 2.0     # s, in examples/controller_limits.yaml
+CHECKED = 2.0     # s, in examples/controller_limits.yaml
 AT_MOST = r'(\[WARN\].*: waiting for an axis: .*\n)?'   # said by a controller that a busy machine lets wait for 2 s
 
 
@@ -88,13 +88,13 @@ def test_the_run_is_not_taken_for_that_of_make_run() -> None:
     assert not CHECK[2].startswith(f'runs/{SCENE}_')
 
 
-def test_a_controller_that_is_started_by_hand_is_judged(tmp_path: Path, capsys: Capture) -> None:
+def test_a_controller_that_is_started_by_hand_is_checked(tmp_path: Path, capsys: Capture) -> None:
     with started(AXIS, tmp_path) as axis, client() as listener:
         listener.next('slider_state', lambda state: state.time > HUMAN)
         assert listener.latest('slider_state').drive_velocity == 0.0    # it rests until the first command
         with started(CONTROLLER, tmp_path) as controller:
             first = listener.next('slider_state', lambda state: state.drive_velocity != 0.0).time
-            listener.next('slider_state', lambda state: state.time > first + JUDGED + 0.1)
+            listener.next('slider_state', lambda state: state.time > first + CHECKED + 0.1)
             assert re.fullmatch(AT_MOST, interrupt(controller))
         said = interrupt(axis)
     code, out, errors = of_the_tool(capsys, CHECK, tmp_path)
@@ -104,9 +104,9 @@ def test_a_controller_that_is_started_by_hand_is_judged(tmp_path: Path, capsys: 
     assert verdict.startswith('real-time valid: ')
     assert verdict in said
     assert re.match(r'FAILED: \d of 5: .*overshoot.*sticks', last)
-    assert 'no controller was judged' not in out
+    assert 'no controller was checked' not in out
     code, _, errors = of_the_tool(capsys, [*CHECK[:-1], 'examples/limits.yaml'], tmp_path)    # it ends before
-    assert (code, 'no controller was judged' in errors) == (3, True)
+    assert (code, 'no controller was checked' in errors) == (3, True)
 
 
 def test_lock_step_gives_the_same_recorded_run_each_time(tmp_path: Path, capsys: Capture) -> None:

@@ -10,6 +10,7 @@ LISTED = rules([
     {'write': 'periodic report', 'not': ['second reports?']},
     {'write': 'input profile', 'not': ['courses?'], 'but': [r'drive\.course']},
     {'write': 'that is', 'not': [r'i\.e\.'], 'only': 'pages'},
+    {'write': 'check', 'not': ['judges?'], 'right': ['tests/judges/']},
 ])
 
 
@@ -35,6 +36,11 @@ def test_parts_of_words_and_other_meanings_are_right(text: str) -> None:
 
 def test_another_meaning_is_one_of_its_line() -> None:
     assert [fault.line for fault in faults('drive.course\ncourse', LISTED)] == [2]
+
+
+def test_a_word_may_be_right_in_some_files() -> None:
+    assert list(faults('a judge', LISTED, 'tests/judges/one.py')) == []
+    assert [fault.word for fault in faults('a judge', LISTED, 'tests/one.py')] == ['judge']
 
 
 def test_an_entry_with_an_unknown_key_is_refused() -> None:

@@ -100,7 +100,7 @@ def test_a_missed_cycle_is_no_late_one(missing: int) -> None:
     assert estimate.event_time_s < 1e-12
 
 
-def test_a_smooth_law_itself_is_not_judged_by_its_table() -> None:
+def test_a_smooth_law_itself_is_not_compared_with_its_table() -> None:
     """The adaptive solver integrates the law: its distance to the table of the scene is no error of its own."""
     scene = load_scene('stribeck', {'solver.name': 'adaptive', 'friction.kinetic.tolerance': 1e-3})
     kinetic = scene.axis.friction.kinetic

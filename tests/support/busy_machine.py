@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Whether a machine was too busy to judge how long something took: by what Linux says that processes waited."""
+"""Whether a machine was too busy to measure how long something took: by what Linux says that processes waited."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -40,4 +40,4 @@ def judged_by_time(tolerance: float, *others: CoreWaits) -> Iterator[None]:
                      for thread, time in process.look().items())
         if waited < tolerance:
             raise
-        pytest.skip(f'machine too busy to judge: {waited:.2f} s of waiting for a core; {str(error).splitlines()[0]}')
+        pytest.skip(f'machine too busy to measure: {waited:.2f} s of waiting for a core; {str(error).splitlines()[0]}')

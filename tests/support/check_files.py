@@ -7,8 +7,8 @@ import shutil
 from collections.abc import Mapping
 from pathlib import Path
 
-from stickslip_sim.check.judgement import LimitOutcome, outcomes_of
 from stickslip_sim.check.limits import limits_of
+from stickslip_sim.check.outcomes import LimitOutcome, outcomes_of
 from stickslip_sim.config.ros_yaml import read_yaml
 from stickslip_sim.recording import RunFacts, flat_layout, write_bag
 from stickslip_sim.recording.messages import Packer
@@ -37,14 +37,14 @@ def simulated(scene: Scene | str, duration: float) -> SimulatedRun:
     return simulate(load_scene(scene) if isinstance(scene, str) else scene, duration)
 
 
-def judged(text: str, found: SimulatedRun) -> dict[str, LimitOutcome]:
+def of_limits(text: str, found: SimulatedRun) -> dict[str, LimitOutcome]:
     """Return the outcomes of limits given as YAML, by name."""
     return {outcome.name: outcome for outcome in outcomes_of(limits_of(read_yaml(text)), found)}
 
 
 def measured(text: str, found: SimulatedRun) -> float:
     """Return the figure of the one limit given as YAML."""
-    (outcome,) = judged(f'limits: {{{text}}}', found).values()
+    (outcome,) = of_limits(f'limits: {{{text}}}', found).values()
     assert outcome.value is not None
     return outcome.value
 

@@ -55,7 +55,7 @@ def test_a_run_that_was_cut_off(bag: Path, share: float, tmp_path: Path, monkeyp
 
 @pytest.mark.parametrize('name', ['position', 'friction_force', 'drive_velocity', 'direction'])
 def test_a_changed_bit_is_found_step_by_step(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The quick comparison does not judge it."""
+    """The quick comparison does not decide on it."""
     scene = load_scene('paper_fig8')
     run = simulate(scene, DURATION)
     column = run.samples[name].copy()

@@ -8,13 +8,13 @@ from dataclasses import asdict
 from typing import Any, NamedTuple
 
 from ..runs import Run
-from .judgement import LimitOutcome
 from .kinds import TIMING
 from .observed_run import commands_of, gaps_in, observed_motion, timing_of
+from .outcomes import LimitOutcome
 
 
 class Checked(NamedTuple):
-    """A run that was judged, under the name that it has in what is written about it."""
+    """A run that was checked, under the name that it has in what is written about it."""
 
     name: str
     run: Run
@@ -52,12 +52,12 @@ def real_time_verdict(run: Run) -> str:
 def complaint(checked: Checked, limits_file: str) -> str:
     """Return in one line why a run did not pass, empty when it did."""
     name, _, outcomes = checked
-    judged = [outcome.name for outcome in outcomes if not (outcome.passed or outcome.is_unjudged)]
-    unjudged = [outcome.name for outcome in outcomes if outcome.is_unjudged]
-    parts = [f'{name} does not keep {limits_file}: {", ".join(judged)}'] if judged else []
-    if unjudged:
-        parts.append(f'{name}: no drive velocity came within the window of {", ".join(unjudged)}, so that no '
-                     'controller was judged: let the window begin with first_command, or allow that with commands: '
+    missed = [outcome.name for outcome in outcomes if not (outcome.passed or outcome.is_unchecked)]
+    unchecked = [outcome.name for outcome in outcomes if outcome.is_unchecked]
+    parts = [f'{name} does not keep {limits_file}: {", ".join(missed)}'] if missed else []
+    if unchecked:
+        parts.append(f'{name}: no drive velocity came within the window of {", ".join(unchecked)}, so that no '
+                     'controller was checked: let the window begin with first_command, or allow that with commands: '
                      'optional')
     return '; '.join(parts)
 

@@ -16,7 +16,7 @@ FIRST_COMMAND = 'first_command'
 _TIME = Parameter('time', 'double', None, 's', 'of the run', low=0.0, high=LATEST)
 
 
-class JudgedSpan(NamedTuple):
+class CheckedSpan(NamedTuple):
     """From when to when, s of the run; None: from its start, to its end."""
 
     begin: float | None = None
@@ -30,18 +30,18 @@ class Window(NamedTuple):
     end: float | None = None
     is_from_command: bool = False
 
-    def at(self, first_command: float | None) -> JudgedSpan | None:
+    def at(self, first_command: float | None) -> CheckedSpan | None:
         """Return the span in a run with this first command; None in a run without the command that it begins with."""
         if not self.is_from_command:
-            return JudgedSpan(self.begin, self.end)
+            return CheckedSpan(self.begin, self.end)
         if first_command is None:
             return None
-        return JudgedSpan(*(None if time is None else first_command + time for time in (self.begin, self.end)))
+        return CheckedSpan(*(None if time is None else first_command + time for time in (self.begin, self.end)))
 
     def check_fit(self, name: str, begin: float, end: float, first_command: float | None) -> None:
         """Raise InputError when an edge is not within a run from `begin` to `end` (s)."""
         zero = first_command if self.is_from_command and first_command is not None else 0.0
-        for edge, time in zip(JudgedSpan._fields, (self.begin, self.end)):
+        for edge, time in zip(CheckedSpan._fields, (self.begin, self.end)):
             if time is not None and not begin <= zero + time <= end:
                 allowed = (f'at most {end - zero:g}, the time in s that the run goes on after its first command'
                            if self.is_from_command else f'within the run, {begin:g} to {end:g} s')
@@ -55,7 +55,7 @@ def window_of(name: str, given: object, default: Window) -> Window:
     """Return the window that a file gives, with the edges of `default` where it gives none; raises InputError."""
     if given is None:
         return default
-    edges = dict(section(name, given, JudgedSpan._fields, PAGE))
+    edges = dict(section(name, given, CheckedSpan._fields, PAGE))
     window = default
     if edges.get('begin') == FIRST_COMMAND:
         if default.end is not None and not default.is_from_command and 'end' not in edges:

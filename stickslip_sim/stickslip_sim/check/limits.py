@@ -23,7 +23,7 @@ _SECTIONS = ('window', 'target', 'reference', 'commands', 'limits')
 _TIMES = Parameter('times', 'double_array', None, 's', 'of the run', low=0.0, high=LATEST)
 _POSITIONS = Parameter('positions', 'double_array', None, 'm', 'at these times', low=-FARTHEST, high=FARTHEST)
 _NAME = Parameter('name', 'string', None, '', 'of a limit')
-_COMMANDS = Parameter('commands', 'string', 'required', '', 'whether a run of the node needs some to be judged',
+_COMMANDS = Parameter('commands', 'string', 'required', '', 'whether a run of the node needs some to be checked',
                       choices=('required', 'optional'))
 _VALID = 'valid'
 

@@ -34,9 +34,9 @@ def check(sources: tuple[str, ...], limits_file: str, duration: float | None, ch
     _check_outputs(junit, json_file)
     _check_sources(sources, duration, changes)
     from ..check.check_report import Checked, as_json, complaint, verdict_line
-    from ..check.judgement import outcomes_of
     from ..check.junit import junit_text
     from ..check.limits import load_limits
+    from ..check.outcomes import outcomes_of
     from ..core.errors import InputError, RecordingError, VerdictError
     from .check_table import table_lines
     from .progress import progress_bar

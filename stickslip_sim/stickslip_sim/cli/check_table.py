@@ -5,8 +5,8 @@
 from collections.abc import Iterator
 
 from ..check.check_report import Checked, checked_line, real_time_verdict
-from ..check.judgement import LimitOutcome
 from ..check.observed_run import gaps_in
+from ..check.outcomes import LimitOutcome
 from ..runs.wording import quantity
 
 _HEADS = ('limit', 'measured', 'at most', 'margin', '', '')

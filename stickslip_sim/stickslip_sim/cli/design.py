@@ -38,7 +38,7 @@ def design(scene: str, parameters: str, duration: float, speeds: str | None, tra
            out: str | None, changes: SceneChanges) -> None:
     """Propose the feed whose run would narrow parameters of a scene most: constant, steps, ramps, start-stop, sine, ...
 
-    docs/sensitivities.md says how they are judged.
+    docs/sensitivities.md says how they are ranked.
     """
     if out is not None:
         check_new_folder('--out', out)

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""`stickslip extremes`: judge the engine by cases that break other simulators; print the figures and their marks."""
+"""`stickslip extremes`: measure the engine on cases that break other simulators; print the figures and their marks."""
 
 import sys
 from pathlib import Path
@@ -12,12 +12,12 @@ from .files import check_file, say_written, write_text
 _FORMATS = ('.json', '.md')
 
 
-@click.command(short_help='Judge the engine by what breaks other simulators.')
-@click.option('--only', metavar='X1,X7', help='Judge only these.')
+@click.command(short_help='Measure the engine on what breaks other simulators.')
+@click.option('--only', metavar='X1,X7', help='Measure only these.')
 @click.option('--quick', is_flag=True, help='In a reduced size, as the tests do.')
 @click.option('--out', metavar='FILE.json|FILE.md', help='Write the table to a file, too.')
 def extremes(only: str | None, quick: bool, out: str | None) -> None:
-    """Judge the engine by the extremes; exit with 3 when a mark is missed."""
+    """Measure the engine on the extremes; exit with 3 when a mark is missed."""
     if out is not None:
         _check_out(out)
     _check_mpmath()
@@ -57,7 +57,7 @@ def _check_mpmath() -> None:
 
     from ..core.errors import InputError
     if find_spec('mpmath') is None:
-        raise InputError('mpmath', None, 'installed: the figures are judged in its arithmetic', 'pip install mpmath')
+        raise InputError('mpmath', None, 'installed: the figures are measured in its arithmetic', 'pip install mpmath')
 
 
 def _show(text: str) -> None:

@@ -44,7 +44,7 @@ from .verify import verify
 _SECTIONS: dict[str, tuple[click.Command, ...]] = {   # each verb by what a reader wants, as in the help
     'Run': (scenes, simulate, import_, call),
     'Look': (plot, compare, export),
-    'Judge': (check, verify),
+    'Check': (check, verify),
     'Study': (critical, sweep, map_, uncertainty),
     'Identify': (friction, identify, design),
     'Measure the engine': (advise, bench, extremes),

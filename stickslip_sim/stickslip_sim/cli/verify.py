@@ -35,8 +35,8 @@ def verify(run: str, changes: SceneChanges, out: str | None) -> None:
     """
     _check(changes, out)
     from ..core.errors import VerdictError
+    from ..verify import verification
     from ..verify.origin import doubts_about
-    from ..verify.verification import verify as judge
     from ..verify.what_if import other_scene
     from .progress import progress_bar
 
@@ -48,7 +48,7 @@ def verify(run: str, changes: SceneChanges, out: str | None) -> None:
     for doubt in doubts:
         print(f'note: {doubt}')
     with progress_bar('verifying') as progress:
-        verdict = judge(recorded, progress)
+        verdict = verification.verify(recorded, progress)
     _print_verdict(recorded, verdict)
     if given:
         _what_if(recorded, scene, given, out)

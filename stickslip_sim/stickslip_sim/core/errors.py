@@ -8,7 +8,7 @@
     ├── SolverError      the solver gave up
     │   └── UnsoundError what it found contradicts itself
     ├── RefusedError     a running node does not do what it is asked for
-    └── VerdictError     what was judged did not pass
+    └── VerdictError     what was checked did not pass
 
 Each carries one line of text for people and the exit code of the tool.
 """

@@ -38,7 +38,7 @@ def cost_of_the_account(setup: Setup) -> Measurement:
     cases = _cases(setup)
     tally = Tally(1e-12)
     for case in cases:
-        tally.judge(_residual, setup.solver, case)
+        tally.measure(_residual, setup.solver, case)
     if not setup.full:   # a figure of time belongs to a quiet machine
         return tally.finding()
     worst = max(_extra_cost(setup.solver, case) for case in cases)

@@ -33,18 +33,18 @@ def bad_commands(setup: Setup) -> Measurement:
     for contact in CONTACTS:
         for bad in _BAD:
             for given in ('velocity', 'force'):
-                tally.judge(_refused_by_the_simulator, setup.solver, contact, given, bad)
-            tally.judge(_refused_time, setup.solver, contact, bad)
-        tally.judge(_refused_past, setup.solver, contact)
+                tally.measure(_refused_by_the_simulator, setup.solver, contact, given, bad)
+            tally.measure(_refused_time, setup.solver, contact, bad)
+        tally.measure(_refused_past, setup.solver, contact)
         for seed in range(setup.count(200, 10)):
-            tally.judge(_burst, setup.solver, contact, seed)
+            tally.measure(_burst, setup.solver, contact, seed)
         for huge in (1e100, -1e300, 1.7976931348623157e308):
-            tally.judge(_huge, setup.solver, contact, huge)
+            tally.measure(_huge, setup.solver, contact, huge)
     for bad in _BAD:
         for name in _PARAMETERS:
-            tally.judge(_refused_by_the_scene, name, bad)
-        tally.judge(_refused_by_the_slot, bad)
-        tally.judge(_refused_profiles, bad)
+            tally.measure(_refused_by_the_scene, name, bad)
+        tally.measure(_refused_by_the_slot, bad)
+        tally.measure(_refused_profiles, bad)
     return tally.finding('accepted, or not by name, or with a changed state')
 
 

@@ -24,9 +24,9 @@ def mirrored_and_scaled(setup: Setup) -> Measurement:
     """X19: (x, v, F) → (−x, −v, −F); the units of mass, length and time multiplied by powers of two."""
     tally = Tally(0.0)
     for seed in range(setup.count(1000, 25)):
-        tally.judge(_mirrored, setup.solver, seed)
+        tally.measure(_mirrored, setup.solver, seed)
         for unit in (_mass_unit, _length_unit, _time_unit):
-            tally.judge(unit, setup.solver, seed)
+            tally.measure(unit, setup.solver, seed)
     return tally.finding('with other bits')
 
 
@@ -120,10 +120,10 @@ def run_twice(setup: Setup) -> Measurement:
     """X20: the same scene twice, in this process and in another; recorded commands run again."""
     tally = Tally(0.0)
     for seed in range(setup.count(100, 5)):
-        tally.judge(_recorded_commands, setup.solver, seed)
+        tally.measure(_recorded_commands, setup.solver, seed)
     seeds = setup.count(20, 2)
     if setup.solver is exact.SOLVER:
-        tally.judge(_in_another_process, seeds)
+        tally.measure(_in_another_process, seeds)
     return tally.finding('with other bits')
 
 

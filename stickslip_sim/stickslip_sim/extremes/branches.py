@@ -21,9 +21,9 @@ def coasting(setup: Setup) -> Measurement:
     tally = Tally(1e-12)
     for contact in CONTACTS:
         for speed in setup.choose((0.001, 0.0015, 0.002, 0.003, 0.005), (0.002,)):
-            tally.judge(_below_the_limit_velocity, setup.solver, contact, speed)
+            tally.measure(_below_the_limit_velocity, setup.solver, contact, speed)
     for seed in range(setup.count(60, 4)):
-        tally.judge(_random_branches, setup.solver, seed)
+        tally.measure(_random_branches, setup.solver, seed)
     return tally.finding()
 
 
@@ -63,8 +63,8 @@ def ringing(setup: Setup) -> Measurement:
     for k in range(setup.count(31, 4)):
         speed = 0.005 + 0.015 * k / setup.count(30, 3)
         for tau in setup.choose((0.02, 0.2), (0.2,)):
-            tally.judge(_while_it_rings, setup.solver, speed, tau, 15000.0)
-            tally.judge(_while_it_rings, setup.solver, speed, tau, 0.0)
+            tally.measure(_while_it_rings, setup.solver, speed, tau, 15000.0)
+            tally.measure(_while_it_rings, setup.solver, speed, tau, 0.0)
     return tally.finding('with other events than the reference')
 
 

@@ -25,7 +25,7 @@ def blows(setup: Setup) -> Measurement:
     tally = Tally(1e-12, 's')
     for seed in range(setup.count(1000, 40)):
         for contact in CONTACTS:
-            tally.judge(_blow, setup.solver, contact, seed)
+            tally.measure(_blow, setup.solver, contact, seed)
     return tally.finding('blows missed')
 
 
@@ -56,10 +56,10 @@ def at_the_limit(setup: Setup) -> Measurement:
     tally = Tally(1e-12)
     for seed in range(setup.count(2000, 60)):
         for kind in StaticLawKind:
-            tally.judge(_first_break, setup.solver, kind, seed)
+            tally.measure(_first_break, setup.solver, kind, seed)
     for share in (-1.0, 1.0):
         for contact in CONTACTS:
-            tally.judge(_held_at_the_limit, setup.solver, contact, share)
+            tally.measure(_held_at_the_limit, setup.solver, contact, share)
     return tally.finding('not at the limit')
 
 

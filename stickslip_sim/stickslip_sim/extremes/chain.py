@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""A run judged event by event in 50 digits: each from the state that the one before reports.
+"""A run checked event by event in 50 digits: each from the state that the one before reports.
 
 For contacts so stiff, or sliders so light, that the reference would go through billions of swings.  Under a constant
 drive without force, with the exponential static law.  Times: the guard of

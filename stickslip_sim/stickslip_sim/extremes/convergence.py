@@ -25,9 +25,9 @@ def orders(setup: Setup) -> Measurement:
     shown = []
     for method, (inside, across) in DECLARED.items():
         measured: list[float] = []
-        tally.judge(_order_inside, method, inside, measured)
+        tally.measure(_order_inside, method, inside, measured)
         for contact in CONTACTS:
-            tally.judge(_order_across, method, across, contact, setup.choose(8, 6), measured)
+            tally.measure(_order_across, method, across, contact, setup.choose(8, 6), measured)
         shown.append(f'{method} ' + ', '.join(f'{order:.2f}' for order in measured))
     return tally.finding('with another order', 'measured in a mode and across events: ' + '; '.join(shown))
 

@@ -32,13 +32,13 @@ def energy_balance(setup: Setup) -> Measurement:
     for contact in CONTACTS:
         for branches in (True, False):
             hours = setup.full and branches and contact == COMPLIANT
-            tally.judge(_balances, setup.solver, paper_axis(contact, branches=branches), constant(0.002),
+            tally.measure(_balances, setup.solver, paper_axis(contact, branches=branches), constant(0.002),
                         3600.0 if hours else 10.0)
     for seed in range(setup.count(100, 5)):
         rng = random.Random(seed)
         speed = 10 ** rng.uniform(-3, -1.5)
         drive = rng.choice((constant(speed), ramp(0.0, speed, 2.0)))
-        tally.judge(_balances, setup.solver, random_axis(rng), drive, 3.0)
+        tally.measure(_balances, setup.solver, random_axis(rng), drive, 3.0)
     return tally.finding('wrong')
 
 

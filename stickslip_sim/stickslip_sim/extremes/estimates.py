@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """X26: the error estimate of a run, for every solver, against the true error.
 
-The truth is that of the reference.  Judged are the events up to the time `until_s` that the estimate speaks of: they
+The truth is that of the reference.  Looked at are the events up to the time `until_s` that the estimate speaks of: they
 must be those of the reference, and no further off than it says.  An `until_s` before the end must have its reason.
 """
 
@@ -33,7 +33,7 @@ _TIGHT, _CLAIMED = 0.9, 0.5   # no estimate is to be honest by claiming too much
 _FEW = ('paper_fig7', 'paper_fig8')
 
 
-class _Judged(NamedTuple):
+class _Worth(NamedTuple):
     """The worth of an estimate of steps: the error over it, and how many of the events it covered."""
 
     ratio: float
@@ -44,7 +44,7 @@ class _Judged(NamedTuple):
 def estimates(setup: Setup) -> Measurement:
     """X26: shipped and random scenes with every solver and setting; the true error over the estimate."""
     tally = Tally(1.0, 'of the estimate')
-    judged: list[_Judged] = []
+    worths: list[_Worth] = []
     for scene in _scenes(setup):
         wanted = simulate(scene.axis, scene.initial, scene.drive, scene.force, _DURATION, DIGITS).events
         if not wanted:
@@ -52,9 +52,9 @@ def estimates(setup: Setup) -> Measurement:
         for solver in _settings(setup):
             run = _run(replace(scene, solver=solver))
             if run:
-                tally.judge(_ratio, f'{scene.name} with {solver.name} {solver.settings}', run, wanted, judged)
-    half = median(case.ratio for case in judged if case.covered)
-    share = sum(case.covered for case in judged) / sum(case.events for case in judged)
+                tally.measure(_ratio, f'{scene.name} with {solver.name} {solver.settings}', run, wanted, worths)
+    half = median(case.ratio for case in worths if case.covered)
+    share = sum(case.covered for case in worths) / sum(case.events for case in worths)
     return tally.finding('with an error beyond the estimate', f'of steps half are at least {half:.3g} of it, for '
                          f'{share:.0%} of the events', kept=half >= _TIGHT and share >= _CLAIMED)
 
@@ -93,7 +93,7 @@ def _run(scene: Scene) -> SimulatedRun | None:
         return None
 
 
-def _ratio(_: str, run: SimulatedRun, wanted: Sequence[Event], judged: list[_Judged]) -> float:
+def _ratio(_: str, run: SimulatedRun, wanted: Sequence[Event], worths: list[_Worth]) -> float:
     """Return the largest error of an event over its estimate."""
     solver = run.scene.solver.name
     with_knots = solver != 'fixed_step'   # which finds no such events
@@ -110,7 +110,7 @@ def _ratio(_: str, run: SimulatedRun, wanted: Sequence[Event], judged: list[_Jud
     time = max((_apart(a, b) for a, b in sure), default=0.0)
     position = max((abs(a.position - b.position) for a, b in sure), default=0.0)
     if solver != 'exact':
-        judged.append(_Judged(time / estimate.event_time_s, len(sure), len(wanted)))
+        worths.append(_Worth(time / estimate.event_time_s, len(sure), len(wanted)))
     return max(time / estimate.event_time_s, position / estimate.position_m if position > 0.0 else 0.0)
 
 

@@ -23,12 +23,12 @@ _REST = InitialState()
 def steep_segments(setup: Setup) -> Measurement:
     """X22: kinetic friction that falls within 0.05 to 50 mm/s: slips grow by e²⁴⁰ and more."""
     tally = Tally(1e-12)
-    tally.judge(_equals_the_reference, setup.solver, _blown_up(), 0.1, 0.0, 60.0)
+    tally.measure(_equals_the_reference, setup.solver, _blown_up(), 0.1, 0.0, 60.0)
     for k in setup.choose(tuple(range(0, 400, 2)), (186, 210)):
-        tally.judge(_equals_the_reference, setup.solver, _paper_axis(5e-5 * 10.0 ** (k / 399)), 0.01, 0.0, 3.0)
+        tally.measure(_equals_the_reference, setup.solver, _paper_axis(5e-5 * 10.0 ** (k / 399)), 0.01, 0.0, 3.0)
     for seed in range(setup.count(100, 6)):
         rng = random.Random(seed)
-        tally.judge(_equals_the_reference, setup.solver, _steep(rng), 10 ** rng.uniform(-4, -1), 0.0, 3.0)
+        tally.measure(_equals_the_reference, setup.solver, _steep(rng), 10 ** rng.uniform(-4, -1), 0.0, 3.0)
     return tally.finding('with other events than the reference')
 
 
@@ -58,12 +58,12 @@ def _steep(rng: random.Random) -> Axis:
 def near_critical(setup: Setup) -> Measurement:
     """X23: slips that are critically damped to 1e-5 to 1e-13, from both sides: they die out to 1e-300 before a turn."""
     tally = Tally(1e-12)
-    tally.judge(_equals_the_reference, setup.solver, _near_critical(28982.753), 0.0286, -300.0, 1.0)
+    tally.measure(_equals_the_reference, setup.solver, _near_critical(28982.753), 0.0286, -300.0, 1.0)
     for seed in range(setup.count(200, 10)):
         rng = random.Random(seed)
         off = rng.choice((-1.0, 1.0)) * 10 ** rng.uniform(-13, -5)
         axis = _near_critical(2.0 * math.sqrt(6e5 * 350.0) * (1.0 + off))
-        tally.judge(_equals_the_reference, setup.solver, axis, rng.uniform(0.001, 0.06), rng.uniform(-400, 400), 1.0)
+        tally.measure(_equals_the_reference, setup.solver, axis, rng.uniform(0.001, 0.06), rng.uniform(-400, 400), 1.0)
     return tally.finding('with other events than the reference')
 
 
@@ -88,7 +88,7 @@ def touched_limits(setup: Setup) -> Measurement:
     """X27: mu_s = mu_k, no damper anywhere and a drive that rests: the contact comes back to its limit for ever."""
     tally = Tally(0.0)
     for seed in range(setup.count(2000, 200)):
-        tally.judge(_breaks_only_beyond, setup.solver, seed)
+        tally.measure(_breaks_only_beyond, setup.solver, seed)
     return tally.finding('with an invented or a missed break-away')
 
 

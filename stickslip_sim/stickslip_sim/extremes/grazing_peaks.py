@@ -17,7 +17,7 @@ def grazing(setup: Setup) -> Measurement:
     """X1: random phases and frequencies, both contacts; a peak above the limit breaks away there, one below never."""
     tally = Tally(0.0)
     for seed in range(setup.count(100_000, 100)):
-        tally.judge(_grazes, setup.solver, seed, _OVERSHOOTS[seed % len(_OVERSHOOTS)])
+        tally.measure(_grazes, setup.solver, seed, _OVERSHOOTS[seed % len(_OVERSHOOTS)])
     return tally.finding('missed or invented')
 
 

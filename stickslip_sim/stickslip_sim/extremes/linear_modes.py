@@ -24,8 +24,8 @@ def unstable_slip(setup: Setup) -> Measurement:
     """X6: the slip modes with net damping −2867 and −14639 N s/m, read at steps of 10 µs to 20 ms."""
     tally = Tally(1e-12)
     for step in setup.choose(_STEPS, _STEPS[:-1]):
-        tally.judge(_grows_on_the_falling_branch, setup.solver, step)
-        tally.judge(_grows_after_a_break_away, setup.solver, step)
+        tally.measure(_grows_on_the_falling_branch, setup.solver, step)
+        tally.measure(_grows_after_a_break_away, setup.solver, step)
     return tally.finding('wrong', 'steps 10 µs to 20 ms')
 
 
@@ -81,9 +81,9 @@ def edges_of_the_modes(setup: Setup) -> Measurement:
     tally = Tally(1e-12)
     for seed in range(setup.count(400, 12)):
         for kind in _DAMPING:
-            tally.judge(_slides_freely, setup.solver, kind, seed)
+            tally.measure(_slides_freely, setup.solver, kind, seed)
             if not kind.startswith('negative'):
-                tally.judge(_rings, setup.solver, kind, seed)
+                tally.measure(_rings, setup.solver, kind, seed)
     return tally.finding()
 
 

@@ -14,18 +14,18 @@ _SHOWN = 300   # characters of a missed case
 
 
 class Missed(Exception):  # noqa: N818
-    """A case went wrong, and how: a finding of the judge, no error of the package."""
+    """A case went wrong, and how: a finding of the suite, no error of the package."""
 
 
 @dataclass(frozen=True, slots=True)
 class Setup:
-    """How an extreme is judged: in full or in a reduced size, and which solver is on trial."""
+    """How an extreme is measured: in full or in a reduced size, and which solver is on trial."""
 
     full: bool = True
     solver: Solver = exact.SOLVER
 
     def count(self, full: int, reduced: int) -> int:
-        """Return how many cases to judge."""
+        """Return how many cases to measure."""
         return full if self.full else reduced
 
     def choose(self, full: _T, reduced: _T) -> _T:
@@ -79,7 +79,7 @@ class Tally:
         self.cases, self.misses, self.worst = 0, 0, 0.0
         self._examples: dict[str, str] = {}
 
-    def judge(self, case: Callable[..., float], *given: object) -> None:
+    def measure(self, case: Callable[..., float], *given: object) -> None:
         """Run a case, which returns its error or raises; any exception is a miss."""
         self.cases += 1
         try:

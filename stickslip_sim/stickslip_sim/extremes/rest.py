@@ -28,9 +28,9 @@ def year_long_hold(setup: Setup) -> Measurement:
     for contact in CONTACTS:
         for share in _SHARES:
             for side in (1.0, -1.0):
-                tally.judge(_held_by_force, setup.solver, contact, side * share, drift)
-                tally.judge(_held_by_drive, setup.solver, contact, side * share, drift)
-        tally.judge(_ageing, setup.solver, contact)
+                tally.measure(_held_by_force, setup.solver, contact, side * share, drift)
+                tally.measure(_held_by_drive, setup.solver, contact, side * share, drift)
+        tally.measure(_ageing, setup.solver, contact)
     return tally.finding('wrong', f'drift {max(drift):.2g} m in a year', kept=max(drift) == 0.0)
 
 
@@ -114,13 +114,14 @@ def rest_times(setup: Setup) -> Measurement:
     for kind in StaticLawKind:
         for tau in (1e-12, 1e-6, 1.0, 1e6, 1e12):
             for rest in rests:
-                tally.judge(_coefficient, kind, tau, rest)
+                tally.measure(_coefficient, kind, tau, rest)
     for seed in range(setup.count(20_000, 300)):
         rng = random.Random(seed)
-        tally.judge(_coefficient, rng.choice(list(StaticLawKind)), 10 ** rng.uniform(-12, 12), 10 ** rng.uniform(-9, 9))
+        tally.measure(_coefficient, rng.choice(list(StaticLawKind)), 10 ** rng.uniform(-12, 12),
+                      10 ** rng.uniform(-9, 9))
     for contact in CONTACTS:
         for tau in (1e-12, 0.2, 1e12):
-            tally.judge(_of_break_away, setup.solver, paper_axis(contact, tau=tau))
+            tally.measure(_of_break_away, setup.solver, paper_axis(contact, tau=tau))
     return tally.finding()
 
 

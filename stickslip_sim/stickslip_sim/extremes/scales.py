@@ -25,14 +25,14 @@ def late_far_slow_fast(setup: Setup) -> Measurement:
     feeds = [10.0 ** k for k in range(-9, 1)]
     for contact in CONTACTS:
         for feed in setup.choose(feeds, feeds[::3]):
-            tally.judge(_late_and_far, setup.solver, contact, feed)
+            tally.measure(_late_and_far, setup.solver, contact, feed)
             if contact == RIGID:
-                tally.judge(_first_break_away, setup.solver, feed)
+                tally.measure(_first_break_away, setup.solver, feed)
         for feed in setup.choose((1e-9, 1e-7, 1e-5, 1e-3, 0.1, 1.0), (1e-9, 1e-3)):
             if contact == RIGID or feed >= 1e-3:   # the reference goes through every swing of a contact that rings
-                tally.judge(_slow_against_the_reference, setup.solver, contact, feed)
+                tally.measure(_slow_against_the_reference, setup.solver, contact, feed)
     for seed in range(setup.count(100, 5)):
-        tally.judge(_late_and_far_in_parts, setup.solver, seed)
+        tally.measure(_late_and_far_in_parts, setup.solver, seed)
     return tally.finding()
 
 

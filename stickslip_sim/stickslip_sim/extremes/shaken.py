@@ -23,9 +23,9 @@ def shaken(setup: Setup) -> Measurement:
     """X21: the paper's axis under one to three sines that pass its limit; the run is the reference's."""
     tally = Tally(1e-12)
     for sinusoid in _DOUBLED:
-        tally.judge(_equals_the_reference, setup.solver, sinusoid)
+        tally.measure(_equals_the_reference, setup.solver, sinusoid)
     for seed in range(setup.count(100, 6)):
-        tally.judge(_equals_the_reference, setup.solver, *_random_sinusoids(random.Random(seed)))
+        tally.measure(_equals_the_reference, setup.solver, *_random_sinusoids(random.Random(seed)))
     return tally.finding('with other events than the reference')
 
 

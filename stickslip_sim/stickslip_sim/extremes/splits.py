@@ -25,11 +25,11 @@ def splits(setup: Setup) -> Measurement:
     """X13: one call, a million, and random ones; same events, and a position within 1e-13 m."""
     tally = Tally(1e-13, 'm')
     for contact in CONTACTS:
-        tally.judge(_a_million_calls, setup.solver, contact, setup.count(1_000_000, 20_000))
+        tally.measure(_a_million_calls, setup.solver, contact, setup.count(1_000_000, 20_000))
     for seed in range(setup.count(400, 15)):
         rng = random.Random(seed)
         axis, (drive, force) = random_axis(rng), random_profiles(rng)
-        tally.judge(_random_calls, setup.solver, seed, axis, drive, force)
+        tally.measure(_random_calls, setup.solver, seed, axis, drive, force)
     return tally.finding('with other bits or events')
 
 
@@ -73,11 +73,11 @@ def events_inside_a_tick(setup: Setup) -> Measurement:
     tally = Tally(0.0)
     crowds: list[int] = []
     for mass in setup.choose((1e-8, 1e-9, 1e-10, 1e-12, 1e-15), (1e-8, 1e-12)):
-        tally.judge(_swings_in_a_tick, setup.solver, mass, crowds)
+        tally.measure(_swings_in_a_tick, setup.solver, mass, crowds)
     for factor in setup.choose((1e-10, 1e-8, 1e-6), (1e-8,)):
         for contact in CONTACTS:
-            tally.judge(_sticks_in_a_tick, setup.solver, contact, factor, crowds)
-    tally.judge(_goes_on_after_a_refusal, setup.solver)
+            tally.measure(_sticks_in_a_tick, setup.solver, contact, factor, crowds)
+    tally.measure(_goes_on_after_a_refusal, setup.solver)
     most = max(crowds, default=0)
     return tally.finding('without a bound or a valid state', f'up to {most} events in a tick', kept=most >= 10_000)
 

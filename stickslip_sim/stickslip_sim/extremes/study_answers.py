@@ -47,15 +47,15 @@ def answers(setup: Setup) -> Measurement:
     """X24: sticks and reversals by turns, sticks after long pauses, cycles about to vanish; sweep and critical."""
     tally = Tally(0.0)
     for mass in np.linspace(*_HEAVY, setup.count(41, 5)).tolist():
-        tally.judge(_motion, setup.solver, 'paper_fig7', 0.02, mass)
+        tally.measure(_motion, setup.solver, 'paper_fig7', 0.02, mass)
     for seed in range(setup.count(40, 3)):
         rng = random.Random(seed)
-        tally.judge(_motion, setup.solver, rng.choice(('paper_fig7', 'paper_fig8', 'paper_fig4_falling')),
+        tally.measure(_motion, setup.solver, rng.choice(('paper_fig7', 'paper_fig8', 'paper_fig4_falling')),
                     10.0 ** rng.uniform(-3.0, -1.3), 10.0 ** rng.uniform(1.5, 4.5))
     for k in range(setup.count(len(_BORDERS), 3)):
         for side in (-1, 1):
             for step in setup.choose(_STEPS, _STEPS[:1]):
-                tally.judge(_border, setup.solver, k, side, step)
+                tally.measure(_border, setup.solver, k, side, step)
     return tally.finding('contradicted by a run of 10,000 s')
 
 

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The extremes in their order, and how they are judged one after another."""
+"""The extremes in their order, and how they are measured one after another."""
 
 import time
 from collections.abc import Collection, Iterator

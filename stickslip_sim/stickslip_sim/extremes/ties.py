@@ -25,12 +25,12 @@ def guards_at_their_limit(setup: Setup) -> Measurement:
     """X3: mu_s(0) = mu_k(0), so that every arrest is exactly on the static limit; progress at every event."""
     tally = Tally(1e-12)
     for seed in range(setup.count(500, 20)):
-        tally.judge(_arrives_on_the_limit, setup.solver, seed)
+        tally.measure(_arrives_on_the_limit, setup.solver, seed)
     for contact in CONTACTS:
         for branches in (True, False):
             for speed in setup.choose((0.0005, 0.002, 0.008), (0.002,)):
-                tally.judge(_equals_the_reference, setup.solver, contact, branches, speed)
-            tally.judge(_starts_on_the_limit, setup.solver, contact, branches)
+                tally.measure(_equals_the_reference, setup.solver, contact, branches, speed)
+            tally.measure(_starts_on_the_limit, setup.solver, contact, branches)
     return tally.finding('without progress or wrong')
 
 
@@ -78,12 +78,12 @@ def meeting_events(setup: Setup) -> Measurement:
     for contact in CONTACTS:
         for branches in (True, False):
             axis = paper_axis(contact, branches=branches)
-            tally.judge(_ticks_on_events, setup.solver, axis)
-            tally.judge(_jumps_on_events, setup.solver, axis)
+            tally.measure(_ticks_on_events, setup.solver, axis)
+            tally.measure(_jumps_on_events, setup.solver, axis)
         for seed in range(setup.count(200, 10)):
-            tally.judge(_commands_in_any_order, setup.solver, paper_axis(contact), seed)
+            tally.measure(_commands_in_any_order, setup.solver, paper_axis(contact), seed)
     for seed in range(setup.count(100, 5)):
-        tally.judge(_ticks_on_events, setup.solver, random_axis(random.Random(seed)))
+        tally.measure(_ticks_on_events, setup.solver, random_axis(random.Random(seed)))
     return tally.finding('depend on the order or on the ticks')
 
 

@@ -177,7 +177,7 @@ class _Automaton:
             self.mode = replace(slip, silent=True)
 
     def _arrest(self) -> None:
-        """End a slip at ẋ = 0: reverse at once (F_d + F_e beyond N mu_s(0) of the other way, if judged) or stick."""
+        """End a slip at ẋ = 0: reverse at once (F_d + F_e beyond N mu_s(0) of the other way, if it may) or stick."""
         sigma = self._slip().direction
         self.state = self.state._replace(velocity=mpf(0))
         back = self.physics.side(-sigma)

@@ -60,7 +60,7 @@ class Physics:
         return net
 
     def stick_force_series(self, state: State, series: Expansion) -> Series:
-        """Force that ends a rest as a power series: c_c d + h_c u, or F_d + F_e when that is judged (rigid: always)."""
+        """Force that ends a rest as a power series: c_c d + h_c u, or F_d + F_e where that ends it (rigid: always)."""
         a = self.axis
         if a.by_drive:
             return self.net_series(state, series)
@@ -84,7 +84,7 @@ class Physics:
         return mode.direction * self.axis.normal * line.at(mode.direction * state.velocity)
 
     def force_scale(self, state: State) -> mpf:
-        """Return a force against which rounding is judged."""
+        """Return a force that rounding is compared with."""
         a = self.axis
         top = max(side.highest for side in self.sides)
         inputs = state.force.reach + a.damping * state.drive.reach

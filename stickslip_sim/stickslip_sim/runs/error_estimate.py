@@ -118,14 +118,14 @@ def _of_steps(run: SimulatedRun) -> ErrorEstimate:
     scene = dataclasses.replace(run.scene, solver=SolverSettings('exact'))
     law = _integrates_the_law(run.scene)
     try:
-        judge = simulate_events(_with_table(scene, 1.0) if law else scene, run.duration)
-        own = _of_rounding(judge)
+        better = simulate_events(_with_table(scene, 1.0) if law else scene, run.duration)
+        own = _of_rounding(better)
         if law:
-            own = _plus(own, _shift(simulate_events(_with_table(scene, _COARSER), run.duration), judge, own.until_s),
+            own = _plus(own, _shift(simulate_events(_with_table(scene, _COARSER), run.duration), better, own.until_s),
                         'what a table of mu_k ten times as coarse moves them by')
     except SolverError as reason:
         return ErrorEstimate(0.0, 0.0, 0.0, f'the exact solver gives up: unknown ({reason})')
-    shift = _shift(run, judge, own.until_s)
+    shift = _shift(run, better, own.until_s)
     estimate = _plus(own, shift, 'the largest difference of an event from one of the exact solver on the same scene '
                                  f'(coasts of less than {MOMENT:g} s after a break-away left out)')
     if shift.until >= own.until_s:
@@ -135,16 +135,16 @@ def _of_steps(run: SimulatedRun) -> ErrorEstimate:
 
 
 def _of_tolerances(run: SimulatedRun) -> ErrorEstimate:
-    """Return the estimate for an adaptive run that no exact one can judge, from one with finer steps."""
+    """Return the estimate for an adaptive run that no exact one can be compared with, from one with finer steps."""
     given = run.scene.solver
     finer = SolverSettings('adaptive', 'DOP853', rtol=max(_FINER * (given.rtol or 0.0), MIN_RTOL),
                            atol=max(_FINER * (given.atol or 0.0), 1e-300))
     step = run.duration / min(max(math.ceil(_IN_PERIOD * _pace(run.scene) * run.duration), 100), _MOST_STEPS)
     try:
-        judge = simulate(dataclasses.replace(run.scene, solver=finer), run.duration, step)
+        better = simulate(dataclasses.replace(run.scene, solver=finer), run.duration, step)
     except SolverError as reason:
         return ErrorEstimate(0.0, 0.0, 0.0, f'the finer run gives up: unknown ({reason})')
-    shift = _shift(run, judge, run.duration)
+    shift = _shift(run, better, run.duration)
     how = (f'twice the largest difference of an event from a run with {_FINER:g} of the tolerances (DOP853, rtol '
            f'{finer.rtol:g}) in steps of at most {step:.3g} s; a limit that is touched for less may be missed by both')
     if shift.until < run.duration:
@@ -186,7 +186,7 @@ def _table(table: KineticTable, coarser: float) -> KineticTable:
         return kinetic_table(table.law, coarser * table.error)
 
 
-def _shift(run: SimulatedRun, judge: SimulatedRun, until: float) -> Shift:
+def _shift(run: SimulatedRun, better: SimulatedRun, until: float) -> Shift:
     """Return how far the events of two runs are apart before a time; events of kind knot count where both have them."""
     with_knots = run.scene.solver.name != 'fixed_step' and not _has_law(run.scene)
 
@@ -194,7 +194,7 @@ def _shift(run: SimulatedRun, judge: SimulatedRun, until: float) -> Shift:
         return [event for event in lasting(events)
                 if event.time <= until and (with_knots or event.kind != EventKind.KNOT)]
 
-    return shift_between(compared(run.events), compared(judge.events), until)
+    return shift_between(compared(run.events), compared(better.events), until)
 
 
 def _plus(own: ErrorEstimate, shift: Shift, what: str) -> ErrorEstimate:

@@ -77,7 +77,7 @@ def test_refused(words: list[str], reported: str) -> None:
     assert len(errors.splitlines()) == 1
 
 
-class TestJudge:
+class TestVerdict:
     def test_by_the_worst(self) -> None:
         fine, slow, full = (DiagnosticStatus(name=name, level=level, message=f'{name} reported')
                             for name, level in (('loop', b'\0'), ('command', b'\1'), ('recorder', b'\2')))

@@ -66,7 +66,7 @@ sys.exit(sim_node.main(sys.argv[1:]))
 
 
 def test_a_run_that_contradicts_itself_stands_still(tmp_path: Path) -> None:
-    """The judge of runs finds it at the next event; the node says so and waits, and its bag is whole."""
+    """The check of runs finds it at the next event; the node says so and waits, and its bag is whole."""
     with subprocess.Popen([sys.executable, '-c', CORRUPTED, '--ros-args', *recording_into(tmp_path / 'run')],
                           stderr=subprocess.PIPE, text=True) as node:
         assert node.stderr is not None

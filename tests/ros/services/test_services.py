@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 
-from stickslip_sim.check.judgement import outcomes_of
 from stickslip_sim.check.limits import limits_of
+from stickslip_sim.check.outcomes import outcomes_of
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.recording import open_bag, read_run
 from stickslip_sim.rig import Fault

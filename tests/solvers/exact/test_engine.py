@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Properties of the exact engine that hold for every axis; the suite of extremes judges the harder ones."""
+"""Properties of the exact engine that hold for every axis; the suite of extremes measures the harder ones."""
 
 import math
 import random

@@ -48,13 +48,13 @@ class PeriodicReport:
         """Report on the second that ends now."""
         stamp_ns = self._stamp_ns()
         second = self._reporter.look(self._clock.now())
-        judged = verdict(self._node.scene, self._loop)
+        said = verdict(self._node.scene, self._loop)
         self._log_troubles(second)
-        message = reports.timing_message(second, self._loop, self._clock.period * 1e-9, bool(judged.valid), stamp_ns)
+        message = reports.timing_message(second, self._loop, self._clock.period * 1e-9, bool(said.valid), stamp_ns)
         self._timing_out.publish(message)
         self._publishers.record_message(names.TIMING, message, self._loop.time_ns, max(self._loop.step, 0))
         self._diagnostics_out.publish(reports.diagnostics(stamp_ns, self._node.get_fully_qualified_name(), [
-            reports.loop_status(self._loop, second, judged),
+            reports.loop_status(self._loop, second, said),
             reports.command_status(self._loop, second),
             reports.solver_status(self._loop, self._node.scene.solver.name, self._publishers.events.latest_time),
             reports.recorder_status(self._record_service.recordings),

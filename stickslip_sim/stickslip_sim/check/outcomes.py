@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The judgement: every limit of a file on one run."""
+"""What comes of every limit of a file on one run."""
 
 import math
 from typing import NamedTuple
@@ -8,7 +8,7 @@ from typing import NamedTuple
 from ..core.errors import InputError, RecordingError
 from ..runs import Run
 from .kinds import TIMING
-from .limit_window import JudgedSpan
+from .limit_window import CheckedSpan
 from .limits import Limit, Limits, check_fit
 from .measures import no_sample_in
 from .observed_motion import MotionBlock, MotionSpan, ObservedMotion, motion_blocks
@@ -23,8 +23,8 @@ class LimitOutcome(NamedTuple):
     passed: bool
     value: float | None
     remark: str
-    span: JudgedSpan = JudgedSpan()
-    is_unjudged: bool = False   # no command came in its window: no controller was judged
+    span: CheckedSpan = CheckedSpan()
+    is_unchecked: bool = False   # no command came in its window: no controller was checked
 
     @property
     def margin(self) -> float | None:
@@ -35,7 +35,7 @@ class LimitOutcome(NamedTuple):
 def outcomes_of(limits: Limits, run: Run) -> list[LimitOutcome]:
     """Return the outcome of every limit, timing last; raises InputError when one does not fit the run.
 
-    A recording that was cut off is judged as far as it goes.
+    A recording that was cut off is checked as far as it goes.
     """
     motion, timing, commands = observed_motion(run), timing_of(run), commands_of(run)
     has_timing = timing is not None and timing.valid is not None
@@ -57,10 +57,10 @@ def outcomes_of(limits: Limits, run: Run) -> list[LimitOutcome]:
 
 
 class _Open:
-    """A limit that is being judged, while the motion comes block by block."""
+    """A limit that is being checked, while the motion comes block by block."""
 
-    def __init__(self, limit: Limit, judged: JudgedSpan, span: MotionSpan) -> None:
-        self._limit, self._judged, self._span = limit, judged, span
+    def __init__(self, limit: Limit, checked: CheckedSpan, span: MotionSpan) -> None:
+        self._limit, self._checked, self._span = limit, checked, span
         self._measurement = limit.kind.measure(span, **limit.settings)
         self._has_samples = False
 
@@ -78,7 +78,7 @@ class _Open:
             value, remark = self._measurement.figure()
         except InputError as error:
             raise InputError(f'{limit.name}.{error.name}', error.value, error.allowed, error.fix) from None
-        return LimitOutcome(limit.name, limit, value <= limit.maximum, value, remark, self._judged)
+        return LimitOutcome(limit.name, limit, value <= limit.maximum, value, remark, self._checked)
 
 
 def _begun(limit: Limit, motion: ObservedMotion, commands: KnownCommands | None, needs_commands: bool
@@ -87,16 +87,16 @@ def _begun(limit: Limit, motion: ObservedMotion, commands: KnownCommands | None,
     first = commands.first if commands else None
     span = limit.window.at(first)
     if span is None:
-        return _unjudged(limit, JudgedSpan(), motion.end)
+        return _unchecked(limit, CheckedSpan(), motion.end)
     begin = motion.begin if span.begin is None else span.begin
     end = motion.end if span.end is None else min(span.end, motion.end)
     if begin >= motion.end:
         return LimitOutcome(limit.name, limit, False, None, f'the run has nothing from t = {begin:g} s on', span)
     if commands and needs_commands and (first is None or first > end):
-        return _unjudged(limit, span, end)
+        return _unchecked(limit, span, end)
     return _Open(limit, span, motion.cut(begin, end))
 
 
-def _unjudged(limit: Limit, span: JudgedSpan, end: float) -> LimitOutcome:
-    remark = f'no drive velocity came until t = {end:g} s: no controller was judged'
-    return LimitOutcome(limit.name, limit, False, None, remark, span, is_unjudged=True)
+def _unchecked(limit: Limit, span: CheckedSpan, end: float) -> LimitOutcome:
+    remark = f'no drive velocity came until t = {end:g} s: no controller was checked'
+    return LimitOutcome(limit.name, limit, False, None, remark, span, is_unchecked=True)
