@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import yaml
 
-from .files import ROOT, texts
+from .files import ROOT, files, texts
 
 LIST = ROOT / 'dev/words.yaml'
 # Those that have to name what they refuse, and texts of others.
@@ -51,7 +51,7 @@ class Rules:
 
 
 class Fault(NamedTuple):
-    """A word that is not written, where it stands, and what is."""
+    """A word that is not written, where it stands (line 0: in the name of the file), and what is."""
 
     line: int
     word: str
@@ -88,10 +88,18 @@ def faults(text: str, refusals: Rules, file: str = '') -> Iterator[Fault]:
                     yield Fault(number, match.group(), rule.write)
 
 
+def name_faults(file: str, refusals: Rules) -> Iterator[Fault]:
+    """Yield the words of a file's name in the repository that are refused, those of its folders among them."""
+    return (fault._replace(line=0) for fault in faults(file, refusals, file))
+
+
 def all_faults() -> Iterator[tuple[Path, Fault]]:
     """Yield what is refused in the repository."""
     listed = rules(yaml.safe_load(LIST.read_text(encoding='utf-8')))
     elsewhere = Rules(rule for rule in listed.listed if not rule.pages_only)
+    for file in files(*_OUTSIDE):
+        for fault in name_faults(file.relative_to(ROOT).as_posix(), elsewhere):
+            yield file, fault
     for file in texts(*_OUTSIDE):
         refusals = listed if file.suffix == '.md' else elsewhere
         for fault in faults(file.read_text(encoding='utf-8'), refusals, file.relative_to(ROOT).as_posix()):

@@ -4,7 +4,7 @@
 
 import pytest
 
-from dev.words import Fault, all_faults, faults, rules
+from dev.words import Fault, all_faults, faults, name_faults, rules
 
 LISTED = rules([
     {'write': 'periodic report', 'not': ['second reports?']},
@@ -23,6 +23,11 @@ def test_the_repository_has_none() -> None:
                                   'Second reports'])
 def test_names_are_read_as_the_words_in_them(text: str) -> None:
     assert [fault.write for fault in faults(text, LISTED)] == ['periodic report']
+
+
+@pytest.mark.parametrize('file', ['second_report.py', 'second_reports/one.py', 'pictures/second_report.svg'])
+def test_names_of_files_are_read_too(file: str) -> None:
+    assert [fault.line for fault in name_faults(file, LISTED)] == [0]
 
 
 def test_where_and_what() -> None:

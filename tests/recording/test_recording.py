@@ -40,7 +40,7 @@ def bag(tmp_path: Path) -> Path:
 
 
 def expected(folder: Path) -> dict[str, list[Values]]:
-    """Return the fields of every message of the bag, by topic, straight from the words of the simulation."""
+    """Return the fields of every message of the bag, by topic, straight from the outputs of the simulation."""
     states = list(samples(120))
     stamps = [k * 1_000_000 for k in range(120)]
     steps = [1, 11, 11, 40, 100]

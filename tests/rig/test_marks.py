@@ -13,7 +13,7 @@ def marks(*events: tuple[float, RigEventKind, str, str]) -> list[Mark]:
     return marks_of_events([TimedRigEvent(*event, 1) for event in events], 0.5, 10.0)
 
 
-def test_a_fault_lasts_from_its_begin_to_its_end() -> None:
+def test_a_fault_lasts_from_its_start_to_its_end() -> None:
     assert marks((1.0, INJECTED, 'a', 'force_pulse'), (2.0, BEGIN, 'a', 'force_pulse'), (3.0, END, 'a', 'force_pulse')
                  ) == [Mark(2.0, 3.0, 'force_pulse')]
 

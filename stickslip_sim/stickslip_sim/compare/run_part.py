@@ -88,7 +88,7 @@ class _Span(NamedTuple):
 
 
 def _spans(run: Run) -> Iterator[_Span]:
-    """Yield the parts of a run, from its begin to its end."""
+    """Yield the parts of a run, from its start to its end."""
     first, begin = 0, run.begin
     for k, event in enumerate(run.events):
         if begins_slip(event):

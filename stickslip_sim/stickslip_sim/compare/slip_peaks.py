@@ -14,7 +14,7 @@ SLIP_PEAKS = 'slip peaks'   # the watch
 
 
 def slip_peaks(part: RunPart) -> dict[float, float]:
-    """Return the largest |ẍ| of each complete slip of a part, m/s², by its begin, s."""
+    """Return the largest |ẍ| of each complete slip of a part, m/s², by its start, s."""
     return {begin.time: float(np.abs(within(part, begin.time, end.time)['acceleration']).max())
             for begin, end in complete_slips(part.events)}
 

@@ -18,7 +18,7 @@ _SPEEDS, _FEW = 7, 3     # of constant feeds; of the other kinds
 _LEVELS = 5              # of steps
 _PAUSES = 6              # of a start-stop feed, the last one 32 times as long as the first
 _REVERSALS = 4
-_WAVES = 2, 8            # periods of a sine in a run
+_PERIODS = 2, 8          # of a sine in a run
 
 
 class Feed(NamedTuple):
@@ -94,9 +94,9 @@ def _to_and_fro(speed: float, duration: float) -> Feed:
 
 
 def _sines(speed: float, duration: float) -> Iterator[Feed]:
-    for waves in _WAVES:
-        sine = {'course': 'sine', 'amplitude': speed, 'frequency': waves / duration}
-        name = f'{_shown(speed)}, {quantity(waves / duration, "Hz", 3)}'
+    for periods in _PERIODS:
+        sine = {'course': 'sine', 'amplitude': speed, 'frequency': periods / duration}
+        name = f'{_shown(speed)}, {quantity(periods / duration, "Hz", 3)}'
         yield Feed('sine', f'sine, {name}', {**sine, 'velocity': 0.0})
         yield Feed('sine on a feed', f'sine on as much feed, {name}', {**sine, 'velocity': speed})
 

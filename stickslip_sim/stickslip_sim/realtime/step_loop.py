@@ -3,7 +3,7 @@
 """The step loop: a thread that brings the rig from step to step, as its clock says.  Knows no ROS.
 
 Step n reaches from (n − 1)/rate to n/rate (step 0 is the start).  In real time it is made when its end is due on the
-steady clock: first the commands that have arrived are heard, of which the latest hold from its begin on, then its
+steady clock: first the commands that have arrived are heard, of which the latest hold from its start on, then its
 events and its state go out.
 So a controller that answers a state within a period acts on the very next step, as in lock-step.
 """

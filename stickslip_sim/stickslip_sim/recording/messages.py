@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The messages of a run, made from the words of the simulation; stamps in ns."""
+"""The messages of a run, made from the outputs of the simulation; stamps in ns."""
 
 from collections.abc import Iterable, Mapping
 from operator import attrgetter
@@ -18,7 +18,7 @@ from .topics import Topic
 
 Fields = dict[str, object]
 
-_WORDS = {'force': 'friction_force', 'coefficient': 'friction_coefficient'}   # for the fields with names of their own
+_NAMES = {'force': 'friction_force', 'coefficient': 'friction_coefficient'}   # for the fields with names of their own
 
 
 def numbers_of_steps(names: Iterable[str], steps: NDArray[np.int64], columns: Mapping[str, NDArray[Any]]
@@ -26,7 +26,7 @@ def numbers_of_steps(names: Iterable[str], steps: NDArray[np.int64], columns: Ma
     """Return the fields of messages of steps: the number of the step, then fields named as in Sample."""
     of_step, *others = names
     known = {**columns, 'time': columns['second'] + columns['fraction']}
-    return {of_step: steps, **{name: known[_WORDS.get(name, name)] for name in others}}
+    return {of_step: steps, **{name: known[_NAMES.get(name, name)] for name in others}}
 
 
 class Packer:
@@ -38,11 +38,11 @@ class Packer:
     def __init__(self, topic: Topic, layout: Layout | None = None) -> None:
         self._layout = layout or flat_layout(topic.type)
         _, *names = self._layout.names
-        self._numbers = attrgetter(*(_WORDS.get(name, name) for name in names))
+        self._numbers = attrgetter(*(_NAMES.get(name, name) for name in names))
 
-    def pack(self, stamp_ns: int, step: int, word: Sample | Event) -> bytes:
+    def pack(self, stamp_ns: int, step: int, output: Sample | Event) -> bytes:
         """Return the CDR bytes of the message."""
-        return self._layout.pack(stamp_ns, step, *self._numbers(word))
+        return self._layout.pack(stamp_ns, step, *self._numbers(output))
 
 
 def time_message(nanoseconds: int) -> Fields:

@@ -121,8 +121,8 @@ class Bag:
     def columns(self, topic: str) -> dict[str, NDArray[Any]]:
         """Return a topic as one array for each field that is a number or a text.
 
-        `log_time` (simulation time) and `publish_time` are in ns; `sequence` is the step.  A name without a slash at
-        its begin is that of the one topic that ends so.  Raises RecordingError when there is none, or too much of it.
+        `log_time` (simulation time) and `publish_time` are in ns; `sequence` is the step.  A name without a leading
+        slash is that of the one topic that ends so.  Raises RecordingError when there is none, or too much of it.
         """
         name = self.resolved(topic)
         return self._held({name: None})[name]

@@ -140,7 +140,7 @@ class Rig:
     # Steps
 
     def make_step(self, velocity: float | None = None, force: float | None = None) -> StepResult:
-        """Make the next step, with a new drive velocity (m/s) and force (N) from its begin on, or those in force.
+        """Make the next step, with a new drive velocity (m/s) and force (N) from its start on, or those in force.
 
         Raises SolverError, and InputError on a command that is not finite: then nothing has happened.
         """

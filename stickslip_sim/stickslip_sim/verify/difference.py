@@ -47,10 +47,10 @@ class Comparison:
         """
         return self._in_events(step, made) or next(filter(None, (
             topic.difference(message, made.number, made.sample)
-            for topic in self._states for message in step.words[topic.topic])), None)
+            for topic in self._states for message in step.outputs[topic.topic])), None)
 
     def _in_events(self, step: RecordedStep, made: Made) -> Difference | None:
-        recorded, topic = step.words[MODE_EVENT], self._events
+        recorded, topic = step.outputs[MODE_EVENT], self._events
         for message, event in zip(recorded, made.events):
             if found := topic.difference(message, max(made.number, 1), event):   # step 0 has no length
                 return found
@@ -72,18 +72,18 @@ class _Topic:
         self._layout = bag.layout(self.name)
         self._packer = Packer(topic, self._layout)
 
-    def difference(self, message: RecordedMessage, number: int, word: Sample | Event) -> Difference | None:
+    def difference(self, message: RecordedMessage, number: int, output: Sample | Event) -> Difference | None:
         """Return the first field that differs, None when all bytes are the same."""
-        stamp = message.publish_time - message.log_time + word.instant.nanoseconds
+        stamp = message.publish_time - message.log_time + output.instant.nanoseconds
         try:
-            made = self._packer.pack(stamp, number, word)
+            made = self._packer.pack(stamp, number, output)
         except AttributeError as error:
             raise RecordingError(f'{self._path}: {self.name}: its field {error.name} is unknown here; recorded by '
                                  'another version?') from None
         except struct.error:
             raise RecordingError(f'{self._path}: {self.name}: published at {message.publish_time} ns, which no stamp '
                                  'can say') from None
-        return None if made == message.data else self._field(message.data, made, number, word.time)
+        return None if made == message.data else self._field(message.data, made, number, output.time)
 
     def _field(self, recorded: bytes, made: bytes, number: int, time: float) -> Difference:
         theirs, ours = self._layout.numbers(recorded), self._layout.numbers(made)

@@ -22,7 +22,7 @@ from .orders import is_order
 from .origin import offline_of
 
 ORDERS = DRIVE_VELOCITY, EXTERNAL_FORCE, RIG_EVENT, PARAMETER_EVENTS
-WORDS = SLIDER_STATE, FRICTION_FORCE, MODE_EVENT
+OUTPUTS = SLIDER_STATE, FRICTION_FORCE, MODE_EVENT
 MOST_MISSING = 1_000_000           # steps that are made again without being compared
 _HALF, _WHOLE = 1 << 31, 1 << 32   # the file has 32 bits for the number of a step
 
@@ -32,12 +32,12 @@ class RecordedStep(NamedTuple):
 
     number: int
     orders: list[RecordedMessage]
-    words: dict[Topic, list[RecordedMessage]]
+    outputs: dict[Topic, list[RecordedMessage]]
 
     @property
     def is_whole(self) -> bool:
         """Whether the state at its end was recorded."""
-        return bool(self.words[SLIDER_STATE] and self.words[FRICTION_FORCE])
+        return bool(self.outputs[SLIDER_STATE] and self.outputs[FRICTION_FORCE])
 
 
 def steps_of(run: RecordedRun, start: int) -> Iterator[RecordedStep]:
@@ -47,7 +47,7 @@ def steps_of(run: RecordedRun, start: int) -> Iterator[RecordedStep]:
     """
     bag = run.bag
     ordered = () if offline_of(run) else [topic for topic in ORDERS if topic.type in bag.topics.values()]
-    kinds = {bag.name_of(topic): topic for topic in (*ordered, *WORDS)}
+    kinds = {bag.name_of(topic): topic for topic in (*ordered, *OUTPUTS)}
     messages = (message for message in bag.messages(kinds) if kinds[message.topic] != RIG_EVENT
                 or is_order(bag, message))
     number, missing = start, 0
@@ -74,8 +74,8 @@ def _numbered(messages: Iterable[RecordedMessage], kinds: dict[str, Topic], star
 
 
 def _step(number: int, messages: list[RecordedMessage], kinds: dict[str, Topic]) -> RecordedStep:
-    words: dict[Topic, list[RecordedMessage]] = {topic: [] for topic in WORDS}
+    outputs: dict[Topic, list[RecordedMessage]] = {topic: [] for topic in OUTPUTS}
     orders: list[RecordedMessage] = []
     for message in messages:
-        words.get(kinds[message.topic], orders).append(message)
-    return RecordedStep(number, orders, words)
+        outputs.get(kinds[message.topic], orders).append(message)
+    return RecordedStep(number, orders, outputs)

@@ -63,7 +63,7 @@ class _Look:
         self.difference = self._comparison.first_difference(step, made)
         if self.difference:
             return
-        self.events += len(step.words[MODE_EVENT])
+        self.events += len(step.outputs[MODE_EVENT])
         if step.is_whole:
             self.steps += 1
             self.missing = made.number + 1 - self._first - self.steps

@@ -85,7 +85,7 @@ class TestLockStep:
                                for folder in (recorded, again))
             assert steps == again_at
 
-    def test_an_axis_under_way_is_brought_to_its_begin(self, recorded: Path) -> None:
+    def test_an_axis_under_way_is_brought_to_its_start(self, recorded: Path) -> None:
         with running(*LOCKSTEP) as axis, client() as viewer:
             viewer.connect(is_moving=False)
             assert viewer.call(Step, 'step', steps=700, velocity=0.05, force=0.0).success

@@ -110,11 +110,11 @@ class Publishers:
         """Hand a message that is published elsewhere to the recorder, if there is one."""
         self.record(RECORDED.index(topic), serialize_message(message), time_ns, step)
 
-    def _send(self, port: '_Port', time_ns: int, step: int, word: Sample | Event) -> None:
+    def _send(self, port: '_Port', time_ns: int, step: int, output: Sample | Event) -> None:
         is_heard = port.is_heard()
         if not is_heard and self.recorder is None:
             return
-        data = port.pack(self.start_ns + time_ns, step, word)
+        data = port.pack(self.start_ns + time_ns, step, output)
         if is_heard:
             port.publish(data)
         self.record(port.index, data, time_ns, step)

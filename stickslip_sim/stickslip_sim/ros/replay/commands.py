@@ -50,7 +50,8 @@ class Commands:
             raise InputError('time.mode', mode, 'realtime or lockstep for an axis that takes recorded commands',
                              'start it so')
         if self._settings.start_offset:
-            raise InputError('start_offset', self._settings.start_offset, '0 in lock-step', 'a run has its begin')
+            raise InputError('start_offset', self._settings.start_offset, '0 in lock-step',
+                             'in lock-step a run is repeated from its start')
         return InLockStep(self._node, self._axis, self._recording, self._orders, self._span, rate,
                           _STRIDE * max(1.0, self._settings.rate))
 

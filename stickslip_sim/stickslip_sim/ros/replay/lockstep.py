@@ -62,7 +62,7 @@ class InLockStep:
         step = state.sequence
         if step > last + 1 or (step <= last and step):
             raise RecordingError(f'{self._recording.path}: step {last + 1} is missing; only a run that was recorded by'
-                                 ' the node, from its begin on and without loss, can be repeated in lock-step')
+                                 ' the node, from its start on and without loss, can be repeated in lock-step')
         if state.log_time != self._grid.nanoseconds(step):
             raise InputError('time.rate', self._grid.rate, f'that of the recording, whose step {step} ends at'
                              f' {state.log_time * 1e-9:g} s', 'start the axis with the recorded scene')
