@@ -49,7 +49,7 @@ class ChannelFit:
 
     `fitted` has the sensor's own offset and scale.  `resolution` is the standard deviation that the fit took for the
     noise, `correlation_time` (s) over how long residuals go together (0 when each sample stands for itself).  Where
-    noise of a measured force moves the slider, what is `new` in each sample is judged: the residuals are these.
+    noise of a measured force moves the slider, what is `new` in each sample counts: the residuals are these.
     """
 
     name: str

@@ -93,17 +93,17 @@ def _slope(one: Place, other: Place) -> float:
 def shifted(profile: InputProfile, begin: float, duration: float) -> InputProfile:
     """Return a profile as it is from a time on, s, which becomes 0, for a duration."""
     full = 2.0 * math.pi
-    waves = tuple(Sinusoid(one.amplitude, one.frequency, math.fmod(one.phase + full * one.frequency * begin, full))
+    sinusoids = tuple(Sinusoid(one.amplitude, one.frequency, math.fmod(one.phase + full * one.frequency * begin, full))
                   for one in profile.sinusoids)
     if profile.period < math.inf:
-        return _unrolled(profile, begin, duration, waves)
+        return _unrolled(profile, begin, duration, sinusoids)
     value, rate, _ = profile.pieces_at(begin)
     first, last = bisect_right(profile.starts, begin), bisect_right(profile.starts, begin + duration)
     return InputProfile((0.0, *(start - begin for start in profile.starts[first:last])),
-                        (value, *profile.values[first:last]), (rate, *profile.rates[first:last]), sinusoids=waves)
+                        (value, *profile.values[first:last]), (rate, *profile.rates[first:last]), sinusoids=sinusoids)
 
 
-def _unrolled(profile: InputProfile, begin: float, duration: float, waves: tuple[Sinusoid, ...]) -> InputProfile:
+def _unrolled(profile: InputProfile, begin: float, duration: float, sinusoids: tuple[Sinusoid, ...]) -> InputProfile:
     """Return the pieces of a profile that repeats itself, one after the other."""
     starts, values, rates = [], [], []
     time = begin
@@ -113,7 +113,7 @@ def _unrolled(profile: InputProfile, begin: float, duration: float, waves: tuple
         values.append(value)
         rates.append(rate)
         time = end
-    return InputProfile(tuple(starts), tuple(values), tuple(rates), sinusoids=waves)
+    return InputProfile(tuple(starts), tuple(values), tuple(rates), sinusoids=sinusoids)
 
 
 def travelled(profile: InputProfile, times: Numbers) -> Numbers:
