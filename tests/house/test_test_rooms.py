@@ -2,8 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tests stand as their code stands: each room has its folder of tests, and each folder of tests its room."""
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
+
+import pytest
 
 import stickslip_sim
 from tests.support.repository import ROOT
@@ -41,3 +44,13 @@ def test_each_folder_of_tests_has_its_room() -> None:
                for split in (TESTS, *(TESTS / room for room in SPLIT)) for path in split.glob('*/*')
                if path.suffix in ('.py', '.json')}
     assert folders - rooms() == set(OTHER_TESTS)
+
+
+@pytest.mark.parametrize('pattern', [
+    r'^ *(from|import) tests\.[\w.]*\btest_\w+',                      # what two of them use is for tests/support
+    r'''setattr\([^,]+, ['"]_[a-zA-Z]|['"]stickslip_sim[\w.]*\._[a-zA-Z]\w*['"],''',   # an argument, or a public name
+], ids=['imports a test', 'patches a private name'])
+def test_no_test_does_what_ties_it_to_the_inside_of_another(pattern: str) -> None:
+    found = [f'{path.relative_to(TESTS)}: {line.strip()}' for path in sorted(TESTS.rglob('*.py'))
+             for line in path.read_text(encoding='utf-8').splitlines() if re.search(pattern, line)]
+    assert found == []

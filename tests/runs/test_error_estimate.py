@@ -21,8 +21,8 @@ from stickslip_sim.runs import simulate_events
 from stickslip_sim.runs.error_estimate import error_estimate
 from stickslip_sim.runs.perturbation import ROUNDING_UNIT, perturbed
 from stickslip_sim.scene import Scene, SolverSettings, load_scene
-from tests.solvers.exact.test_against_reference import RUNS
 from tests.support.stored_objects import axis_of, profile_of
+from tests.support.stored_runs import stored
 
 
 def scene_of(values: dict[str, Any]) -> Scene:
@@ -32,7 +32,7 @@ def scene_of(values: dict[str, Any]) -> Scene:
 
 def test_the_true_error_is_within_the_estimate_and_not_far_below() -> None:
     times, positions = [], []
-    for run in RUNS.values():
+    for run in stored().values():
         done = simulate_events(scene_of(run['parameters']), run['duration'])
         estimate, want = error_estimate(done), run['events']
         assert estimate.until_s == run['duration']
