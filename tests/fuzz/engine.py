@@ -11,7 +11,7 @@ from stickslip_sim.core.types import Event, EventKind, Mode, Sample
 from stickslip_sim.extremes.shared_axes import instant, scaled_profile
 from stickslip_sim.simulation.simulator import Simulator
 
-from .axes import Case
+from .made_up_axes import Case
 
 _SLIPS = (Mode.ACCELERATING, Mode.COASTING, Mode.DECELERATING)
 _BEFORE = {EventKind.BREAKAWAY: (Mode.STICK,), EventKind.COAST: (Mode.ACCELERATING, Mode.DECELERATING),

@@ -12,8 +12,8 @@ from stickslip_sim.extremes.outcome import Missed
 from stickslip_sim.extremes.shared_axes import instant
 from stickslip_sim.reference import simulate
 
-from .axes import Case
 from .engine import simulator
+from .made_up_axes import Case
 
 _DIGITS = 30
 _MOST_EVENTS = 25     # the judge is a hundred thousand times slower than the engine

@@ -24,8 +24,8 @@ from stickslip_sim.verify.origin import doubts_about
 from stickslip_sim.verify.verification import verify
 from tests.support.refusals import accepts_or_refuses
 
+from .called_tool import call_tool
 from .studies import Edited
-from .tool import tool
 
 
 def scene(text: str) -> None:
@@ -68,8 +68,8 @@ def study(edited: Edited, folder: Path) -> None:
     folder.mkdir()
     for name, text in edited.files.items():
         (folder / name).write_text(text, encoding='utf-8', errors='surrogatepass', newline='')
-    tool('map', str(folder), '--out', str(folder / 'map.svg'))
-    tool(*edited.command, '--out', str(folder), '--resume')
+    call_tool('map', str(folder), '--out', str(folder / 'map.svg'))
+    call_tool(*edited.command, '--out', str(folder), '--resume')
 
 
 def bag(path: Path) -> None:

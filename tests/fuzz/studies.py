@@ -13,7 +13,7 @@ from hypothesis.strategies import DrawFn, SearchStrategy
 from stickslip_sim.study.folder import PARTIAL, SIDECAR, TABLE
 from tests.support import made_up_texts
 
-from .tool import tool
+from .called_tool import call_tool
 
 _SCENE = 'paper_fig7'
 _GRID = ('--over', 'drive.velocity=0.001:0.01:3', '--over', 'friction.static.limit=0.2:0.3:2', '--duration', '2')
@@ -55,7 +55,7 @@ OPTIONS = st.tuples(VARIATIONS, _RANGES, st.builds('{},{}'.format, _ENDS, _ENDS)
 
 
 def _made(folder: Path, command: Sequence[str]) -> Edited:
-    tool(*command, '--out', str(folder))
+    call_tool(*command, '--out', str(folder))
     files = {name: (folder / name).read_text() for name in (SIDECAR, TABLE)}
     return Edited(files, command)
 

@@ -14,7 +14,7 @@ from tests.support import made_up_bags, made_up_texts, small_recordings
 from tests.support.repository import ROOT
 from tests.support.time_and_memory import within
 
-from . import axes, engine, judge, readers, studies
+from . import engine, judge, made_up_axes, readers, studies
 
 _PATIENCE = 20.0   # s for one input; the host may stand still for a while
 
@@ -45,8 +45,8 @@ def targets(folder: Path) -> Mapping[str, Target]:
         'distributions': (studies.DISTRIBUTIONS, readers.distributions),
         'options': (studies.OPTIONS, lambda given: readers.options(*given)),
         'study': (studies.folders(folder), lambda given: readers.study(given, folder / 'study')),
-        'engine': (axes.machines() | axes.shaken(), engine.holds),
-        'reference': (axes.machines() | axes.shaken(), judge.equals_the_reference),
+        'engine': (made_up_axes.machines() | made_up_axes.shaken(), engine.holds),
+        'reference': (made_up_axes.machines() | made_up_axes.shaken(), judge.equals_the_reference),
     }
     return {name: Target(inputs, _bounded(read)) for name, (inputs, read) in found.items()}
 

@@ -38,7 +38,7 @@ OF_OWN_CONTROLLERS = {('publish', 'drive_velocity'), ('subscribe', 'slider_state
 Act = tuple[str, str]    # publish, subscribe, request or reply; the name of a topic or service, or an expression
 
 
-class Program(NamedTuple):
+class Started(NamedTuple):
     """A program in a namespace, with what makes it use all that it can."""
 
     enclave: str
@@ -53,14 +53,14 @@ class Program(NamedTuple):
 
 
 PROGRAMS = [
-    Program('feed_axis', 'sim_node', 'feed_axis', '/', ('time.mode:=lockstep', 'joint_interface.enabled:=true')),
-    Program('feed_axis', 'sim_node', 'feed_axis', '/press', ('use_sim_time:=true',)),
-    Program('controller', 'cascade_controller', 'cascade_controller', '/', ('use_sim_time:=true',)),
-    Program('controller', 'compensating_controller', 'compensating_controller', '/press', ()),
-    Program('replay', 'replay_node', 'replay', '/', (f'bag:={BAG}', 'clock:=10.0', 'start_paused:=true')),
-    Program('replay', 'replay_node', 'replay', '/press', (
+    Started('feed_axis', 'sim_node', 'feed_axis', '/', ('time.mode:=lockstep', 'joint_interface.enabled:=true')),
+    Started('feed_axis', 'sim_node', 'feed_axis', '/press', ('use_sim_time:=true',)),
+    Started('controller', 'cascade_controller', 'cascade_controller', '/', ('use_sim_time:=true',)),
+    Started('controller', 'compensating_controller', 'compensating_controller', '/press', ()),
+    Started('replay', 'replay_node', 'replay', '/', (f'bag:={BAG}', 'clock:=10.0', 'start_paused:=true')),
+    Started('replay', 'replay_node', 'replay', '/press', (
         f'bag:={BAG}', 'mode:=commands', 'axis:=feed_axis', 'start_paused:=true', 'use_sim_time:=true')),
-    Program('health', 'health', 'health', '/nowhere', ('patience:=3600.0', 'use_sim_time:=true')),
+    Started('health', 'health', 'health', '/nowhere', ('patience:=3600.0', 'use_sim_time:=true')),
 ]
 
 

@@ -13,7 +13,7 @@ from stickslip_sim.cli.identify_lines import result_lines
 from stickslip_sim.identification.given.free_parameters import free_parameters
 from stickslip_sim.identification.identified import AT_BOUND, NOT_IDENTIFIABLE, Identification
 from stickslip_sim.scene import changed
-from tests.identification.measured_axis import (
+from tests.support.measured_runs import (
     COMPLIANT,
     DRIVE_OFF,
     OF_DRIVE,

@@ -10,7 +10,7 @@ import pytest
 import stickslip_sim as stickslip
 from stickslip_sim.recording import write_measured
 from stickslip_sim.scene import changed
-from tests.identification.measured_axis import OF_FRICTION, OFF, RIGID, between, check
+from tests.support.measured_runs import OF_FRICTION, OFF, RIGID, between, check
 
 pytestmark = pytest.mark.slow
 

@@ -31,7 +31,7 @@ def slots() -> tuple[CommandSlot, CommandSlot]:
     return CommandSlot('velocity', 'm/s', 1.0), CommandSlot('force', 'N', 1e5)
 
 
-class Bench:
+class QuickLoop:
     """A loop that runs 20 times faster than time, and keeps what it hands out."""
 
     def __init__(self, solver: Solver = exact.SOLVER, by_request: bool = False,
@@ -48,59 +48,59 @@ class Bench:
 
 
 @pytest.fixture
-def bench() -> Iterator[Bench]:
-    bench = Bench()
-    yield bench
-    bench.loop.stop()
-    assert bench.loop.crash is None
+def quick() -> Iterator[QuickLoop]:
+    quick = QuickLoop()
+    yield quick
+    quick.loop.stop()
+    assert quick.loop.crash is None
 
 
-def test_steps_and_events_are_those_of_the_simulator(bench: Bench) -> None:
-    bench.loop.start()
-    bench.reach(2000)
-    bench.loop.stop()
-    assert [result.step for result in bench.results] == list(range(bench.loop.step + 1))
+def test_steps_and_events_are_those_of_the_simulator(quick: QuickLoop) -> None:
+    quick.loop.start()
+    quick.reach(2000)
+    quick.loop.stop()
+    assert [result.step for result in quick.results] == list(range(quick.loop.step + 1))
     other = make(paper_axis(COMPLIANT), 0.002)
     events = other.advance(Instant(2.0, 0.0))
-    assert [event for result in bench.results for event in result.events][:len(events)] == events
-    assert all(result.step == math.ceil(event.time * RATE) for result in bench.results for event in result.events)
-    assert bench.results[2000].sample == other.sample()
+    assert [event for result in quick.results for event in result.events][:len(events)] == events
+    assert all(result.step == math.ceil(event.time * RATE) for result in quick.results for event in result.events)
+    assert quick.results[2000].sample == other.sample()
 
 
 def test_what_prepares_the_start_delays_no_step() -> None:
     clock = FakeClock()
     pacer, begin = Pacer(Grid(RATE), 1.0, clock), clock.now()
-    bench = Bench(pacer=pacer)
-    bench.loop.start(20_000_000, lambda: clock.sleep(0.015))
-    bench.reach(3)
-    bench.loop.stop()
+    quick = QuickLoop(pacer=pacer)
+    quick.loop.start(20_000_000, lambda: clock.sleep(0.015))
+    quick.reach(3)
+    quick.loop.stop()
     assert pacer.due(0) == begin + 20_000_000
     assert (pacer.counters.overruns, pacer.counters.caught_up) == (0, 0)
 
 
-def test_a_command_holds_over_the_step_that_is_made_next(bench: Bench) -> None:
-    bench.loop.start()
-    bench.reach(10)
-    assert bench.slots[0].offer(0.004, 1) == ''
-    bench.reach(bench.loop.step + 50)
-    bench.loop.stop()
-    (step,) = (result.step for result in bench.results if result.velocity == 0.004)
-    velocities = [result.sample.drive_velocity for result in bench.results]
+def test_a_command_holds_over_the_step_that_is_made_next(quick: QuickLoop) -> None:
+    quick.loop.start()
+    quick.reach(10)
+    assert quick.slots[0].offer(0.004, 1) == ''
+    quick.reach(quick.loop.step + 50)
+    quick.loop.stop()
+    (step,) = (result.step for result in quick.results if result.velocity == 0.004)
+    velocities = [result.sample.drive_velocity for result in quick.results]
     assert velocities[step - 1:step + 1] == [0.002, 0.004]
 
 
-def test_a_run_can_be_repeated_from_its_commands(bench: Bench) -> None:
-    bench.loop.start()
+def test_a_run_can_be_repeated_from_its_commands(quick: QuickLoop) -> None:
+    quick.loop.start()
     for velocity, force in ((0.01, 0.0), (-0.003, 500.0), (0.0, -900.0)):
-        bench.reach(bench.loop.step + 211)
-        bench.slots[0].offer(velocity, 1)
-        bench.slots[1].offer(force, 1)
-    bench.reach(bench.loop.step + 211)
-    bench.loop.stop()
-    commands = [value for result in bench.results for value in (result.velocity, result.force)]
+        quick.reach(quick.loop.step + 211)
+        quick.slots[0].offer(velocity, 1)
+        quick.slots[1].offer(force, 1)
+    quick.reach(quick.loop.step + 211)
+    quick.loop.stop()
+    commands = [value for result in quick.results for value in (result.velocity, result.force)]
     assert len([value for value in commands if value is not None]) == 6
     again, grid = make(paper_axis(COMPLIANT), 0.002), Grid(RATE)
-    for result in bench.results:
+    for result in quick.results:
         if result.velocity is not None:
             again.command_drive(result.velocity)
         if result.force is not None:
@@ -109,43 +109,43 @@ def test_a_run_can_be_repeated_from_its_commands(bench: Bench) -> None:
         assert again.sample() == result.sample
 
 
-def test_pause_and_restart(bench: Bench) -> None:
-    bench.loop.start()
-    bench.reach(100)
-    assert bench.loop.at_boundary(lambda: bench.loop.pause(True))
-    step = bench.loop.step
-    assert bench.loop.at_boundary(lambda: None)
-    assert bench.loop.step == step
-    assert bench.loop.at_boundary(lambda: bench.loop.pause(False))
-    bench.reach(step + 50)
-    count = len(bench.results)
-    assert bench.loop.at_boundary(bench.loop.restart)
-    bench.reach(20)
-    bench.loop.stop()
-    second = next(i for i in range(step, count + 5) if bench.results[i].step == 0)
-    assert bench.results[second:second + 20] == bench.results[:20]
+def test_pause_and_restart(quick: QuickLoop) -> None:
+    quick.loop.start()
+    quick.reach(100)
+    assert quick.loop.at_boundary(lambda: quick.loop.pause(True))
+    step = quick.loop.step
+    assert quick.loop.at_boundary(lambda: None)
+    assert quick.loop.step == step
+    assert quick.loop.at_boundary(lambda: quick.loop.pause(False))
+    quick.reach(step + 50)
+    count = len(quick.results)
+    assert quick.loop.at_boundary(quick.loop.restart)
+    quick.reach(20)
+    quick.loop.stop()
+    second = next(i for i in range(step, count + 5) if quick.results[i].step == 0)
+    assert quick.results[second:second + 20] == quick.results[:20]
 
 
 def test_steps_on_request() -> None:
-    bench = Bench(by_request=True)
-    bench.loop.start()
-    bench.reach(0)
-    assert bench.loop.at_boundary(lambda: bench.loop.run_steps(7, 0.004, None, lambda: False))
-    assert (bench.loop.step, bench.results[-1].sample.drive_velocity) == (7, 0.004)
-    assert bench.loop.at_boundary(lambda: bench.loop.run_steps(3, None, None, lambda: bench.loop.step == 9))
-    bench.loop.stop()
-    assert [result.step for result in bench.results] == list(range(10))
+    quick = QuickLoop(by_request=True)
+    quick.loop.start()
+    quick.reach(0)
+    assert quick.loop.at_boundary(lambda: quick.loop.run_steps(7, 0.004, None, lambda: False))
+    assert (quick.loop.step, quick.results[-1].sample.drive_velocity) == (7, 0.004)
+    assert quick.loop.at_boundary(lambda: quick.loop.run_steps(3, None, None, lambda: quick.loop.step == 9))
+    quick.loop.stop()
+    assert [result.step for result in quick.results] == list(range(10))
 
 
 def test_a_solver_that_gives_up_stops_time_not_the_thread() -> None:
-    bench = Bench(tired_after(0.05))
-    bench.loop.start()
-    wait_for(lambda: bench.loop.failure, 'the failure')
-    assert bench.loop.step == 50
-    assert 'time hardly goes on' in bench.loop.failure
-    assert bench.loop.at_boundary(bench.loop.restart)
-    wait_for(lambda: len(bench.results) > 80, 'steps after the restart')
-    bench.loop.stop()
+    quick = QuickLoop(tired_after(0.05))
+    quick.loop.start()
+    wait_for(lambda: quick.loop.failure, 'the failure')
+    assert quick.loop.step == 50
+    assert 'time hardly goes on' in quick.loop.failure
+    assert quick.loop.at_boundary(quick.loop.restart)
+    wait_for(lambda: len(quick.results) > 80, 'steps after the restart')
+    quick.loop.stop()
 
 
 @pytest.mark.parametrize('value', [math.nan, math.inf, -math.inf, 1.0000001, -2.0])

@@ -22,10 +22,10 @@ from tests.support.waiting import wait_for
 MS = 1_000_000
 TIMEOUT = 0.1
 
-Act = Callable[['Bench'], object]
+Act = Callable[['WatchedLoop'], object]
 
 
-class Bench:
+class WatchedLoop:
     """A loop whose clock is a fake; acts happen when a step was made, so before the next one."""
 
     def __init__(self, mode: str = 'realtime', timeout: float = TIMEOUT, rate: float = 1000.0) -> None:
@@ -64,12 +64,12 @@ class Bench:
             self.loop.paused = True
 
 
-def command(bench: Bench) -> None:
-    bench.command()
+def command(watched: WatchedLoop) -> None:
+    watched.command()
 
 
 def stall(milliseconds: int) -> Act:
-    return lambda bench: bench.stall(milliseconds)
+    return lambda watched: watched.stall(milliseconds)
 
 
 MODES = ('realtime', 'lockstep', 'free_run')
@@ -78,47 +78,47 @@ MODES = ('realtime', 'lockstep', 'free_run')
 class TestSilence:
     @pytest.mark.parametrize('mode', MODES)
     def test_is_reported_at_the_first_step_that_begins_too_late(self, mode: str) -> None:
-        bench = Bench(mode)
-        assert bench.run(400, {9: command}) == [111]      # step 10 begins at 9 ms, step 111 at 110 ms
-        event = next(event for result in bench.results for event in result.rig_events)
+        watched = WatchedLoop(mode)
+        assert watched.run(400, {9: command}) == [111]      # step 10 begins at 9 ms, step 111 at 110 ms
+        event = next(event for result in watched.results for event in result.rig_events)
         assert event.value == pytest.approx(0.101, abs=1e-12)
         assert 'no drive velocity for 0.101 s: the latest is held' in event.text
-        assert bench.rig.counts.timed_out == 1
+        assert watched.rig.counts.timed_out == 1
 
     @pytest.mark.parametrize('mode', MODES)
     def test_of_just_the_timeout_is_none(self, mode: str) -> None:
         acts = dict.fromkeys(range(9, 400, 100), command)
-        assert Bench(mode).run(409, acts) == []
+        assert WatchedLoop(mode).run(409, acts) == []
 
     @pytest.mark.parametrize('mode', MODES)
     def test_of_a_step_more_is_one(self, mode: str) -> None:
         acts = dict.fromkeys(range(9, 400, 101), command)
-        assert Bench(mode).run(380, acts) == [111, 212, 313]
+        assert WatchedLoop(mode).run(380, acts) == [111, 212, 313]
 
     @pytest.mark.parametrize('mode', MODES)
     def test_begins_with_the_first_command(self, mode: str) -> None:
-        assert Bench(mode).run(400, {}) == []
+        assert WatchedLoop(mode).run(400, {}) == []
 
     @pytest.mark.parametrize('mode', MODES)
     def test_is_reported_again_only_after_a_command(self, mode: str) -> None:
-        bench = Bench(mode)
-        assert bench.run(900, {9: command, 599: command}) == [111, 701]
-        assert [kind for _, kind in rig_events_of(bench.results)] == [
+        watched = WatchedLoop(mode)
+        assert watched.run(900, {9: command, 599: command}) == [111, 701]
+        assert [kind for _, kind in rig_events_of(watched.results)] == [
             RigEventKind.COMMAND_TIMEOUT, RigEventKind.COMMAND_RESUMED, RigEventKind.COMMAND_TIMEOUT]
 
     @pytest.mark.parametrize('mode', MODES)
     def test_off(self, mode: str) -> None:
-        assert Bench(mode, timeout=0.0).run(400, {9: command}) == []
+        assert WatchedLoop(mode, timeout=0.0).run(400, {9: command}) == []
 
     @pytest.mark.parametrize(('rate', 'timeout', 'step'), [(10.0, 0.3, 14), (20_000.0, 0.001, 31), (3.0, 1.0, 14)])
     def test_at_other_rates(self, rate: float, timeout: float, step: int) -> None:
-        assert Bench('lockstep', timeout, rate).run(50, {9: command}) == [step]
+        assert WatchedLoop('lockstep', timeout, rate).run(50, {9: command}) == [step]
 
     def test_refused_commands_are_none(self) -> None:
-        def bad(bench: Bench) -> None:
-            bench.slots[0].offer(math.nan, bench.clock.now())
+        def bad(watched: WatchedLoop) -> None:
+            watched.slots[0].offer(math.nan, watched.clock.now())
 
-        assert Bench().run(300, {9: command, 50: bad, 80: bad}) == [111]
+        assert WatchedLoop().run(300, {9: command, 50: bad, 80: bad}) == [111]
 
 
 class TestStalls:
@@ -129,59 +129,60 @@ class TestStalls:
     def test_with_commands_that_wait_to_be_heard(self, mode: str, stalled: int) -> None:
         every_20_steps: dict[int, Act] = dict.fromkeys(range(9, 2000, 20), command)
         acts = {**every_20_steps, 1000: stall(stalled)}
-        assert Bench(mode).run(2000, acts) == []
+        assert WatchedLoop(mode).run(2000, acts) == []
 
     @pytest.mark.parametrize('stalled', [50, 200, 450, 700, 5000])
     def test_a_controller_that_died_before_is_noticed_after(self, stalled: int) -> None:
-        (step,) = Bench().run(2000, {9: command, 30: stall(stalled)})
+        (step,) = WatchedLoop().run(2000, {9: command, 30: stall(stalled)})
         assert 31 < step <= 111 + min(stalled, 500) + 1      # what is caught up does not count
 
     def test_short_ones_all_the_time(self) -> None:
         acts: dict[int, Act] = {9: command}
         for step in range(10, 2000, 10):
             acts[step] = stall(3)
-        (step,) = Bench().run(2000, acts)
+        (step,) = WatchedLoop().run(2000, acts)
         assert 111 <= step <= 200
 
     @pytest.mark.parametrize('stalled', [200, 700, 5000])
     def test_do_not_move_a_time_out_in_simulation_time(self, stalled: int) -> None:
-        assert Bench('free_run').run(300, {9: command, 30: stall(stalled), 90: stall(stalled)}) == [111]
+        assert WatchedLoop('free_run').run(300, {9: command, 30: stall(stalled), 90: stall(stalled)}) == [111]
 
 
 class TestPause:
     def test_is_no_silence(self) -> None:
-        def pause(bench: Bench) -> None:
-            bench.loop.pause(True)
-            bench.stall(10_000)
-            bench.loop.pause(False)
+        def pause(watched: WatchedLoop) -> None:
+            watched.loop.pause(True)
+            watched.stall(10_000)
+            watched.loop.pause(False)
 
-        assert Bench().run(300, {9: command, 60: pause}) == [112]      # step 61 is made at once, without its period
+        assert WatchedLoop().run(300, {9: command, 60: pause}) == [112]    # step 61 is made at once, without its period
 
     def test_steps_on_request_in_a_pause_are_none_either(self) -> None:
-        bench = Bench()
-        bench.run(50, {9: command})
-        other = StepLoop(bench.rig, Pacer(Grid(1000.0), clock=bench.clock), bench.slots, [bench.results.append],
+        watched = WatchedLoop()
+        watched.run(50, {9: command})
+        other = StepLoop(watched.rig, Pacer(Grid(1000.0), clock=watched.clock), watched.slots, [watched.results.append],
                          Watchdog(TIMEOUT))
         other.paused = True
         other.start()
         for _ in range(3):
-            bench.stall(500)
+            watched.stall(500)
             assert other.at_boundary(lambda: other.run_steps(200, None, None, lambda: False))
         other.stop()
         assert other.step == 650
-        assert rig_events_of(bench.results) == []
+        assert rig_events_of(watched.results) == []
 
 
 def test_a_reset_forgets_the_commands() -> None:
-    bench = Bench('lockstep')
-    again = StepLoop(bench.rig, Unpaced(Grid(1000.0)), bench.slots, [bench.results.append], Watchdog(TIMEOUT), True)
+    watched = WatchedLoop('lockstep')
+    again = StepLoop(watched.rig, Unpaced(Grid(1000.0)), watched.slots, [watched.results.append], Watchdog(TIMEOUT),
+                     True)
     again.start()
     assert again.at_boundary(lambda: again.run_steps(50, 0.01, None, lambda: False))
     assert again.at_boundary(again.restart)
     assert again.at_boundary(lambda: again.run_steps(300, None, None, lambda: False))
     again.stop()
     assert again.step == 300
-    assert rig_events_of(bench.results) == []
+    assert rig_events_of(watched.results) == []
 
 
 @pytest.mark.parametrize(('timeout', 'is_refused'), [(0.0, False), (0.001, False), (0.0009, True), (1e-12, True),

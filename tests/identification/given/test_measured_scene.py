@@ -11,7 +11,7 @@ import stickslip_sim as stickslip
 from stickslip_sim.identification.report.results import SCENE, write_results
 from stickslip_sim.recording import write_measured
 from stickslip_sim.recording.measured_run import MeasuredRun
-from tests.identification.measured_axis import between
+from tests.support.measured_runs import between
 
 MOTOR = stickslip.load_scene('paper_fig7', {
     'axis.drive_stiffness': 0.0, 'axis.drive_damping': 0.0, 'axis.mass': 95.0, 'axis.normal_force': 100.0,

@@ -9,7 +9,7 @@ import pytest
 
 import stickslip_sim as stickslip
 from stickslip_sim.recording import write_measured
-from tests.identification.measured_axis import between
+from tests.support.measured_runs import between
 
 OF_ALL = {'drive.velocity': 0.003, 'friction.acceleration_dependence': False}
 SLIDER = stickslip.load_scene('paper_fig7', OF_ALL)

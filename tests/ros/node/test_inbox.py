@@ -20,7 +20,7 @@ from tests.support.waiting import wait_for
 pytestmark = pytest.mark.ros
 
 
-class Bench:
+class NodePair:
     """Subscribers in one node, publishers in another; nothing spins."""
 
     def __init__(self) -> None:
@@ -60,19 +60,19 @@ class Bench:
 
 
 @pytest.fixture
-def bench() -> Iterator[Bench]:
-    bench = Bench()
-    yield bench
-    bench.close()
+def pair() -> Iterator[NodePair]:
+    pair = NodePair()
+    yield pair
+    pair.close()
 
 
-def settle(bench: Bench) -> None:
+def settle(pair: NodePair) -> None:
     """Wait until all that was sent has been received, without taking it: a later message on a topic unheard."""
     from stickslip_msgs.msg import ExternalForce
     from stickslip_sim.ros.node.topics import publisher
-    out = publisher(bench.sender, topics.EXTERNAL_FORCE)
+    out = publisher(pair.sender, topics.EXTERNAL_FORCE)
     wait_for(out.get_subscription_count, 'the inbox')
-    force = bench.subscribers.hidden[1].handle
+    force = pair.subscribers.hidden[1].handle
 
     def came() -> Any:
         out.publish(ExternalForce(force=1.0))
@@ -82,92 +82,92 @@ def settle(bench: Bench) -> None:
     wait_for(came, 'a later message')
 
 
-def test_all_that_arrived_is_heard_and_the_latest_counts(bench: Bench) -> None:
-    assert bench.subscribers.trouble == ''
+def test_all_that_arrived_is_heard_and_the_latest_counts(pair: NodePair) -> None:
+    assert pair.subscribers.trouble == ''
     begin = time.monotonic_ns()
-    bench.send(0.1, 0.2, 5.0, 0.3)
-    settle(bench)
-    assert bench.velocity.received == 0    # no thread of the middleware offers anything
-    bench.subscribers.hear()
-    assert (bench.velocity.received, bench.velocity.refused) == (4, 1)
-    assert len(bench.warnings) == 1
-    assert 'velocity = 5.0 is refused' in bench.warnings[0]
-    assert bench.velocity.latest is not None
-    assert bench.velocity.latest.value == 0.3
-    assert begin < bench.velocity.latest.arrival < time.monotonic_ns()
+    pair.send(0.1, 0.2, 5.0, 0.3)
+    settle(pair)
+    assert pair.velocity.received == 0    # no thread of the middleware offers anything
+    pair.subscribers.hear()
+    assert (pair.velocity.received, pair.velocity.refused) == (4, 1)
+    assert len(pair.warnings) == 1
+    assert 'velocity = 5.0 is refused' in pair.warnings[0]
+    assert pair.velocity.latest is not None
+    assert pair.velocity.latest.value == 0.3
+    assert begin < pair.velocity.latest.arrival < time.monotonic_ns()
 
 
-def test_arrival_is_when_the_middleware_received_it_not_when_it_was_taken(bench: Bench) -> None:
-    bench.send(0.1)
-    settle(bench)
+def test_arrival_is_when_the_middleware_received_it_not_when_it_was_taken(pair: NodePair) -> None:
+    pair.send(0.1)
+    settle(pair)
     received = time.monotonic_ns()
     wait_for(lambda: time.monotonic_ns() > received + 100_000_000, 'a tenth of a second')
-    bench.subscribers.hear()
-    assert bench.velocity.latest is not None
-    assert bench.velocity.latest.arrival < received
+    pair.subscribers.hear()
+    assert pair.velocity.latest is not None
+    assert pair.velocity.latest.arrival < received
 
 
-def test_of_two_topics_the_command_that_arrived_last_counts(bench: Bench) -> None:
+def test_of_two_topics_the_command_that_arrived_last_counts(pair: NodePair) -> None:
     from sensor_msgs.msg import JointState
-    bench.joints.publish(JointState(name=['axis_drive'], velocity=[0.5]))
-    settle(bench)
-    bench.send(0.1)
-    settle(bench)
-    bench.subscribers.hear()
-    assert bench.velocity.received == 2
-    assert bench.velocity.latest is not None
-    assert bench.velocity.latest.value == 0.1
+    pair.joints.publish(JointState(name=['axis_drive'], velocity=[0.5]))
+    settle(pair)
+    pair.send(0.1)
+    settle(pair)
+    pair.subscribers.hear()
+    assert pair.velocity.received == 2
+    assert pair.velocity.latest is not None
+    assert pair.velocity.latest.value == 0.1
 
 
 @pytest.mark.parametrize('pause', [0, 1_000_000, 1_000_000_000], ids=['none', 'a step', 'long'])
-def test_the_order_stays_when_taking_takes_long(bench: Bench, monkeypatch: pytest.MonkeyPatch, pause: int) -> None:
+def test_the_order_stays_when_taking_takes_long(pair: NodePair, monkeypatch: pytest.MonkeyPatch, pause: int) -> None:
     """As when a busy machine takes the core away between two messages."""
-    bench.send(0.1, 0.2, 0.3)
-    settle(bench)
+    pair.send(0.1, 0.2, 0.3)
+    settle(pair)
     looks, now = itertools.count(), time.time_ns
     monkeypatch.setattr(time, 'time_ns', lambda: now() + next(looks) * pause)
     offered: list[float] = []
-    monkeypatch.setattr(bench.velocity, 'offer', lambda value, _: offered.append(value))
-    bench.subscribers.hear()
+    monkeypatch.setattr(pair.velocity, 'offer', lambda value, _: offered.append(value))
+    pair.subscribers.hear()
     assert offered == [0.1, 0.2, 0.3]
 
 
-def test_of_more_than_fit_the_latest_are_heard(bench: Bench) -> None:
+def test_of_more_than_fit_the_latest_are_heard(pair: NodePair) -> None:
     from stickslip_sim.ros.node.inbox import DEPTH
-    bench.send(*(1e-3 * number for number in range(3 * DEPTH)))
-    settle(bench)
-    bench.subscribers.hear()
-    assert 1 <= bench.velocity.received <= DEPTH
+    pair.send(*(1e-3 * number for number in range(3 * DEPTH)))
+    settle(pair)
+    pair.subscribers.hear()
+    assert 1 <= pair.velocity.received <= DEPTH
 
     def last_is_heard() -> bool:
-        bench.send(0.9)    # again: one may get lost on a best-effort topic
-        bench.subscribers.hear()
-        return bench.velocity.latest is not None and bench.velocity.latest.value == 0.9
+        pair.send(0.9)    # again: one may get lost on a best-effort topic
+        pair.subscribers.hear()
+        return pair.velocity.latest is not None and pair.velocity.latest.value == 0.9
 
     wait_for(last_is_heard, 'the last')
 
 
 @pytest.mark.parametrize('jump', [-3_600_000_000_000, 3_600_000_000_000])
-def test_a_clock_that_is_set_between_moves_no_arrival_out_of_the_step(bench: Bench, monkeypatch: pytest.MonkeyPatch,
+def test_a_clock_that_is_set_between_moves_no_arrival_out_of_the_step(pair: NodePair, monkeypatch: pytest.MonkeyPatch,
                                                                       jump: int) -> None:
-    bench.subscribers.hear()
+    pair.subscribers.hear()
     before, now = time.monotonic_ns(), time.time_ns
     monkeypatch.setattr(time, 'time_ns', lambda: now() + jump)
-    bench.send(0.1)
-    settle(bench)
-    bench.subscribers.hear()
-    assert bench.velocity.latest is not None
-    assert before - 1_000_000_000 < bench.velocity.latest.arrival <= time.monotonic_ns()
+    pair.send(0.1)
+    settle(pair)
+    pair.subscribers.hear()
+    assert pair.velocity.latest is not None
+    assert before - 1_000_000_000 < pair.velocity.latest.arrival <= time.monotonic_ns()
 
 
-def test_a_node_that_comes_down_hears_nothing(bench: Bench) -> None:
-    bench.send(0.1)
-    settle(bench)
-    bench.node.destroy_node()
-    assert not bench.hears(1)
+def test_a_node_that_comes_down_hears_nothing(pair: NodePair) -> None:
+    pair.send(0.1)
+    settle(pair)
+    pair.node.destroy_node()
+    assert not pair.hears(1)
 
 
-def test_an_rclpy_that_takes_messages_otherwise_is_noticed(bench: Bench) -> None:
+def test_an_rclpy_that_takes_messages_otherwise_is_noticed(pair: NodePair) -> None:
     from stickslip_sim.ros.node.inbox import trouble
 
     class Handle:
@@ -182,7 +182,7 @@ def test_an_rclpy_that_takes_messages_otherwise_is_noticed(bench: Bench) -> None
         def take_message(self) -> None:
             pass
 
-    other = SimpleNamespace(handle=Handle(), msg_type=bench.subscribers.hidden[0].msg_type)
+    other = SimpleNamespace(handle=Handle(), msg_type=pair.subscribers.hidden[0].msg_type)
     assert 'another way to take messages' in trouble(other)
 
 

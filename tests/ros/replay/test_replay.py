@@ -68,7 +68,7 @@ def call(viewer: Client, service: str, on: bool | None = None) -> Any:
     return viewer.call(SetBool, service, 'replay', data=on)
 
 
-class Ears:
+class ByteEars:
     """Hears topics as bytes.
 
     Endpoints are announced in order: a server that answers a call knows those that were made before the call.
@@ -106,7 +106,7 @@ def recorded(bag: Path, name: str, since: float = 0.0, until: float = 1e9) -> li
 class TestStates:
     def test_all_as_recorded(self, bag: Path) -> None:
         with client() as viewer, replaying(bag, *PAUSED) as process:
-            ears = Ears(viewer, *TOPICS)
+            ears = ByteEars(viewer, *TOPICS)
             assert call(viewer, 'is_paused').success
             for topic in TOPICS:
                 assert_offered_as_recorded(viewer, topic)
@@ -119,7 +119,7 @@ class TestStates:
     def test_a_part_of_it(self, bag: Path) -> None:
         part = ('-p', 'start_offset:=0.1', '-p', 'playback_duration:=0.05', '-p', 'topics:=[slider_state]')
         with client() as viewer, replaying(bag, *PAUSED, *part, '-r', '/slider_state:=/seen') as process:
-            ears = Ears(viewer, SLIDER_STATE._replace(name='/seen'), *TOPICS)
+            ears = ByteEars(viewer, SLIDER_STATE._replace(name='/seen'), *TOPICS)
             assert call(viewer, 'is_paused').success
             assert call(viewer, 'set_paused', on=False).success
             assert_clean(*process.wait())
@@ -130,7 +130,7 @@ class TestStates:
         """Transitions, of which none is lost: the publisher keeps more of them than come in these rounds."""
         arguments = ('-p', 'loop:=true', '-p', 'topics:=[mode_event]')
         with viewed(bag, *arguments, *PAUSED) as (viewer, _):
-            ears = Ears(viewer, *TOPICS)
+            ears = ByteEars(viewer, *TOPICS)
             assert call(viewer, 'toggle_paused').message.startswith('running')
             ears.wait_for('/mode_event', 3 * recorded(bag, '/mode_event'))
             assert call(viewer, 'stop').success
@@ -181,7 +181,7 @@ class TestTime:
     def test_paused_message_by_message(self, bag: Path, capsys: Capture) -> None:
         slowly = ('-p', 'rate:=0.02', '-p', 'topics:=[/slider_state]')   # 15 s
         with viewed(bag, *PAUSED, *slowly) as (viewer, _):
-            ears = Ears(viewer, SLIDER_STATE.resolved())
+            ears = ByteEars(viewer, SLIDER_STATE.resolved())
             wanted = recorded(bag, '/slider_state')
             for count in range(1, 4):
                 assert call(viewer, 'play_next').success
@@ -220,7 +220,7 @@ class TestProcess:
         cut = tmp_path / 'cut.mcap'
         cut.write_bytes(data[:len(data) // 2])
         with client() as viewer, replaying(cut, *PAUSED, '-p', 'rate:=10') as process:
-            ears = Ears(viewer, *TOPICS)
+            ears = ByteEars(viewer, *TOPICS)
             assert call(viewer, 'resume').success
             code, errors = process.wait()
             assert_clean(code, errors)
