@@ -74,13 +74,13 @@ def test_the_limit_is_that_against_the_force(direction: float, force: float, kin
 
 @both_ways
 def test_a_compliant_contact_holds_any_force_at_first(direction: float) -> None:
-    """It goes on from the friction force, and yields: F_c decides, unless the drive is judged."""
+    """It goes on from the friction force, and yields: F_c decides, unless stick ends by the drive."""
     p = parameters(contact=COMPLIANT)
     s = slip(p, DECELERATING, 0.0, direction=direction, push=-30.0)
     assert arrested(p, s).kind == ARREST
     assert (s.mode, s.deflection) == (STICK, direction * 16.0 / 4096.0)
     assert s.acceleration == -direction * (30.0 + 16.0) / 2.0
-    p = parameters(contact=replace(COMPLIANT, judges_drive=True))
+    p = parameters(contact=replace(COMPLIANT, ends_by_drive=True))
     s = slip(p, DECELERATING, 0.0, direction=direction, push=-30.0)
     assert arrested(p, s).kind == REVERSE
     assert (s.direction, s.acceleration) == (-direction, -direction * (30.0 - 16.0) / 2.0)

@@ -69,7 +69,7 @@ def test_in_stick_friction_is_what_is_applied_or_what_the_contact_gives() -> Non
 @pytest.mark.parametrize(('contact', 'expected'), [
     (AXIS.contact, 1024.0 * 0.015625 + 32.0 * 0.25 + 5.0),
     (COMPLIANT, 4096.0 * 0.0078125),
-    (replace(COMPLIANT, judges_drive=True), 1024.0 * 0.015625 + 32.0 * 0.25 + 5.0)])
+    (replace(COMPLIANT, ends_by_drive=True), 1024.0 * 0.015625 + 32.0 * 0.25 + 5.0)])
 def test_what_ends_a_stick_is_the_force_of_the_contact_or_of_the_drive(contact: object, expected: float) -> None:
     p = parameters(contact=contact)
     s = state(mode=STICK, spring=0.015625, v=0.25, f=5.0, deflection=0.0078125)

@@ -100,8 +100,8 @@ def test_a_compliant_contact_yields_to_a_jump(direction: float) -> None:
     assert applied(p, s) is None
     assert s.acceleration == direction * (100.0 - 32.0 * 0.0625 - 8.0 - 64.0 * 0.0625) / 2.0
     assert (s.mode, s.deflection) == (STICK, direction * 8.0 / 4096.0)
-    judged = parameters(contact=replace(COMPLIANT, judges_drive=True))
-    row = applied(judged, s)
+    by_drive = parameters(contact=replace(COMPLIANT, ends_by_drive=True))
+    row = applied(by_drive, s)
     assert row is not None
     assert (row.kind, row.direction, row.friction) == (BREAKAWAY, direction, direction * 32.0)
 

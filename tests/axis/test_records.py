@@ -19,7 +19,7 @@ def test_the_numbers_of_an_axis_are_where_their_names_say() -> None:
     p = parameters(contact=COMPLIANT, damper_on_slideway=True)
     assert (p.mass, p.stiffness, p.damping, p.feed_share, p.normal_force) == (2.0, 1024.0, 32.0, 0.0, 64.0)
     assert (p.compliant, p.contact_stiffness, p.contact_damping) == (1.0, 4096.0, 64.0)
-    assert (p.arrest_share, p.judges_drive) == (1.0, 0.0)
+    assert (p.arrest_share, p.ends_by_drive) == (1.0, 0.0)
     assert (p.static_initial, p.static_limit, p.static_tau, p.branches, p.sided) == (0.25, 0.5, 2.0, 1.0, 0.0)
     numbers = pack(AXIS)
     assert (numbers[MASS], numbers[NORMAL], len(numbers)) == (2.0, 64.0, TABLE + 3 * SEGMENT_SIZE)
@@ -31,10 +31,10 @@ def test_what_an_axis_leaves_out_is_0() -> None:
 
 
 @pytest.mark.parametrize(('changes', 'expected'), [({'undeflected': True}, (0.0, 0.0)),
-                                                   ({'judges_drive': True}, (1.0, 1.0))])
+                                                   ({'ends_by_drive': True}, (1.0, 1.0))])
 def test_how_a_contact_begins_and_ends(changes: dict[str, bool], expected: tuple[float, float]) -> None:
     p = parameters(contact=replace(COMPLIANT, **changes))
-    assert (p.arrest_share, p.judges_drive) == expected
+    assert (p.arrest_share, p.ends_by_drive) == expected
 
 
 def test_the_segments_backwards_follow_those_forwards() -> None:

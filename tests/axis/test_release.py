@@ -65,9 +65,9 @@ def test_a_compliant_contact_is_released_by_its_own_force(direction: float) -> N
     assert (s.mode, s.excess, s.deflection) == (ACCELERATING, (0.5 - 0.1875) / 0.75, 0.0)
 
 
-def test_a_compliant_contact_may_be_judged_by_the_drive() -> None:
+def test_a_compliant_stick_may_end_by_the_force_of_the_drive() -> None:
     """F_d + F_e = N mu_s, not what the contact carries."""
-    p = parameters(contact=replace(COMPLIANT, judges_drive=True))
+    p = parameters(contact=replace(COMPLIANT, ends_by_drive=True))
     s = state(mode=STICK, velocity=-0.125, deflection=0.001, f=-36.0, rest=math.inf)    # F_d = 4 N
     row = released(p, s)
     assert (row.direction, row.friction) == (-1.0, -32.0)
