@@ -21,7 +21,7 @@ _MOST = 8        # runs, rows of a picture
 _OF_RUNS = 0.2   # of the time, about
 
 
-@click.command(short_help="Draw the paper's figures for a run, and hold it to the statements.")
+@click.command(short_help="Draw the paper's figures for a run, and check its statements.")
 @click.argument('runs', nargs=-1, required=True, metavar='RUN_OR_SCENE...', shell_complete=completion.complete_scenes)
 @click.option('--out', required=True, metavar='FOLDER', help='New folder for the report and the pictures.')
 @click.option('--duration', type=float, metavar='S',
