@@ -23,7 +23,7 @@ from stickslip_sim.bench.peers.peer import Setting
 from stickslip_sim.bench.problem import Outcome, Problem
 from stickslip_sim.core.types import EventKind
 from stickslip_sim.scene import Scene, load_scene
-from stickslip_sim.study import Grid, Motion, Saltelli, Study, variation
+from stickslip_sim.study import EvenGrid, Motion, Saltelli, Study, variation
 from stickslip_sim.study.table import lines, rows_of
 from stickslip_sim.study.uncertain_file import load_uncertain
 
@@ -133,7 +133,7 @@ PARTS = {'pictures': pictures, 'critical': critical, 'uncertainty': uncertainty,
 def measured(name: str) -> Cost:
     """Sweep a grid of feeds and stiffnesses in this process, and some of its points by scipy, for as long each."""
     scene = load_scene(name)
-    study = Study(scene.values, Grid((variation('drive.velocity=5e-4:0.03:50:log'),
+    study = Study(scene.values, EvenGrid((variation('drive.velocity=5e-4:0.03:50:log'),
                                       variation('axis.drive_stiffness=3e5:3e6:40:log'))))
     ours = statistics.median(_seconds(study) for _ in range(_ROUNDS)) / study.count
     chosen = np.linspace(0, study.count - 1, _BY_SCIPY).astype(int)
@@ -156,7 +156,7 @@ def measured(name: str) -> Cost:
 def _run_of_scipy(scene: Scene, duration: float) -> Callable[[], Outcome]:
     """Return what runs a scene with scipy."""
     problem = Problem(scene.name, '', scene.axis, scene.initial, scene.drive, scene.force, duration)
-    return scipy_ivp.PEERS[0].prepare(problem, SETTING)
+    return scipy_ivp.SCIPY_PEERS[0].prepare(problem, SETTING)
 
 
 def throughput_table(costs: list[Cost]) -> str:

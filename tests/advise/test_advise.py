@@ -12,7 +12,7 @@ import pytest
 from stickslip_sim.advise import advice as work
 from stickslip_sim.advise.absent import absent_parts
 from stickslip_sim.advise.advice import Advice
-from stickslip_sim.advise.advice_report import as_json, is_needed, text_lines
+from stickslip_sim.advise.advice_report import advice_as_json, is_needed, text_lines
 from stickslip_sim.advise.duration import default_duration
 from stickslip_sim.advise.figure_distance import Distance, distance_between, event_difference
 from stickslip_sim.advise.parts import parts_of, without_idle_sinusoids
@@ -206,7 +206,7 @@ def test_advice_as_text_and_json(advised: Advice) -> None:
                   'identical to the bit',
                   'fixed_step euler, step 1 ms'):
         assert words in text
-    data = json.loads(json.dumps(as_json(advised, advised.least.changes), allow_nan=False))
+    data = json.loads(json.dumps(advice_as_json(advised, advised.least.changes), allow_nan=False))
     assert data['least']['largest'] <= data['tolerance'] == 1e-3
     assert [part['needed'] for part in data['parts']] == [is_needed(advised, k) for k in range(len(advised.parts))]
 

@@ -16,10 +16,10 @@ from stickslip_sim.bench.contestants import PEERS
 from stickslip_sim.bench.outside import FIRST_SLIP
 from stickslip_sim.bench.own_solvers import exact_solver
 from stickslip_sim.bench.peers import dop853, euler, scipy_ivp
-from stickslip_sim.bench.peers.peer import EXACT, Peer, Setting
+from stickslip_sim.bench.peers.peer import NO_SETTING, Peer, Setting
 from stickslip_sim.bench.problem import Outcome, Problem
 from stickslip_sim.bench.race import race
-from stickslip_sim.bench.race_report import as_case, as_json, markdown, text_table
+from stickslip_sim.bench.race_report import as_case, markdown, race_as_json, text_table
 from stickslip_sim.bench.ratios import Ratio, at_least, at_most, ratios
 from stickslip_sim.cli.main import run
 from stickslip_sim.core.input_profile import constant
@@ -40,7 +40,7 @@ def paper(contact: str, duration: float) -> Problem:
 
 
 @pytest.mark.parametrize(('peer', 'setting', 'within'), [
-    (dop853.PEER, FINEST, 1e-10), (scipy_ivp.PEERS[0], FINEST, 1e-6), (euler.PEER, Setting(1e-5, 'step'), 1e-4)])
+    (dop853.PEER, FINEST, 1e-10), (scipy_ivp.SCIPY_PEERS[0], FINEST, 1e-6), (euler.PEER, Setting(1e-5, 'step'), 1e-4)])
 def test_peers_find_the_events_of_the_paper(peer: Peer, setting: Setting, within: float) -> None:
     outcome = peer.prepare(paper('rigid', 1.43), setting)()
     assert [int(kind) for kind in outcome.events[:, 1]] == [kind for _, kind in KNOWN]
@@ -60,7 +60,7 @@ def test_the_exact_contestant_gives_the_events_of_the_simulator() -> None:
     problem = make_case('positioning', 5.0)
     simulator = make(problem.axis, problem.drive, problem.force, problem.initial)
     events = simulator.advance(instant(5.0))
-    outcome = exact_solver().prepare(problem, EXACT)()
+    outcome = exact_solver().prepare(problem, NO_SETTING)()
     assert [tuple(row) for row in outcome.events] == [
         (e.time, e.kind, e.direction, e.position, e.velocity) for e in events]
     assert outcome.position == simulator.sample().position
@@ -93,13 +93,13 @@ def test_errors_count_missed_invented_late_and_misplaced_events() -> None:
 
 
 def test_a_race_is_reported_in_full_and_a_missing_peer_by_name() -> None:
-    absent = scipy_ivp.PEERS[0]._replace(missing='pip install scipy')
+    absent = scipy_ivp.SCIPY_PEERS[0]._replace(missing='pip install scipy')
     results = race([paper('rigid', 1.0)], [exact_solver(), dop853.PEER._replace(settings=(FINEST,)), absent], 1)
     assert [row.note for row in results[0].rows] == ['', '', 'not installed (pip install scipy)']
     exact = results[0].rows[0].errors
     assert exact is not None
     assert exact.time < 1e-14
-    data = json.loads(json.dumps(as_json(results, ratios(results), 1), allow_nan=False))
+    data = json.loads(json.dumps(race_as_json(results, ratios(results), 1), allow_nan=False))
     assert data['cases'][0]['rows'][1]['setting'] == {'tolerance': 1e-12}
     assert data['cases'][0]['rows'][0]['cost_per_simulated_second']['median'] > 0.0
     for text in (text_table(as_case(results[0])), markdown(data)):
@@ -108,7 +108,7 @@ def test_a_race_is_reported_in_full_and_a_missing_peer_by_name() -> None:
 
 
 def test_a_run_that_would_take_too_long_is_reported_and_not_waited_for(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr('stickslip_sim.bench.race.PATIENCE', 0.0)   # s
+    monkeypatch.setattr('stickslip_sim.bench.race.RACE_PATIENCE', 0.0)   # s
     results = race([paper('rigid', 2.0)], [euler.PEER._replace(settings=(Setting(1e-3, 'step'),))], 1)
     left_out = results[0].rows[0]
     assert left_out.errors is None

@@ -237,7 +237,7 @@ def test_runs_of_one_name_get_files_of_their_own(bag: Path) -> None:
 def test_exit_code_when_a_statement_does_not_hold(tmp_path: Path, capsys: Capture,
                                                   monkeypatch: pytest.MonkeyPatch) -> None:
     """At 0.1 mm/s the contact changes the cycle by more than a tenth; the report is written all the same."""
-    monkeypatch.setattr('stickslip_sim.compare.pictures.KINDS', ('svg',))
+    monkeypatch.setattr('stickslip_sim.compare.pictures.PICTURE_KINDS', ('svg',))
     assert run(['compare', 'micro_feed', '--duration', '60', '--out', str(tmp_path / 'out')]) == 3
     out, err = capsys.readouterr()
     assert '  does not hold   the contact is not essential: the contact adds 12 % to the compliance' in out

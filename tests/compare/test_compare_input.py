@@ -21,7 +21,7 @@ from tests.support.tool import Capture
 @pytest.fixture(autouse=True)
 def one_format(monkeypatch: pytest.MonkeyPatch) -> None:
     """Draw what the page shows alone: no test here looks at another picture."""
-    monkeypatch.setattr('stickslip_sim.compare.pictures.KINDS', ('svg',))
+    monkeypatch.setattr('stickslip_sim.compare.pictures.PICTURE_KINDS', ('svg',))
 
 
 def refused(capsys: Capture, tmp_path: Path, *arguments: str | Path) -> str:

@@ -20,8 +20,8 @@ from stickslip_sim.controllers import (
     Controller,
     Following,
     Memory,
+    MoveProgress,
     Moves,
-    Progress,
     Setpoint,
     Slide,
 )
@@ -176,7 +176,7 @@ class TestFollowing:
 
     def after(self, *times: float) -> list[bool]:
         """Return which of the measurements at these times begin the moves."""
-        progress: Progress | None = None
+        progress: MoveProgress | None = None
         is_new = []
         for time in times:
             answer = self.FOLLOWING.answer(progress, round(time * 1e9), STILL)

@@ -15,7 +15,7 @@ from stickslip_sim.core.errors import RecordingWarning
 from stickslip_sim.recording import Bag, RecordedRun, open_bag, read_run
 from stickslip_sim.recording.playback import Recording
 from stickslip_sim.scene import load_scene, parse_override, parse_scene
-from stickslip_sim.study import Grid, Study, variation
+from stickslip_sim.study import EvenGrid, Study, variation
 from stickslip_sim.study.picks import point_of
 from stickslip_sim.study.pictures import check_drawable
 from stickslip_sim.study.uncertain_file import uncertain_of
@@ -56,7 +56,7 @@ def options(over: str, between: str, pick: str, show: str) -> None:
         accepts_or_refuses(variation, over, drawn)
     accepts_or_refuses(range_of, '--between', over.partition('=')[0], between)
     values = load_scene('paper_fig7').values
-    study: Any = accepts_or_refuses(lambda: Study(values, Grid((variation(over),)), 1.0))
+    study: Any = accepts_or_refuses(lambda: Study(values, EvenGrid((variation(over),)), 1.0))
     if study is not None:
         accepts_or_refuses(check_drawable, study, show)
         accepts_or_refuses(point_of, study, pick)

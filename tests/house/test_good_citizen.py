@@ -275,10 +275,10 @@ def numbers_of(topic: str) -> set[str]:
 
 
 def test_the_launch_file_names_parameters_of_the_replay() -> None:
-    from stickslip_sim.ros.replay.replay_settings import PARAMETERS
+    from stickslip_sim.ros.replay.replay_settings import REPLAY_PARAMETERS
     tree = ast.parse((PACKAGE / 'launch' / 'replay.launch.py').read_text())
     arguments = next(node.value for node in tree.body if isinstance(node, ast.Assign))
-    known = {entry.name: entry.default for entry in PARAMETERS}
+    known = {entry.name: entry.default for entry in REPLAY_PARAMETERS}
     for name, (default, _) in ast.literal_eval(arguments).items():
         assert name in known
         assert default in (None, '') or yaml.safe_load(default) == known[name]   # empty is left out

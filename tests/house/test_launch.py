@@ -18,13 +18,13 @@ from tests.support.ros_nodes import client
 from stickslip_sim.ros.controllers.controller_parameters import (  # isort: skip  # after ros_nodes, which skips
     COMMON, COMPENSATION,
 )
-from stickslip_sim.ros.replay.replay_settings import PARAMETERS  # isort: skip
+from stickslip_sim.ros.replay.replay_settings import REPLAY_PARAMETERS  # isort: skip
 from tests.support.ros2_control_client import Description  # isort: skip
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
 CONTROLLER = {entry.name for entry in (*COMMON, *COMPENSATION)}
-KNOWN = {'sim_node': set(BY_NAME), 'replay_node': {entry.name for entry in PARAMETERS},
+KNOWN = {'sim_node': set(BY_NAME), 'replay_node': {entry.name for entry in REPLAY_PARAMETERS},
          'cascade_controller': CONTROLLER, 'compensating_controller': CONTROLLER}
 NEEDED = {'replay': {'bag': 'runs/a'}}    # what has no default
 OF_SIM = {'scene', 'namespace', 'mode', 'rate', 'record'}

@@ -20,17 +20,14 @@ RIVAL = 'the same thing, written again by a rival of the race'
 
 SAME_NAMES = {
     'Event': JUDGE, 'Sample': JUDGE, 'Segment': JUDGE, 'State': JUDGE, 'StaticLaw': JUDGE,
-    'choose_slip': RIVAL, 'static_coefficient': RIVAL, 'step': RIVAL, 'start': RIVAL,
+    'choose_slip': RIVAL, 'static_coefficient': RIVAL, 'start': RIVAL,
     'sample': JUDGE,
     'advise': VERB, 'critical': VERB, 'simulate': f'{VERB}; the reference has it too', 'sweep': VERB,
     'identify': VERB, 'uncertainty': VERB, 'verify': VERB,
-    'check': 'the command, and the check of a fault as given',
     'main': 'the start of an executable',
     'run': 'the run of the tool; of a rival; of the reference',
-    'as_json': 'a result as values for JSON',
     'load_scene': 'a scene from its file; with its profiles from other files',
     'Run': 'a run, simulated or recorded; the run of the reference',
-    'Grid': 'even times of steps; the points of a study on an even grid',
     'Problem': 'the task of the contestants of a race; that of the reference',
 }
 SAME_FILES = {

@@ -83,9 +83,9 @@ def of_the_tool(capsys: Capture, command: list[str], folder: Path) -> tuple[int,
 
 def test_the_run_is_not_taken_for_that_of_make_run() -> None:
     """A reader has that one in the same folder already."""
-    from stickslip_sim.ros.demo import SCENE
+    from stickslip_sim.ros.demo import DEMO_SCENE
     assert CHECK[2].startswith('runs/')
-    assert not CHECK[2].startswith(f'runs/{SCENE}_')
+    assert not CHECK[2].startswith(f'runs/{DEMO_SCENE}_')
 
 
 def test_a_controller_that_is_started_by_hand_is_checked(tmp_path: Path, capsys: Capture) -> None:

@@ -76,7 +76,7 @@ def test_a_long_run_reads_like_a_short_one(kind: str, fig8_bag: Path, tmp_path: 
 
 def test_the_report_of_a_long_run_is_that_of_a_short_one(
         fig8_bag: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest) -> None:
-    monkeypatch.setattr('stickslip_sim.compare.pictures.KINDS', ('svg',))
+    monkeypatch.setattr('stickslip_sim.compare.pictures.PICTURE_KINDS', ('svg',))
     reports = []
     for name in ('short', 'long'):
         (tmp_path / name).mkdir()

@@ -17,7 +17,7 @@ from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind, kinet
 from stickslip_sim.friction.kinetic import default_excess
 from stickslip_sim.friction.shapes import Decay
 from stickslip_sim.runs.batch import BatchFigures, run_batch
-from stickslip_sim.runs.batch_columns import COLUMNS
+from stickslip_sim.runs.batch_columns import BATCH_COLUMNS
 from stickslip_sim.scene import load_scene
 from stickslip_sim.simulation.cycles import Summary, summary
 from tests.conftest import Program
@@ -94,7 +94,7 @@ def test_every_column_goes_where_its_name_says() -> None:
               'kinetic_backward_end_slope': 0.2}
     of_a_law = {f'kinetic_{side}{name}' for side in ('', 'backward_')
                 for name in ('initial', 'limit', 'stribeck_velocity', 'exponent', 'viscous')}
-    assert values.keys() == COLUMNS.keys() - of_a_law
+    assert values.keys() == BATCH_COLUMNS.keys() - of_a_law
     tables = KineticTable((0.0, 0.02), (0.125, 0.06), 0.1), KineticTable((0.0, 0.01, 0.03), (0.11, 0.08, 0.04), 0.2)
     laws = (StaticLaw(StaticLawKind.KATO, 0.13, 0.3, 0.5, 0.7), StaticLaw(StaticLawKind.KATO, 0.14, 0.2, 0.1, 1.5))
     ahead, back = (Friction(law, table, default_excess(table)) for law, table in zip(laws, tables))

@@ -9,7 +9,7 @@ from stickslip_sim.advise.friction_parts import friction_parts
 from stickslip_sim.compare.conventional import characteristics_beside
 from stickslip_sim.runs import simulate_events
 from stickslip_sim.scene import changed, load_scene, scene_names
-from stickslip_sim.study import Grid, Study, variation
+from stickslip_sim.study import EvenGrid, Study, variation
 
 SCALED = {'friction.scale': 1.25}
 
@@ -36,7 +36,7 @@ def test_more_friction_is_as_a_heavier_load() -> None:
 
 
 def test_a_study_varies_it_beside_static_friction() -> None:
-    study = Study(load_scene('paper_fig8').values, Grid((variation('friction.scale=0.8:1.2:3'),
+    study = Study(load_scene('paper_fig8').values, EvenGrid((variation('friction.scale=0.8:1.2:3'),
                                                           variation('friction.static.limit=0.2:0.28:3'))))
     found = study.figures(0, study.count).break_away_force
     alone = [simulate_events(study.scene_at(point), 20.0).summary.last for point in study.points(0, study.count)]

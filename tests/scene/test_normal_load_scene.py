@@ -15,9 +15,9 @@ from stickslip_sim.core.input_profile import InputProfile, Sinusoid, table
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import read_run
 from stickslip_sim.runs import simulate
-from stickslip_sim.runs.normal_force import NORMAL_FORCE
+from stickslip_sim.runs.normal_force import LOAD_COLUMN
 from stickslip_sim.scene import Scene, parse_scene
-from stickslip_sim.study.critical import critical, default_range
+from stickslip_sim.study.critical import critical_of, default_range
 from stickslip_sim.study.points import works_in_batches
 from tests.support.tool import answered
 
@@ -78,7 +78,7 @@ def test_studies_of_constant_inputs_refuse_it() -> None:
     scene = scene_with(STEPS)
     assert not works_in_batches(scene)
     with pytest.raises(InputError, match='without faults or a normal load'):
-        critical(scene, default_range(scene, 'drive.velocity'), 1e-3)
+        critical_of(scene, default_range(scene, 'drive.velocity'), 1e-3)
     with pytest.raises(InputError, match=r'normal_load\.course = .steps. is refused: must be left out for advice'):
         advise(scene, 1e-3, 1.0, 1)
 
@@ -96,12 +96,12 @@ def test_its_points_may_come_from_a_file(tmp_path: Path) -> None:
 
 def test_samples_tables_and_pictures_show_it_where_it_varies(tmp_path: Path) -> None:
     run = simulate(scene_with(STEPS), 1.0, 0.25)
-    assert run.samples[NORMAL_FORCE].tolist() == [3432.3275, 3432.3275, 3932.3275, 2432.3275, 2432.3275]
-    assert list(run.frame())[-1] == NORMAL_FORCE
+    assert run.samples[LOAD_COLUMN].tolist() == [3432.3275, 3432.3275, 3932.3275, 2432.3275, 2432.3275]
+    assert list(run.frame())[-1] == LOAD_COLUMN
     run.plot(tmp_path / 'run.svg')
     assert 'normal force' in (tmp_path / 'run.svg').read_text()
     plain = simulate(load_scene('paper_fig8'), 1.0, 0.25)
-    assert NORMAL_FORCE not in plain.samples
+    assert LOAD_COLUMN not in plain.samples
     plain.plot(tmp_path / 'plain.svg')
     assert 'normal force' not in (tmp_path / 'plain.svg').read_text()
 
@@ -115,7 +115,7 @@ def test_a_bag_has_it_from_its_scene(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert lines[0].endswith(',mode,normal_force')
     assert [float(line.rpartition(',')[2]) for line in (lines[500], lines[501])] == [3432.3275, 3932.3275]
     run = read_run(bag)
-    assert run.samples[NORMAL_FORCE][[499, 500, 750]].tolist() == [3432.3275, 3932.3275, 2432.3275]
+    assert run.samples[LOAD_COLUMN][[499, 500, 750]].tolist() == [3432.3275, 3932.3275, 2432.3275]
     assert answered(capsys, 'export', str(bag), '--csv', str(exported), '--topic', 'friction_force')[0] == 0
     lines = exported.read_text().splitlines()
     assert lines[0].endswith(',normal_force')

@@ -17,7 +17,7 @@ from stickslip_sim.runs import simulate_events
 from stickslip_sim.scene import Scene, load_scene
 from stickslip_sim.study import Variation
 from stickslip_sim.study.answer_changes import FAILED, NO, OPEN, YES, Answers, Doubt, Findings, find_transitions
-from stickslip_sim.study.critical import Critical, critical, default_range
+from stickslip_sim.study.critical import Critical, critical_of, default_range
 from stickslip_sim.study.points import scene_at
 from stickslip_sim.study.table_facts import table_fact
 from stickslip_sim.study.theory import critical_drop, critical_feed, feed_of_theory, healing_critical_feed
@@ -37,7 +37,7 @@ ACCURACY = 1e-9
 
 
 def of_the_feed(scene: Scene, low: float, high: float, accuracy: float = ACCURACY) -> Critical:
-    return critical(scene, Variation('drive.velocity', low, high, log=True), accuracy)
+    return critical_of(scene, Variation('drive.velocity', low, high, log=True), accuracy)
 
 
 @pytest.mark.parametrize(('zeta', 'drop'), [(0.01, 0.365065), (0.1, 1.470118), (0.2, 2.724989)])
@@ -76,7 +76,7 @@ def test_katos_law_below_one_has_no_critical_feed() -> None:
 
 def test_sliding_on_the_papers_slope_is_lost_from_2000_newtons_on_and_both_motions_are_reported() -> None:
     scene = load_scene('paper_fig4_falling')
-    found = critical(scene, Variation('axis.normal_force', 500.0, 5000.0), 1e-12)
+    found = critical_of(scene, Variation('axis.normal_force', 500.0, 5000.0), 1e-12)
     (lost,) = found.from_sliding.transitions
     assert lost.value == pytest.approx(4000.0 * 0.035 / 0.07, rel=1e-12)
     (sticks,) = found.from_rest.transitions
@@ -88,7 +88,7 @@ def test_sliding_on_the_papers_slope_is_lost_from_2000_newtons_on_and_both_motio
 
 def test_runs_from_sliding_agree() -> None:
     scene = load_scene('paper_fig4_falling', {'drive.velocity': 0.0175})
-    found = critical(scene, Variation('axis.drive_damping', 5000.0, 9000.0), ACCURACY)
+    found = critical_of(scene, Variation('axis.drive_damping', 5000.0, 9000.0), ACCURACY)
     (lost,) = found.from_sliding.transitions
     for share, grows in ((0.999, True), (1.001, False)):
         axis = load_scene('paper_fig4_falling', {'axis.drive_damping': share * lost.value}).axis
@@ -109,7 +109,7 @@ def sticks_late(scene: Scene, duration: float, late: float) -> int:
 def test_sticks_between_reversals_last_however_heavy_the_slider_is() -> None:
     """Forward slip, reversal, stick and again: the last complete cycle may be the one without a stick."""
     scene = load_scene('paper_fig7', {'drive.velocity': 0.02})
-    found = critical(scene, Variation('axis.mass', 20000.0, 32000.0, log=True), 1e-6)
+    found = critical_of(scene, Variation('axis.mass', 20000.0, 32000.0, log=True), 1e-6)
     assert found.from_rest == Findings(YES, ())
 
 
@@ -119,7 +119,7 @@ def test_what_is_reported_of_intermittent_stick_slip_is_what_long_runs_do(
         changes: dict[str, object], name: str, low: float, high: float) -> None:
     """Between sticks the slider swings, ever longer towards the border, and may slip out by chance."""
     scene = load_scene('paper_fig8', changes)
-    (one,) = critical(scene, Variation(name, low, high, log=True), 1e-9).from_rest.transitions
+    (one,) = critical_of(scene, Variation(name, low, high, log=True), 1e-9).from_rest.transitions
     assert not one.resolved
     ends = [sticks_late(scene_at(scene.values, [name], np.array([value])), 1e4, 5e3) for value in (one.low, one.high)]
     assert [count > 0 for count in ends] == [not one.rises, one.rises]
@@ -128,7 +128,7 @@ def test_what_is_reported_of_intermittent_stick_slip_is_what_long_runs_do(
 def test_a_cycle_about_to_vanish_is_not_taken_for_one_that_stays() -> None:
     """Just beyond the tangent bifurcation 8600 sticks come, ever more alike, and then none."""
     scene = load_scene('paper_fig4_constant')
-    (one,) = critical(scene, Variation('axis.mass', 13.0, 14.0, log=True), 1e-9).from_rest.transitions
+    (one,) = critical_of(scene, Variation('axis.mass', 13.0, 14.0, log=True), 1e-9).from_rest.transitions
     assert one.high > 13.453134863828902
     value = np.array([max(one.high, 13.4531349)])
     assert sticks_late(scene_at(scene.values, ['axis.mass'], value), 1e4, 5e3) > 1000
@@ -227,14 +227,14 @@ def test_the_tool_prints_both_values(capsys: Capture) -> None:
 
 def test_a_feed_on_a_breakpoint_and_a_load_decided_by_a_segment_say_so() -> None:
     scene = load_scene('paper_fig8')
-    feed = critical(scene, Variation('drive.velocity', 0.034, 0.036), 1e-4).by_table
+    feed = critical_of(scene, Variation('drive.velocity', 0.034, 0.036), 1e-4).by_table
     assert [(fact.from_sliding, fact.breakpoint, fact.low) for fact in feed] == [(True, 1, 0.035)]
-    load = critical(scene, Variation('axis.normal_force', 1990.0, 2010.0), 1e-4).by_table
+    load = critical_of(scene, Variation('axis.normal_force', 1990.0, 2010.0), 1e-4).by_table
     assert [(fact.from_sliding, fact.breakpoint, fact.low, fact.high) for fact in load] == [(True, None, 0.0, 0.035)]
 
 
 def test_a_smooth_law_decides_by_its_own_slope() -> None:
-    found = critical(load_scene('stribeck'), Variation('drive.velocity', 0.02, 0.025), 1e-3)
+    found = critical_of(load_scene('stribeck'), Variation('drive.velocity', 0.02, 0.025), 1e-3)
     assert found.from_sliding.transitions
     assert found.by_table == ()
 
@@ -296,7 +296,7 @@ def test_wrong_use_gets_one_line(arguments: list[str], said: str, capsys: Captur
 
 def test_inputs_that_change_with_time_are_refused() -> None:
     with pytest.raises(InputError, match='constant inputs'):
-        critical(load_scene('cutting_force'), Variation('axis.mass', 100.0, 500.0), ACCURACY)
+        critical_of(load_scene('cutting_force'), Variation('axis.mass', 100.0, 500.0), ACCURACY)
 
 
 def test_the_closed_form_of_the_feed_is_the_one_of_the_drop() -> None:

@@ -14,7 +14,7 @@ from stickslip_sim.core.errors import InputError
 from stickslip_sim.scene import changed, load_scene
 from stickslip_sim.study import Saltelli, Study, Variation
 from stickslip_sim.study.answer_changes import NO, OPEN, YES, Answers
-from stickslip_sim.study.critical import critical
+from stickslip_sim.study.critical import critical_of
 from stickslip_sim.study.critical_sample import ACCURACY, CriticalStudy, critical_values, spreads_of
 from stickslip_sim.study.distribution import Distribution
 from stickslip_sim.study.highest_change import ALL_OVER, NOWHERE, Places, highest_changes
@@ -51,7 +51,7 @@ def test_each_point_has_the_values_of_critical() -> None:
     study = study_of({}, *laws, name='paper_fig7')
     found = study.values(0, 3)
     for k in range(3):
-        alone = critical(study.study.scene_at(study.study.points(k, k + 1)[0]), FEED, 1e-6)
+        alone = critical_of(study.study.scene_at(study.study.points(k, k + 1)[0]), FEED, 1e-6)
         assert found[k, 0] == pytest.approx(alone.from_rest.transitions[-1].value, rel=2 * ACCURACY)
         assert found[k, 1] == pytest.approx(alone.from_sliding.transitions[-1].value, rel=2 * ACCURACY)
 

@@ -17,7 +17,7 @@ from stickslip_sim.core.types import EventKind
 from stickslip_sim.extremes.shared_axes import instant, of_kind
 from stickslip_sim.runs.batch import BatchFigures, Rounds, run_rounds
 from stickslip_sim.scene import load_scene
-from stickslip_sim.study import Grid, Motion, Study, settling, variation
+from stickslip_sim.study import EvenGrid, Motion, Study, settling, variation
 from stickslip_sim.study.folder import TABLE
 from stickslip_sim.study.point_figures import FIGURES
 from tests.support.tool import Capture
@@ -77,7 +77,7 @@ def test_a_sweep_has_the_word_failed_and_no_figures(flood: str, tmp_path: Path, 
 
 @pytest.mark.usefixtures('heavy_fail')
 def test_points_of_the_batch_that_fail_have_no_figures() -> None:
-    study = Study(load_scene('paper_fig7').values, Grid((variation('axis.mass=300:400:5'),)))
+    study = Study(load_scene('paper_fig7').values, EvenGrid((variation('axis.mass=300:400:5'),)))
     figures = study.figures(0, 5)
     assert figures.motion.tolist() == [Motion.STICK_SLIP] * 3 + [Motion.FAILED] * 2
     for name in FIGURES[1:]:
@@ -93,7 +93,7 @@ def test_a_figure_that_is_no_number_is_a_failure(name: str, monkeypatch: pytest.
         return figures, rounds
 
     monkeypatch.setattr(settling, 'run_rounds', broken)
-    study = Study(load_scene('paper_fig7').values, Grid((variation('axis.mass=300:400:2'),)), 5.0)
+    study = Study(load_scene('paper_fig7').values, EvenGrid((variation('axis.mass=300:400:2'),)), 5.0)
     assert study.figures(0, 2).motion.tolist() == [Motion.FAILED, Motion.STICK_SLIP]
 
 
@@ -131,7 +131,7 @@ def sticks_late(study: Study, k: int, duration: float) -> list[float]:
 
 
 def test_alternating_sticks_and_reversals_are_stick_slip() -> None:
-    study = Study(load_scene('paper_fig7', {'drive.velocity': 0.02}).values, Grid((variation(
+    study = Study(load_scene('paper_fig7', {'drive.velocity': 0.02}).values, EvenGrid((variation(
         'axis.mass=20000:32000:41'),)))
     figures = study.figures(0, 41)
     assert (figures.motion == Motion.STICK_SLIP).all()
@@ -144,7 +144,7 @@ def test_sticks_that_come_again_after_long_pauses_are_undecided(tmp_path: Path, 
     out = tmp_path / 'out'
     assert run(['sweep', 'paper_fig8', '--over', 'axis.drive_damping=11380:11490:12', '--out', str(out)]) == 0
     assert 'undecided' in capsys.readouterr().out
-    study = Study(load_scene('paper_fig8').values, Grid((variation('axis.drive_damping=11380:11490:12'),)))
+    study = Study(load_scene('paper_fig8').values, EvenGrid((variation('axis.drive_damping=11380:11490:12'),)))
     figures = study.figures(0, 12)
     open_ones = np.flatnonzero(figures.motion == Motion.UNDECIDED)
     assert len(open_ones)

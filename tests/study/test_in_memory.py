@@ -8,7 +8,7 @@ import pytest
 
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.scene import load_scene
-from stickslip_sim.study import Grid, Study, variation
+from stickslip_sim.study import EvenGrid, Study, variation
 from stickslip_sim.study.in_memory import critical, sweep, uncertainty
 
 SCENE = load_scene('paper_fig7')
@@ -17,7 +17,7 @@ KNOWN = {'axis.mass': {'distribution': 'uniform', 'low': 300.0, 'high': 400.0}}
 
 def test_a_sweep_has_the_figures_of_its_study() -> None:
     found = sweep(SCENE, 'drive.velocity=1e-3:1e-1:5:log', 'axis.mass=300.0:400.0:2')
-    figures = Study(SCENE.values, Grid((variation('drive.velocity=1e-3:1e-1:5:log'),
+    figures = Study(SCENE.values, EvenGrid((variation('drive.velocity=1e-3:1e-1:5:log'),
                                         variation('axis.mass=300.0:400.0:2')))).figures(0, 10)
     assert list(found.columns)[:3] == ['drive.velocity', 'axis.mass', 'motion']
     assert found.columns['period'].tolist() == pytest.approx(figures.period.tolist(), rel=0, nan_ok=True)

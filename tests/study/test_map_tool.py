@@ -15,7 +15,7 @@ from stickslip_sim.cli.main import run
 from stickslip_sim.runs import simulate_events
 from stickslip_sim.scene import load_scene
 from stickslip_sim.simulation.cycles import cycle_figures
-from stickslip_sim.study import Grid, Study, variation
+from stickslip_sim.study import EvenGrid, Study, variation
 from stickslip_sim.study.bifurcation import bifurcation
 from stickslip_sim.study.borders import borders
 from stickslip_sim.study.description import study_of
@@ -95,12 +95,12 @@ def test_the_feed_lies_along_x_and_the_critical_feed_is_drawn(tmp_path: Path) ->
 
 def test_a_feed_that_rests_has_no_steady_sliding_that_could_be_lost() -> None:
     scene = load_scene('paper_fig7')
-    study = Study(scene.values, Grid((variation('drive.velocity=0:0.06:3'), variation('axis.mass=300:400:2'))))
+    study = Study(scene.values, EvenGrid((variation('drive.velocity=0:0.06:3'), variation('axis.mass=300:400:2'))))
     known = borders(study)
     assert known is not None
     assert np.isnan(known.is_lost[:, 0]).all()
     assert (known.is_lost[:, 1:] == (known.feeds[1:] < 0.035)).all()
-    through_rest = Study(scene.values, Grid((variation('drive.velocity=-0.01:0.01:3'),)))
+    through_rest = Study(scene.values, EvenGrid((variation('drive.velocity=-0.01:0.01:3'),)))
     sliding = bifurcation(through_rest, through_rest.figures(0, 3)).sliding
     friction = scene.axis.normal_force * (0.12 - 0.07 * 0.01 / 0.035)
     assert sliding[:, 1] == pytest.approx([-friction, np.nan, friction], rel=1e-9, nan_ok=True)
@@ -118,7 +118,7 @@ def test_a_bifurcation_diagram(tmp_path: Path) -> None:
 @pytest.mark.parametrize('over', ['drive.velocity=1e-3:0.03:4:log', 'axis.drive_stiffness=2.3e6:2.6e6:3'])
 def test_the_cycles_of_a_diagram_are_the_last_of_the_whole_run(over: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """To the last bit, also where cycles come in groups; no run is looked at but at its end."""
-    study = Study(load_scene('paper_fig8').values, Grid((variation(over),)))
+    study = Study(load_scene('paper_fig8').values, EvenGrid((variation(over),)))
     figures = study.figures(0, study.count)
     points = study.points(0, study.count)
     expected = []

@@ -16,7 +16,7 @@ from stickslip_sim.extremes.shared_axes import elapsed
 from stickslip_sim.runs import simulate_events
 from stickslip_sim.scene import Scene, load_scene
 from stickslip_sim.simulation.cycles import cycle_figures
-from stickslip_sim.study import MOTIONS, Figures, Grid, Motion, Sobol, Study, variation
+from stickslip_sim.study import MOTIONS, EvenGrid, Figures, Motion, Sobol, Study, variation
 from stickslip_sim.study.point_figures import RUN_FIELDS
 from stickslip_sim.study.points import runs_alone
 from stickslip_sim.study.theory import critical_feed, feed_of_theory
@@ -26,7 +26,7 @@ CONSTANT = {'friction.static.law': 'constant', 'friction.static.initial': 0.24,
 
 
 def grid(scene: Scene, *texts: str, duration: float | None = None) -> Study:
-    return Study(scene.values, Grid(tuple(map(variation, texts))), duration)
+    return Study(scene.values, EvenGrid(tuple(map(variation, texts))), duration)
 
 
 def rounds(events: list[Event]) -> list[list[Event]]:
@@ -161,7 +161,7 @@ def test_a_sobol_sample_fills_the_ranges_and_its_parts_are_those_of_the_whole() 
 
 
 def test_a_grid_has_every_combination_with_both_ends() -> None:
-    points = Grid((variation('axis.mass=100:400:4'), variation('drive.velocity=1e-3:1e-1:3:log'))).points(0, 12)
+    points = EvenGrid((variation('axis.mass=100:400:4'), variation('drive.velocity=1e-3:1e-1:3:log'))).points(0, 12)
     assert points[:3, 1] == pytest.approx([1e-3, 1e-2, 1e-1])
     assert sorted(set(points[:, 0])) == [100.0, 200.0, 300.0, 400.0]
     assert len({*map(tuple, points.tolist())}) == 12

@@ -5,7 +5,7 @@
 from typing import NamedTuple
 
 from ..scene import Scene
-from .part import Changes, Values
+from .part import Changes, SceneValues
 
 _ANY_TIME = 1.0        # s, a time constant of a growth from a value to the same value
 _ANY_FREQUENCY = 10.0  # Hz, of a sine without an amplitude
@@ -23,7 +23,7 @@ def absent_parts(scene: Scene) -> list[Absent]:
     return [Absent(name, changes) for name, changes in _neutral(scene.values).items()]
 
 
-def _neutral(values: Values) -> dict[str, Changes]:
+def _neutral(values: SceneValues) -> dict[str, Changes]:
     found: dict[str, Changes] = {}
     if values['friction.static.law'] == 'constant':
         found['rest-time growth of mu_s'] = {

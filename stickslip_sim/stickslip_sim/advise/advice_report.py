@@ -80,7 +80,7 @@ def override_words(overrides: Changes) -> list[str]:
     return [f"'{word}'" if '[' in word or ' ' in word else word for word in words]
 
 
-def as_json(advice: Advice, overrides: Changes) -> dict[str, Any]:
+def advice_as_json(advice: Advice, overrides: Changes) -> dict[str, Any]:
     """Return everything that was found; an infinite difference is the text 'inf'."""
     reference, least = advice.reference, advice.least
     return {

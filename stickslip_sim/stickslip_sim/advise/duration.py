@@ -10,13 +10,13 @@ from .trial_runs import BY_EXACT
 _CYCLES = 20
 _SHORTEST, _LONGEST = 10.0, 320.0   # s
 
-MAX_DURATION = 3600.0               # s: solvers that step take minutes for it
+_MAX_DURATION = 3600.0               # s: solvers that step take minutes for it
 
 
 def check_duration(duration: float) -> None:
     """Raise InputError unless all solvers can be run for `duration` s in a bearable time."""
-    if not 0.0 < duration <= MAX_DURATION:
-        raise InputError('duration', duration, f'> 0 and <= {MAX_DURATION:g} s',
+    if not 0.0 < duration <= _MAX_DURATION:
+        raise InputError('duration', duration, f'> 0 and <= {_MAX_DURATION:g} s',
                          'every solver runs it, also those of the shortest steps: advise on a part of it')
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from ..scene import Scene
 from ..scene.load import unscaled
-from .part import Change, Changes, Part, Values, Variant, number_part, switch
+from .part import Change, Changes, Part, SceneValues, Variant, number_part, switch
 
 _KINETIC = 'friction.kinetic'
 _EXCESS = 'friction.excess'
@@ -16,7 +16,7 @@ _COARSER = (10.0, 100.0)
 
 def friction_parts(scene: Scene) -> Iterator[Part]:
     """Yield every part that the friction of a scene might have, present or not, and all its inner breakpoints."""
-    values: Values = scene.values
+    values: SceneValues = scene.values
     yield switch('acceleration dependence', 'friction.acceleration_dependence', True, False)
     yield _excess_shape(scene)
     yield from _tables('psi', _EXCESS, 'fractions', values)
@@ -27,7 +27,7 @@ def friction_parts(scene: Scene) -> Iterator[Part]:
     yield from _tables('mu_k', _KINETIC, 'coefficients', values)
 
 
-def _tables(what: str, section: str, ordinates: str, values: Values) -> Iterator[Part]:
+def _tables(what: str, section: str, ordinates: str, values: SceneValues) -> Iterator[Part]:
     """Yield the inner breakpoints of a table, or how fine the table of a smooth law is."""
     for speed in values.get(f'{section}.velocities', ())[1:-1]:
         without = Variant(_without_breakpoint(section, ordinates, speed))
@@ -37,7 +37,7 @@ def _tables(what: str, section: str, ordinates: str, values: Values) -> Iterator
 
 
 def _without_breakpoint(section: str, ordinates: str, speed: float) -> Change:
-    def changes(values: Values) -> Changes:
+    def changes(values: SceneValues) -> Changes:
         speeds = values.get(f'{section}.velocities', ())
         if speed not in speeds[1:-1]:
             return {}
@@ -48,10 +48,10 @@ def _without_breakpoint(section: str, ordinates: str, speed: float) -> Change:
     return changes
 
 
-def _coarser(section: str, factor: float, base: Values) -> Change:
+def _coarser(section: str, factor: float, base: SceneValues) -> Change:
     name = f'{section}.tolerance'
 
-    def changes(values: Values) -> Changes:
+    def changes(values: SceneValues) -> Changes:
         if name not in values or values[name] >= factor * base[name]:
             return {}
         return {name: factor * base[name]}
@@ -62,7 +62,7 @@ def _coarser(section: str, factor: float, base: Values) -> Change:
 def _growth() -> Part:
     """Return the growth of mu_s with the rest time; without it mu_s is one number, and two suggest themselves."""
     def constant(value: str) -> Change:
-        def changes(values: Values) -> Changes:
+        def changes(values: SceneValues) -> Changes:
             if values[f'{_STATIC}.law'] == 'constant' or values[f'{_STATIC}.limit'] == values[f'{_STATIC}.initial']:
                 return {}
             return {f'{_STATIC}.law': 'constant', f'{_STATIC}.initial': values[f'{_STATIC}.{value}']}
@@ -82,7 +82,7 @@ def _speed_dependence(scene: Scene) -> Part:
     values_at = {'mu_k as at rest': table.coefficients[0], 'mu_k as at high speed': table.coefficients[-1]}
 
     def constant(value: float) -> Change:
-        def changes(values: Values) -> Changes:
+        def changes(values: SceneValues) -> Changes:
             coefficients = values.get(f'{_KINETIC}.coefficients')
             if coefficients is None:
                 return {f'{_KINETIC}.law': 'table', f'{_KINETIC}.velocities': (0.0, table.limit_velocity),
@@ -100,7 +100,7 @@ def _excess_shape(scene: Scene) -> Part:
     """Return the smooth shape of psi; without it psi is a straight line to where it ends."""
     excess = scene.axis.friction.excess
 
-    def changes(values: Values) -> Changes:
+    def changes(values: SceneValues) -> Changes:
         if excess is None or excess.law is None or values.get(f'{_EXCESS}.law', 'table') == 'table':
             return {}
         return {f'{_EXCESS}.law': 'table', f'{_EXCESS}.velocities': (0.0, excess.law.limit_velocity),

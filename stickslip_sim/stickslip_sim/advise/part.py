@@ -5,9 +5,9 @@
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
-Values = Mapping[str, Any]   # of a scene, by dotted name
+SceneValues = Mapping[str, Any]   # of a scene, by dotted name
 Changes = dict[str, Any]     # to such values
-Change = Callable[[Values], Changes]
+Change = Callable[[SceneValues], Changes]
 
 
 class Variant(NamedTuple):
@@ -29,7 +29,7 @@ class Part(NamedTuple):
 
 def switch(name: str, parameter: str, there: object, without: object) -> Part:
     """Return the part that one choice brings in: `parameter` is `there` with it and `without` else."""
-    def changes(values: Values) -> Changes:
+    def changes(values: SceneValues) -> Changes:
         return {parameter: without} if values.get(parameter) == there else {}
 
     return Part(name, (Variant(changes),))
@@ -37,7 +37,7 @@ def switch(name: str, parameter: str, there: object, without: object) -> Part:
 
 def number_part(name: str, parameter: str) -> Part:
     """Return the part whose size is one number, so that 0 leaves it out."""
-    def changes(values: Values) -> Changes:
+    def changes(values: SceneValues) -> Changes:
         return {parameter: 0.0} if values.get(parameter, 0.0) != 0.0 else {}
 
     return Part(name, (Variant(changes),))

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from ..scene import Scene
 from .friction_parts import friction_parts
-from .part import Change, Changes, Part, Values, Variant, number_part, switch
+from .part import Change, Changes, Part, SceneValues, Variant, number_part, switch
 
 _INPUTS = (('drive', 'Hz on the drive'), ('force', 'Hz on the force'))
 
@@ -18,7 +18,7 @@ def parts_of(scene: Scene) -> list[Part]:
 
 
 def _possible_parts(scene: Scene) -> Iterator[Part]:
-    values: Values = scene.values
+    values: SceneValues = scene.values
     yield switch('contact compliance', 'contact.model', 'compliant', 'rigid')
     yield number_part('contact damping', 'contact.damping')
     yield from friction_parts(scene)
@@ -35,14 +35,14 @@ def _without_sinusoid(section: str, k: int) -> Change:
     """Return the change of the amplitude of a sinusoid to 0, which is as good as none, and which `--set` can do."""
     name = f'{section}.amplitudes'
 
-    def changes(values: Values) -> Changes:
+    def changes(values: SceneValues) -> Changes:
         amplitudes = values[name]
         return {name: (*amplitudes[:k], 0.0, *amplitudes[k + 1:])} if amplitudes[k] != 0.0 else {}
 
     return changes
 
 
-def _without_force(values: Values) -> Changes:
+def _without_force(values: SceneValues) -> Changes:
     changes: Changes = {}
     if values['force.course'] != 'constant':
         changes = {'force.course': 'constant', 'force.constant': 0.0}
@@ -52,7 +52,7 @@ def _without_force(values: Values) -> Changes:
     return {**changes, 'force.amplitudes': (0.0,) * len(amplitudes)} if any(amplitudes) else changes
 
 
-def without_idle_sinusoids(values: Values) -> dict[str, object]:
+def without_idle_sinusoids(values: SceneValues) -> dict[str, object]:
     """Return the values of a scene without sines of amplitude 0, for a file that people read."""
     kept = dict(values)
     for section, _ in _INPUTS:

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from ..bench.measure import Cost, measure
 from ..bench.own_solvers import own_solver
-from ..bench.peers.peer import EXACT
+from ..bench.peers.peer import NO_SETTING
 from ..bench.problem import Outcome, Problem
 from ..core.errors import InputError, SolverError
 from ..core.types import Event, Instant, Sample
@@ -149,7 +149,7 @@ def _tabulated(scene: Scene) -> Scene:
 def _prepared(scene: Scene, duration: float) -> Callable[[], Outcome]:
     problem = Problem(scene.name, scene.summary, scene.axis, scene.initial, scene.drive, scene.force, duration)
     solver = scene.solver.make(scene.axis)
-    return own_solver(scene.solver.name, (EXACT,), lambda setting: solver).prepare(problem, EXACT)
+    return own_solver(scene.solver.name, (NO_SETTING,), lambda setting: solver).prepare(problem, NO_SETTING)
 
 
 def _cost_of_one(run: Callable[[], Outcome]) -> Cost | None:

@@ -22,7 +22,7 @@ def _with_one_friction(peer: Peer) -> Peer:
 
 
 PEERS: tuple[Peer, ...] = tuple(map(_with_one_friction, (
-    heyoka.PEER, dop853.PEER, sundials.PEER, sksundae.PEER, *scipy_ivp.PEERS, euler.PEER, mujoco.PEER)))
+    heyoka.PEER, dop853.PEER, sundials.PEER, sksundae.PEER, *scipy_ivp.SCIPY_PEERS, euler.PEER, mujoco.PEER)))
 
 
 def contestants(*, quick: bool = False) -> list[Peer]:

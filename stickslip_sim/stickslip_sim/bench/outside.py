@@ -15,7 +15,7 @@ from .cases import make_case
 from .measure import measure
 from .own_solvers import exact_solver
 from .peers import scipy_ivp
-from .peers.peer import EXACT, Setting
+from .peers.peer import NO_SETTING, Setting
 from .ratios import Ratio, at_least, at_most
 
 _CASES, _DURATION, _ROUNDS = 'ABC', 20.0, 5
@@ -55,11 +55,11 @@ def start_ratios() -> Iterator[Ratio]:
 
 def print_plain_ratios() -> None:
     """Print the cost of scipy over that of the exact engine by case; scipy's functions are compiled all the same."""
-    peer = scipy_ivp.PEERS[0]
+    peer = scipy_ivp.SCIPY_PEERS[0]
     ratios = {}
     for case in _CASES if peer.missing is None else ():
         problem = make_case(case, _DURATION)
-        runs = [exact_solver().prepare(problem, EXACT), peer.prepare(problem, Setting(1e-12, 'tolerance'))]
+        runs = [exact_solver().prepare(problem, NO_SETTING), peer.prepare(problem, Setting(1e-12, 'tolerance'))]
         for run in runs:
             run()
         own, other = measure(runs, _ROUNDS)

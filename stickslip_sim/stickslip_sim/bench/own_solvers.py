@@ -16,7 +16,7 @@ from ..core.types import Sample
 from ..core.version import __version__
 from ..solvers import DONE, Solver, adaptive, exact, fixed_step
 from ..solvers.walk import walk_of
-from .peers.peer import EXACT, Peer, Setting, time_steps, tolerances
+from .peers.peer import NO_SETTING, Peer, Setting, time_steps, tolerances
 from .problem import Numbers, Outcome, Problem
 
 _POSITION = Sample._fields.index('position')
@@ -50,7 +50,7 @@ def _by_tolerance(make: Callable[..., Solver], method: str, setting: Setting) ->
 def exact_solver() -> Peer:
     """Return the exact engine as a contestant."""
     name = 'exact' if UNIT is not None else 'exact, plain Python'
-    return own_solver(name, (EXACT,), lambda setting: exact.SOLVER)
+    return own_solver(name, (NO_SETTING,), lambda setting: exact.SOLVER)
 
 
 def state_for(problem: Problem, records: Any) -> Any:

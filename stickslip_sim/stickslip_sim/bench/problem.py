@@ -15,7 +15,7 @@ from ..core.input_profile import InputProfile
 
 Numbers = NDArray[np.float64]
 
-EVENT_COLUMNS = 5   # time s, kind, direction of the slip, position m, velocity m/s
+_EVENT_COLUMNS = 5   # time s, kind, direction of the slip, position m, velocity m/s
 
 
 def _as_it_is(table: Any) -> Any:
@@ -87,4 +87,4 @@ class Problem:
 
     def event_rows(self) -> Any:
         """Return an empty table that holds far more events than a sound solver finds."""
-        return np.zeros((int(1000 + 300 * self.duration), EVENT_COLUMNS))
+        return np.zeros((int(1000 + 300 * self.duration), _EVENT_COLUMNS))

@@ -13,8 +13,8 @@ from .measure import Cost, cost_sample, measure
 from .peers.peer import Peer, Setting
 from .problem import Outcome, Problem
 
-DIGITS = 30        # of the reference
-PATIENCE = 30.0    # s of processor time: a run that would take longer is marked as such, and not waited for
+RACE_DIGITS = 30        # of the reference
+RACE_PATIENCE = 30.0    # s of processor time: a run that would take longer is marked as such, and not waited for
 _PARTS = (64, 8)   # of the duration that is run first, to foresee the cost of all of it
 
 
@@ -50,7 +50,7 @@ def race(problems: Sequence[Problem], contestants: Sequence[Peer], rounds: int,
 
 def truth_of(problem: Problem) -> Truth:
     """Return the result of the reference, right to DIGITS digits."""
-    run = simulate_reference(problem.axis, problem.initial, problem.drive, problem.force, problem.duration, DIGITS)
+    run = simulate_reference(problem.axis, problem.initial, problem.drive, problem.force, problem.duration, RACE_DIGITS)
     return Truth(list(run.events), run.final.position)
 
 
@@ -66,7 +66,7 @@ def _race_case(problem: Problem, contestants: Sequence[Peer], rounds: int) -> Ca
         for setting in peer.settings:
             try:
                 foreseen = _foresee(peer, problem, setting)
-                if foreseen > PATIENCE:
+                if foreseen > RACE_PATIENCE:
                     rows.append(Row(peer.name, setting, peer.version(), None, None,
                                     f'left out: a run would take {foreseen:.0f} s or more'))
                     continue
@@ -91,7 +91,7 @@ def _foresee(peer: Peer, problem: Problem, setting: Setting) -> float:
         if part == _PARTS[0]:
             run()   # compilation at the first run does not count
         foreseen = part * cost_sample(run)
-        if foreseen > PATIENCE:
+        if foreseen > RACE_PATIENCE:
             break
     return foreseen
 

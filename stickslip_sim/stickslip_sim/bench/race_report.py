@@ -10,7 +10,7 @@ from typing import Any
 
 from ..runs.receipt import versions
 from .peers.peer import Setting
-from .race import DIGITS, CaseResult, Row
+from .race import RACE_DIGITS, CaseResult, Row
 from .ratios import Ratio
 
 _HEADS = ('solver', 'setting', 'µs per simulated s', '× exact', 'missed', 'invented', 'event time, s', 'position, m')
@@ -19,10 +19,10 @@ _MARK_HEADS = ('figure', 'case', 'measured', 'mark', 'aim', 'mark met')
 Json = dict[str, Any]
 
 
-def as_json(results: Sequence[CaseResult], figures: Sequence[Ratio], rounds: int) -> Json:
+def race_as_json(results: Sequence[CaseResult], figures: Sequence[Ratio], rounds: int) -> Json:
     """Return everything that was measured."""
     return {'versions': {**versions(), **_rivals(results)}, 'machine': machine(), 'rounds': rounds,
-            'reference_digits': DIGITS, 'cases': [as_case(result) for result in results],
+            'reference_digits': RACE_DIGITS, 'cases': [as_case(result) for result in results],
             'ratios': [ratio._asdict() for ratio in figures]}
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from .peers.peer import Setting
-from .race import DIGITS, CaseResult, Row
+from .race import RACE_DIGITS, CaseResult, Row
 
 _FINEST = Setting(1e-12, 'tolerance')
 _TAYLOR = Setting(1e-16, 'tolerance')   # heyoka has rounding as error, as the exact engine has
@@ -69,7 +69,7 @@ def _accuracy(by_case: dict[str, CaseResult]) -> Iterator[Ratio]:
         row = _find(by_case[case], 'exact', None) if case in by_case else None
         if row is not None and row.errors is not None:
             error, duration = row.errors, by_case[case].problem.duration
-            figure = at_most(f'worst event time of exact over {duration:g} s against {DIGITS} digits, s', case,
+            figure = at_most(f'worst event time of exact over {duration:g} s against {RACE_DIGITS} digits, s', case,
                              error.time, _ERROR_MARK, _ERROR_AIM)
             yield figure._replace(met=bool(figure.met) and error.missed == error.invented == 0)
 

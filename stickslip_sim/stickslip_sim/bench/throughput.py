@@ -22,7 +22,7 @@ from .problem import Problem
 from .ratios import Ratio, at_least
 
 AXES, DURATION = 10_000, 10.0   # s
-FEED = 0.001                    # m/s, of A and B
+_FEED = 0.001                    # m/s, of A and B
 CORES = 2
 _MARK, _AIM = 1e6, 4e6          # axis-seconds a second
 _SEED, _ROUNDS, _FEW = 20261121, 5, 6
@@ -32,7 +32,7 @@ def drawn(axis: Axis, count: int, seed: int = _SEED) -> dict[str, Any]:
     """Return masses, stiffnesses and feeds drawn at random, each within a factor of 2 of the axis and 1 mm/s."""
     random = np.random.default_rng(seed)
     return {name: middle * 2.0 ** random.uniform(-1.0, 1.0, count) for name, middle in (
-        ('mass', axis.mass), ('drive_stiffness', axis.drive_stiffness), ('drive_velocity', FEED))}
+        ('mass', axis.mass), ('drive_stiffness', axis.drive_stiffness), ('drive_velocity', _FEED))}
 
 
 def batch_ratios() -> Iterator[Ratio]:
@@ -44,7 +44,7 @@ def batch_ratios() -> Iterator[Ratio]:
         run_batch(axis, DURATION, threads=cores, **grid)
         rate = AXES * DURATION / statistics.median(_wall(axis, grid, cores) for _ in range(_ROUNDS))
         yield at_least(f'axis-seconds a second, batch of {AXES} on {cores} cores', name, rate, _MARK, _AIM)
-        if scipy_ivp.PEERS[0].missing is None:
+        if scipy_ivp.SCIPY_PEERS[0].missing is None:
             rate = cores * _FEW * DURATION / sum(_by_scipy(axis, grid, k) for k in range(_FEW))
             yield Ratio(f'the same by scipy DOP853, 1e-12, extrapolated from {_FEW} axes on one core', name, rate)
 
@@ -61,7 +61,7 @@ def _by_scipy(axis: Axis, grid: dict[str, Any], index: int) -> float:
     case = make_case('A')
     problem = Problem('one of many', '', replace(axis, mass=mass, drive_stiffness=stiffness), case.initial,
                       constant(feed), constant(0.0), DURATION)
-    run = scipy_ivp.PEERS[0].prepare(problem, Setting(1e-12, 'tolerance'))
+    run = scipy_ivp.SCIPY_PEERS[0].prepare(problem, Setting(1e-12, 'tolerance'))
     if index == 0:
         run()
     return cost_sample(run)

@@ -8,7 +8,7 @@ from dataclasses import asdict
 from typing import Any, NamedTuple
 
 from ..runs import Run
-from .kinds import TIMING
+from .kinds import TIMING_LIMIT
 from .observed_run import commands_of, gaps_in, observed_motion, timing_of
 from .outcomes import LimitOutcome
 
@@ -76,7 +76,7 @@ def line_of(outcome: LimitOutcome) -> str:
     return f'{text} ({outcome.remark})' if outcome.remark else text
 
 
-def as_json(runs: Sequence[Checked]) -> dict[str, Any]:
+def checks_as_json(runs: Sequence[Checked]) -> dict[str, Any]:
     """Return everything that was found: of one run, or a list of several; an infinite figure is the text 'inf'."""
     found = [_found(checked) for checked in runs]
     return found[0] if len(found) == 1 else {'passed': all(one['passed'] for one in found), 'runs': found}
@@ -99,7 +99,7 @@ def _entry(outcome: LimitOutcome) -> Mapping[str, Any]:
     limit = outcome.limit
     found = {'name': outcome.name, 'passed': outcome.passed, 'remark': outcome.remark}
     if limit is None:
-        return {**found, 'check': TIMING}
+        return {**found, 'check': TIMING_LIMIT}
     return {**found, 'check': limit.kind.name, 'unit': limit.kind.unit, 'measured': _number(outcome.value),
             'max': limit.maximum, 'margin': _number(outcome.margin), 'window': outcome.span._asdict(),
             **limit.settings}

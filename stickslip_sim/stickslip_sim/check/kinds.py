@@ -10,7 +10,7 @@ from . import measures
 from .measures import LimitMeasure
 
 FARTHEST = 1e12   # m, like the positions of a scene
-TIMING = 'timing'
+TIMING_LIMIT = 'timing'
 
 TARGET = Parameter('target', 'double', None, 'm', 'where the slider is to go', low=-FARTHEST, high=FARTHEST)
 _BAND = Parameter('band', 'double', None, 'm', 'either side of the target', low=0.0, low_open=True, high=FARTHEST)

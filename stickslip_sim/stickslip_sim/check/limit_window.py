@@ -10,10 +10,10 @@ from ..config.strict import section
 from ..core.errors import InputError
 from ..scene import Parameter
 
-PAGE = 'docs/check.md'
-LATEST = 1e15   # s, as in a scene
+CHECK_PAGE = 'docs/check.md'
+LATEST_TIME = 1e15   # s, as in a scene
 FIRST_COMMAND = 'first_command'
-_TIME = Parameter('time', 'double', None, 's', 'of the run', low=0.0, high=LATEST)
+_TIME = Parameter('time', 'double', None, 's', 'of the run', low=0.0, high=LATEST_TIME)
 
 
 class CheckedSpan(NamedTuple):
@@ -55,7 +55,7 @@ def window_of(name: str, given: object, default: Window) -> Window:
     """Return the window that a file gives, with the edges of `default` where it gives none; raises InputError."""
     if given is None:
         return default
-    edges = dict(section(name, given, CheckedSpan._fields, PAGE))
+    edges = dict(section(name, given, CheckedSpan._fields, CHECK_PAGE))
     window = default
     if edges.get('begin') == FIRST_COMMAND:
         if default.end is not None and not default.is_from_command and 'end' not in edges:

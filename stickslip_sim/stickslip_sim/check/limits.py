@@ -14,13 +14,13 @@ from ..core.did_you_mean import suggestion
 from ..core.errors import InputError
 from ..scene import Parameter
 from ..scene.load import named, read_text
-from .kinds import FARTHEST, KINDS, TARGET, TIMING, Kind
-from .limit_window import FIRST_COMMAND, LATEST, PAGE, WHOLE_RUN, Window, window_of
+from .kinds import FARTHEST, KINDS, TARGET, TIMING_LIMIT, Kind
+from .limit_window import CHECK_PAGE, FIRST_COMMAND, LATEST_TIME, WHOLE_RUN, Window, window_of
 from .observed_motion import Reference
 from .observed_run import KnownCommands
 
 _SECTIONS = ('window', 'target', 'reference', 'commands', 'limits')
-_TIMES = Parameter('times', 'double_array', None, 's', 'of the run', low=0.0, high=LATEST)
+_TIMES = Parameter('times', 'double_array', None, 's', 'of the run', low=0.0, high=LATEST_TIME)
 _POSITIONS = Parameter('positions', 'double_array', None, 'm', 'at these times', low=-FARTHEST, high=FARTHEST)
 _NAME = Parameter('name', 'string', None, '', 'of a limit')
 _COMMANDS = Parameter('commands', 'string', 'required', '', 'whether a run of the node needs some to be checked',
@@ -67,7 +67,7 @@ def load_limits(path: str) -> Limits:
 
 def limits_of(document: object) -> Limits:
     """Return the limits of a document as YAML gives it; raises InputError."""
-    given = section('file', document, _SECTIONS, PAGE)
+    given = section('file', document, _SECTIONS, CHECK_PAGE)
     entries = given.get('limits')
     if not isinstance(entries, Mapping) or not entries:
         raise InputError('limits', entries, 'a section with at least one limit', 'for example sticks: {max: 3}')
@@ -75,7 +75,8 @@ def limits_of(document: object) -> Limits:
     defaults = {'target': _checked(TARGET, '', given['target'])} if 'target' in given else {}
     for name in entries:
         _NAME.checked(name)
-    return Limits(tuple(_limit(name, entry, window, defaults) for name, entry in entries.items() if name != TIMING),
+    return Limits(tuple(_limit(name, entry, window, defaults) for name, entry in entries.items()
+                        if name != TIMING_LIMIT),
                   _timing(entries), _reference(given.get('reference')), window,
                   _checked(_COMMANDS, '', given.get('commands', _COMMANDS.default)) == _COMMANDS.default)
 
@@ -83,8 +84,8 @@ def limits_of(document: object) -> Limits:
 def check_fit(limits: Limits, begin: float, end: float, has_timing: bool, commands: KnownCommands | None) -> None:
     """Raise InputError when a limit is set for what a run from `begin` to `end` (s) does not have."""
     if limits.timing and not has_timing:
-        raise InputError(TIMING, _VALID, 'left out here: only a run that the node recorded in real time has a verdict',
-                         'drop this limit')
+        raise InputError(TIMING_LIMIT, _VALID, 'left out here: only a run that the node recorded in real time has a '
+                         'verdict', 'drop this limit')
     for limit in limits.limits:
         name = f'{limit.name}.window'
         if commands is None and limit.window.is_from_command:
@@ -99,7 +100,7 @@ def _limit(name: str, entry: object, window: Window, defaults: Mapping[str, Any]
         raise InputError(name, entry, 'a limit in braces', f'for example {name}: {{max: 1.0e-3}}')
     kind = _kind(name, entry)
     known = ('check', 'max', 'window', *(setting.name for setting in kind.settings))
-    given = section(name, entry, known, PAGE)
+    given = section(name, entry, known, CHECK_PAGE)
     settings = {setting.name: _setting(setting, name, given, defaults) for setting in kind.settings}
     own_window = window_of(f'{name}.window', given.get('window'), window)
     return Limit(name, kind, _setting(kind.maximum, name, given, {}), own_window, settings)
@@ -124,15 +125,15 @@ def _setting(entry: Parameter, name: str, given: Mapping[str, object], defaults:
 
 
 def _timing(entries: Mapping[str, object]) -> bool:
-    if TIMING in entries and entries[TIMING] != _VALID:
-        raise InputError(TIMING, entries[TIMING], _VALID, 'the verdict of the node is yes or no')
-    return TIMING in entries
+    if TIMING_LIMIT in entries and entries[TIMING_LIMIT] != _VALID:
+        raise InputError(TIMING_LIMIT, entries[TIMING_LIMIT], _VALID, 'the verdict of the node is yes or no')
+    return TIMING_LIMIT in entries
 
 
 def _reference(given: object) -> Reference | None:
     if given is None:
         return None
-    values = section('reference', given, Reference._fields, PAGE)
+    values = section('reference', given, Reference._fields, CHECK_PAGE)
     for name in Reference._fields:
         if name not in values:
             raise InputError(f'reference.{name}', None, 'given: times and positions make a profile', 'add it')

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from ..core.errors import InputError, RecordingError
 from ..runs import Run
-from .kinds import TIMING
+from .kinds import TIMING_LIMIT
 from .limit_window import CheckedSpan
 from .limits import Limit, Limits, check_fit
 from .measures import no_sample_in
@@ -52,7 +52,7 @@ def outcomes_of(limits: Limits, run: Run) -> list[LimitOutcome]:
             raise RecordingError(f'{run.name}: {outcome.name} needs {" and ".join(unmeasured(run))}, which was not '
                                  'measured; leave this limit out, or import that column too')
     if limits.timing and timing:
-        outcomes.append(LimitOutcome(TIMING, None, bool(timing.valid), None, timing.verdict))
+        outcomes.append(LimitOutcome(TIMING_LIMIT, None, bool(timing.valid), None, timing.verdict))
     return outcomes
 
 

@@ -32,7 +32,7 @@ def advise(scene: str, tolerance: float, duration: float | None, changes: SceneC
     """Run SCENE without each of its parts and with each solver; print what changes, and the least that T asks for."""
     _check(out, scene_out)
     from ..advise import advice as work
-    from ..advise.advice_report import as_json, text_lines, verdict_lines
+    from ..advise.advice_report import advice_as_json, text_lines, verdict_lines
     from ..advise.duration import check_duration, default_duration
     from ..advise.trial_runs import changes_between
     from ..scene.values import overridden
@@ -48,7 +48,7 @@ def advise(scene: str, tolerance: float, duration: float | None, changes: SceneC
     overrides = overridden(changes.given(), changes_between(loaded, least))
     print('\n'.join([*text_lines(advice), *verdict_lines(advice, overrides)]))
     if out is not None:
-        write_text(out, [json.dumps(as_json(advice, overrides), indent=1, allow_nan=False) + '\n'])
+        write_text(out, [json.dumps(advice_as_json(advice, overrides), indent=1, allow_nan=False) + '\n'])
     if scene_out is not None:
         _write_scene(scene_out, advice)
     say_written(out, scene_out)

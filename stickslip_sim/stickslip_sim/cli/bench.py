@@ -29,7 +29,7 @@ def bench(chosen: tuple[str, ...], more: tuple[str, ...], out: str | None, round
     from ..bench.contestants import contestants
     from ..bench.outside import outside_ratios
     from ..bench.race import race
-    from ..bench.race_report import as_json, marks_table, text_table
+    from ..bench.race_report import marks_table, race_as_json, text_table
     from ..bench.ratios import ratios
     from ..bench.throughput import batch_ratios
     from .progress import progress_bar
@@ -42,7 +42,7 @@ def bench(chosen: tuple[str, ...], more: tuple[str, ...], out: str | None, round
     figures = [] if quick else ratios(results)
     if not chosen and not quick:
         figures += [*outside_ratios(), *batch_ratios()]
-    data = as_json(results, figures, rounds)
+    data = race_as_json(results, figures, rounds)
     print('\n\n'.join([*map(text_table, data['cases']), *([marks_table(data['ratios'])] if figures else [])]))
     if folder is not None:
         _write(folder, data)

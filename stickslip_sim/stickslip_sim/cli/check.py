@@ -33,7 +33,7 @@ def check(sources: tuple[str, ...], limits_file: str, duration: float | None, ch
     """
     _check_outputs(junit, json_file)
     _check_sources(sources, duration, changes)
-    from ..check.check_report import Checked, as_json, complaint, verdict_line
+    from ..check.check_report import Checked, checks_as_json, complaint, verdict_line
     from ..check.junit import junit_text
     from ..check.limits import load_limits
     from ..check.outcomes import outcomes_of
@@ -63,7 +63,7 @@ def check(sources: tuple[str, ...], limits_file: str, duration: float | None, ch
     if refused:      # files without these runs would look like all is well
         raise RecordingError('; '.join([*refused, *failed]))
     if json_file is not None:
-        write_text(json_file, [json.dumps(as_json(found), indent=2, allow_nan=False) + '\n'])
+        write_text(json_file, [json.dumps(checks_as_json(found), indent=2, allow_nan=False) + '\n'])
     if junit is not None:
         write_text(junit, [junit_text(found)])
     say_written(json_file, junit)

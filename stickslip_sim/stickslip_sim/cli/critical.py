@@ -36,7 +36,7 @@ def critical(scene: str, name: str, between: str | None, accuracy: float, change
     loaded = changes.load(scene)
     over = range_given(loaded, name, between, changes)
     with progress_bar('narrowing') as progress:
-        found = work.critical(loaded, over, accuracy, progress)
+        found = work.critical_of(loaded, over, accuracy, progress)
     print('\n'.join(_lines(loaded, found)))
 
 

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from ..core.types import Event, EventKind, Mode
 from ..runs import Columns
-from ..runs.normal_force import NORMAL_FORCE
+from ..runs.normal_force import LOAD_COLUMN
 from .csv_numbers import rows_text
 
-EVENT_COLUMNS = ('time', 'kind', 'direction', 'position', 'velocity', 'drive_force', 'friction_force',
+_EVENT_COLUMNS = ('time', 'kind', 'direction', 'position', 'velocity', 'drive_force', 'friction_force',
                  'static_coefficient', 'rest_time')
 SAMPLE_COLUMNS = ('time', 'position', 'velocity', 'acceleration', 'drive_position', 'drive_force', 'friction_force',
                   'mode')
@@ -21,10 +21,10 @@ _BLOCK = 10_000   # rows
 
 def event_lines(events: Iterable[Event], knots: bool = False) -> Iterator[str]:
     """Yield the lines of an event table; `knots` lists those of kind `knot` too."""
-    yield ','.join(EVENT_COLUMNS) + '\n'
+    yield ','.join(_EVENT_COLUMNS) + '\n'
     for event in events:
         if knots or event.kind != EventKind.KNOT:
-            numbers = (getattr(event, name) for name in EVENT_COLUMNS[3:])
+            numbers = (getattr(event, name) for name in _EVENT_COLUMNS[3:])
             yield f'{event.time:.17g},{event.kind.name.lower()},{event.direction:d},' \
                 + ','.join(f'{number:.17g}' for number in numbers) + '\n'
 
@@ -34,7 +34,7 @@ def sample_lines(blocks: Iterable[Columns]) -> Iterator[str]:
     names: tuple[str, ...] = ()
     for block in blocks:
         if not names:
-            names = (*SAMPLE_COLUMNS, *((NORMAL_FORCE,) if NORMAL_FORCE in block else ()))
+            names = (*SAMPLE_COLUMNS, *((LOAD_COLUMN,) if LOAD_COLUMN in block else ()))
             yield ','.join(names) + '\n'
         words = [[mode.name for mode in Mode] if name == 'mode' else None for name in names]
         yield from (rows_text(part, words) for part in parts([block[name] for name in names]))

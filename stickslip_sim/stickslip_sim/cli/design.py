@@ -43,7 +43,14 @@ def design(scene: str, parameters: str, duration: float, speeds: str | None, tra
     if out is not None:
         check_new_folder('--out', out)
     from ..design.candidate_feeds import default_speeds
-    from ..design.design_folder import PAGE, SCENE, conditions, table_heads, table_rows, write_design
+    from ..design.design_folder import (
+        EXPERIMENT_PAGE,
+        EXPERIMENT_SCENE,
+        conditions,
+        table_heads,
+        table_rows,
+        write_design,
+    )
     from ..design.experiments import Wishes, designed
     from ..design.information import Sensors
     from .progress import progress_bar
@@ -62,7 +69,7 @@ def design(scene: str, parameters: str, duration: float, speeds: str | None, tra
     if out is not None:
         with new_folder('--out', out) as folder:
             write_design(found, folder)
-        say_written(str(Path(out) / SCENE), str(Path(out) / PAGE))
+        say_written(str(Path(out) / EXPERIMENT_SCENE), str(Path(out) / EXPERIMENT_PAGE))
 
 
 def _speeds(text: str) -> tuple[float, float]:

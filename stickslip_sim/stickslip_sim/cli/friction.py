@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from .files import check_distinct, check_file, check_picture, say_written, whole, write_text
-from .friction_lines import curve_lines, fit_lines, law_lines, points_lines
+from .friction_lines import curve_lines, fit_lines, fitted_law_lines, points_lines
 
 if TYPE_CHECKING:
     from ..identification.curve.best_law import Fits
@@ -61,7 +61,7 @@ def friction(curve: str, speed_unit: str, force_unit: str | None, normal_force: 
     kinetic = points_table(measured) if law == _POINTS else chosen.scene
     made = None if out is None else _scene(kinetic, scene, changes, backward,
                                            origin_of(measured, Path(curve).stem, normal_force))
-    printed = points_lines(kinetic, measured) if law == _POINTS else law_lines(chosen)
+    printed = points_lines(kinetic, measured) if law == _POINTS else fitted_law_lines(chosen)
     print('\n'.join([*curve_lines(curve, measured, units), '', *fit_lines(fits), '', *printed]))
     if plot is not None:
         _draw(fits, chosen, curve, plot)

@@ -55,7 +55,7 @@ def fit_lines(fits: 'Fits') -> list[str]:
     return lines
 
 
-def law_lines(fit: 'Fit') -> list[str]:
+def fitted_law_lines(fit: 'Fit') -> list[str]:
     """Return the parameters of a law with their intervals, and what the residuals say."""
     from ..identification.curve.best_law import sides, sign_changes
     from ..scene.schema import BY_NAME

@@ -42,7 +42,7 @@ def identify(run: str, scene: str, free: str, out: str, laws: bool, workers: str
     count = process_count('1' if workers is None else workers)
     from ..core.errors import VerdictError
     from ..identification.identify import identify as find
-    from ..identification.report.results import PAGE, write_results
+    from ..identification.report.results import IDENTIFIED_PAGE, write_results
     from ..identification.search.work_folder import WorkFolder, facts_of
     from ..scene.load import read_text
     from .identify_lines import result_lines
@@ -58,10 +58,10 @@ def identify(run: str, scene: str, free: str, out: str, laws: bool, workers: str
         write_results(measured, found, scene, folder)
     work.finish()
     print('\n'.join(result_lines(found, measured.name)))
-    print(f'written: {Path(out) / PAGE}')
+    print(f'written: {Path(out) / IDENTIFIED_PAGE}')
     if not found.fits:
-        raise VerdictError(f'the model does not fit {measured.name}: {found.misfits[0].statement}; {Path(out) / PAGE} '
-                           'shows where')
+        raise VerdictError(f'the model does not fit {measured.name}: {found.misfits[0].statement}; '
+                           f'{Path(out) / IDENTIFIED_PAGE} shows where')
 
 
 @contextmanager

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ..study import Study
     from ..study.folder import Folder
     from ..study.picks import Ending
-    from ..study.table import Columns
+    from ..study.table import TableColumns
 
 _MOST_PICKS = 6
 _MOST_EVENTS = 10_000   # that a phase plane shows
@@ -79,7 +79,7 @@ def _check_complete(sweep: 'Folder') -> None:
         raise InputError('folder', str(sweep.path), 'that of a complete sweep', 'run the sweep again with --resume')
 
 
-def _pick(study: 'Study', columns: 'Columns', text: str) -> 'Pick':
+def _pick(study: 'Study', columns: 'TableColumns', text: str) -> 'Pick':
     """Return a point of the map with its motion."""
     from ..compare.drawn_motion import drawn_motion
     from ..compare.fresh import densely_sampled, simulate_densely

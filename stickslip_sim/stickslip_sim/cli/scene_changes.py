@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from ..study.distribution import Distribution
     from ..study.variation import Variation
 
-Command = Callable[..., Any]
+ClickCommand = Callable[..., Any]
 
 
 class SceneChanges(NamedTuple):
@@ -55,9 +55,9 @@ class SceneChanges(NamedTuple):
             check_plausible({one.name.partition('[')[0]: (one.low, one.high)}, self.meant)
 
 
-def scene_changes(help_of_set: str) -> Callable[[Command], Command]:
+def scene_changes(help_of_set: str) -> Callable[[ClickCommand], ClickCommand]:
     """Give a command the two options; it takes them as one argument `changes`."""
-    def decorated(command: Command) -> Command:
+    def decorated(command: ClickCommand) -> ClickCommand:
         @functools.wraps(command)
         def with_changes(*, changes: tuple[str, ...], meant: tuple[str, ...], **arguments: Any) -> Any:
             return command(changes=SceneChanges(changes, meant), **arguments)

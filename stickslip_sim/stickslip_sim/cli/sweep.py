@@ -38,12 +38,12 @@ def sweep(scene: str, ranges: tuple[str, ...], sobol: int | None, out: str, dura
 
 def _study(scene: str, ranges: tuple[str, ...], sobol: int | None, duration: float | None,
            changes: SceneChanges) -> 'Study':
-    from ..study import Grid, Sobol, Study, variation
+    from ..study import EvenGrid, Sobol, Study, variation
 
     loaded = changes.load(scene)
     variations = tuple(variation(text, drawn=sobol is not None) for text in ranges)
     changes.check_ranges(variations)
-    sample = Grid(variations) if sobol is None else Sobol(variations, sobol, loaded.seed)
+    sample = EvenGrid(variations) if sobol is None else Sobol(variations, sobol, loaded.seed)
     return Study(loaded.values, sample, duration)
 
 

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING
 
 import click
 
-from .scene_changes import Command, scene_changes
+from .scene_changes import ClickCommand, scene_changes
 
 if TYPE_CHECKING:
     from ..study import Study
     from ..study.folder import Folder
     from ..study.sweep import Swept
-    from ..study.table import Columns
+    from ..study.table import TableColumns
     from ..study.workers import Workers
 
 _MOST_WORKERS = 1024
@@ -30,7 +30,7 @@ _OPTIONS = (
 )
 
 
-def study_options(command: Command) -> Command:
+def study_options(command: ClickCommand) -> ClickCommand:
     """Give a command the options of every study."""
     for option in reversed(_OPTIONS):
         command = option(command)
@@ -57,7 +57,7 @@ def carry_out(study: 'Study', out: str, workers: AbstractContextManager['Workers
               resume: bool) -> tuple['Folder', 'Swept']:
     """Run a study into its folder, new or resumed; return both."""
     from ..study.folder import Folder
-    from ..study.sweep import sweep
+    from ..study.sweep import sweep_into
     from .progress import progress_bar
 
     folder = Folder(out)
@@ -68,12 +68,12 @@ def carry_out(study: 'Study', out: str, workers: AbstractContextManager['Workers
             folder.begin(study, shlex.join(['stickslip', *sys.argv[1:]]))
         try:
             with progress_bar('sweeping') as progress:
-                return folder, sweep(study, folder, members, progress)
+                return folder, sweep_into(study, folder, members, progress)
         except KeyboardInterrupt:
             raise KeyboardInterrupt(f'interrupted; what is done is kept in {out}, --resume goes on') from None
 
 
-def print_failed(study: 'Study', columns: 'Columns') -> None:
+def print_failed(study: 'Study', columns: 'TableColumns') -> None:
     """Print how many points of a study failed, if any did."""
     from ..study.point_figures import Motion
 

@@ -16,7 +16,7 @@ from .uncertainty_lines import index_lines, law_lines, percent_head
 
 if TYPE_CHECKING:
     from ..study import Saltelli, Study
-    from ..study.table import Columns
+    from ..study.table import TableColumns
     from ..study.uncertainty import Uncertainty
 
 _RESULT = 'uncertainty.json'
@@ -85,7 +85,7 @@ def _check_options(critical: str | None, between: str | None, duration: float | 
         raise click.UsageError('--of runs each point until its motion settles, in one go: no --duration, no --resume.')
 
 
-def _draw(study: 'Study', sample: 'Saltelli', columns: 'Columns', found: 'Uncertainty', path: str) -> None:
+def _draw(study: 'Study', sample: 'Saltelli', columns: 'TableColumns', found: 'Uncertainty', path: str) -> None:
     from ..study.pictures import draw_uncertainty
 
     with whole(path) as temporary:

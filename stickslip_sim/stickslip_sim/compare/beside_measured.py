@@ -23,9 +23,9 @@ from ..runs.receipt import versions
 from ..runs.slips import events_of_slips
 from ..runs.wording import quantity
 from ..simulation.cycles import Cycle, Summary, cycle_figures, summary
-from .pictures import KINDS
+from .pictures import PICTURE_KINDS
 
-FIGURES = (
+_FIGURES = (
     ('period', 'period', 's'), ('stick', 'stick_time', 's'), ('slip', 'slip_time', 's'), ('jump', 'jump', 'm'),
     ('peak speed', 'peak_speed', 'm/s'), ('drive force at break-away', 'break_away_drive_force', 'N'),
     ('drive force at arrest', 'arrest_drive_force', 'N'), ('friction at break-away', 'break_away_force', 'N'),
@@ -79,7 +79,7 @@ def write_beside(runs: Mapping[str, Run], folder: Path) -> tuple[str, list[Besid
                              f'{threshold * 1e3:.4g} mm/s: import it with another --stick-velocity')
     beside = [Beside(each, _differences(mean, found[each].mean)) for each in runs if each != name]
     drawn = {each: _drawn(run, threshold, run is measured) for each, run in runs.items()}
-    plot_over_measured(drawn, *(folder / f'overlay.{kind}' for kind in KINDS))
+    plot_over_measured(drawn, *(folder / f'overlay.{kind}' for kind in PICTURE_KINDS))
     _report(name, measured, runs, beside, folder)
     return name, beside
 
@@ -91,7 +91,7 @@ def _figures(run: Run, threshold: float) -> Summary:
 def _differences(measured: Cycle, other: Cycle | None) -> list[CycleDifference]:
     """Return the figures that were measured; another run has all, or none."""
     return [CycleDifference(name, unit, getattr(measured, field), None if other is None else getattr(other, field))
-            for name, field, unit in FIGURES
+            for name, field, unit in _FIGURES
             if not math.isnan(getattr(measured, field)) and not (other and math.isnan(getattr(other, field)))]
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from ..plots.paper_panels import DrawnMotion, Stretch
+from ..plots.paper_panels import DrawnMotion, DrawnSpan
 from ..runs import Columns, Run
 from .drawn import in_order
 from .look import look_at
@@ -20,7 +20,7 @@ def drawn_motion(run: Run) -> DrawnMotion:
     return DrawnMotion(columns, *stretches, seen.ranges)
 
 
-def _of_stretches(before: Columns, stretches: Iterable[Stretch]) -> Columns:
+def _of_stretches(before: Columns, stretches: Iterable[DrawnSpan]) -> Columns:
     """Return the states before events in stretches, with one more on either side."""
     time = before['time']
     chosen = np.zeros(len(time), dtype=np.bool_)

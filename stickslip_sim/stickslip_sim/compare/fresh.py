@@ -20,7 +20,7 @@ from ..scene import Scene
 from .drawn import Numbers
 from .ring_down import closed_form
 
-MAX_EVENTS = 50_000
+MAX_DRAWN_EVENTS = 50_000
 _IN_SPAN = 8, 200          # samples between two events, at least and at most
 _SPAN_BUDGET = 200_000     # samples of all spans
 _PERIODS, _IN_PERIOD = 8, 32   # of the ring-down after each slip
@@ -36,8 +36,8 @@ def simulate_densely(scene: Scene, duration: float) -> SimulatedRun:
 def densely_sampled(run: SimulatedRun) -> SimulatedRun:
     """Return a run with samples so dense; raises InputError on too many events."""
     scene, duration = run.scene, run.duration
-    if len(run.events) > MAX_EVENTS:
-        raise InputError('duration', duration, f'short enough for at most {MAX_EVENTS} events',
+    if len(run.events) > MAX_DRAWN_EVENTS:
+        raise InputError('duration', duration, f'short enough for at most {MAX_DRAWN_EVENTS} events',
                          f'there are {len(run.events)}: simulate a shorter time')
     simulator = scene.make_simulator()
     instants = _instants(scene, duration, run.events)
@@ -82,7 +82,7 @@ def _of_sinusoids(scene: Scene, duration: float) -> Numbers:
 def _borders(profile: InputProfile, duration: float) -> Iterator[float]:
     """Yield where an input profile goes on to its next segment, as many times as are worth a look."""
     time = profile.piece_at(0.0).end
-    for _ in range(MAX_EVENTS):
+    for _ in range(MAX_DRAWN_EVENTS):
         if not time < duration:
             return
         yield time

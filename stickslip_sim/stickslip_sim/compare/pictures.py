@@ -14,9 +14,9 @@ from ..runs import Run
 from .characteristics import characteristics_of
 from .conventional import characteristics_beside, scene_as_run
 from .drawn_motion import drawn_motion
-from .fresh import MAX_EVENTS, simulate_densely
+from .fresh import MAX_DRAWN_EVENTS, simulate_densely
 
-KINDS = ('png', 'svg')
+PICTURE_KINDS = ('png', 'svg')
 _OF_MOTION = (
     '(a) drive and friction force, (d) velocity and acceleration as the motion begins: the highest break-away after '
     'the longest rest, then cycles that repeat; (b), (e) the same over one slip: with a contact force is continuous '
@@ -78,7 +78,8 @@ def _beside(run: Run) -> dict[str, DrawnMotion]:
     scene = scene_as_run(run)
     if scene is None:
         return {}
-    duration = run.duration * min(1.0, 0.5 * MAX_EVENTS / max(len(run.events), 1))   # the last cycle is like others
+    # the last cycle is like others
+    duration = run.duration * min(1.0, 0.5 * MAX_DRAWN_EVENTS / max(len(run.events), 1))
     found = {}
     for name, other in characteristics_beside(scene).items():
         mark = _OWN if other.axis == scene.axis else ''
@@ -87,7 +88,7 @@ def _beside(run: Run) -> dict[str, DrawnMotion]:
 
 
 def _drawn(picture: Picture, folder: Path, draw_to: Callable[..., None]) -> Picture:
-    draw_to(*(folder / f'{picture.name}.{kind}' for kind in KINDS))
+    draw_to(*(folder / f'{picture.name}.{kind}' for kind in PICTURE_KINDS))
     return picture
 
 

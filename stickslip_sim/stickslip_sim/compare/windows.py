@@ -6,7 +6,7 @@ import math
 from typing import NamedTuple
 
 from ..core.types import EventKind
-from ..plots.paper_panels import Stretch
+from ..plots.paper_panels import DrawnSpan
 from ..plots.side_by_side import ALIKE
 from ..runs import Run
 from .drawn import complete_slips
@@ -20,14 +20,14 @@ _BEGINNING = 0.1               # of a slip without an end: what is shown
 class DrawnStretches(NamedTuple):
     """What is drawn of a run: its first cycles, its last complete slip, its last complete cycle (DrawnMotion)."""
 
-    opening: Stretch
-    slip: Stretch
+    opening: DrawnSpan
+    slip: DrawnSpan
     break_away: float | None
-    orbit: Stretch
-    cycle: Stretch | None
+    orbit: DrawnSpan
+    cycle: DrawnSpan | None
 
     @property
-    def all(self) -> list[Stretch]:
+    def all(self) -> list[DrawnSpan]:
         """All stretches of which the samples are needed: beside other runs more of the opening may be drawn."""
         begin, end = self.opening
         beside = begin, begin + ALIKE * (end - begin)
@@ -39,7 +39,7 @@ def drawn_stretches(run: Run) -> DrawnStretches:
     return DrawnStretches(_opening(run), *_slip(run), _orbit(run), _cycle(run))
 
 
-def _opening(run: Run) -> Stretch:
+def _opening(run: Run) -> DrawnSpan:
     cycles = run.cycles()
     if not cycles:
         return run.begin, run.end
@@ -47,7 +47,7 @@ def _opening(run: Run) -> Stretch:
     return run.begin, min(last.begin + last.period + _AFTER * last.slip_time, run.end)
 
 
-def _slip(run: Run) -> tuple[Stretch, float | None]:
+def _slip(run: Run) -> tuple[DrawnSpan, float | None]:
     """Return the last slip with a stick after it and its break-away, or how the first slip begins."""
     last = run.cycles()[-1].begin if run.cycles() else math.inf
     complete = [slip for slip in complete_slips(run.events) if slip[0].time <= last]
@@ -61,13 +61,13 @@ def _slip(run: Run) -> tuple[Stretch, float | None]:
     return (run.begin, first + _BEGINNING * (run.end - first)), first
 
 
-def _orbit(run: Run) -> Stretch:
+def _orbit(run: Run) -> DrawnSpan:
     """Return as many cycles as a picture can show."""
     cycles = run.cycles()
     return run.begin, cycles[_IN_ORBIT].begin if len(cycles) > _IN_ORBIT else run.end
 
 
-def _cycle(run: Run) -> Stretch | None:
+def _cycle(run: Run) -> DrawnSpan | None:
     if not run.cycles():
         return None
     last = run.cycles()[-1]

@@ -4,7 +4,7 @@
 
 from .cascade import Cascade
 from .drive_controller import AT_REST, Controller, DriveCommand, Memory
-from .following import Answer, Following, Progress
+from .following import Answer, Following, MoveProgress
 from .friction_branches import BranchCompensation, Slide
 from .moves import Moves, Setpoint
 
@@ -17,8 +17,8 @@ __all__ = [
     'DriveCommand',
     'Following',
     'Memory',
+    'MoveProgress',
     'Moves',
-    'Progress',
     'Setpoint',
     'Slide',
 ]

@@ -12,7 +12,7 @@ from .moves import Moves, Setpoint
 _NANOSECONDS = 1e9
 
 
-class Progress(NamedTuple):
+class MoveProgress(NamedTuple):
     """How far it has come since the moves began."""
 
     begin_ns: int      # the time of the measurement with which they began
@@ -24,7 +24,7 @@ class Progress(NamedTuple):
 class Answer(NamedTuple):
     """The command and the memory after one measurement."""
 
-    progress: Progress
+    progress: MoveProgress
     setpoint: Setpoint
     command: DriveCommand
     is_new: bool       # the moves begin with it
@@ -41,11 +41,11 @@ class Following:
     moves: Moves
     max_gap: float = 0.5
 
-    def answer(self, progress: Progress | None, time_ns: int, measured: Measured) -> Answer:
+    def answer(self, progress: MoveProgress | None, time_ns: int, measured: Measured) -> Answer:
         """Return the answer to a measurement at a time; `progress` is that of the latest one, None for the first."""
         is_new = progress is None or not 0 <= time_ns - progress.latest_ns <= self.max_gap * _NANOSECONDS
         if progress is None or is_new:
-            progress = Progress(time_ns, measured.slider_position, time_ns, AT_REST)
+            progress = MoveProgress(time_ns, measured.slider_position, time_ns, AT_REST)
         relative = self.moves.at((time_ns - progress.begin_ns) / _NANOSECONDS)
         setpoint = Setpoint(progress.origin + relative.position, relative.velocity)
         period = (time_ns - progress.latest_ns) / _NANOSECONDS

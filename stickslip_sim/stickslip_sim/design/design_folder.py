@@ -17,13 +17,13 @@ from ..runs.receipt import versions
 from ..runs.wording import quantity
 from .experiments import CRITERIA, Design, Experiment
 
-SCENE, PAGE, VALUES, PICTURE = 'experiment.yaml', 'report.html', 'report.json', 'experiment'
+EXPERIMENT_SCENE, EXPERIMENT_PAGE, _VALUES, _PICTURE = 'experiment.yaml', 'report.html', 'report.json', 'experiment'
 _ONE_PERCENT = 0.01
 
 
 def write_design(design: Design, folder: Path) -> None:
     """Write a design into a folder that exists; raises OSError when the disk refuses."""
-    (folder / SCENE).write_text(scene_file(design), encoding='utf-8')
+    (folder / EXPERIMENT_SCENE).write_text(scene_file(design), encoding='utf-8')
     best = design.best
     changes = {name: values * _ONE_PERCENT for name, values in zip(design.wishes.parameters,
                                                                    best.slopes.by_channel['position'])}
@@ -31,9 +31,9 @@ def write_design(design: Design, folder: Path) -> None:
     kinds = design.best_of_kinds
     plot_experiment(ProposedRun(best.slopes.times, samples['drive_velocity'], samples['position']), changes,
                     [one.feed.name for one in kinds], np.array([one.deviations for one in kinds]),
-                    design.wishes.known, folder / f'{PICTURE}.svg', folder / f'{PICTURE}.png')
-    (folder / VALUES).write_text(json.dumps(as_values(design), indent=1, allow_nan=False) + '\n', encoding='utf-8')
-    (folder / PAGE).write_text(_page(design, folder), encoding='utf-8')
+                    design.wishes.known, folder / f'{_PICTURE}.svg', folder / f'{_PICTURE}.png')
+    (folder / _VALUES).write_text(json.dumps(as_values(design), indent=1, allow_nan=False) + '\n', encoding='utf-8')
+    (folder / EXPERIMENT_PAGE).write_text(_page(design, folder), encoding='utf-8')
 
 
 def scene_file(design: Design) -> str:
@@ -96,7 +96,7 @@ def _page(design: Design, folder: Path) -> str:
                'each parameter, (d) what the best feed of each kind would leave of each deviation.')
     return html_page(title, [
         f'<h1>{escape(title)}</h1>', *(f'<p>{escape(text)}.</p>' for text in conditions(design)),
-        figure(folder / f'{PICTURE}.svg', caption),
+        figure(folder / f'{_PICTURE}.svg', caption),
         html_table('Feeds, the best first', table_heads(design), table_rows(design.experiments))])
 
 

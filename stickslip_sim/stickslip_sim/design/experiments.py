@@ -14,13 +14,13 @@ from ..scene import Scene, changed
 from ..sensitivity.moved_number import moved_number
 from ..study.variation import number_at
 from .candidate_feeds import Feed, feeds
-from .information import STEP, Sensors, Slopes, covariance_after, run_slopes
+from .information import SHARE_MOVED, Sensors, Slopes, covariance_after, run_slopes
 
 Numbers = NDArray[np.float64]
 Progress = Callable[[float], None] | None
 
-MOST_PARAMETERS = 20
-MOST_SAMPLES = 1_000_000
+_MOST_PARAMETERS = 20
+_MOST_SAMPLES = 1_000_000
 D_OPTIMAL, A_OPTIMAL = 'D', 'A'
 CRITERIA = {D_OPTIMAL: 'volume that is left to the parameters (D-optimal)',
             A_OPTIMAL: 'mean square of the deviations (A-optimal)'}
@@ -131,8 +131,8 @@ def _score(covariance: Numbers, criterion: str) -> float:
 def _check(scene: Scene, wishes: Wishes) -> None:
     """Raise InputError unless the wishes have a meaning."""
     names, sensors = wishes.parameters, wishes.sensors
-    if not 1 <= len(names) <= MOST_PARAMETERS or len(set(names)) < len(names):
-        raise InputError('--for', ','.join(names), f'1 to {MOST_PARAMETERS} parameters, each once',
+    if not 1 <= len(names) <= _MOST_PARAMETERS or len(set(names)) < len(names):
+        raise InputError('--for', ','.join(names), f'1 to {_MOST_PARAMETERS} parameters, each once',
                          'for example friction.static.time_constant,friction.static.limit')
     for name in names:
         _check_parameter(scene, name)
@@ -151,8 +151,8 @@ def _check(scene: Scene, wishes: Wishes) -> None:
             raise InputError(option, value, allowed, 'give a value in this range')
     if sensors.deviations['position'] == 0.0:
         raise InputError('--resolution', 0.0, '> 0 m where --noise is 0', 'no reading is exact: give one of them')
-    if not 1 <= round(wishes.duration * sensors.rate) <= MOST_SAMPLES:
-        raise InputError('--rate', sensors.rate, f'such that there are 1 to {MOST_SAMPLES} readings in '
+    if not 1 <= round(wishes.duration * sensors.rate) <= _MOST_SAMPLES:
+        raise InputError('--rate', sensors.rate, f'such that there are 1 to {_MOST_SAMPLES} readings in '
                          f'{wishes.duration:g} s', 'measure less often, or for a shorter time')
 
 
@@ -163,6 +163,6 @@ def _is_noise(deviation: float | None) -> bool:
 def _check_parameter(scene: Scene, name: str) -> None:
     if name.startswith('drive.'):
         raise InputError('--for', name, 'no parameter of the drive', 'its feed is what is proposed')
-    moved_number(scene, name, STEP)
+    moved_number(scene, name, SHARE_MOVED)
     if number_at(scene.values, name) == 0.0:
         raise InputError('--for', name, 'a number other than 0: what is known of it is a share', 'give it with --set')

@@ -26,7 +26,7 @@ from ..sensitivity.trace import Trace
 
 Numbers = NDArray[np.float64]
 
-STEP = 1e-6   # of a parameter
+SHARE_MOVED = 1e-6   # of a parameter
 _EVEN = 12.0  # variance of a reading that is rounded: resolution² over this
 
 
@@ -72,7 +72,7 @@ def run_slopes(scene: Scene, names: list[str], times: Numbers, channels: list[st
     found = np.empty((len(names), len(times), len(channels)))
     until = math.inf
     for k, name in enumerate(names):
-        moved = moved_number(scene, name, STEP)
+        moved = moved_number(scene, name, SHARE_MOVED)
         first, last = min(moved.stencil.offsets), max(moved.stencil.offsets)
         low, high = (base if offset == 0.0 else Trace(moved.scene_with(moved.at(offset)), times)
                      for offset in (first, last))

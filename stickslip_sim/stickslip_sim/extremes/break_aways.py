@@ -13,7 +13,15 @@ from ..core.input_profile import InputProfile, ramp, steps
 from ..core.types import Event, EventKind
 from ..friction import StaticLaw, StaticLawKind
 from ..solvers import Solver
-from .closed_form import DIGITS, Jump, Number, exact, exact_contact_force, exact_static_coefficient, root_near
+from .closed_form import (
+    CLOSED_FORM_DIGITS,
+    Jump,
+    Number,
+    exact,
+    exact_contact_force,
+    exact_static_coefficient,
+    root_near,
+)
 from .outcome import Measurement, Setup, Tally, require
 from .shared_axes import CONTACTS, RIGID, Contact, paper_axis, random_axis, run_events, with_static
 
@@ -46,7 +54,7 @@ def _blow(solver: Solver, contact: Contact, seed: int) -> float:
 
 
 def _distance(event: Event, force: Callable[[Number], Number], limit: Number, low: float, high: float) -> float:
-    with workdps(DIGITS):
+    with workdps(CLOSED_FORM_DIGITS):
         root = root_near(lambda t: force(t) - limit, low, high)
         return abs(float(exact(event.second, event.fraction) - root))
 
@@ -85,7 +93,7 @@ def _first_break(solver: Solver, kind: StaticLawKind, seed: int) -> float:
 
 
 def _excess_of_force(axis: Axis, event: Event, rest: float, speed: float, rate: float) -> float:
-    with workdps(DIGITS):
+    with workdps(CLOSED_FORM_DIGITS):
         t = exact(event.second, event.fraction)
         c, h = mpf(axis.drive_stiffness), mpf(axis.drive_damping)
         if isinstance(axis.contact, CompliantContact):

@@ -16,7 +16,7 @@ from mpmath import mpf, workdps
 
 from ..axis import Axis, CompliantContact
 from ..core.types import Event, EventKind, Mode
-from .closed_form import DIGITS, LinearMode, Number, exact, exact_static_coefficient
+from .closed_form import CLOSED_FORM_DIGITS, LinearMode, Number, exact, exact_static_coefficient
 from .outcome import require
 
 _BESIDE = 1e-9   # a peak that is beyond the limit by less is left to the time of the event
@@ -50,7 +50,7 @@ class _Motion(NamedTuple):
 def error_of_chain(axis: Axis, drive: float, events: Sequence[Event], duration: float) -> float:
     """Return the largest error of time over the duration and of position over the travel; raises Missed on a miss."""
     require(len(events) > 1, 'no events')
-    with workdps(DIGITS):
+    with workdps(CLOSED_FORM_DIGITS):
         zero = mpf(0)
         point = _Point(zero, Mode.STICK, 0, zero, zero, zero, zero, zero, mpf('inf'))
         travel, worst = max(abs(event.position) for event in events), 0.0

@@ -15,7 +15,7 @@ from mpmath import exp, expm1, factorial, findroot, fsum, log1p, mp, mpc, mpf, s
 from ..axis import Axis, CompliantContact
 from ..friction import StaticLaw, StaticLawKind
 
-DIGITS = 50
+CLOSED_FORM_DIGITS = 50
 Number = Any   # mpf
 
 
@@ -31,7 +31,7 @@ class LinearMode:
     """m x″ + D x′ + K x = q; arguments are the doubles that they are."""
 
     def __init__(self, mass: Number, damping: Number, stiffness: Number) -> None:
-        with workdps(DIGITS):
+        with workdps(CLOSED_FORM_DIGITS):
             self.mass = mpf(mass)
             gamma = mpf(damping) / (2 * self.mass)
             root = sqrt(mpc(gamma * gamma - mpf(stiffness) / self.mass))
@@ -41,18 +41,18 @@ class LinearMode:
 
     def integral(self, order: int, t: Number) -> Number:
         """Return G_order(t); order −1 is g′."""
-        with workdps(DIGITS):
+        with workdps(CLOSED_FORM_DIGITS):
             one, two = (_integrated(rate, order, mpf(t)) for rate in self._rates)
             return ((one - two) / (self._rates[0] - self._rates[1])).real
 
     def growth(self, t: Number) -> Number:
         """Return by how much the size of a free motion has grown or shrunk at t."""
-        with workdps(DIGITS):
+        with workdps(CLOSED_FORM_DIGITS):
             return exp(max(rate.real for rate in self._rates) * t)
 
     def response(self, jumps: Iterable[Jump], t: Number) -> tuple[Number, Number]:
         """Return x and x′ at t, from rest at 0."""
-        with workdps(DIGITS):
+        with workdps(CLOSED_FORM_DIGITS):
             past = [(t - jump.time, jump) for jump in jumps if jump.time < t]
             x = fsum(jump.size * self.integral(jump.order + 1, since) for since, jump in past) / self.mass
             u = fsum(jump.size * self.integral(jump.order, since) for since, jump in past) / self.mass
@@ -75,7 +75,7 @@ def exact_contact_force(axis: Axis, jumps: list[Jump]) -> Callable[[Number], Num
 
 def exact_static_coefficient(law: StaticLaw, rest: Number) -> Number:
     """Return mu_s after a rest time, from the formulas of the laws."""
-    with workdps(DIGITS):
+    with workdps(CLOSED_FORM_DIGITS):
         start, rise = mpf(law.initial), mpf(law.limit) - mpf(law.initial)
         if law.kind == StaticLawKind.CONSTANT:
             return start
@@ -92,13 +92,13 @@ def exact_static_coefficient(law: StaticLaw, rest: Number) -> Number:
 
 def root_near(function: Callable[[Number], Number], low: Number, high: Number) -> Number:
     """Return the root between two instants of opposite sign."""
-    with workdps(DIGITS):
+    with workdps(CLOSED_FORM_DIGITS):
         return findroot(function, (mpf(low), mpf(high)), solver='anderson', tol=mpf(10) ** -60, verify=False)
 
 
 def exact(second: float, fraction: float) -> Number:
     """Return the instant of an event without rounding."""
-    with workdps(DIGITS):
+    with workdps(CLOSED_FORM_DIGITS):
         time = Fraction(second) + Fraction(fraction)
         return mpf(time.numerator) / time.denominator
 

@@ -13,7 +13,7 @@ from ..axis import Axis, CompliantContact
 from ..core.errors import InputError
 from ..core.input_profile import InputProfile, Sinusoid, constant
 
-FREQUENCIES = 0.02, 0.2          # Hz: slow enough for the ring-down of a start to vanish before the first peak
+GRAZING_FREQUENCIES = 0.02, 0.2          # Hz: slow enough for the ring-down of a start to vanish before the first peak
 PHASES = -0.45 * math.pi, 0.45 * math.pi   # rad: the first extreme is the peak
 
 

@@ -6,7 +6,7 @@ import random
 
 from ..core.types import EventKind
 from ..solvers import Solver
-from .grazing_drive import FREQUENCIES, PHASES, grazing_drive
+from .grazing_drive import GRAZING_FREQUENCIES, PHASES, grazing_drive
 from .outcome import Measurement, Setup, Tally, require
 from .shared_axes import CONTACTS, instant, make, paper_axis
 
@@ -24,7 +24,7 @@ def grazing(setup: Setup) -> Measurement:
 def _grazes(solver: Solver, seed: int, overshoot: float) -> float:
     rng = random.Random(seed)
     axis = paper_axis(rng.choice(CONTACTS))
-    phase, frequency = rng.uniform(*PHASES), rng.uniform(*FREQUENCIES)
+    phase, frequency = rng.uniform(*PHASES), rng.uniform(*GRAZING_FREQUENCIES)
     drive = grazing_drive(axis, overshoot, frequency, phase)
     period = 1.0 / frequency
     events = make(axis, drive, solver=solver).advance(instant(2.0 * period if overshoot < 0.0 else period))

@@ -12,7 +12,7 @@ from ..axis import Axis, CompliantContact, Friction, InitialState
 from ..core.types import EventKind, Instant, Mode, Sample
 from ..friction import KineticTable, StaticLaw, StaticLawKind
 from ..solvers import Solver
-from .closed_form import DIGITS, LinearMode, exact
+from .closed_form import CLOSED_FORM_DIGITS, LinearMode, exact
 from .outcome import Measurement, Setup, Tally, require
 from .shared_axes import RIGID, instant, make, paper_axis
 
@@ -37,7 +37,7 @@ def _grows_on_the_falling_branch(solver: Solver, step: float) -> float:
     drive, start = 0.0175, 0.0165
     force = axis.normal_force * (0.12 + slope * drive)   # so that sliding with the drive is the unstable equilibrium
     simulator = make(axis, drive, force, InitialState(velocity=start), solver)
-    with workdps(DIGITS):
+    with workdps(CLOSED_FORM_DIGITS):
         friction = mpf(axis.normal_force) * (mpf(0.12) + mpf(slope) * mpf(start))
         push = (mpf(axis.drive_damping) * (mpf(drive) - mpf(start)) + mpf(force) - friction) / axis.mass
         pull = mpf(axis.drive_stiffness) * (mpf(drive) - mpf(start)) / axis.mass
@@ -60,7 +60,7 @@ def _grows_after_a_break_away(solver: Solver, step: float) -> float:
     v, c, h = 0.002, axis.drive_stiffness, axis.drive_damping
     simulator = make(axis, v, solver=solver)
     mode = LinearMode(axis.mass, mpf(h) + mpf(axis.normal_force) * mpf(slope), c)
-    with workdps(DIGITS):
+    with workdps(CLOSED_FORM_DIGITS):
         begin = (mpf(axis.normal_force) * mpf(0.24) / mpf(v) - mpf(h)) / mpf(c)
         worst, checked = 0.0, 0
         for k in range(1, round(0.76 / step) + 1):
@@ -127,7 +127,7 @@ def _falling_branch(rng: random.Random, wanted: float) -> tuple[float, float, fl
 
 def _error(axis: Axis, slope: float, drive: float, sample: Sample) -> float:
     """Return the larger error of position and speed of a slip that began at 1 m/s, at time 0 and position 0."""
-    with workdps(DIGITS):
+    with workdps(CLOSED_FORM_DIGITS):
         mass, normal, damping = axis.mass, mpf(axis.normal_force), mpf(axis.drive_damping)
         mode = LinearMode(mass, damping + normal * mpf(slope), axis.drive_stiffness)
         at_rest = mpf(axis.friction.kinetic.coefficients[0])
@@ -173,7 +173,7 @@ def _rings(solver: Solver, kind: str, seed: int) -> float:
         to = instant(10 ** rng.uniform(-2, 1) / rate)
         require(simulator.advance(to) == [], 'it does not hold')
         sample = simulator.sample()
-        with workdps(DIGITS):
+        with workdps(CLOSED_FORM_DIGITS):
             mode, t = LinearMode(mass, damping, stiffness), exact(*to)
             x, u = (mpf(stiffness) / mass * mode.integral(order, t) for order in (1, 0))
             worst = max(worst, abs(float((mpf(sample.position) - x) / x)),

@@ -12,7 +12,7 @@ from ..core.types import EventKind, Mode
 from ..friction import StaticLaw, StaticLawKind
 from ..simulation.simulator import Simulator
 from ..solvers import Solver
-from .closed_form import DIGITS, Jump, exact, exact_contact_force, exact_static_coefficient, root_near
+from .closed_form import CLOSED_FORM_DIGITS, Jump, exact, exact_contact_force, exact_static_coefficient, root_near
 from .outcome import Measurement, Setup, Tally, require
 from .shared_axes import CONTACTS, RIGID, Contact, instant, make, paper_axis, run_events, with_static
 
@@ -47,7 +47,7 @@ def _held_by_force(solver: Solver, contact: Contact, share: float, drift: list[f
              Jump(reach, 0, mpf(load) - mpf(load / reach) * mpf(reach))]
     events = simulator.advance(instant(YEAR + 20.0))
     require(events and events[0].kind == EventKind.BREAKAWAY and events[0].direction == side, 'no break-away after it')
-    with workdps(DIGITS):
+    with workdps(CLOSED_FORM_DIGITS):
         limit = mpf(axis.normal_force) * mpf(0.24)
         if contact == RIGID:
             expected = (limit - abs(mpf(load))) / _RAMP
@@ -70,7 +70,7 @@ def _held_by_drive(solver: Solver, contact: Contact, share: float, drift: list[f
     events = simulator.advance(instant(YEAR + 2000.0))
     side = 1.0 if v > 0.0 else -1.0
     require(events and events[0].kind == EventKind.BREAKAWAY and events[0].direction == side, 'no break-away after it')
-    with workdps(DIGITS):
+    with workdps(CLOSED_FORM_DIGITS):
         limit = mpf(axis.normal_force) * mpf(0.24)
         c, h, v = mpf(c), mpf(h), mpf(v)
         low = (limit / abs(v) - h - c * reach) / c
@@ -102,7 +102,7 @@ def _ageing(solver: Solver, contact: Contact) -> float:
     force = InputProfile((0.0, YEAR), (0.0, 0.0), (0.0, _RAMP))
     events = make(axis, 0.0, force, InitialState(rest_time=0.0), solver).advance(instant(YEAR + 100.0))
     require(events and events[0].kind == EventKind.BREAKAWAY, 'no break-away')
-    with workdps(DIGITS):
+    with workdps(CLOSED_FORM_DIGITS):
         rest = exact(events[0].second, events[0].fraction)
         return abs(float(events[0].static_coefficient / exact_static_coefficient(law, rest) - 1))
 
@@ -127,7 +127,7 @@ def rest_times(setup: Setup) -> Measurement:
 
 def _coefficient(kind: StaticLawKind, tau: float, rest: float) -> float:
     law = StaticLaw(kind, 0.12, 0.24, tau, 0.7)
-    with workdps(DIGITS):
+    with workdps(CLOSED_FORM_DIGITS):
         return abs(float(law.coefficient(rest) / exact_static_coefficient(law, mpf(rest)) - 1))
 
 
@@ -138,7 +138,7 @@ def _of_break_away(solver: Solver, axis: Axis) -> float:
     worst = 0.0
     for event in events:
         rest = mp.inf if event.rest_time == float('inf') else mpf(event.rest_time)
-        with workdps(DIGITS):
+        with workdps(CLOSED_FORM_DIGITS):
             wanted = exact_static_coefficient(axis.friction.static, rest)
             worst = max(worst, abs(float(event.static_coefficient / wanted - 1)))
     return worst

@@ -12,7 +12,7 @@ from ..core.input_profile import InputProfile, constant
 from ..core.types import Event, EventKind, Instant
 from ..solvers import Solver
 from .against import error_of_events
-from .closed_form import DIGITS, exact
+from .closed_form import CLOSED_FORM_DIGITS, exact
 from .outcome import Measurement, Setup, Tally, require
 from .shared_axes import CONTACTS, RIGID, Contact, elapsed, make, paper_axis
 
@@ -64,7 +64,7 @@ def _events(solver: Solver, contact: Contact, drive: InputProfile, place: float,
 def _first_break_away(solver: Solver, feed: float) -> float:
     """Return the error of the first break-away, at (N mu_s − h v)/(c v) if rigid, s; 1e-15 of it is allowed."""
     axis = paper_axis(RIGID)
-    with workdps(DIGITS):
+    with workdps(CLOSED_FORM_DIGITS):
         at = (mpf(axis.normal_force) * mpf(0.24) / mpf(feed) - axis.drive_damping) / axis.drive_stiffness
         if at <= 0:
             return 0.0

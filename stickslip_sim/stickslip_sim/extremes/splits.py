@@ -16,7 +16,17 @@ from ..simulation.simulator import Simulator
 from ..simulation.solved_axis import MAX_EVENTS_PER_ADVANCE
 from ..solvers import Solver
 from .outcome import Measurement, Setup, Tally, require
-from .shared_axes import COMPLIANT, CONTACTS, RIGID, Contact, instant, make, paper_axis, random_axis, random_profiles
+from .shared_axes import (
+    COMPLIANT,
+    CONTACTS,
+    RIGID,
+    Contact,
+    instant,
+    make,
+    paper_axis,
+    random_axis,
+    random_profiles,
+)
 
 _PATIENCE = 20.0   # s for a tick full of events; a solver that spins takes for ever
 

@@ -11,9 +11,9 @@ import numpy as np
 from ..core.types import EventKind, Mode
 from ..scene import Scene, load_scene
 from ..solvers import Solver
-from ..study import Grid, Motion, Study, Variation
+from ..study import EvenGrid, Motion, Study, Variation
 from ..study.answer_changes import Transition
-from ..study.critical import critical
+from ..study.critical import critical_of
 from ..study.points import scene_at
 from .outcome import Measurement, Setup, Tally, require
 from .shared_axes import instant, make, of_kind
@@ -62,7 +62,7 @@ def answers(setup: Setup) -> Measurement:
 def _motion(solver: Solver, name: str, feed: float, mass: float) -> float:
     """Run a scene as a point of a sweep; the reported motion should go on."""
     scene = load_scene(name, {'drive.velocity': feed})
-    study = Study(scene.values, Grid((Variation('axis.mass', mass, 1.1 * mass, 2),)))
+    study = Study(scene.values, EvenGrid((Variation('axis.mass', mass, 1.1 * mass, 2),)))
     motion = study.figures(0, 1).motion[0]
     count = _sticks(solver, scene_at(scene.values, ['axis.mass'], np.array([mass])))
     require(motion in (Motion.STICK_SLIP, Motion.SMOOTH_SLIDING, Motion.UNDECIDED), f'a motion without a run: {motion}')
@@ -86,7 +86,7 @@ def _border(solver: Solver, k: int, side: int, step: float) -> float:
 @cache
 def _transition(k: int) -> Transition:
     name, changes, parameter, low, high = _BORDERS[k]
-    found = critical(load_scene(name, dict(changes)), Variation(parameter, low, high, log=True), _ACCURACY).from_rest
+    found = critical_of(load_scene(name, dict(changes)), Variation(parameter, low, high, log=True), _ACCURACY).from_rest
     require(len(found.transitions) == 1, f'{len(found.transitions)} transitions')
     return found.transitions[0]
 

@@ -25,7 +25,7 @@ from .identified import Identification
 from .search.law_comparison import with_laws
 from .search.many_fits import Keeper, fits_from
 from .search.slip_fit import best_of_slips
-from .search.stages import Progress, best_fit
+from .search.stages import StageProgress, best_fit
 from .search.starts import starts_of
 from .search.whole_position import along_the_run
 from .trial.axis_model import AxisModel
@@ -33,7 +33,7 @@ from .trial.axis_model import AxisModel
 
 def identify(run: Run | str | os.PathLike[str], start: SceneOrName, free: str | Path | Mapping[str, object], *,
              resolutions: Mapping[str, float] | None = None, seed: int = 0, workers: int = 1,
-             laws: bool = False, progress: Progress | None = None, keeper: Keeper | None = None) -> Identification:
+             laws: bool = False, progress: StageProgress | None = None, keeper: Keeper | None = None) -> Identification:
     """Return the scene that reproduces a measured or recorded run, found from the scene `start`.
 
     `free` is a file as `uncertainty --with` takes it, or its section of parameters, and names beside parameters of the

@@ -41,7 +41,7 @@ _ABOVE: dict[str, Any] = {'loc': 'lower right', 'bbox_to_anchor': (1.0, 0.99), '
 _LETTERS = 'adbecf'   # the paper counts down the columns
 _ARROWED = 0.15   # of the picture's extent: a shorter stretch gets no arrow
 
-Stretch = tuple[float, float]   # s, from and to
+DrawnSpan = tuple[float, float]   # s, from and to
 _STRETCH = 'stretch of the drive spring'
 RANGED: dict[str, Callable[[Mapping[str, Numbers]], Numbers]] = {
     'velocity': lambda columns: columns['velocity'],
@@ -57,11 +57,11 @@ class DrawnMotion(NamedTuple):
     """
 
     columns: Mapping[str, Numbers]
-    opening: Stretch           # of panels a and b
-    slip: Stretch              # of panels c and d
+    opening: DrawnSpan           # of panels a and b
+    slip: DrawnSpan              # of panels c and d
     break_away: float | None   # s, 0 of their time axis
-    orbit: Stretch             # that panels e and f show in grey
-    cycle: Stretch | None      # that they stress
+    orbit: DrawnSpan             # that panels e and f show in grey
+    cycle: DrawnSpan | None      # that they stress
     ranges: Mapping[str, tuple[float, float]]
 
 

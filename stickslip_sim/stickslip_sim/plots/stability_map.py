@@ -25,7 +25,7 @@ from .paper_panels import DrawnMotion, phase_plane
 from .scale import Scale
 from .style import BLACK, DOUBLE_COLUMN, GREY, JOURNAL, RED, SINGLE_COLUMN, Numbers, legend_of, legend_outside, save
 
-PLAIN = ('smooth sliding', SWINGS_ON, 'at rest', 'failed', 'undecided')
+PLAIN_MOTIONS = ('smooth sliding', SWINGS_ON, 'at rest', 'failed', 'undecided')
 _PLAIN_COLOURS = ('#f2f2f2', '#c4c4c4', '#56B4E9', '#ffffff', '#ffffff')
 _HATCHES = {3: ('xxxxxx', RED), 4: ('//////', BLACK)}   # unknown motions have no colour
 _LOST = (0, (4.0, 2.0))
@@ -36,7 +36,7 @@ _HEIGHT, _PORTRAIT_HEIGHT = 3.3, 1.6   # in
 class Field(NamedTuple):
     """The colours of a map at every `x` (columns) and `y` (rows): `values` of a figure, NaN where `plain` has a colour.
 
-    Numbers in `plain` are places in `PLAIN`.
+    Numbers in `plain` are places in `PLAIN_MOTIONS`.
     """
 
     x: Numbers
@@ -85,13 +85,13 @@ def _map(panel: Axes, scales: tuple[Scale, Scale, Scale], field: Field, lines: L
     bar = panel.pcolormesh(*at, colour.shown(field.values), norm=_norm(field.values, colour), cmap='cividis',
                            shading='flat', rasterized=True)
     plain = np.where(np.isnan(field.values), field.plain, np.nan)
-    panel.pcolormesh(*at, plain, cmap=ListedColormap(_PLAIN_COLOURS), vmin=-0.5, vmax=len(PLAIN) - 0.5,
+    panel.pcolormesh(*at, plain, cmap=ListedColormap(_PLAIN_COLOURS), vmin=-0.5, vmax=len(PLAIN_MOTIONS) - 0.5,
                      shading='flat', rasterized=True)
     for k, (hatch, ink) in _HATCHES.items():
         if (plain == k).any():
             panel.pcolor(*at, np.where(plain == k, plain, np.nan), facecolor='none', edgecolor=ink, hatch=hatch,
                          linewidth=0.0, rasterized=True)
-    handles += [_patch(k) for k in range(len(PLAIN)) if (plain == k).any()]
+    handles += [_patch(k) for k in range(len(PLAIN_MOTIONS)) if (plain == k).any()]
     if not np.isnan(field.values).all():
         ticks = LogLocator(subs=(1.0, 2.0, 5.0)) if isinstance(bar.norm, LogNorm) else None
         panel.figure.colorbar(bar, ax=panel, label=colour.label, pad=0.02, ticks=ticks, format='%g').minorticks_off()
@@ -106,9 +106,9 @@ def _map(panel: Axes, scales: tuple[Scale, Scale, Scale], field: Field, lines: L
 
 
 def _patch(place: int) -> Patch:
-    """Return the entry of a place in `PLAIN` in the legend."""
+    """Return the entry of a place in `PLAIN_MOTIONS` in the legend."""
     hatch, ink = _HATCHES.get(place, ('', GREY))
-    return Patch(facecolor=_PLAIN_COLOURS[place], edgecolor=ink, hatch=hatch, linewidth=0.4, label=PLAIN[place])
+    return Patch(facecolor=_PLAIN_COLOURS[place], edgecolor=ink, hatch=hatch, linewidth=0.4, label=PLAIN_MOTIONS[place])
 
 
 def _norm(values: Numbers, scale: Scale) -> Normalize:

@@ -4,7 +4,7 @@
 
 from typing import NamedTuple
 
-from ..rig import FAILED
+from ..rig import DRIVE_FAILED
 from .step_loop import StepLoop
 
 
@@ -36,4 +36,4 @@ class Refusals:
 
     def _so_far(self) -> list[Refusal]:
         return [*(Refusal(slot.name, slot.last_refusal, slot.refused) for slot in self._loop.slots),
-                Refusal('velocity', FAILED, self._loop.rig.counts.refused)]
+                Refusal('velocity', DRIVE_FAILED, self._loop.rig.counts.refused)]

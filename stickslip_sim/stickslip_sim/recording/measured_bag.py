@@ -23,7 +23,7 @@ MEASURED = 'measured'            # the origin in the metadata of such a bag, and
 NO_MODE = 255                    # of a state whose mode nobody measured
 OF_STATE = ('position', 'velocity', 'acceleration', 'drive_position', 'drive_velocity', 'drive_force')
 OF_FORCES = {'friction_force': topics.FRICTION_FORCE, 'external_force': topics.EXTERNAL_FORCE}
-LATEST = 9.2e9                   # s: log times are whole nanoseconds of 64 bits
+_LATEST = 9.2e9                   # s: log times are whole nanoseconds of 64 bits
 
 
 def write_measured(folder: Path | str, times: Numbers, columns: Mapping[str, Numbers], facts: Mapping[str, str]
@@ -32,8 +32,8 @@ def write_measured(folder: Path | str, times: Numbers, columns: Mapping[str, Num
 
     `facts` say where they come from.  Raises InputError on times that no bag can have, and RecordingError.
     """
-    if not 0.0 <= times[0] <= times[-1] <= LATEST:
-        raise InputError('time', float(times[0]), f'0 to {LATEST:g} s', 'let time begin at 0 or later')
+    if not 0.0 <= times[0] <= times[-1] <= _LATEST:
+        raise InputError('time', float(times[0]), f'0 to {_LATEST:g} s', 'let time begin at 0 or later')
     stamps = np.rint(times * 1e9).astype(np.int64)
     used = [topics.SLIDER_STATE, *(topic for name, topic in OF_FORCES.items() if name in columns)]
     steps = np.arange(len(times), dtype=np.int64)

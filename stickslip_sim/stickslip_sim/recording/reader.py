@@ -29,7 +29,7 @@ from .schemas import store_of, understood
 from .topic_columns import Block, RecordedMessage, TopicColumns, column_blocks
 from .topics import MODE_EVENT, Topic
 
-MOST_HELD = 4 << 30    # bytes of a topic in memory at once
+MOST_BYTES = 4 << 30    # bytes of a topic in memory at once
 OVERHEAD = 300         # bytes of a message there beside its own
 
 EVENT_FIELDS = ('time', 'kind', 'mode', 'direction', 'position', 'velocity', 'drive_force', 'friction_force',
@@ -220,7 +220,7 @@ class Bag:
     def _room(self, topic: str, first: Block) -> Block:
         """Return columns for all messages of a topic; raises RecordingError on more than fits."""
         count = self.counts[topic]
-        if (size := count * sum(column.itemsize for column in first.values())) > MOST_HELD:
+        if (size := count * sum(column.itemsize for column in first.values())) > MOST_BYTES:
             raise RecordingError(f'{self.path}: {topic} has {count} messages of {size >> 20} MiB in all, which do not '
                                  'fit: take messages() one by one, or a part of the recording')
         return {name: np.empty(count, column.dtype) for name, column in first.items()}

@@ -28,7 +28,7 @@ from .mcap_chunk import bytes_of
 from .message_places import Messages, messages_in
 
 _Part = TypeVar('_Part')
-SIZE_LIMIT = 32 << 20   # bytes of a record, and of what a chunk unpacks to; rosbag2 makes chunks of 1 to 4 MiB
+RECORD_LIMIT = 32 << 20   # bytes of a record, and of what a chunk unpacks to; rosbag2 makes chunks of 1 to 4 MiB
 COMPRESSIONS = ('', 'zstd', 'lz4')
 _FOOTER = struct.Struct('<QQI')   # where the summary begins, and its part of offsets; checksum of all that but itself
 _CHECKSUM_SIZE = 4
@@ -98,7 +98,7 @@ class _Records(StreamReader):
     """The records of a file without the indexes of its messages, which take longer to read than the messages."""
 
     def _read_record(self, opcode: int, length: int) -> McapRecord | None:
-        if opcode == Opcode.MESSAGE_INDEX and length <= SIZE_LIMIT:
+        if opcode == Opcode.MESSAGE_INDEX and length <= RECORD_LIMIT:
             self._stream.read(length)
             return None
         return super()._read_record(opcode, length)
@@ -111,7 +111,7 @@ class _Careful:
         self._file = file
 
     def read(self, size: int) -> bytes:
-        if not 0 <= size <= SIZE_LIMIT:
+        if not 0 <= size <= RECORD_LIMIT:
             raise McapError(f'a part of {size} bytes')
         return self._file.read(size)
 
@@ -188,8 +188,8 @@ def _content(path: Path, record: Chunk) -> bytes:
     if record.compression not in COMPRESSIONS:
         raise RecordingError(f'{path}: its chunks are compressed with {record.compression!r}; zstd, lz4 and none are '
                              'read: convert it first (mcap compress)')
-    if record.uncompressed_size > SIZE_LIMIT:
-        raise RecordingError(f'{path}: a chunk of {record.uncompressed_size} bytes; at most {SIZE_LIMIT} are read: '
+    if record.uncompressed_size > RECORD_LIMIT:
+        raise RecordingError(f'{path}: a chunk of {record.uncompressed_size} bytes; at most {RECORD_LIMIT} are read: '
                              'write it anew with smaller chunks (mcap compress --chunk-size)')
     data = _decompressed(record)
     if len(data) != record.uncompressed_size:

@@ -16,7 +16,7 @@ from ..core.errors import RecordingError
 from .definitions import definition
 from .layout import Layout, number_fields
 
-LONGEST = 128 * 1024    # letters of a definition: a second or two of reading
+LONGEST_DEFINITION = 128 * 1024    # letters of a definition: a second or two of reading
 MOST_ELEMENTS = 1000    # of arrays of fixed length in a type, of texts and messages
 _RULE = '=' * 80
 _TYPE_OF_FIELD = re.compile(r'^\s*([A-Za-z]\w*(?:/\w+)*)(?:<=\d+)?(?:\[[^\]]*\])?\s+\w', re.MULTILINE)
@@ -59,8 +59,8 @@ def _add(store: Typestore, definitions: Mapping[str, str]) -> None:
     """Add the types of definitions to a store, but for those that it has; raises RecordingError."""
     types: dict[str, Any] = {}
     for name, text in definitions.items():
-        if len(text) > LONGEST:
-            raise RecordingError(f'{name} is defined in {len(text)} letters; at most {LONGEST} are read')
+        if len(text) > LONGEST_DEFINITION:
+            raise RecordingError(f'{name} is defined in {len(text)} letters; at most {LONGEST_DEFINITION} are read')
         with understood(f'the definition of {name}'):
             types.update(get_types_from_msg(text, name))
     _check_arrays(types)

@@ -22,7 +22,7 @@ from .search import LIMIT, SPEED_DOWN, SPEED_UP, SURPLUS_UP, Step, slip_step, st
 
 GUARD_DIGITS = 12
 UNSEEN_COAST = mpf(10) ** -15  # |R - B| against N mu_b after a compliant break-away
-MOST_EVENTS = 200_000
+_MOST_EVENTS = 200_000
 _ZERO = mpf(0)
 
 
@@ -199,8 +199,8 @@ class _Automaton:
 
     def _emit(self, kind: str, direction: int, friction: mpf, static: mpf | None = None, rest: mpf = _ZERO) -> None:
         """List an event; its static coefficient is that of its direction at no rest, if none is given."""
-        if len(self.result) >= MOST_EVENTS:
-            raise SolverError(f'{MOST_EVENTS} events up to t = {mpmath.nstr(self.t, 17)} s: check the scene')
+        if len(self.result) >= _MOST_EVENTS:
+            raise SolverError(f'{_MOST_EVENTS} events up to t = {mpmath.nstr(self.t, 17)} s: check the scene')
         self.result.append(
             Event(
                 self.t,

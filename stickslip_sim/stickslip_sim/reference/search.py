@@ -54,11 +54,11 @@ def _time_scale(flow: Flow, state: State, h: mpf) -> mpf:
     return 1 / rate if rate else h
 
 
-Guard = tuple[str, Series, mpf]
+_Guard = tuple[str, Series, mpf]
 _ONE = [Decimal(1)]
 
 
-def _coast_guards(physics: Physics, slip: Slip, state: State, series: Expansion) -> list[Guard]:
+def _coast_guards(physics: Physics, slip: Slip, state: State, series: Expansion) -> list[_Guard]:
     """0 <= R <= B while u is constant."""
     speed, scale = abs(state.velocity), physics.force_scale(state)
     net = physics.net_series(state, series)
@@ -68,7 +68,7 @@ def _coast_guards(physics: Physics, slip: Slip, state: State, series: Expansion)
     return [(SURPLUS_UP, room, scale), (SURPLUS_DOWN, surplus, scale)]
 
 
-def _moving_guards(physics: Physics, slip: Slip, state: State, series: Expansion) -> list[Guard]:
+def _moving_guards(physics: Physics, slip: Slip, state: State, series: Expansion) -> list[_Guard]:
     """σ u' keeps its sign, and |u| its table segment (or stays above zero)."""
     rising = slip.phase == ACCELERATE
     sense = 1 if rising else -1
@@ -113,11 +113,11 @@ def stick_step(physics: Physics, stick: Stick, flow: Flow, state: State, t: mpf,
         h = max(span, h / 8)
 
 
-Found = tuple[mpf, int]
+_Found = tuple[mpf, int]
 _SIDES = 1, -1   # of physics.sides
 
 
-def _unheld(now: mpf, force: Sequence[Decimal]) -> Found | None:
+def _unheld(now: mpf, force: Sequence[Decimal]) -> _Found | None:
     """Return when and on which side a rest without a normal force ends: at once, if it is pushed at all.
 
     No force is small beside a limit of 0; against the other forces of the axis the contact's may be.
@@ -126,7 +126,7 @@ def _unheld(now: mpf, force: Sequence[Decimal]) -> Found | None:
     return None if first is None else (mpf(0), 1 if first > 0 else -1)
 
 
-def _over(limits: Iterable[Series], force: Series, h: mpf, scale: mpf, time: mpf) -> Found | None:
+def _over(limits: Iterable[Series], force: Series, h: mpf, scale: mpf, time: mpf) -> _Found | None:
     """Return when and on which side N mu_s ∓ F falls below 0 on [0, h], N mu_s being a power series for each."""
     best = None
     for side, limit in zip(_SIDES, limits):
@@ -136,7 +136,7 @@ def _over(limits: Iterable[Series], force: Series, h: mpf, scale: mpf, time: mpf
     return best
 
 
-def _at_once(physics: Physics, stick: Stick, force: Series, t: mpf, h: mpf, found: Found) -> Found | None:
+def _at_once(physics: Physics, stick: Stick, force: Series, t: mpf, h: mpf, found: _Found) -> _Found | None:
     """Decide a rest of no age whose law has no power series there (Kato): pass if mu_s outruns F, either way."""
     age = stick.rest_time(t)
 
@@ -149,7 +149,7 @@ def _at_once(physics: Physics, stick: Stick, force: Series, t: mpf, h: mpf, foun
     return mpf(0), found[1]
 
 
-def _out(state: State, flow: Flow, series: Expansion, h: mpf, found: Found | None) -> Step:
+def _out(state: State, flow: Flow, series: Expansion, h: mpf, found: _Found | None) -> Step:
     if found is None:
         return Step(h, after(state, flow, series, h), None)
     time, side = found

@@ -21,7 +21,7 @@ from mpmath import exp, inf, isinf, mp, mpf
 from .precision import to_decimal
 from .series import Series, series
 
-LAWS = ('constant', 'exponential', 'kato', 'hyperbolic', 'logarithmic')
+_LAWS = ('constant', 'exponential', 'kato', 'hyperbolic', 'logarithmic')
 _ORDER = 70
 
 

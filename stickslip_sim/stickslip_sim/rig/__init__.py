@@ -8,7 +8,7 @@ before the same steps give the same numbers in real time, in lock-step, as fast 
 
 from .encoder import Measured
 from .faults import Fault
-from .rig import FAILED, SILENT_BRIDGE, Rig
+from .rig import DRIVE_FAILED, SILENT_BRIDGE, Rig
 from .step_result import RigEvent, RigEventKind, StepResult
 
-__all__ = ['FAILED', 'SILENT_BRIDGE', 'Fault', 'Measured', 'Rig', 'RigEvent', 'RigEventKind', 'StepResult']
+__all__ = ['DRIVE_FAILED', 'SILENT_BRIDGE', 'Fault', 'Measured', 'Rig', 'RigEvent', 'RigEventKind', 'StepResult']

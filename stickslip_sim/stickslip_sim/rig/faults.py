@@ -54,7 +54,7 @@ def value_of_kind(kind: str) -> str:
     return '' if rule is _NONE else rule.allowed
 
 
-def check(fault: Fault, period: float) -> None:
+def check_fault(fault: Fault, period: float) -> None:
     """Raise InputError on a fault without a meaning; `period` is the length of a step, s."""
     if fault.kind not in RULES:
         raise InputError('kind', fault.kind, 'one of ' + ', '.join(RULES), 'choose one of these')
@@ -101,7 +101,7 @@ class Faults:
     def inject(self, fault: Fault, step: int) -> Fault:
         """Plan a fault whose start counts from the start of a step; return it with its id.  Raises InputError."""
         fault = fault if fault.id else fault._replace(id=self._free_id(fault.kind))
-        check(fault, 1.0 / self._grid.rate)
+        check_fault(fault, 1.0 / self._grid.rate)
         if fault.id in self.ids:
             raise InputError('id', fault.id, 'not in use', 'choose another, or clear that fault first')
         if len(self.ids) >= MAX_FAULTS:
@@ -160,7 +160,7 @@ class Faults:
     def _checked(self, saved: Sequence[Any]) -> Fault:
         name, kind, *numbers = saved
         fault = Fault(str(name), str(kind), *map(float, numbers))
-        check(fault, 1.0 / self._grid.rate)
+        check_fault(fault, 1.0 / self._grid.rate)
         return fault
 
     def _look_ahead(self) -> None:

@@ -240,7 +240,7 @@ class Rig:
 _NEVER = 2**62    # a step that no run reaches
 SILENT_BRIDGE = ('a bridge that sends only what differs from the state is silent while they are near (topic-based'
                  ' ros2_control: trigger_joint_command_threshold -1 sends always)')
-FAILED = 'fault after a time-out: the drive takes no command until ~/clear_faults or ~/reset'
+DRIVE_FAILED = 'fault after a time-out: the drive takes no command until ~/clear_faults or ~/reset'
 _TIMEOUT = f'no drive velocity for {{:.3g}} s: {{}}; {SILENT_BRIDGE}'
 _REACTIONS = {'hold': 'the latest is held', 'ramp_to_zero': 'the drive stops until the next',
               'fault': 'the drive stops and takes none until ~/clear_faults or ~/reset'}

@@ -26,7 +26,7 @@ from ..recording.stamped_folder import stamped_folder
 from .demo_report import report
 from .node.topics import publisher, subscription
 
-SCENE = 'paper_fig8'
+DEMO_SCENE = 'paper_fig8'
 _PATIENCE = 30.0    # s for the node to appear, and to end
 
 
@@ -86,9 +86,9 @@ class Driver(Node):  # type: ignore[misc]
 def main() -> int:
     """Run the demonstration; return the exit code."""
     options = _options()
-    folder = stamped_folder(options.out, SCENE)
+    folder = stamped_folder(options.out, DEMO_SCENE)
     try:
-        print(f'starting sim_node on {SCENE} for {options.duration:g} s of real time')
+        print(f'starting sim_node on {DEMO_SCENE} for {options.duration:g} s of real time')
         with _driver(options.duration) as driver, _node_process(folder) as process:
             _drive(driver, process, options.duration)
         print('\n'.join(report(folder)))
@@ -113,7 +113,7 @@ def _options() -> argparse.Namespace:
 def _node_process(folder: Path) -> Iterator[subprocess.Popen[bytes]]:
     """Run the node, recording into a folder, and end it as Ctrl-C does; raises RecordingError unless it ends well."""
     process = subprocess.Popen(
-        [_executable('sim_node'), '--ros-args', '--log-level', 'warn', '-p', f'scene:={SCENE}',
+        [_executable('sim_node'), '--ros-args', '--log-level', 'warn', '-p', f'scene:={DEMO_SCENE}',
          '-p', 'record.enabled:=true', '-p', f'record.folder:={folder.absolute()}'],
         start_new_session=True)    # so that Ctrl-C reaches it through here only
     try:

@@ -12,7 +12,7 @@ from ..check.check_report import real_time_verdict
 from ..recording import read_run
 from ..simulation.cycles import Summary
 
-PICTURE = 'run.png'
+_PICTURE = 'run.png'
 _FIGURES = (
     ('period', 'period', 1.0, 's'), ('stick time', 'stick_time', 1.0, 's'), ('slip time', 'slip_time', 1.0, 's'),
     ('jump', 'jump', 1e3, 'mm'), ('peak speed', 'peak_speed', 1e3, 'mm/s'),
@@ -23,8 +23,8 @@ _FIGURES = (
 def report(folder: Path) -> list[str]:
     """Draw the picture of a run into its folder; return the lines to print about it."""
     run = read_run(folder)
-    run.plot(folder / PICTURE)
-    return [f'bag      {folder} ({sum(run.bag.counts.values())} messages)', f'picture  {folder / PICTURE}',
+    run.plot(folder / _PICTURE)
+    return [f'bag      {folder} ({sum(run.bag.counts.values())} messages)', f'picture  {folder / _PICTURE}',
             *cycle_lines(run.summary), *timing_lines(run.bag.columns('/timing')),
             *(f'verdict  {verdict}' for verdict in [real_time_verdict(run)] if verdict)]
 

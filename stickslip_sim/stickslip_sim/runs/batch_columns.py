@@ -51,7 +51,7 @@ class Column(NamedTuple):
     at: int | None = None
 
 
-COLUMNS: Mapping[str, Column] = {
+BATCH_COLUMNS: Mapping[str, Column] = {
     'mass': Column('axis.mass', MASS),
     'drive_stiffness': Column('axis.drive_stiffness', STIFFNESS),
     'drive_damping': Column('axis.drive_damping', DAMPING),
@@ -89,7 +89,7 @@ def parameter_rows(axis: Axis, count: int, given: Mapping[str, Numbers]) -> Numb
     for places in _STATIC.values():
         rows[:, places] = packed[[*places]]
     for name, values in _with_backward(axis, given).items():
-        at = COLUMNS[name].at
+        at = BATCH_COLUMNS[name].at
         if at is not None:
             rows[:, at] = values
     if any(name.startswith(f'static_{_BACKWARD}') for name in given):
@@ -128,12 +128,12 @@ def _with_backward(axis: Axis, given: Mapping[str, Numbers]) -> dict[str, Number
 
 
 def _column(name: str, axis: Axis) -> Column:
-    if name not in COLUMNS:
-        raise InputError(name, 'given', 'one of drive_velocity, external_force, ' + ', '.join(COLUMNS),
+    if name not in BATCH_COLUMNS:
+        raise InputError(name, 'given', 'one of drive_velocity, external_force, ' + ', '.join(BATCH_COLUMNS),
                          'rename it, or leave it out')
     if name.startswith('contact_') and not pack(axis)[COMPLIANT]:
         raise InputError(name, 'given', 'left out with a rigid contact', 'give the axis a compliant contact')
-    return COLUMNS[name]
+    return BATCH_COLUMNS[name]
 
 
 def _check_friction(rows: Numbers) -> None:

@@ -17,7 +17,7 @@ from ..friction.kinetic import default_excess
 from ..friction.shapes import Decay
 
 Numbers = NDArray[np.float64]
-Values = Mapping[str, Any]
+_Values = Mapping[str, Any]
 
 LISTS = ('velocities', 'coefficients')
 _OF_A_TABLE = (*LISTS, 'end_slope')
@@ -54,14 +54,14 @@ def _plain(values: Any) -> Any:
     return tuple(values.tolist()) if np.ndim(values) else float(values)
 
 
-def _name(name: str, given: Values) -> str:
+def _name(name: str, given: _Values) -> str:
     """Return the name in a batch of what an error of a table is about."""
     leaf = name.partition('[')[0].rpartition('.')[2]
     found = [known for known in given if known in (leaf, _BACKWARD + leaf)] or list(given)
     return f'kinetic_{found[0]}'
 
 
-def _changed(friction: Friction, given: Values) -> Friction:
+def _changed(friction: Friction, given: _Values) -> Friction:
     """Return the friction of an axis; what is not given backwards is as it was, or as forwards."""
     back = {name.removeprefix(_BACKWARD): value for name, value in given.items() if name.startswith(_BACKWARD)}
     ahead = {name: value for name, value in given.items() if not name.startswith(_BACKWARD)}
@@ -71,7 +71,7 @@ def _changed(friction: Friction, given: Values) -> Friction:
     return replace(forwards, backward=_one_way(friction.backward or forwards, back))
 
 
-def _one_way(friction: Friction, given: Values) -> Friction:
+def _one_way(friction: Friction, given: _Values) -> Friction:
     if not given:
         return friction
     old = friction.kinetic
@@ -82,7 +82,7 @@ def _one_way(friction: Friction, given: Values) -> Friction:
     return replace(friction, kinetic=kinetic, excess=excess)
 
 
-def _table(table: KineticTable, given: Values) -> KineticTable:
+def _table(table: KineticTable, given: _Values) -> KineticTable:
     for name, value in given.items():
         if name not in _OF_A_TABLE:
             raise InputError(f'friction.kinetic.{name}', value, 'left out where friction.kinetic.law is a table',
@@ -90,7 +90,7 @@ def _table(table: KineticTable, given: Values) -> KineticTable:
     return replace(table, **given)
 
 
-def _smooth(table: KineticTable, given: Values) -> KineticTable:
+def _smooth(table: KineticTable, given: _Values) -> KineticTable:
     law, changes = table.law, dict(given)
     assert law is not None
     for name, value in given.items():

@@ -9,15 +9,15 @@ from weakref import WeakKeyDictionary
 
 from .run import Run
 
-Found = TypeVar('Found')
+_Found = TypeVar('_Found')
 
 
-def kept(find: Callable[[Run], Found]) -> Callable[[Run], Found]:
+def kept(find: Callable[[Run], _Found]) -> Callable[[Run], _Found]:
     """Return a function that finds the same, but looks at each run only once; what it finds must not hold the run."""
-    known: WeakKeyDictionary[Run, Found] = WeakKeyDictionary()
+    known: WeakKeyDictionary[Run, _Found] = WeakKeyDictionary()
 
     @wraps(find)
-    def kept_or_found(run: Run) -> Found:
+    def kept_or_found(run: Run) -> _Found:
         if run not in known:
             known[run] = find(run)
         return known[run]

@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 from ..scene import Scene
 from .run import Columns
 
-NORMAL_FORCE = 'normal_force'
+LOAD_COLUMN = 'normal_force'
 
 
 def normal_force_of(scene: Scene, times: NDArray[np.float64]) -> Columns:
     """Return the column of the normal force at times (s), N, as the scene has it; none where it does not vary."""
-    return {} if scene.normal_load is None else {NORMAL_FORCE: scene.normal_force.values_at(times)}
+    return {} if scene.normal_load is None else {LOAD_COLUMN: scene.normal_force.values_at(times)}
 
 
 def recorded_normal_force(scene: Scene, samples: Columns, is_changed: bool) -> Columns:
@@ -29,4 +29,4 @@ def recorded_normal_force(scene: Scene, samples: Columns, is_changed: bool) -> C
     coefficient: NDArray[Any] = samples['friction_coefficient']
     with np.errstate(all='ignore'):
         ratio = np.abs(samples['friction_force']) / coefficient
-    return {NORMAL_FORCE: np.where(coefficient > 0.0, ratio, np.nan)}
+    return {LOAD_COLUMN: np.where(coefficient > 0.0, ratio, np.nan)}

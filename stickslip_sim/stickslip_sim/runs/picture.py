@@ -7,7 +7,7 @@ from pathlib import Path
 from ..core.errors import InputError
 from ..plots import plot_run
 from ..plots.drawn_run import TimeWindow, drawn_run
-from .normal_force import NORMAL_FORCE
+from .normal_force import LOAD_COLUMN
 from .picture_samples import sampled
 from .reduced import reduced
 from .run import Columns, Run
@@ -18,7 +18,7 @@ _READABLE = 40   # cycles of the latest period, in all of a run
 _SHOWN = 5       # cycles at the end of a longer one
 _MARGIN = 0.25   # of a period, before and after them
 _DRAWN = ('position', 'velocity', 'drive_position', 'drive_velocity', 'drive_force', 'friction_force',
-          'external_force', NORMAL_FORCE, 'mode')
+          'external_force', LOAD_COLUMN, 'mode')
 
 
 def draw_run(run: Run, window: tuple[float, float] | None, *paths: Path | str) -> None:

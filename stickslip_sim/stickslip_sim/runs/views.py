@@ -11,7 +11,7 @@ from ..core.picture_formats import check_picture_name
 from ..simulation.cycles import Cycle, cycle_figures
 from .frame import data_frame
 from .kept import kept
-from .normal_force import NORMAL_FORCE
+from .normal_force import LOAD_COLUMN
 from .run import COLUMNS, Run
 
 
@@ -38,7 +38,7 @@ class Views:
         A normal force that varies is a column more.
         """
         whole = {name: self.samples[name].astype(np.int8) for name in ('mode', 'direction')}
-        names = [*COLUMNS, *([NORMAL_FORCE] if NORMAL_FORCE in self.samples else [])]
+        names = [*COLUMNS, *([LOAD_COLUMN] if LOAD_COLUMN in self.samples else [])]
         return data_frame({name: whole.get(name, self.samples[name]) for name in names}, 'samples')
 
     def plot(self: Run, path: Path | str, window: tuple[float, float] | None = None) -> None:

@@ -18,15 +18,15 @@ import numpy as np
 from ..core.did_you_mean import suggestion
 from ..core.errors import InputError
 from ..core.types import Event, EventKind, Sample
-from .rounds import UNITS, Round, break_aways, round_figures, settled_round
-from .trace import LONGEST, Trace
+from .rounds import ROUND_UNITS, Round, break_aways, round_figures, settled_round
+from .trace import LONGEST_TRACE, Trace
 
 EVENT_UNITS = {'time': 's', 'position': 'm', 'velocity': 'm/s', 'drive_position': 'm', 'drive_force': 'N',
                'friction_force': 'N', 'static_coefficient': '', 'rest_time': 's'}
 SAMPLE_UNITS = {'position': 'm', 'velocity': 'm/s', 'acceleration': 'm/s²', 'drive_position': 'm',
                 'drive_velocity': 'm/s', 'drive_force': 'N', 'external_force': 'N', 'friction_force': 'N',
                 'friction_coefficient': '', 'contact_deflection': 'm', 'rest_time': 's'}
-KINDS = {kind.name.lower(): kind for kind in EventKind}
+_KINDS = {kind.name.lower(): kind for kind in EventKind}
 _MOST = 10_000    # the last event that can be asked for
 _FORM = ('event.N.FIELD, KIND.N.FIELD, FIELD@TIME, or one of ' + ', '.join(Round._fields))
 _FIX = 'for example event.10.time, stick.3.position, position@0.5 or period (docs/sensitivities.md)'
@@ -179,7 +179,7 @@ def figure_of(name: Any) -> Figure:
     """Return the figure of a name; raises InputError."""
     text = name.strip() if isinstance(name, str) else ''
     if text in Round._fields:
-        return CycleFigure(text, str(getattr(UNITS, text)))
+        return CycleFigure(text, str(getattr(ROUND_UNITS, text)))
     if sampled := re.fullmatch(r'(\w+)@(\S+)', text):
         return _sample_figure(text, sampled[1], sampled[2])
     if counted := re.fullmatch(r'(\w+)\.(\d{1,9})\.(\w+)', text):
@@ -188,15 +188,15 @@ def figure_of(name: Any) -> Figure:
 
 
 def _event_figure(text: str, kind: str, number: str, field: str) -> EventFigure:
-    if kind != 'event' and kind not in KINDS:
-        raise InputError('figure', text, 'of an event, or of one of the kinds ' + ', '.join(KINDS),
-                         suggestion(kind, ['event', *KINDS], _FIX))
+    if kind != 'event' and kind not in _KINDS:
+        raise InputError('figure', text, 'of an event, or of one of the kinds ' + ', '.join(_KINDS),
+                         suggestion(kind, ['event', *_KINDS], _FIX))
     if field not in EVENT_UNITS:
         raise InputError('figure', text, 'one of the fields ' + ', '.join(EVENT_UNITS),
                          suggestion(field, EVENT_UNITS, _FIX))
     if not 1 <= int(number) <= _MOST:
         raise InputError('figure', text, f'of an event from 1 to {_MOST}', 'count from 1')
-    return EventFigure(text, EVENT_UNITS[field], KINDS.get(kind), int(number), field)
+    return EventFigure(text, EVENT_UNITS[field], _KINDS.get(kind), int(number), field)
 
 
 def _sample_figure(text: str, field: str, time: str) -> SampleFigure:
@@ -207,8 +207,8 @@ def _sample_figure(text: str, field: str, time: str) -> SampleFigure:
         seconds = float(time)
     except ValueError:
         seconds = math.nan
-    if not 0.0 <= seconds <= LONGEST:
-        raise InputError('figure', text, f'at a time from 0 to {LONGEST:g} s', 'for example position@0.5')
+    if not 0.0 <= seconds <= LONGEST_TRACE:
+        raise InputError('figure', text, f'at a time from 0 to {LONGEST_TRACE:g} s', 'for example position@0.5')
     return SampleFigure(text, SAMPLE_UNITS[field], field, seconds)
 
 

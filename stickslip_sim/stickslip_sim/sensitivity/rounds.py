@@ -24,7 +24,7 @@ class Round(NamedTuple):
     break_away_force: float   # N
 
 
-UNITS = Round('s', 'm', '', 'm/s', 'N')   # type: ignore[arg-type]
+ROUND_UNITS = Round('s', 'm', '', 'm/s', 'N')   # type: ignore[arg-type]
 
 
 class Settled(NamedTuple):

@@ -23,7 +23,7 @@ from .trace import Trace
 Numbers = NDArray[np.float64]
 Progress = Callable[[float], None] | None
 
-STEP = 1e-5         # of a parameter
+_STEP = 1e-5         # of a parameter
 _SHORTEST = 1e-2    # s, the first look for events
 _LATER = (1.0, 1.001, 1.05, 1.3)   # times as long as the base run, until a run has its figures
 
@@ -72,7 +72,7 @@ class Sensitivities:
 
 
 def sensitivities(scene: SceneOrName, figures: Iterable[str], parameters: Iterable[str] | None = None,
-                  step: float = STEP, progress: Progress = None) -> Sensitivities:
+                  step: float = _STEP, progress: Progress = None) -> Sensitivities:
     """Return the derivatives of figures of a run with respect to parameters of its scene, each with its error.
 
     `figures` are names as event.10.time, stick.3.position, position@0.5 or period (docs/sensitivities.md); `parameters`
@@ -81,7 +81,8 @@ def sensitivities(scene: SceneOrName, figures: Iterable[str], parameters: Iterab
     Raises InputError, and SolverError when the scene itself cannot be run.
     """
     if not SMALLEST <= step <= LARGEST:
-        raise InputError('step', step, f'from {SMALLEST:g} to {LARGEST:g} of a parameter', f'leave it out for {STEP:g}')
+        raise InputError('step', step, f'from {SMALLEST:g} to {LARGEST:g} of a parameter',
+                         f'leave it out for {_STEP:g}')
     exact = changed(scene_of(scene), {'solver.name': 'exact'})
     asked = [figure_of(name) for name in _names('figures', figures)]
     moved = (moved_numbers(exact, step) if parameters is None

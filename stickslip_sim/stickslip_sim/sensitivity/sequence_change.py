@@ -8,7 +8,7 @@ from typing import TypeVar
 
 from .figures import Figure, described
 from .moved_number import MovedNumber
-from .trace import Step, Trace
+from .trace import EventKey, Trace
 
 _HALVINGS = 60
 _T = TypeVar('_T')
@@ -65,7 +65,7 @@ def _bisected(figure: Figure, base: Trace, run: Callable[[float], Trace | None],
     return own if same == own else other, found
 
 
-def _steps(figure: Figure, trace: Trace) -> Sequence[Step]:
+def _steps(figure: Figure, trace: Trace) -> Sequence[EventKey]:
     first, last = figure.extent(trace)
     return trace.sequence[first:last]
 

@@ -12,10 +12,10 @@ from ..core.types import Event, Instant, Sample
 from ..scene import Scene
 
 Numbers = NDArray[np.float64]
-Step = tuple[int, int, int]   # kind, mode and direction of an event
+EventKey = tuple[int, int, int]   # kind, mode and direction of an event
 
-LONGEST = 1e6        # s
-MOST_EVENTS = 50_000
+LONGEST_TRACE = 1e6        # s
+_MOST_EVENTS = 50_000
 
 
 class Trace:
@@ -28,7 +28,7 @@ class Trace:
         self.times = np.empty(0) if times is None else times
         self.rows = np.empty((len(self.times), len(Sample._fields)))
         self.events: list[Event] = []
-        self.sequence: list[Step] = []
+        self.sequence: list[EventKey] = []
         self.end = 0.0
         self._rig = scene.make_rig()
         if len(self.times):
@@ -49,9 +49,9 @@ class Trace:
         """Go on to `least` s, then twice as long, and so on until it is enough; return whether it is."""
         self.extend(least)
         while not is_enough(self):
-            if self.end >= LONGEST or len(self.events) >= MOST_EVENTS:
+            if self.end >= LONGEST_TRACE or len(self.events) >= _MOST_EVENTS:
                 return False
-            self.extend(min(2.0 * self.end, LONGEST))
+            self.extend(min(2.0 * self.end, LONGEST_TRACE))
         return True
 
     def _take(self, events: Sequence[Event]) -> None:

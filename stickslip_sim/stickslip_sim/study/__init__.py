@@ -10,9 +10,19 @@ A study is plain data and can be sent to other processes; `figures` of a stretch
 
 from .distribution import Distribution
 from .point_figures import MOTIONS, Figures, Motion
-from .sample import Grid, Saltelli, Sobol
+from .sample import EvenGrid, Saltelli, Sobol
 from .study import Study
 from .variation import Variation, variation
 
-__all__ = ['MOTIONS', 'Distribution', 'Figures', 'Grid', 'Motion', 'Saltelli', 'Sobol', 'Study', 'Variation',
-           'variation']
+__all__ = [
+           'MOTIONS',
+           'Distribution',
+           'EvenGrid',
+           'Figures',
+           'Motion',
+           'Saltelli',
+           'Sobol',
+           'Study',
+           'Variation',
+           'variation',
+]

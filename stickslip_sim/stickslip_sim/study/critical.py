@@ -50,7 +50,7 @@ class Critical:
                         and self.from_sliding.at(0.5 * (a + b)) == NO])
 
 
-def critical(scene: Scene, over: Variation, accuracy: float,
+def critical_of(scene: Scene, over: Variation, accuracy: float,
              progress: Callable[[float], None] | None = None) -> Critical:
     """Return the critical values of a parameter of a scene; raises InputError."""
     if not FINEST <= accuracy < 1.0:

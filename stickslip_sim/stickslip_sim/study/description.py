@@ -14,7 +14,7 @@ from ..runs.receipt import versions
 from ..scene.load import scene_of_parameters
 from ..scene.sections import parameters_of
 from .distribution import Distribution
-from .sample import Grid, Saltelli, Sample, Sobol
+from .sample import EvenGrid, Saltelli, Sampling, Sobol
 from .study import Study
 from .variation import Variation, checked
 
@@ -62,7 +62,7 @@ def _json(values: Mapping[str, Any]) -> dict[str, Any]:
     return {name: list(value) if isinstance(value, tuple) else value for name, value in values.items()}
 
 
-def _sample_of(found: Mapping[str, Any]) -> Sample:
+def _sample_of(found: Mapping[str, Any]) -> Sampling:
     uncertain, drawn = found['uncertain'], found['sobol']
     if uncertain:
         laws = tuple(Distribution(one['name'], one['law'], tuple(one['numbers']), one['low'], one['high'])
@@ -71,4 +71,4 @@ def _sample_of(found: Mapping[str, Any]) -> Sample:
         return Saltelli(laws, uncertain['samples'], uncertain['seed'], correlations or None)
     variations = tuple(checked(Variation(one['name'], float(one['low']), float(one['high']), int(one['count']),
                                          bool(one['log']))) for one in found['over'])
-    return Sobol(variations, drawn['points'], drawn['seed']) if drawn else Grid(variations)
+    return Sobol(variations, drawn['points'], drawn['seed']) if drawn else EvenGrid(variations)

@@ -20,10 +20,10 @@ from .description import FORM, description
 from .parquet import write_parquet
 from .resources import check_resources
 from .study import Study
-from .table import Columns, may_be_table, next_lines, read_rows, title_line, words
+from .table import TableColumns, may_be_table, next_lines, read_rows, title_line, words
 from .variation import Numbers
 
-LONGEST = 1 << 24   # bytes of a description; nearly all of it is the scene
+LONGEST_SIDECAR = 1 << 24   # bytes of a description; nearly all of it is the scene
 SIDECAR, TABLE, PARTIAL, PARQUET = 'study.json', 'points.csv', 'points.partial.csv', 'points.parquet'
 KEPT = 'what is done is kept, --resume goes on'
 
@@ -78,7 +78,7 @@ class Folder:
         """Return the description in the folder; raises InputError when it is not of a sweep."""
         path = self.path / SIDECAR
         try:
-            if path.is_file() and path.stat().st_size <= LONGEST:
+            if path.is_file() and path.stat().st_size <= LONGEST_SIDECAR:
                 found = json.loads(path.read_text(encoding='utf-8'))
                 if found['form'] == FORM:
                     return dict(found)
@@ -125,7 +125,7 @@ class Folder:
                 file.truncate(before)
                 raise
 
-    def finish(self, columns: Columns) -> None:
+    def finish(self, columns: TableColumns) -> None:
         """Give the table its name; where pandas is installed, write its `columns` as Parquet too."""
         with _refusing(self.path):
             write_parquet(columns | {'motion': words(columns['motion'])}, self.path / PARQUET)

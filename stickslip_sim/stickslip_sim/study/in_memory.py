@@ -13,7 +13,7 @@ from ..runs.frame import data_frame
 from ..scene import SceneOrName, scene_of
 from . import critical as search
 from .point_figures import FIGURES, MOTIONS, Motion
-from .sample import Grid, Saltelli, Sobol
+from .sample import EvenGrid, Saltelli, Sobol
 from .study import Study
 from .uncertain_file import load_uncertain, uncertain_of
 from .uncertainty import Uncertainty, uncertainty_of
@@ -48,7 +48,7 @@ def sweep(scene: SceneOrName, *over: str, sobol: int | None = None, duration: fl
     """
     scene = scene_of(scene)
     variations = tuple(variation(text, drawn=sobol is not None) for text in over)
-    sample = Grid(variations) if sobol is None else Sobol(variations, sobol, scene.seed)
+    sample = EvenGrid(variations) if sobol is None else Sobol(variations, sobol, scene.seed)
     return SweptPoints(_columns(Study(scene.values, sample, duration), progress))
 
 
@@ -64,7 +64,7 @@ def critical(scene: SceneOrName, name: str, between: tuple[float, float] | None 
         over = search.default_range(scene, name)
     else:
         over = range_of('between', name, '{!r}:{!r}'.format(*map(float, between)))
-    return search.critical(scene, over, accuracy, progress)
+    return search.critical_of(scene, over, accuracy, progress)
 
 
 def uncertainty(scene: SceneOrName, known: str | Path | Mapping[str, object], samples: int = 1024, seed: int = 0,

@@ -12,7 +12,7 @@ from .borders import FEED
 from .point_figures import Motion, figures_of_runs
 from .points import runs_of_run
 from .study import Study
-from .table import Columns
+from .table import TableColumns
 from .variation import Numbers
 
 
@@ -46,7 +46,7 @@ def place_in_map(study: Study, point: Numbers) -> tuple[float, float]:
     return (second, first) if study.names[1] == FEED else (first, second)
 
 
-def ending_at(study: Study, columns: Columns, point: Numbers) -> Ending:
+def ending_at(study: Study, columns: TableColumns, point: Numbers) -> Ending:
     """Return the ending of a point; its motion is that of the table (`columns`) where the point stands in it."""
     scene = study.scene_at(point)
     stands = np.logical_and.reduce([columns[name] == value for name, value in zip(study.names, point)])

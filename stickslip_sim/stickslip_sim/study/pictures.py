@@ -16,13 +16,13 @@ from .bifurcation import bifurcation
 from .borders import FEED, borders
 from .critical_sample import CriticalSpread, CriticalStudy
 from .point_figures import Motion
-from .sample import Grid, Saltelli
+from .sample import EvenGrid, Saltelli
 from .study import Study
-from .table import Columns, figures_among
+from .table import TableColumns, figures_among
 from .uncertainty import SPREAD, Index, Uncertainty, spread_of
 from .variation import Numbers, Variation, place_of
 
-UNITS = {'amplitude': 'm', 'period': 's', 'stick_share': '', 'peak_speed': 'm/s', 'break_away_force': 'N',
+_UNITS = {'amplitude': 'm', 'period': 's', 'stick_share': '', 'peak_speed': 'm/s', 'break_away_force': 'N',
          'settling_time': 's', 'cycles': '', 'duration': 's'}
 _PLAIN = {Motion.AT_REST: 2, Motion.SMOOTH_SLIDING: 0, Motion.FAILED: 3,
           Motion.UNDECIDED: 4}
@@ -30,14 +30,14 @@ _PLAIN = {Motion.AT_REST: 2, Motion.SMOOTH_SLIDING: 0, Motion.FAILED: 3,
 
 def check_drawable(study: Study, shown: str) -> None:
     """Raise InputError unless a study can be drawn, and the figure `shown` in colours."""
-    if not isinstance(study.sample, Grid) or len(study.names) > 2:
+    if not isinstance(study.sample, EvenGrid) or len(study.names) > 2:
         raise InputError('--over', ', '.join(study.names), 'a grid of two parameters for a map, of one for a'
                          ' bifurcation diagram', 'read other studies from their table')
-    if shown not in UNITS:
-        raise InputError('--show', shown, 'one of ' + ', '.join(UNITS), 'leave it out for the amplitude')
+    if shown not in _UNITS:
+        raise InputError('--show', shown, 'one of ' + ', '.join(_UNITS), 'leave it out for the amplitude')
 
 
-def draw_bifurcation(study: Study, columns: Columns, paths: Sequence[str],
+def draw_bifurcation(study: Study, columns: TableColumns, paths: Sequence[str],
                      progress: Callable[[float], None] | None = None) -> None:
     """Draw the last cycles over the one parameter of a study into each of `paths`."""
     found = bifurcation(study, figures_among(columns), progress)
@@ -46,7 +46,7 @@ def draw_bifurcation(study: Study, columns: Columns, paths: Sequence[str],
         plot_bifurcation(_scale(study, over), found.cycles, found.sliding, path)
 
 
-def draw_map(study: Study, columns: Columns, shown: str, picks: Sequence[Pick], paths: Sequence[str]) -> None:
+def draw_map(study: Study, columns: TableColumns, shown: str, picks: Sequence[Pick], paths: Sequence[str]) -> None:
     """Draw one figure over the two parameters of a study, the feed along x, into each of `paths`."""
     first, second = study.ranges
     turned = second.name == FEED
@@ -61,12 +61,12 @@ def draw_map(study: Study, columns: Columns, shown: str, picks: Sequence[Pick], 
     field = Field(x.grid(), y.grid(), values, _plain(motion, table(columns['settled'])))
     known = borders(study)
     lines = Lines(known.others, known.critical_feed, known.feeds, known.is_lost) if known else None
-    scales = _scale(study, x), _scale(study, y), Scale(shown, unit_read(UNITS[shown], values))
+    scales = _scale(study, x), _scale(study, y), Scale(shown, unit_read(_UNITS[shown], values))
     for path in paths:
         plot_stability(scales, field, lines, picks, path)
 
 
-def draw_uncertainty(study: Study, sample: Saltelli, columns: Columns, found: Uncertainty, path: str) -> None:
+def draw_uncertainty(study: Study, sample: Saltelli, columns: TableColumns, found: Uncertainty, path: str) -> None:
     """Draw how the figures of a sample spread, and the indices of those that have them."""
     spreads = [Spread(Scale(name, unit_read(SPREAD[name], values)), values, found.percentiles[name] or ())
                for name, values in spread_of(sample, columns).items()]

@@ -18,7 +18,7 @@ LEAST_SAMPLES, MOST_SAMPLES = 16, 1 << 24
 
 
 @dataclass(frozen=True)
-class Grid:
+class EvenGrid:
     """Every combination of the values of the variations; the last one runs fastest."""
 
     variations: tuple[Variation, ...]
@@ -129,4 +129,4 @@ def sobol_shares(dimensions: int, seed: int, first: int, last: int) -> Numbers:
         return np.asarray(sequence.random(last - first))
 
 
-Sample = Grid | Sobol | Saltelli
+Sampling = EvenGrid | Sobol | Saltelli

@@ -15,7 +15,7 @@ from ..scene import Scene, scene_from_values
 from ..scene.load import named
 from .point_figures import Figures, Runs, figures_of_runs
 from .points import runs_alone, runs_in_batches, scene_at, works_in_batches
-from .sample import Sample
+from .sample import Sampling
 from .variation import Numbers, Variation
 
 MOST_VARIATIONS = 10
@@ -31,7 +31,7 @@ class Study:
     """
 
     values: Mapping[str, object]
-    sample: Sample
+    sample: Sampling
     duration: float | None = None
 
     def __post_init__(self) -> None:

@@ -14,21 +14,21 @@ import numpy as np
 from .folder import Folder
 from .point_figures import Figures
 from .study import Study
-from .table import Columns, columns, lines, read_columns, rows_of
+from .table import TableColumns, columns, lines, read_columns, rows_of
 from .workers import Workers
 
 _AHEAD = 4   # chunks that wait for each worker
-Stretch = tuple[int, int]   # the first of some points, and the one after the last of them
+_Stretch = tuple[int, int]   # the first of some points, and the one after the last of them
 
 
 class Swept(NamedTuple):
     """The columns of the table of a study, and how many of its points had to be run for it."""
 
-    columns: Columns
+    columns: TableColumns
     ran: int
 
 
-def sweep(study: Study, folder: Folder, workers: Workers | None = None,
+def sweep_into(study: Study, folder: Folder, workers: Workers | None = None,
           progress: Callable[[float], None] | None = None) -> Swept:
     """Run the points of a study that its folder does not have yet, finish the folder, and return all points.
 
@@ -51,7 +51,7 @@ def sweep(study: Study, folder: Folder, workers: Workers | None = None,
     return Swept(table, max(study.count - done * study.chunk, 0))
 
 
-def _figures(study: Study, stretches: Iterator[Stretch], workers: Workers | None) -> Iterator[Figures]:
+def _figures(study: Study, stretches: Iterator[_Stretch], workers: Workers | None) -> Iterator[Figures]:
     """Yield the figures of stretches of points, in their order."""
     if workers is None:
         yield from (study.figures(*stretch) for stretch in stretches)
@@ -59,7 +59,7 @@ def _figures(study: Study, stretches: Iterator[Stretch], workers: Workers | None
         yield from _by_workers(study, stretches, workers)
 
 
-def _by_workers(study: Study, stretches: Iterator[Stretch], workers: Workers) -> Iterator[Figures]:
+def _by_workers(study: Study, stretches: Iterator[_Stretch], workers: Workers) -> Iterator[Figures]:
     """Yield figures in the order of the stretches, with a few under way for each worker, for any number of workers."""
     waiting = deque(_submitted(study, islice(stretches, _AHEAD * workers.size), workers))
     while waiting:
@@ -67,7 +67,7 @@ def _by_workers(study: Study, stretches: Iterator[Stretch], workers: Workers) ->
         waiting.extend(_submitted(study, islice(stretches, 1), workers))
 
 
-def _submitted(study: Study, stretches: Iterable[Stretch], workers: Workers) -> list[Future[Figures]]:
+def _submitted(study: Study, stretches: Iterable[_Stretch], workers: Workers) -> list[Future[Figures]]:
     """Hand out stretches; workers that this starts inherit that Ctrl-C is held back, and leave it to their parent."""
     signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
     try:

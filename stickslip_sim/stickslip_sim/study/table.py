@@ -21,7 +21,7 @@ from .variation import Numbers
 _BYTES_OF_A_NUMBER = 25   # 17 digits, sign, point, exponent of three digits with its sign, comma
 _ROUNDING = 1e-13         # of a value: another version of numpy rounds steps of one ratio otherwise
 _LARGEST = 1e150          # of a cell, by far; its square, for variances, is still a number
-Columns = dict[str, Numbers]
+TableColumns = dict[str, Numbers]
 _CODES = {word: float(motion) for motion, word in MOTIONS.items()}
 
 
@@ -42,7 +42,7 @@ def lines(study: Study, rows: Numbers) -> bytes:
     return ''.join(','.join(line) + '\n' for line in zip(*cells, strict=True)).encode()
 
 
-def columns(study: Study, rows: Numbers) -> Columns:
+def columns(study: Study, rows: Numbers) -> TableColumns:
     """Return the columns of rows of numbers by name; motions as numbers of `Motion`."""
     return dict(zip((*study.names, *FIGURES), rows.T, strict=True))
 
@@ -84,7 +84,7 @@ def longest_line(study: Study) -> int:
     return width(study) * _BYTES_OF_A_NUMBER
 
 
-def read_columns(path: Path, study: Study) -> Columns:
+def read_columns(path: Path, study: Study) -> TableColumns:
     """Return the columns of the table of a study in a file; raises InputError."""
     try:
         if not may_be_table(path, study):
@@ -97,7 +97,7 @@ def read_columns(path: Path, study: Study) -> Columns:
     return columns(study, rows)
 
 
-def figures_among(columns_of_table: Columns) -> Figures:
+def figures_among(columns_of_table: TableColumns) -> Figures:
     """Return the figures among columns."""
     return Figures(**{name: columns_of_table[name] for name in FIGURES})
 

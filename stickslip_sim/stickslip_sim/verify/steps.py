@@ -22,7 +22,7 @@ from .orders import is_order
 from .origin import offline_of
 
 ORDERS = DRIVE_VELOCITY, EXTERNAL_FORCE, RIG_EVENT, PARAMETER_EVENTS
-OUTPUTS = SLIDER_STATE, FRICTION_FORCE, MODE_EVENT
+_OUTPUTS = SLIDER_STATE, FRICTION_FORCE, MODE_EVENT
 MOST_MISSING = 1_000_000           # steps that are made again without being compared
 _HALF, _WHOLE = 1 << 31, 1 << 32   # the file has 32 bits for the number of a step
 
@@ -47,7 +47,7 @@ def steps_of(run: RecordedRun, start: int) -> Iterator[RecordedStep]:
     """
     bag = run.bag
     ordered = () if offline_of(run) else [topic for topic in ORDERS if topic.type in bag.topics.values()]
-    kinds = {bag.name_of(topic): topic for topic in (*ordered, *OUTPUTS)}
+    kinds = {bag.name_of(topic): topic for topic in (*ordered, *_OUTPUTS)}
     messages = (message for message in bag.messages(kinds) if kinds[message.topic] != RIG_EVENT
                 or is_order(bag, message))
     number, missing = start, 0
@@ -74,7 +74,7 @@ def _numbered(messages: Iterable[RecordedMessage], kinds: dict[str, Topic], star
 
 
 def _step(number: int, messages: list[RecordedMessage], kinds: dict[str, Topic]) -> RecordedStep:
-    outputs: dict[Topic, list[RecordedMessage]] = {topic: [] for topic in OUTPUTS}
+    outputs: dict[Topic, list[RecordedMessage]] = {topic: [] for topic in _OUTPUTS}
     orders: list[RecordedMessage] = []
     for message in messages:
         outputs.get(kinds[message.topic], orders).append(message)

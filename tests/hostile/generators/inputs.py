@@ -7,7 +7,7 @@ import random
 
 from stickslip_sim.core.errors import SolverError
 from stickslip_sim.core.types import Event, EventKind
-from stickslip_sim.extremes.grazing_drive import FREQUENCIES, PHASES, grazing_drive
+from stickslip_sim.extremes.grazing_drive import GRAZING_FREQUENCIES, PHASES, grazing_drive
 
 from ..case import Case, Values, all_events
 from . import degenerate, draw, machines
@@ -17,7 +17,7 @@ def grazing_sine(rng: random.Random) -> Case:
     """A sine on the drive whose force peak passes the static limit by little, or does not."""
     values = draw.paper() | rng.choice((draw.contact(), draw.contact(5e6, 15000.0)))
     overshoot = rng.choice((-1.0, 1.0)) * draw.powers(rng, 1e-12, 1e-3)
-    frequency = rng.uniform(*FREQUENCIES)
+    frequency = rng.uniform(*GRAZING_FREQUENCIES)
     case = Case(values, rng.choice((1.0, 2.0)) / frequency)
     sinusoid = grazing_drive(case.scene.axis, overshoot, frequency, rng.uniform(*PHASES)).sinusoids[0]
     return Case(values | {'drive.course': 'sine', 'drive.velocity': 0.0, 'drive.amplitude': sinusoid.amplitude,

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import stickslip_sim as stickslip
-from stickslip_sim.identification.report.results import SCENE, write_results
+from stickslip_sim.identification.report.results import IDENTIFIED_SCENE, write_results
 from stickslip_sim.recording import write_measured
 from stickslip_sim.recording.measured_run import MeasuredRun
 from tests.support.measured_runs import between
@@ -52,8 +52,8 @@ def test_a_measured_force_is_in_the_scene_that_was_found(tmp_path: Path) -> None
     out = tmp_path / 'out'
     out.mkdir()
     write_results(run, found, 'start.yaml', out)
-    scene = stickslip.load_scene(str(out / SCENE))
-    assert 'file: measured_force.csv' in (out / SCENE).read_text().replace('"', '')
+    scene = stickslip.load_scene(str(out / IDENTIFIED_SCENE))
+    assert 'file: measured_force.csv' in (out / IDENTIFIED_SCENE).read_text().replace('"', '')
     assert scene.values['force.forces'] == found.scene.values['force.forces']
     again = stickslip.simulate(scene, 2.0, 1e-3).samples['position']
     assert again == pytest.approx(moved, abs=1e-5)

@@ -30,7 +30,13 @@ from stickslip_sim.identification.report.friction_band import half_width, kineti
 from stickslip_sim.identification.report.identified_scene import identified_text
 from stickslip_sim.identification.report.measured_friction import binned, friction_points
 from stickslip_sim.identification.report.posterior import posterior_text
-from stickslip_sim.identification.report.results import PAGE, POSTERIOR, SCENE, VALUES, write_results
+from stickslip_sim.identification.report.results import (
+    IDENTIFIED_PAGE,
+    IDENTIFIED_SCENE,
+    IDENTIFIED_VALUES,
+    POSTERIOR,
+    write_results,
+)
 from stickslip_sim.recording.measured_run import MeasuredRun
 from stickslip_sim.scene import load_scene, scene_from_values
 from stickslip_sim.scene.load import parse_scene
@@ -247,9 +253,10 @@ def test_the_band_is_the_error_that_numbers_leave_in_a_curve(found: Identificati
 
 def test_the_folder_has_four_files_that_say_the_same(run: MeasuredRun, found: Identification, tmp_path: Path) -> None:
     write_results(run, found, 'start.yaml', tmp_path)
-    assert {path.name for path in tmp_path.iterdir()} == {SCENE, POSTERIOR, PAGE, VALUES}
-    values = json.loads((tmp_path / VALUES).read_text())
-    page = (tmp_path / PAGE).read_text()
+    assert {path.name for path in tmp_path.iterdir()} == {IDENTIFIED_SCENE, POSTERIOR, IDENTIFIED_PAGE,
+                                                          IDENTIFIED_VALUES}
+    values = json.loads((tmp_path / IDENTIFIED_VALUES).read_text())
+    page = (tmp_path / IDENTIFIED_PAGE).read_text()
     assert values['fits'] is found.fits is True
     assert [one['name'] for one in values['estimates']] == list(FREE)
     assert len(values['friction']['kinetic']['speed']) == len(values['friction']['kinetic']['half_width'])
@@ -270,11 +277,11 @@ def test_a_report_shows_what_does_not_fit_and_what_is_not_known(run: MeasuredRun
         laws=(LawFit('constant', 'table', 100.0, 3, 90.0, True), LawFit('kato', 'stribeck', 120.0, 7, 85.0, False)),
         correlation=np.array([[1.0, np.nan, 0.5], [np.nan] * 3, [0.5, np.nan, 1.0]]), notes=('a <note>',))
     write_results(run, changed, 'start.yaml', tmp_path)
-    page = (tmp_path / PAGE).read_text()
+    page = (tmp_path / IDENTIFIED_PAGE).read_text()
     for words in ('does not fit', 'position is off by 3 &lt;σ&gt;', 'one factor on all of them', 'a &lt;note&gt;',
                   'Where the search from each start ended', 'kato, stribeck', 'constant, table (taken)'):
         assert words in page, words
-    values = json.loads((tmp_path / VALUES).read_text())
+    values = json.loads((tmp_path / IDENTIFIED_VALUES).read_text())
     assert values['correlation'][1] == [None] * 3
     assert values['combinations'][0]['spread'] == 'inf'
     assert values['misfits'][0]['from_time'] == 1.0

@@ -11,7 +11,7 @@ import pytest
 from stickslip_sim.core.types import Event, EventKind
 from stickslip_sim.recording import RecordedRun, read_run
 from stickslip_sim.runs import simulate
-from stickslip_sim.runs.normal_force import NORMAL_FORCE
+from stickslip_sim.runs.normal_force import LOAD_COLUMN
 from stickslip_sim.scene import changed, load_scene
 from stickslip_sim.verify.verification import verify
 from tests.support.node_processes import recording_into
@@ -46,7 +46,7 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> RecordedRun:
 
 def test_it_has_the_load_and_the_friction_of_the_direction(recorded: RecordedRun) -> None:
     weight = 3432.3275
-    assert recorded.samples[NORMAL_FORCE][[699, 700, 1600]].tolist() == [weight, weight + 500.0, weight - 800.0]
+    assert recorded.samples[LOAD_COLUMN][[699, 700, 1600]].tolist() == [weight, weight + 500.0, weight - 800.0]
     away = [event for event in recorded.events if event.kind == EventKind.BREAKAWAY]
     assert {event.direction for event in away} == {1, -1}
     for event in away:

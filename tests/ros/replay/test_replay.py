@@ -30,7 +30,7 @@ from rosgraph_msgs.msg import Clock  # isort: skip
 from std_srvs.srv import SetBool, Trigger  # isort: skip
 
 from stickslip_msgs.msg import SliderState  # isort: skip
-from stickslip_sim.ros.replay.replay_settings import PARAMETERS  # isort: skip
+from stickslip_sim.ros.replay.replay_settings import REPLAY_PARAMETERS  # isort: skip
 from stickslip_sim.ros.node.topics import message_type, qos  # isort: skip
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
@@ -277,9 +277,9 @@ class TestProcess:
 
     def test_parameters_are_described(self, bag: Path) -> None:
         with client() as viewer, replaying(bag, *PAUSED) as process:
-            names = [entry.name for entry in PARAMETERS]
+            names = [entry.name for entry in REPLAY_PARAMETERS]
             described = viewer.call(DescribeParameters, 'describe_parameters', 'replay', names=names).descriptors
-            for entry, one in zip(PARAMETERS, described, strict=True):
+            for entry, one in zip(REPLAY_PARAMETERS, described, strict=True):
                 assert one.name == entry.name
                 assert entry.description in one.description
                 assert one.read_only is not entry.live

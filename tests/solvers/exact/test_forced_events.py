@@ -12,7 +12,7 @@ import pytest
 from stickslip_sim.axis import CompliantContact, InitialState
 from stickslip_sim.core.input_profile import InputProfile, constant, steps
 from stickslip_sim.core.types import Event, EventKind, Instant, Mode
-from stickslip_sim.extremes.grazing_drive import FREQUENCIES, PHASES, grazing_drive
+from stickslip_sim.extremes.grazing_drive import GRAZING_FREQUENCIES, PHASES, grazing_drive
 from stickslip_sim.friction import StaticLaw, StaticLawKind
 from stickslip_sim.reference import simulate
 from tests.conftest import Program
@@ -28,7 +28,7 @@ def test_a_grazing_peak_is_found_and_a_peak_below_the_limit_holds(contact: Any, 
     rng = random.Random(f'{overshoot}')
     axis = paper_axis(contact)
     for _ in range(500):
-        frequency, phase = rng.uniform(*FREQUENCIES), rng.uniform(*PHASES)
+        frequency, phase = rng.uniform(*GRAZING_FREQUENCIES), rng.uniform(*PHASES)
         drive = grazing_drive(axis, overshoot, frequency, phase)
         events = run_events(axis, drive, 0.95 / frequency)
         assert bool(events) == (overshoot > 0.0)

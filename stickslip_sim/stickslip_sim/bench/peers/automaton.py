@@ -41,7 +41,7 @@ STICK, ACCELERATING = float(Mode.STICK), float(Mode.ACCELERATING)
 COASTING, DECELERATING = float(Mode.COASTING), float(Mode.DECELERATING)
 
 TURN = 2.0 * math.pi
-ROUNDING = 1e-14   # of the forces: what a sum of them may be off by
+FORCE_ROUNDING = 1e-14   # of the forces: what a sum of them may be off by
 SPEED_SCALE = 1e-17   # m/s: below that a speed counts as zero
 _NEVER = 1.0       # a guard that the mode does not have
 
@@ -201,7 +201,7 @@ def guards(q, w, t, x, u):
 @always_compiled
 def force_scale(q):
     """Return below which size a force counts as zero, N."""
-    return ROUNDING * q[Q_NORMAL] * q[Q_LIMIT] + 1e-300
+    return FORCE_ROUNDING * q[Q_NORMAL] * q[Q_LIMIT] + 1e-300
 
 
 @always_compiled

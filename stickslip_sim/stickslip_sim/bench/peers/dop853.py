@@ -15,7 +15,7 @@ from .always_compiled import always_compiled
 from ...core.errors import SolverError
 from ..problem import Outcome, Problem
 from .automaton import GUARDS, MODE, SIZE, TIME, U, X, guard_scales, guards, motion_of, rates
-from .dop853_step import MISSING, MORE, STAGES, between, error_norm, fill_interpolant, step
+from .dop853_step import MISSING, MORE, STAGES, between, error_norm, fill_interpolant, dop853_step
 from .peer import Peer, Setting, tolerances
 from .resets import end_of_piece, enter_piece, move, note, reset
 
@@ -91,7 +91,7 @@ def _to_event(p, m, w, limit, tolerance, longest, steps, work):
     while t < limit:
         wanted = min(h, longest)
         h = min(wanted, limit - t)
-        xn, un = step(q, w, t, h, x, u, kx, ku)
+        xn, un = dop853_step(q, w, t, h, x, u, kx, ku)
         error = error_norm(x, u, xn, un, h, tolerance, kx, ku)
         factor = _GROW if error == 0.0 else min(_GROW, max(_SHRINK, _SAFETY * error ** -0.125))
         if error > 1.0:

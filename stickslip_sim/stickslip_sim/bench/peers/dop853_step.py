@@ -25,7 +25,7 @@ STAGES, MORE = 12, 16   # of a step with its end; with those of the dense output
 
 
 @always_compiled
-def step(q, w, t, h, x, u, kx, ku):
+def dop853_step(q, w, t, h, x, u, kx, ku):
     """Return the state at the end of a step; stage 0 is given, the others and the rates at the end are filled in."""
     x0, u0 = kx[0], ku[0]
     dx = h * (_A[1, 0] * x0)

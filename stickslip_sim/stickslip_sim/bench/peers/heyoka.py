@@ -20,18 +20,18 @@ from ..problem import Outcome, Problem
 from .always_compiled import NUMBA_MISSING
 from .automaton import SIZE, X
 from .heyoka_resets import (
-    ACCELERATION,
+    ACCELERATION_PLACE,
     ALL,
     BEYOND,
     ENDED,
     FADING,
-    FULL,
+    NO_ROOM,
     LEFT,
     ORIGIN,
     PULL,
     RATE,
-    SPEED,
-    begin,
+    SPEED_GUARDS,
+    begin_outputs,
     follow,
 )
 from .peer import Peer, Setting, tolerances
@@ -53,14 +53,14 @@ def _integrator(tolerance: float, fallen: Callable[[int, Any], bool]) -> Any:
 
     y, u = hy.make_vars('y', 'u')   # travel since the reset, velocity
     t = hy.time - hy.par[ORIGIN]
-    constant, of_y, of_u, of_t, of_t2 = par(ACCELERATION, 5)
+    constant, of_y, of_u, of_t, of_t2 = par(ACCELERATION_PLACE, 5)
     motion = [(y, u), (u, constant + of_y * y + of_u * u + (of_t + of_t2 * t) * t)]
     fading = hy.par[FADING] * hy.exp(hy.par[RATE] * t)
     constant, of_y, of_u, of_t, of_t2 = par(PULL, 5)
     pull = constant + of_y * y + of_u * u + (of_t + of_t2 * t) * t + fading
     constant, of_y, of_u = par(BEYOND, 3)
     beyond = constant + of_y * y + of_u * u + fading
-    constant, of_u = par(SPEED, 2)
+    constant, of_u = par(SPEED_GUARDS, 2)
     guards = (pull, beyond, constant + of_u * u, hy.par[LEFT] - t)
 
     def event(which: int) -> Any:
@@ -92,14 +92,14 @@ def _prepare(problem: Problem, setting: Setting) -> Callable[[], Outcome]:
 
     def simulate() -> Outcome:
         integrator.time = 0.0
-        at[:] = begin(p, m, w, pieces, end, start, events, pars, place)
+        at[:] = begin_outputs(p, m, w, pieces, end, start, events, pars, place)
         integrator.state[:] = place
         integrator.pars[:] = pars
         integrator.reset_cooldowns()
         if at[1] >= 0:
             integrator.propagate_until(_FOREVER)
         if at[1] != ENDED:
-            raise SolverError('more events than the table holds' if at[1] == FULL else 'it stopped before the end')
+            raise SolverError('more events than the table holds' if at[1] == NO_ROOM else 'it stopped before the end')
         return Outcome(events[:at[0]].copy(), float(m[X]))
 
     return simulate

@@ -19,22 +19,22 @@ from .resets import end_of_piece, enter_piece, move, note, reset
 
 # the parameters of the integrator
 ORIGIN = 0            # its own time at the reset
-ACCELERATION = 1      # five coefficients
+ACCELERATION_PLACE = 1      # five coefficients
 PULL = 6              # five of the first guard: force left in slip, static limit minus force in stick
 FADING = 11           # coefficient of exp(RATE τ) in the first two guards
 RATE = 12             # 1/s
 BEYOND = 13           # three of the second guard: speed to the next breakpoint, static limit plus force in stick
-SPEED = 16            # two of the third guard: speed left to standstill
+SPEED_GUARDS = 16            # two of the third guard: speed left to standstill
 LEFT = 18             # s, to the end of the piece of the inputs: the fourth guard
 ALL = 19
 
-ENDED, FULL = -1, -2  # instead of a piece
+ENDED, NO_ROOM = -1, -2  # instead of a piece
 _END_OF_PIECE = 3     # the guard
 _STEPS = 100
 
 
 @always_compiled
-def begin(p, m, w, pieces, duration, start, events, pars, place):
+def begin_outputs(p, m, w, pieces, duration, start, events, pars, place):
     """Begin a run; return the rows in use and the piece, or how it ended."""
     kind, direction = enter_piece(p, m, w, start, pieces, 0)
     return _go_on(p, m, w, pieces, duration, start, 0, 0.0, events, note(events, 0, m, kind, direction), pars, place)
@@ -86,7 +86,7 @@ def _go_on(p, m, w, pieces, duration, start, piece, own_time, events, rows, pars
                 return rows, ENDED
             kind, direction = enter_piece(p, m, w, start, pieces, piece)
         rows = note(events, rows, m, kind, direction)
-    return 0, FULL
+    return 0, NO_ROOM
 
 
 @always_compiled
@@ -102,11 +102,11 @@ def _write_motion(q, m, pars):
     """Write the coefficients of a slip, or of a stick in a compliant contact."""
     force, of_y, of_u, of_t, of_t2 = _force_line(q, m)
     pars[FADING] = pars[RATE] = 0.0
-    pars[SPEED], pars[SPEED + 1] = 1.0, 0.0
+    pars[SPEED_GUARDS], pars[SPEED_GUARDS + 1] = 1.0, 0.0
     if m[MODE] == STICK:
         stiffness, damping = q[Q_CONTACT_STIFFNESS], q[Q_CONTACT_DAMPING]
         held = stiffness * m[DEFLECTION]
-        _write(pars, ACCELERATION, 1.0 / q[Q_MASS], force - held, of_y - stiffness, of_u - damping, of_t, of_t2)
+        _write(pars, ACCELERATION_PLACE, 1.0 / q[Q_MASS], force - held, of_y - stiffness, of_u - damping, of_t, of_t2)
         top = q[Q_NORMAL] * q[Q_LIMIT]
         if q[Q_REST] < math.inf:
             pars[RATE] = -1.0 / q[Q_TAU]
@@ -123,9 +123,9 @@ def _write_motion(q, m, pars):
     else:
         gap, of_speed = -q[Q_BREAKPOINT_BELOW], direction
         sense = -direction
-        pars[SPEED], pars[SPEED + 1] = 0.0, direction
+        pars[SPEED_GUARDS], pars[SPEED_GUARDS + 1] = 0.0, direction
     force -= direction * friction
-    _write(pars, ACCELERATION, 1.0 / q[Q_MASS], force, of_y, of_u - slope, of_t, of_t2)
+    _write(pars, ACCELERATION_PLACE, 1.0 / q[Q_MASS], force, of_y, of_u - slope, of_t, of_t2)
     _write(pars, PULL, sense, force, of_y, of_u - slope, of_t, of_t2)
     pars[BEYOND], pars[BEYOND + 1], pars[BEYOND + 2] = gap, 0.0, of_speed
     if not abs(gap) < math.inf:

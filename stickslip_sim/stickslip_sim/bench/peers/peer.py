@@ -22,7 +22,7 @@ class Setting(NamedTuple):
         return f'{self.value:.0e}'.replace('e-0', 'e-') if self.value else ''
 
 
-EXACT = Setting(0.0, '')
+NO_SETTING = Setting(0.0, '')
 
 
 def tolerances(*values: float) -> tuple[Setting, ...]:

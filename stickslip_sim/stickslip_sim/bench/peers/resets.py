@@ -11,7 +11,7 @@ from ...axis.layout import (
 from .always_compiled import always_compiled
 from ...core.types import EventKind
 from .automaton import (
-    ACCELERATING, COASTING, DECELERATING, DEFLECTION, DIRECTION, EXCESS, F, F_RATE, MODE, REST, ROUNDING, S,
+    ACCELERATING, COASTING, DECELERATING, DEFLECTION, DIRECTION, EXCESS, F, F_RATE, MODE, REST, FORCE_ROUNDING, S,
     SEGMENT, STICK, TIME, TURN, U, V, V_RATE, X, applied, breakpoint_at, contact, friction_lines, inputs,
     is_compliant, friction_at_rest, motion_of, segment_of, static_coefficient, static_margin,
 )
@@ -73,7 +73,7 @@ def choose_slip(p, m, w):
     force = applied(motion_of(p, m), w, 0.0, m[X], m[U])
     lower = direction * force - p[NORMAL] * mu
     band = p[NORMAL] * m[EXCESS] * psi
-    tie = ROUNDING * (abs(force) + p[NORMAL] * mu + band)
+    tie = FORCE_ROUNDING * (abs(force) + p[NORMAL] * mu + band)
     rising = direction * _force_rate(p, m, w) > 0.0
     if lower > band + tie or (abs(lower - band) <= tie and rising):
         m[MODE], m[SEGMENT] = ACCELERATING, segment
@@ -161,7 +161,7 @@ def _arrest(p, m, w):
     m[U] = 0.0
     force = applied(motion_of(p, m), w, 0.0, m[X], 0.0)
     limit = p[STATIC_INITIAL]
-    if p[COMPLIANT] == 0.0 and abs(force) > p[NORMAL] * limit * (1.0 + ROUNDING):
+    if p[COMPLIANT] == 0.0 and abs(force) > p[NORMAL] * limit * (1.0 + FORCE_ROUNDING):
         direction = math.copysign(1.0, force)
         _break_away(p, m, w, direction, limit)
         return REVERSE, direction
@@ -189,7 +189,7 @@ def classify(p, m, w):
     mode = m[MODE]
     if mode == STICK:
         guard = static_margin(motion_of(p, m), w, 0.0, m[X], m[U])
-        tie = ROUNDING * p[NORMAL] * max(p[STATIC_LIMIT], p[STATIC_INITIAL])
+        tie = FORCE_ROUNDING * p[NORMAL] * max(p[STATIC_LIMIT], p[STATIC_INITIAL])
         if guard >= -tie:
             return -1.0
         kind, _ = _release(p, m, w)

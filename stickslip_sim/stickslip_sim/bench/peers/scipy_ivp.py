@@ -83,6 +83,6 @@ def _version() -> str:
     return f'scipy {scipy.__version__}'
 
 
-PEERS = tuple(Peer(f'scipy {method}', settings, _MISSING, _version, _prepare(method)) for method, settings in (
+SCIPY_PEERS = tuple(Peer(f'scipy {method}', settings, _MISSING, _version, _prepare(method)) for method, settings in (
     ('DOP853', tolerances(1e-4, 1e-6, 1e-8, 1e-10, 1e-12)), ('LSODA', tolerances(1e-6, 1e-9, 1e-12)),
     ('Radau', tolerances(1e-6, 1e-9))))

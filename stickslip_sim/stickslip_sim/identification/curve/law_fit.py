@@ -15,7 +15,7 @@ from scipy import special
 
 from .measured_curve import FrictionCurve, Numbers
 
-LEVEL = 0.95
+_LEVEL = 0.95
 _ROUNDING = 1e-9        # of the largest coefficient: no curve is known better
 SPARE = 3               # points more than parameters: fewer, and the last term of the criterion has no sense
 MISSED = 0.1            # of the range of the coefficients: with residuals above it, rms, a law misses the points
@@ -120,7 +120,7 @@ class Fit:
 
     @property
     def _quantile(self) -> float:
-        return float(special.stdtrit(len(self.curve.speeds) - self.count, 0.5 * (1.0 + LEVEL)))
+        return float(special.stdtrit(len(self.curve.speeds) - self.count, 0.5 * (1.0 + _LEVEL)))
 
     @property
     def _covariance(self) -> Numbers:

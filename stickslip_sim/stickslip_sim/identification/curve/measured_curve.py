@@ -25,7 +25,7 @@ Numbers = NDArray[np.float64]
 DIRECTIONS = ('both', 'forward', 'backward')
 SLOWEST = 2e-4        # m/s: the fastest point of a plausible curve is faster
 SMOOTHEST = 1e-4      # a coefficient: the highest of a plausible curve is higher, but for hydrostatic guides
-MOST_POINTS = 20_000
+_MOST_POINTS = 20_000
 _WHAT = 'friction curve'
 
 
@@ -75,8 +75,8 @@ def load_curve(path: str, units: Units, direction: str = 'both', meant: tuple[st
         headings, points, columns = _read(text)
         if not points:
             raise InputError(_WHAT, 'no point', 'lines of two numbers, a speed and its friction', 'the file has none')
-        if len(points) > MOST_POINTS:
-            raise InputError(_WHAT, f'{len(points)} points', f'at most {MOST_POINTS}', 'average points of one speed')
+        if len(points) > _MOST_POINTS:
+            raise InputError(_WHAT, f'{len(points)} points', f'at most {_MOST_POINTS}', 'average points of one speed')
         _check_headings(headings, units)
         curve = _of_direction(_curve(points, units), direction)
         if not curve.coefficients.any():

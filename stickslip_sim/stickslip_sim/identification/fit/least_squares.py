@@ -21,7 +21,7 @@ from .region import Region
 
 Numbers = NDArray[np.float64]
 Residuals = Callable[[Numbers], Numbers]
-Step = float | Numbers
+_Step = float | Numbers
 
 STEP = 1e-6            # of a logarithm, or of a range: rounding is 1e-10 of it, the third derivative 1e-12
 _DAMPING = 1e-3        # of the first step, relative to the diagonal
@@ -41,7 +41,7 @@ class Solution(NamedTuple):
     is_settled: bool
 
 
-def slopes_of(residuals: Residuals, point: Numbers, here: Numbers, region: Region, step: Step) -> Numbers:
+def slopes_of(residuals: Residuals, point: Numbers, here: Numbers, region: Region, step: _Step) -> Numbers:
     """Return the derivatives (n, k) of residuals, which are `here` at a point, by central differences over a step.
 
     There may be a step for each parameter (k,).  They are one-sided at a border, and where there is no motion on one
@@ -62,7 +62,7 @@ def slopes_of(residuals: Residuals, point: Numbers, here: Numbers, region: Regio
 
 
 def minimise(residuals: Residuals, point: Numbers, region: Region, *, most: int, tolerance: float,
-             share: float = 1e-9, robust: float = np.inf, step: Step = STEP, steepest: float = np.inf) -> Solution:
+             share: float = 1e-9, robust: float = np.inf, step: _Step = STEP, steepest: float = np.inf) -> Solution:
     """Return where the sum of squares is least, from a point on, after at most so many steps.
 
     It ends where the next step would gain less than `tolerance`, or that `share` of the sum; it is settled if a step

@@ -14,7 +14,7 @@ from ..given.free_parameters import FreeParameter
 from ..given.motions import MeasuredMotion, stops_of, track_of
 from ..given.readings import Channel, SensorReadings, instants_of
 from ..given.rests import ends_in_rest
-from ..trial.axis_model import PLACES, AxisModel
+from ..trial.axis_model import OUTPUT_PLACES, AxisModel
 from ..trial.slip_features import (
     N_FIGURES,
     N_TELLING,
@@ -223,7 +223,7 @@ class FitProblem:
             if rows is None:
                 return None
             for name, column in zip(names, columns, strict=True):
-                column.append(rows[:, PLACES[name]])
+                column.append(rows[:, OUTPUT_PLACES[name]])
         found = []
         for name, column in zip(names, columns, strict=True):
             offset, scale = self.model.gain(values, name)

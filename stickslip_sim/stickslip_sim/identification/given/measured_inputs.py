@@ -13,7 +13,7 @@ from scipy.linalg import solveh_banded
 from ...core.input_profile import InputProfile, Sinusoid
 
 Numbers = NDArray[np.float64]
-Place = tuple[float, float]   # s, m
+_Place = tuple[float, float]   # s, m
 
 _ROOM = 1.02       # of the resolution: rounding must not bend a straight way
 _STRAIGHT = 1e-9   # of the range: a point so near the line between its neighbours says nothing
@@ -72,7 +72,7 @@ def _turns_within(times: Numbers, places: Numbers, half: float) -> NDArray[np.in
     return rows
 
 
-def _pull(own: deque[Place], other: deque[Place], place: Place, side: float, way: list[Place]) -> None:
+def _pull(own: deque[_Place], other: deque[_Place], place: _Place, side: float, way: list[_Place]) -> None:
     """Stretch one side of the room for the way to a new place; it turns where the other side bars the straight line.
 
     Both sides begin where the way ends so far.
@@ -86,7 +86,7 @@ def _pull(own: deque[Place], other: deque[Place], place: Place, side: float, way
         own[0] = other[0]
 
 
-def _slope(one: Place, other: Place) -> float:
+def _slope(one: _Place, other: _Place) -> float:
     return (other[1] - one[1]) / (other[0] - one[0])
 
 

@@ -11,7 +11,7 @@ from ...scene.build import Dynamics
 from ...scene.profile_schema import MOST_POINTS
 from .readings import SensorReadings
 
-DRIVE, FORCE = 'drive', 'force'   # sections of a scene
+_DRIVE, _FORCE = 'drive', 'force'   # sections of a scene
 
 
 class InputForm(NamedTuple):
@@ -22,8 +22,8 @@ class InputForm(NamedTuple):
     file: str
 
 
-FORMS: Mapping[str, InputForm] = {DRIVE: InputForm('velocities', 'velocity', 'measured_drive.csv'),
-                                  FORCE: InputForm('forces', 'force', 'measured_force.csv')}
+FORMS: Mapping[str, InputForm] = {_DRIVE: InputForm('velocities', 'velocity', 'measured_drive.csv'),
+                                  _FORCE: InputForm('forces', 'force', 'measured_force.csv')}
 
 
 def with_measured_inputs(scene: Scene, measurement: SensorReadings, dynamics: Dynamics
@@ -33,7 +33,7 @@ def with_measured_inputs(scene: Scene, measurement: SensorReadings, dynamics: Dy
     The `dynamics` are those of what was found: a measured force less the offset of its sensor.  One of more points than
     a scene holds stays as it was.
     """
-    measured = {DRIVE: (measurement.drive, dynamics.drive), FORCE: (measurement.force, dynamics.force)}
+    measured = {_DRIVE: (measurement.drive, dynamics.drive), _FORCE: (measurement.force, dynamics.force)}
     sections = {name: measured_section(name, found) for name, (given, found) in measured.items()
                 if given is not None and len(found.starts) <= MOST_POINTS}
     values = {name: value for name, value in scene.values.items() if name.partition('.')[0] not in sections}

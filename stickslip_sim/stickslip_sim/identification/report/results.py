@@ -20,7 +20,8 @@ from .posterior import posterior_text
 from .report_page import caption, report_page
 from .report_values import report_values
 
-SCENE, POSTERIOR, PAGE, VALUES = 'identified.yaml', 'posterior.yaml', 'report.html', 'report.json'
+IDENTIFIED_SCENE, POSTERIOR = 'identified.yaml', 'posterior.yaml'
+IDENTIFIED_PAGE, IDENTIFIED_VALUES = 'report.html', 'report.json'
 _WHOLE = 0.99   # of a run: so long a stretch is all of it
 
 
@@ -37,10 +38,10 @@ def write_results(run: Run, found: Identification, start: str, folder: Path) -> 
     page = report_page(found, run.name, start, _pictures(found, friction), values['versions'])
     for name, text in input_texts(found).items():
         (folder / name).write_text(text, encoding='utf-8')
-    (folder / SCENE).write_text(identified_text(found, run.name, start), encoding='utf-8')
+    (folder / IDENTIFIED_SCENE).write_text(identified_text(found, run.name, start), encoding='utf-8')
     (folder / POSTERIOR).write_text(posterior_text(found, run.name), encoding='utf-8')
-    (folder / VALUES).write_text(json.dumps(values, indent=1, allow_nan=False) + '\n', encoding='utf-8')
-    (folder / PAGE).write_text(page, encoding='utf-8')
+    (folder / IDENTIFIED_VALUES).write_text(json.dumps(values, indent=1, allow_nan=False) + '\n', encoding='utf-8')
+    (folder / IDENTIFIED_PAGE).write_text(page, encoding='utf-8')
 
 
 def _pictures(found: Identification, friction: KnownFriction) -> dict[str, str]:

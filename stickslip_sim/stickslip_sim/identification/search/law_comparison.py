@@ -18,10 +18,10 @@ from ..trial.axis_model import AxisModel
 from .criterion import criterion_of
 from .many_fits import Keeper, KeyedFit, kept_fits
 from .other_laws import OtherLaw, other_laws
-from .stages import Progress
+from .stages import StageProgress
 
 
-def with_laws(found: Identification, problem: FitProblem, workers: int, keeper: Keeper | None, progress: Progress
+def with_laws(found: Identification, problem: FitProblem, workers: int, keeper: Keeper | None, progress: StageProgress
               ) -> Identification:
     """Return an identification with `laws`: that of its scene, and the others; the criterion says which is best."""
     began = time.perf_counter()

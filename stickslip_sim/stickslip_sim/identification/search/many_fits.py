@@ -21,16 +21,16 @@ from ..fit.problem import FitProblem
 from .stages import Ended, fit_from
 
 Numbers = NDArray[np.float64]
-Arrays = Mapping[str, Numbers]
+_Arrays = Mapping[str, Numbers]
 
 
 class Keeper(Protocol):
     """Keeps the arrays of fits that are done, each under a key."""
 
-    def found(self, key: str) -> Arrays | None:
+    def found(self, key: str) -> _Arrays | None:
         """Return what is kept, None where there is nothing."""
 
-    def keep(self, key: str, arrays: Arrays) -> None:
+    def keep(self, key: str, arrays: _Arrays) -> None:
         """Keep the arrays of a fit."""
 
 
@@ -83,14 +83,14 @@ def _fit(problem: FitProblem, start: Numbers) -> _Fitted:
     return _Fitted(end, own.model.runs - problem.model.runs)
 
 
-def _arrays(fitted: _Fitted) -> Arrays:
+def _arrays(fitted: _Fitted) -> _Arrays:
     end = fitted.end
     numbers = np.array([end.solution.cost, end.mean_square, float(end.solution.is_settled), float(fitted.runs)])
     return {'start': end.start, 'point': end.solution.point, 'information': end.solution.information,
             'numbers': numbers}
 
 
-def _of_arrays(arrays: Arrays) -> _Fitted:
+def _of_arrays(arrays: _Arrays) -> _Fitted:
     cost, mean_square, is_settled, runs = arrays['numbers'].tolist()
     solution = Solution(arrays['point'], cost, arrays['information'], bool(is_settled))
     return _Fitted(Ended(arrays['start'], solution, mean_square), int(runs))

@@ -23,8 +23,8 @@ from ..curve.smooth_laws import SMOOTH_FORMS
 from ..given.free_parameters import FreeParameter
 
 Numbers = NDArray[np.float64]
-Values = dict[str, float]
-Curve = Callable[[str, Values], Numbers]
+_Values = dict[str, float]
+_Curve = Callable[[str, _Values], Numbers]
 
 _STATIC, _KINETIC = 'friction.static.', 'friction.kinetic.'
 _GROWING = 'limit', 'time_constant'
@@ -71,20 +71,20 @@ def _is_free(section: str, parameters: Sequence[FreeParameter]) -> bool:
     return any(one.name.startswith(section) for one in parameters)
 
 
-def _static_curve(law: str, own: Values, rests: Numbers) -> Numbers:
+def _static_curve(law: str, own: _Values, rests: Numbers) -> Numbers:
     limit = max(own.get('limit', 0.0), own['initial'])
     kind = StaticLaw(StaticLawKind[law.upper()], own['initial'], limit, own.get('time_constant', 1.0),
                      own.get('exponent', 1.0), own.get('delay', 0.0))
     return np.array([kind.coefficient(rest) for rest in rests.tolist()])
 
 
-def _kinetic_curve(law: str, own: Values, speeds: Numbers) -> Numbers:
+def _kinetic_curve(law: str, own: _Values, speeds: Numbers) -> Numbers:
     basis = _FORMS[law].basis(speeds, own['stribeck_velocity'], own.get('exponent', 2.0))
     return np.asarray(basis @ [own['initial'], own['limit'], own.get('viscous', 0.0)])
 
 
 def _others(values: Mapping[str, object], parameters: Sequence[FreeParameter], section: str,
-            laws: Mapping[str, tuple[str, ...]], curve: Curve, usual_rest: float) -> Iterator[OtherLaw]:
+            laws: Mapping[str, tuple[str, ...]], curve: _Curve, usual_rest: float) -> Iterator[OtherLaw]:
     before = str(values[section + 'law'])
     target = curve(before, _numbers_of(values, section))
     for law, always in laws.items():
@@ -128,7 +128,7 @@ def _defaults(values: Mapping[str, object], usual_rest: float) -> dict[str, obje
             _STATIC + 'time_constant': usual_rest, _STATIC + 'exponent': 1.0}
 
 
-def _numbers_of(values: Mapping[str, object], section: str) -> Values:
+def _numbers_of(values: Mapping[str, object], section: str) -> _Values:
     return {name.removeprefix(section): value for name, value in values.items()
             if name.startswith(section) and isinstance(value, float)}
 
@@ -156,7 +156,7 @@ def _wider(one: FreeParameter, section: str) -> FreeParameter:
 
 
 def _nearest(own: Sequence[FreeParameter], given: Mapping[str, object], section: str, target: Numbers, law: str,
-             curve: Curve) -> dict[str, object]:
+             curve: _Curve) -> dict[str, object]:
     """Return the numbers of a law with which its curve is nearest to another, in shares of that."""
     fixed = _numbers_of(given, section)
     own = [one for one in own if one.name in given]
@@ -165,7 +165,7 @@ def _nearest(own: Sequence[FreeParameter], given: Mapping[str, object], section:
     margin = _INSIDE * (high - low)
     begin = np.clip([one.inner(float(str(given[one.name]))) for one in own], low + margin, high - margin)
 
-    def named(point: Numbers) -> Values:
+    def named(point: Numbers) -> _Values:
         return {one.name.removeprefix(section): one.outer(number) for one, number in zip(own, point.tolist())}
 
     def apart(point: Numbers) -> Numbers:

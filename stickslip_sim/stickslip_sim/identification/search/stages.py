@@ -20,7 +20,7 @@ from ..given.motions import MeasuredMotion
 from .starts import N_STARTS, ROBUST
 
 Numbers = NDArray[np.float64]
-Progress = Callable[[str, float], None]
+StageProgress = Callable[[str, float], None]
 
 _SAMPLES = 4000         # about so many are enough until the last stage
 _FIRST_SLIPS = 1, 3, 8, 20, 50   # that are fitted as one, before the whole run
@@ -145,7 +145,7 @@ def _beyond_noise(problem: FitProblem, found: Solution) -> Numbers | None:
     return None if best is found.point else best
 
 
-def best_fit(ends: Iterator[Ended], progress: Progress) -> list[Ended]:
+def best_fit(ends: Iterator[Ended], progress: StageProgress) -> list[Ended]:
     """Return the ends of the fits that were made, the best first; others are tried only where the first is not good."""
     ended: list[Ended] = []
     progress('fit', 0.0)

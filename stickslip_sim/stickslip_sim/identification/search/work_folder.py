@@ -25,10 +25,10 @@ from ...runs.receipt import versions
 from ...scene import Scene
 
 Numbers = NDArray[np.float64]
-Arrays = Mapping[str, Numbers]
+_Arrays = Mapping[str, Numbers]
 
-SIDECAR = 'identify.json'
-FORM = 'stickslip identification 1'
+_SIDECAR = 'identify.json'
+_FORM = 'stickslip identification 1'
 KEPT = 'what is done is kept, --resume goes on'
 _LONGEST = 1 << 24   # bytes of a description
 
@@ -39,7 +39,7 @@ def facts_of(run: Run, start: Scene, free: str) -> dict[str, Any]:
     for name, column in sorted(run.samples.items()):
         readings.update(name.encode())
         readings.update(np.ascontiguousarray(column, dtype=np.float64).tobytes())
-    return {'form': FORM, 'run': readings.hexdigest(), 'scene': start.hash,
+    return {'form': _FORM, 'run': readings.hexdigest(), 'scene': start.hash,
             'free': hashlib.sha256(free.encode()).hexdigest(), 'versions': versions()}
 
 
@@ -55,9 +55,9 @@ class WorkFolder:
     @property
     def exists(self) -> bool:
         """Whether there is something to go on with."""
-        return (self.path / SIDECAR).is_file()
+        return (self.path / _SIDECAR).is_file()
 
-    def found(self, key: str) -> Arrays | None:
+    def found(self, key: str) -> _Arrays | None:
         """Return the arrays of a fit that was kept; None without any, or of a file that a crash left damaged."""
         if self.exists:
             with (suppress(OSError, ValueError, KeyError, EOFError, BadZipFile),
@@ -65,7 +65,7 @@ class WorkFolder:
                 return {name: file[name] for name in file.files}
         return None
 
-    def keep(self, key: str, arrays: Arrays) -> None:
+    def keep(self, key: str, arrays: _Arrays) -> None:
         """Put the arrays of a fit into a file: whole, or not at all."""
         temporary = self.path / f'.{os.getpid()}.npz'
         try:
@@ -92,17 +92,17 @@ class WorkFolder:
         if not self.exists:
             self.path.mkdir(parents=True)
             text = json.dumps(self._described, indent=1) + '\n'
-            (self.path / SIDECAR).write_text(text, encoding='utf-8')
+            (self.path / _SIDECAR).write_text(text, encoding='utf-8')
 
     def _check_same(self) -> None:
-        file = self.path / SIDECAR
+        file = self.path / _SIDECAR
         found: object = None
         with suppress(OSError, ValueError, RecursionError):
             if file.stat().st_size <= _LONGEST:
                 found = json.loads(file.read_text(encoding='utf-8'))
-        if not isinstance(found, dict) or found.get('form') != FORM:
-            raise InputError('--resume', str(self.path), f'the folder of an interrupted identification, with {SIDECAR} '
-                             'in it', 'a finished one has its results; else leave --resume out')
+        if not isinstance(found, dict) or found.get('form') != _FORM:
+            raise InputError('--resume', str(self.path), f'the folder of an interrupted identification, with '
+                             f'{_SIDECAR} in it', 'a finished one has its results; else leave --resume out')
         for name, value in self._described.items():
             if found.get(name) != value:
                 raise InputError('--resume', str(self.path), f'the folder of this very identification; its {name} is '

@@ -29,7 +29,7 @@ from .friction_tables import Breakpoints, breakpoints_of, put_in_order, with_tab
 
 Numbers = NDArray[np.float64]
 
-PLACES = {name: Sample._fields.index(name) for name in OUTPUTS}
+OUTPUT_PLACES = {name: Sample._fields.index(name) for name in OUTPUTS}
 _BELOW = 1.0 - 1e-12   # of what the contact holds: rounding must not break it
 
 

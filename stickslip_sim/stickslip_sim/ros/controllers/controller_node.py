@@ -15,7 +15,7 @@ from rclpy.clock import Clock, ClockType
 from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
 
-from ...controllers import Progress
+from ...controllers import MoveProgress
 from ...core.errors import InputError
 from ...recording.topics import JOINT_COMMANDS, JOINT_STATES
 from ...rig import Measured
@@ -37,7 +37,7 @@ class ControllerNode(ListedNode):
         super().__init__(name, (*COMMON, *(COMPENSATION if compensates else ())))
         self._model = model_of(self.values)     # once: what its file says later is for the next start
         self._following = following(self.values, self._model)
-        self._progress: Progress | None = None
+        self._progress: MoveProgress | None = None
         self._heard = self._refused = self._limited = 0    # measurements and commands since the last report
         self._refusal = ''
         self._is_deaf = False

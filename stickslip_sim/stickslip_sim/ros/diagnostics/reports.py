@@ -15,7 +15,7 @@ from ...realtime.step_loop import StepLoop
 from ...realtime.timing_statistics import TimingWindow
 from ...realtime.verdict import TimingVerdict
 from ...recording.recordings import Recordings
-from ...rig import FAILED, SILENT_BRIDGE
+from ...rig import DRIVE_FAILED, SILENT_BRIDGE
 from ..node.conversion import set_stamp
 
 OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
@@ -134,7 +134,7 @@ def command_status(loop: StepLoop, second: Second) -> DiagnosticStatus:
     if rig.is_silent:
         level, text = WARN, f'timed out: no drive velocity comes; {SILENT_BRIDGE}'
     if rig.has_failed:
-        level, text = ERROR, FAILED
+        level, text = ERROR, DRIVE_FAILED
     values: dict[str, object] = {
         'age p99 / s': second.window.age.p99, 'latency p50 / s': second.window.latency.p50,
         'latency p99 / s': second.window.latency.p99, 'lost': totals.lost, 'limited': totals.limited,

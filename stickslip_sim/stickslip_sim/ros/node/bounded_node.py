@@ -10,13 +10,13 @@ from rclpy.node import Node
 MOST_PARAMETERS = 1000   # that one request may set or ask for: a second or two
 _LISTS = ('parameters', 'names', 'prefixes')
 
-Answer = Callable[[Any, Any], Any]
+_Answer = Callable[[Any, Any], Any]
 
 
 class BoundedNode(Node):  # type: ignore[misc]
     """A node with bounded requests, also of the services for parameters, which rclpy makes."""
 
-    def create_service(self, srv_type: Any, srv_name: str, callback: Answer, **options: Any) -> Any:
+    def create_service(self, srv_type: Any, srv_name: str, callback: _Answer, **options: Any) -> Any:
         """Offer a service; a request with too long a list gets the answer without results, and a warning in the log."""
         def answer(request: Any, response: Any) -> Any:
             count = max(len(getattr(request, name, ())) for name in _LISTS)

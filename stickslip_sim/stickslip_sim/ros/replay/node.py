@@ -19,7 +19,7 @@ from ..node.topics import publisher
 from .commands import Commands
 from .player import Player, Script
 from .player_services import Services
-from .replay_settings import PARAMETERS, STATES, Settings
+from .replay_settings import REPLAY_PARAMETERS, STATES_MODE, Settings
 from .span import chosen_topics, span_of
 from .states import States
 from .timeline import Timeline
@@ -32,7 +32,7 @@ class Replay(ListedNode):
     """Plays a recording; raises InputError or RecordingError when parameters or recording are refused."""
 
     def __init__(self) -> None:
-        super().__init__(NAME, PARAMETERS)
+        super().__init__(NAME, REPLAY_PARAMETERS)
         settings = self._settings = Settings.of(self.values)
         self._recording = Recording(settings.bag)
         self._span = span_of(self._recording, settings)
@@ -68,7 +68,7 @@ class Replay(ListedNode):
             self.player.change_rate(rate)
 
     def _script(self, stop: threading.Event) -> Script:
-        if self._settings.mode == STATES:
+        if self._settings.mode == STATES_MODE:
             return States(self, self._recording, chosen_topics(self._recording, self._settings.topics), self._span)
         return Commands(self, self._recording, self._settings, self._span, stop)
 

@@ -8,12 +8,12 @@ from dataclasses import dataclass, fields
 from ...config.parameter import Parameter
 from ...core.errors import InputError
 
-STATES, COMMANDS = 'states', 'commands'
+STATES_MODE, COMMANDS_MODE = 'states', 'commands'
 
-PARAMETERS = (
+REPLAY_PARAMETERS = (
     Parameter('bag', 'string', '', '', 'folder of the run, or an .mcap file'),
-    Parameter('mode', 'string', STATES, '', 'states: all that was recorded, onto its topics; commands: the orders'
-              ' that the axis was given, into a live one', choices=(STATES, COMMANDS)),
+    Parameter('mode', 'string', STATES_MODE, '', 'states: all that was recorded, onto its topics; commands: the orders'
+              ' that the axis was given, into a live one', choices=(STATES_MODE, COMMANDS_MODE)),
     Parameter('rate', 'double', 1.0, '', 'seconds of the recording per second', 0.0, 1e6, low_open=True, live=True),
     Parameter('loop', 'bool', False, '', 'whether to begin anew at the end'),
     Parameter('start_offset', 'double', 0.0, 's', 'of the recording that are left out at its start', 0.0, 1e9),
@@ -49,8 +49,8 @@ class Settings:
         settings = cls(**{field.name: values[field.name] for field in fields(cls)})  # type: ignore[arg-type]
         if not settings.bag:
             raise InputError('bag', '', 'the folder of a run', 'give it: --ros-args -p bag:=RUN_FOLDER')
-        if settings.mode == COMMANDS and settings.clock:
+        if settings.mode == COMMANDS_MODE and settings.clock:
             raise InputError('clock', settings.clock, '0 with mode: commands', 'the axis has the clock')
-        if settings.mode == STATES and settings.axis:
+        if settings.mode == STATES_MODE and settings.axis:
             raise InputError('axis', settings.axis, 'left out with mode: states', 'it is for mode: commands')
         return settings
