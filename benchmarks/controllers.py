@@ -13,8 +13,8 @@ from dataclasses import replace
 
 from stickslip_sim.axis import Axis
 from stickslip_sim.controllers import BranchCompensation, Cascade, Controller, Moves
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.rig.encoder import EncoderSettings
-from stickslip_sim.scene import load_scene
 
 from .closed_loop import Figures, close_loop, figures
 from .controllers_picture import draw

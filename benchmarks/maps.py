@@ -22,7 +22,8 @@ from stickslip_sim.bench.peers import scipy_ivp
 from stickslip_sim.bench.peers.peer import Setting
 from stickslip_sim.bench.problem import Outcome, Problem
 from stickslip_sim.core.types import EventKind
-from stickslip_sim.scene import Scene, load_scene
+from stickslip_sim.inputs import load_scene
+from stickslip_sim.scene import Scene
 from stickslip_sim.study import EvenGrid, Motion, Saltelli, Study, variation
 from stickslip_sim.study.table import lines, rows_of
 from stickslip_sim.study.uncertain_file import load_uncertain

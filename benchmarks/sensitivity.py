@@ -9,8 +9,8 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.runs import SimulatedRun, simulate_events
-from stickslip_sim.scene import load_scene
 
 Changes = Mapping[str, object]
 

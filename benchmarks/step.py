@@ -15,7 +15,8 @@ import time
 from collections.abc import Callable
 
 from stickslip_sim.core.time_grid import Grid
-from stickslip_sim.scene import Scene, load_scene
+from stickslip_sim.inputs import load_scene
+from stickslip_sim.scene import Scene
 
 STEPS = 5000
 FIRST, RISE = 0.002, 1e-9    # of the commands: m/s and N, each step another

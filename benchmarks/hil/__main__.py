@@ -10,7 +10,7 @@ import json
 import sys
 from pathlib import Path
 
-from stickslip_sim.scene import load_scene
+from stickslip_sim.inputs import load_scene
 
 from ..loop import machine
 from . import yardstick

@@ -57,8 +57,9 @@ if TYPE_CHECKING:
     from .core.types import Event, EventKind, Instant, Mode, Sample
     from .identification.identify import identify
     from .inputs import load_scene
+    from .inputs.scene_runs import simulate, simulate_events
     from .recording import read_run
-    from .runs import Run, simulate, simulate_events
+    from .runs import Run
     from .runs.batch import run_batch
     from .runs.error_estimate import error_estimate
     from .scene import Scene, scene_names
@@ -81,8 +82,9 @@ if not TYPE_CHECKING:   # a type checker knows the names from above, and finds a
         '.core.types': ('Event', 'EventKind', 'Instant', 'Mode', 'Sample'),
         '.identification.identify': ('identify',),
         '.inputs': ('load_scene',),
+        '.inputs.scene_runs': ('simulate', 'simulate_events'),
         '.recording': ('read_run',),
-        '.runs': ('Run', 'simulate', 'simulate_events'),
+        '.runs': ('Run',),
         '.runs.batch': ('run_batch',),
         '.runs.error_estimate': ('error_estimate',),
         '.scene': ('Scene', 'scene_names'),

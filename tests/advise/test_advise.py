@@ -21,7 +21,8 @@ from stickslip_sim.advise.solver_settings import solver_settings
 from stickslip_sim.advise.trial_runs import ExactRun, Trial, costs, reference_of, try_changes
 from stickslip_sim.bench.measure import Cost
 from stickslip_sim.cli.main import run
-from stickslip_sim.scene import Scene, changed, load_scene, scene_from_values
+from stickslip_sim.inputs import load_scene
+from stickslip_sim.scene import Scene, changed, scene_from_values
 from tests.support.tool import Capture
 
 DURATION = 2.0   # s; the second break-away of paper_fig7 comes at 1.33 s

@@ -4,7 +4,7 @@
 
 from stickslip_sim.advise.numbers import number_lines, numbers_as_json, sensitivities_of
 from stickslip_sim.advise.trial_runs import reference_of
-from stickslip_sim.scene import load_scene
+from stickslip_sim.inputs import load_scene
 
 
 def test_the_numbers_of_a_limit_cycle_by_their_effect() -> None:

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.runs import simulate
-from stickslip_sim.scene import load_scene, scene_from_values
+from stickslip_sim.scene import scene_from_values
 from tests.support.check_files import (
     DECAY,
     FREE,

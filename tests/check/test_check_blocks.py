@@ -9,10 +9,10 @@ import pytest
 from stickslip_sim.check.limits import limits_of
 from stickslip_sim.check.outcomes import outcomes_of
 from stickslip_sim.config.ros_yaml import read_yaml
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import RunFacts, read_run, write_bag
 from stickslip_sim.recording.reader import Bag
 from stickslip_sim.runs import samples, simulate
-from stickslip_sim.scene import load_scene
 
 LIMITS = limits_of(read_yaml('''
 limits:

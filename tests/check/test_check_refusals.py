@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from stickslip_sim.core.types import Sample
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import BagWriter, RunFacts, topics, write_bag
 from stickslip_sim.runs import simulate
-from stickslip_sim.scene import load_scene
 from tests.support.check_files import DURATION, LIMITS, limits_file, node_bag, refused
 from tests.support.tool import Capture
 

@@ -12,10 +12,10 @@ import pytest
 
 from stickslip_sim.check.kinds import KINDS
 from stickslip_sim.cli.main import run
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import OfflineBag, RunFacts, open_bag
 from stickslip_sim.recording.offline_bag import StepMessages
 from stickslip_sim.runs import simulate
-from stickslip_sim.scene import load_scene
 from tests.support.check_files import DURATION, LIMITS, checked, cut, limits_file, node_bag, refused
 from tests.support.repository import ROOT
 from tests.support.tool import Capture

@@ -18,9 +18,10 @@ import pytest
 from stickslip_sim import __version__, cli
 from stickslip_sim.cli.main import run, stickslip
 from stickslip_sim.core.types import EventKind, Mode
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.runs import simulate, simulate_events
 from stickslip_sim.runs.error_estimate import error_estimate
-from stickslip_sim.scene import load_scene, scene_names
+from stickslip_sim.scene import scene_names
 from tests.support.repository import ROOT
 from tests.support.tool import Capture, tool
 

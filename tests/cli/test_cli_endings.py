@@ -12,7 +12,7 @@ import click
 import pytest
 
 from stickslip_sim.cli.main import run
-from stickslip_sim.scene import load_scene
+from stickslip_sim.inputs import load_scene
 from tests.support.repository import ROOT
 from tests.support.tool import Capture, answered, refused, restore_interrupt
 

@@ -14,9 +14,9 @@ import pytest
 from stickslip_sim.cli.main import run
 from stickslip_sim.core.errors import RecordingError
 from stickslip_sim.core.types import EventKind
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import open_bag
 from stickslip_sim.runs import simulate_events
-from stickslip_sim.scene import load_scene
 from tests.support.repository import ROOT
 from tests.support.rewritten_bags import rewritten
 from tests.support.tool import Capture, refused

@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.plots.run_panels import CROWDED
 from stickslip_sim.runs import SimulatedRun, simulate, simulate_events
 from stickslip_sim.runs.picture import windows_of
 from stickslip_sim.runs.picture_samples import sampled
-from stickslip_sim.scene import load_scene
 from tests.support.check_files import cut
 from tests.support.tool import Capture, answered, refused
 

@@ -10,9 +10,9 @@ import pytest
 from stickslip_sim.compare.characteristics import characteristics_of
 from stickslip_sim.compare.fresh import simulate_densely
 from stickslip_sim.core.types import EventKind
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.plots.characteristics import Characteristics, plot_characteristics
 from stickslip_sim.runs import Run
-from stickslip_sim.scene import load_scene
 
 TO_AND_FRO = {'drive.course': 'steps', 'drive.times': [0.0, 1.5], 'drive.velocities': [0.004, -0.006]}
 BACKWARD = {'friction.static.backward.initial': 0.08, 'friction.static.backward.limit': 0.15,

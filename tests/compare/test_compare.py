@@ -25,11 +25,11 @@ from stickslip_sim.compare.ring_down import RING_DOWN, closed_form, identified
 from stickslip_sim.compare.statement import StatementOutcome
 from stickslip_sim.compare.statements import findings_on, observed
 from stickslip_sim.core.types import EventKind
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.plots.characteristics import plot_characteristics
 from stickslip_sim.plots.paper_panels import plot_motion
 from stickslip_sim.recording import read_run
 from stickslip_sim.runs import simulate_events
-from stickslip_sim.scene import load_scene
 from tests.support.rewritten_bags import rewritten
 from tests.support.tool import Capture
 

@@ -13,9 +13,9 @@ from stickslip_sim.compare.fresh import simulate_densely
 from stickslip_sim.compare.statement import Finding, StatementOutcome
 from stickslip_sim.compare.statements import STATEMENTS, findings_on
 from stickslip_sim.core.types import EventKind
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import read_run
 from stickslip_sim.runs import Run, SimulatedRun
-from stickslip_sim.scene import load_scene
 
 HOLDS, FAILS, NOT_APPLICABLE = StatementOutcome
 BALANCE, CONTINUITY, TWO_VALUES, OSCILLATION, LIMIT_CYCLE, CONTACT, LONG_REST = (

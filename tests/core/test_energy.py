@@ -12,7 +12,7 @@ from stickslip_sim.axis import CompliantContact, InitialState
 from stickslip_sim.core.energy import EnergyBalance
 from stickslip_sim.core.input_profile import constant, ramp, steps
 from stickslip_sim.core.types import Instant
-from stickslip_sim.scene import load_scene
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.simulation.simulator import Simulator
 from tests.conftest import Program
 from tests.support.accounts import UNDAMPED, accounted, energy_of

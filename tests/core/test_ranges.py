@@ -11,7 +11,7 @@ import pytest
 from stickslip_sim.core import ranges
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.ranges import Range
-from stickslip_sim.scene import load_scene
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.scene.schema import BY_NAME
 from tests.support.axes import COMPLIANT, paper_axis
 

@@ -13,8 +13,9 @@ from stickslip_sim.design.candidate_feeds import default_speeds, feeds
 from stickslip_sim.design.design_folder import scene_file, table_heads, table_rows
 from stickslip_sim.design.experiments import Wishes, designed
 from stickslip_sim.design.information import Sensors, covariance_after, run_slopes
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.runs import simulate_events
-from stickslip_sim.scene import changed, load_scene
+from stickslip_sim.scene import changed
 from stickslip_sim.sensitivity.sensitivities import sensitivities
 from tests.support.repository import ROOT
 from tests.support.tool import Capture, answered, refused

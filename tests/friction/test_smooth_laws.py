@@ -16,7 +16,8 @@ from stickslip_sim.core.types import EventKind
 from stickslip_sim.friction import KineticTable, SmoothExcess, SmoothKinetic, excess_table, kinetic_table
 from stickslip_sim.friction.kinetic import MAX_BREAKPOINTS, default_excess
 from stickslip_sim.friction.smooth import cosine, exponential, hyperbolic, power, stribeck
-from stickslip_sim.scene import load_scene, scene_from_values
+from stickslip_sim.inputs import load_scene
+from stickslip_sim.scene import scene_from_values
 from stickslip_sim.simulation.simulator import Simulator
 from tests.support.axes import COMPLIANT, RIGID, instant
 from tests.support.scene_files import refusal

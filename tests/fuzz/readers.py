@@ -12,9 +12,10 @@ from stickslip_sim.check.observed_run import gaps_in, observed_motion, timing_of
 from stickslip_sim.cli.export import csv_lines
 from stickslip_sim.config.ros_yaml import read_yaml
 from stickslip_sim.core.errors import RecordingWarning
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import Bag, RecordedRun, open_bag, read_run
 from stickslip_sim.recording.playback import Recording
-from stickslip_sim.scene import load_scene, parse_override, parse_scene
+from stickslip_sim.scene import parse_override, parse_scene
 from stickslip_sim.study import EvenGrid, Study, variation
 from stickslip_sim.study.picks import point_of
 from stickslip_sim.study.pictures import check_drawable

@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from stickslip_sim.scene import load_scene
+from stickslip_sim.inputs import load_scene
 
 from .attack import Found, Tally
 from .case import Case

@@ -28,7 +28,7 @@ def test_an_installed_package_starts_without_a_compiler(in_a_process: Program) -
 import sys
 from stickslip_sim import simulate_events
 from stickslip_sim.core.hot_path import hot_path
-from stickslip_sim.scene import load_scene
+from stickslip_sim.inputs import load_scene
 simulate_events(load_scene('paper_fig8'), 1.0)
 print(hot_path(), {'Cython', 'numba'} & set(sys.modules))
 '''

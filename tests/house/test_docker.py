@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 import yaml
 
-from stickslip_sim.scene import load_scene
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.scene.schema import BY_NAME
 from tests.support.dockerfiles import instructions, stages
 from tests.support.node_processes import executable

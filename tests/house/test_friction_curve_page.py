@@ -7,7 +7,7 @@ import csv
 import pytest
 
 from stickslip_sim.cli.main import run
-from stickslip_sim.scene import load_scene
+from stickslip_sim.inputs import load_scene
 from tests.support.repository import ROOT
 
 SCENE = ROOT / 'examples' / 'my_axis.yaml'

@@ -11,9 +11,9 @@ import pytest
 
 from stickslip_sim.core.errors import RecordingError
 from stickslip_sim.core.types import EventKind
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import MeasuredRun, open_bag, read_run
 from stickslip_sim.runs import SimulatedRun, simulate
-from stickslip_sim.scene import load_scene
 from tests.support.tool import answered, refused
 
 Capture = pytest.CaptureFixture[str]

@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from stickslip_sim.core.types import Mode
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.plots import plot_run
 from stickslip_sim.plots.drawn_run import DrawnRun, TimeWindow, drawn_run, mode_shares
 from stickslip_sim.plots.run_panels import BINS, band, bin_edges
@@ -22,7 +23,6 @@ from stickslip_sim.plots.style import Numbers, legend_outside, thinned
 from stickslip_sim.rig.marks import Mark
 from stickslip_sim.runs import Run, simulate, simulate_events
 from stickslip_sim.runs.picture_samples import sampled
-from stickslip_sim.scene import load_scene
 
 EDGES: Numbers = np.linspace(0.0, 10.0, BINS + 1, dtype=np.float64)
 PNG = b'\x89PNG\r\n\x1a\n'

@@ -9,12 +9,12 @@ import pytest
 
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.time_grid import Grid
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.realtime.command_slot import CommandSlot
 from stickslip_sim.realtime.pacing import Pacer, StepClock, Unpaced
 from stickslip_sim.realtime.step_loop import StepLoop
 from stickslip_sim.realtime.watchdog import Watchdog
 from stickslip_sim.rig import RigEventKind, StepResult
-from stickslip_sim.scene import load_scene
 from tests.support.fake_clock import FakeClock
 from tests.support.rigs import make, rig_events_of
 from tests.support.waiting import wait_for

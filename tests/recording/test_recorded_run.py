@@ -13,10 +13,10 @@ import pytest
 from stickslip_sim.cli.main import run as tool
 from stickslip_sim.core.errors import InputError, RecordingWarning
 from stickslip_sim.core.types import EventKind
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import read_run, records, topic_columns
 from stickslip_sim.rig.marks import Mark
 from stickslip_sim.runs import COLUMNS, Run, simulate, simulate_events
-from stickslip_sim.scene import load_scene
 from tests.support.small_recordings import files
 
 

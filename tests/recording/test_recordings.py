@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import open_bag, schema
 from stickslip_sim.recording.recordings import Recordings
 from stickslip_sim.recording.stamped_folder import stamped_folder
-from stickslip_sim.scene import load_scene
 
 
 @pytest.mark.parametrize('ending', ['/', '//', '/.'])

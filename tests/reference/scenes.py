@@ -12,7 +12,8 @@ import math
 import random
 from typing import Any, NamedTuple
 
-from stickslip_sim.scene import load_scene, scene_names
+from stickslip_sim.inputs import load_scene
+from stickslip_sim.scene import scene_names
 from tests.support.stored_objects import parameters_of
 
 Parameters = dict[str, Any]

@@ -9,9 +9,10 @@ import pytest
 
 from stickslip_sim.core.errors import InputError, SolverError
 from stickslip_sim.core.types import Event, EventKind
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import checkpoint_file
 from stickslip_sim.rig import Rig
-from stickslip_sim.scene import changed, load_scene
+from stickslip_sim.scene import changed
 from tests.support.axes import instant
 from tests.support.rigs import inject, run
 

@@ -11,9 +11,10 @@ import pytest
 from stickslip_sim.axis.fields import places_of
 from stickslip_sim.axis.state_record import State
 from stickslip_sim.core.errors import InputError
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import checkpoint_file
 from stickslip_sim.rig import Fault, Rig, StepResult
-from stickslip_sim.scene import Scene, changed, load_scene
+from stickslip_sim.scene import Scene, changed
 
 LIMITS = {'command.acceleration_limit': 0.5, 'command.on_timeout': 'ramp_to_zero'}
 SINES = {'force.course': 'sine', 'force.amplitude': 200.0, 'force.frequency': 7.0, 'drive.course': 'table',

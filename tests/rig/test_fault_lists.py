@@ -9,9 +9,9 @@ import pytest
 
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.time_grid import Grid
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.rig import Fault, RigEventKind
 from stickslip_sim.rig.faults import MAX_FAULTS, RULES
-from stickslip_sim.scene import load_scene
 from tests.support.rigs import bits, inject, make, rig_events_of, run, velocity
 from tests.support.scene_files import refusal
 

@@ -14,9 +14,9 @@ from stickslip_sim.axis import Axis, InitialState
 from stickslip_sim.core.input_profile import constant, steps
 from stickslip_sim.core.time_grid import Grid
 from stickslip_sim.core.types import Instant
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.rig import Fault, RigEventKind
 from stickslip_sim.rig.faults import Faults
-from stickslip_sim.scene import load_scene
 from stickslip_sim.simulation.simulator import Simulator
 from tests.support.rigs import AXIS, STUCK, Script, bits, force, inject, make, rig_events_of, run
 

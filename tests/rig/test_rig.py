@@ -15,6 +15,7 @@ from stickslip_sim.core.errors import InputError, SolverError
 from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant
 from stickslip_sim.core.time_grid import Grid
 from stickslip_sim.core.types import EventKind
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.realtime.command_slot import CommandSlot
 from stickslip_sim.realtime.pacing import Unpaced
 from stickslip_sim.realtime.step_loop import StepLoop
@@ -23,7 +24,6 @@ from stickslip_sim.rig import Fault, Rig, StepResult
 from stickslip_sim.rig.drive import DriveLimits
 from stickslip_sim.rig.encoder import EncoderSettings
 from stickslip_sim.rig.settings import RigSettings
-from stickslip_sim.scene import load_scene
 from stickslip_sim.simulation.simulator import Simulator
 from tests.support.rigs import (
     AXIS,

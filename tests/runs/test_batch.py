@@ -16,9 +16,9 @@ from stickslip_sim.core.types import Event, EventKind, Mode
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind, kinetic_table
 from stickslip_sim.friction.kinetic import default_excess
 from stickslip_sim.friction.shapes import Decay
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.runs.batch import BatchFigures, run_batch
 from stickslip_sim.runs.batch_columns import BATCH_COLUMNS
-from stickslip_sim.scene import load_scene
 from stickslip_sim.simulation.cycles import Summary, summary
 from tests.conftest import Program
 from tests.support.axes import COMPLIANT, RIGID, instant, make, paper_axis, random_axis

@@ -16,11 +16,12 @@ from benchmarks.smooth_reference import SmoothRun
 from stickslip_sim.axis import InitialState
 from stickslip_sim.core.input_profile import steps
 from stickslip_sim.core.types import EventKind
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.reference import simulate
 from stickslip_sim.runs import simulate_events
 from stickslip_sim.runs.error_estimate import error_estimate
 from stickslip_sim.runs.perturbation import ROUNDING_UNIT, perturbed
-from stickslip_sim.scene import Scene, SolverSettings, load_scene
+from stickslip_sim.scene import Scene, SolverSettings
 from tests.support.stored_objects import axis_of, profile_of
 from tests.support.stored_runs import stored
 

@@ -5,7 +5,6 @@
 import json
 import math
 from fractions import Fraction
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,9 +12,9 @@ import pytest
 from stickslip_sim.core.energy import EnergyBalance
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.types import Event, EventKind, Sample
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.runs import SimulatedRun, simulate, simulate_events
 from stickslip_sim.runs.simulated import MAX_SAMPLES, check_run_times
-from stickslip_sim.scene import load_scene
 
 
 @pytest.fixture(scope='module')
@@ -146,12 +145,3 @@ def test_too_many_events_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr('stickslip_sim.runs.simulated.MAX_EVENTS', 10)
     with pytest.raises(InputError, match='at most 10 events'):
         simulate_events(load_scene('paper_fig8'), 60.0)
-
-
-def test_a_scene_may_be_given_by_its_name_or_path(tmp_path: Path) -> None:
-    scene = load_scene('paper_fig7')
-    (tmp_path / 'mine.yaml').write_text(scene.text)
-    for given in ('paper_fig7', tmp_path / 'mine.yaml', scene):
-        assert simulate_events(given, 2.0).events == simulate_events(scene, 2.0).events
-    with pytest.raises(InputError, match='did you mean paper_fig'):
-        simulate_events('paper_fig9', 2.0)

@@ -4,8 +4,8 @@
 
 import pytest
 
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.runs import simulate, simulate_events
-from stickslip_sim.scene import load_scene
 
 FAULTS = {'faults.ids': ['dry', 'knock', 'stop'], 'faults.kinds': ['friction_scale', 'force_pulse', 'drive_freeze'],
           'faults.starts': [0.3, 0.7004, 1.2],

@@ -7,8 +7,9 @@ import pytest
 
 from stickslip_sim.advise.friction_parts import friction_parts
 from stickslip_sim.compare.conventional import characteristics_beside
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.runs import simulate_events
-from stickslip_sim.scene import changed, load_scene, scene_names
+from stickslip_sim.scene import changed, scene_names
 from stickslip_sim.study import EvenGrid, Study, variation
 
 SCALED = {'friction.scale': 1.25}

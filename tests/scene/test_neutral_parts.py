@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from stickslip_sim.core.types import EventKind
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.runs import SimulatedRun, simulate
-from stickslip_sim.scene import load_scene
 
 DURATION, PERIOD = 3.0, 0.01   # s
 CONSTANT = {'friction.static.law': 'constant', 'friction.static.initial': 0.2}

@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from stickslip_sim.core.errors import InputError
-from stickslip_sim.scene import load_scene, scene_names
+from stickslip_sim.inputs import load_scene
+from stickslip_sim.scene import scene_names
 from stickslip_sim.scene.plausible import PLAUSIBLE, check_plausible
 from stickslip_sim.scene.schema import BY_NAME
 from tests.support.tool import Capture, answered, refused

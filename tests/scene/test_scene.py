@@ -9,7 +9,8 @@ import pathlib
 import pytest
 
 from stickslip_sim.axis import CompliantContact, RigidContact
-from stickslip_sim.scene import PARAMETERS, load_scene, parse_override, scene_from_values, scene_names
+from stickslip_sim.inputs import load_scene
+from stickslip_sim.scene import PARAMETERS, parse_override, scene_from_values, scene_names
 from stickslip_sim.scene.document import document
 from stickslip_sim.scene.load import read_scene
 from stickslip_sim.scene.schema import BY_NAME

@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 
 from stickslip_sim.config.ros_yaml import plain_value, read_yaml
 from stickslip_sim.core.errors import InputError
-from stickslip_sim.scene import load_scene, scene_from_values, scene_names
+from stickslip_sim.inputs import load_scene
+from stickslip_sim.scene import scene_from_values, scene_names
 from stickslip_sim.scene.load import parse_scene, scene_of_parameters
 from stickslip_sim.scene.schema import BY_NAME, PARAMETERS
 from stickslip_sim.scene.sections import parameters_of

@@ -7,7 +7,7 @@ import itertools
 import pytest
 
 from stickslip_sim.core.types import Event, EventKind, Mode, Sample
-from stickslip_sim.scene import load_scene
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.simulation.simulator import Simulator
 from tests.support.axes import instant
 

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.types import EventKind
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.reference import simulate
-from stickslip_sim.scene import Scene, changed, load_scene
+from stickslip_sim.scene import Scene, changed
 from stickslip_sim.sensitivity.sensitivities import Sensitivities, sensitivities
 from stickslip_sim.study.in_memory import sweep
 

@@ -10,8 +10,8 @@ import pytest
 from stickslip_sim.axis import InitialState
 from stickslip_sim.core.input_profile import table
 from stickslip_sim.core.types import Event, EventKind, Mode
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.runs import simulate_events
-from stickslip_sim.scene import load_scene
 from stickslip_sim.simulation.cycles import (
     SWINGS_ON,
     Cycle,

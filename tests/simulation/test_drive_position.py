@@ -9,9 +9,10 @@ import pytest
 
 from stickslip_sim.core.position_profile import positions
 from stickslip_sim.core.types import EventKind
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.reference import simulate as simulate_reference
 from stickslip_sim.runs import simulate
-from stickslip_sim.scene import Scene, load_scene
+from stickslip_sim.scene import Scene
 
 PLACES, TIMES = (0.0, 0.0013, 0.0029, 0.0012, -0.0004), (0.0, 0.7, 1.5, 1.9, 3.0)
 

@@ -11,10 +11,10 @@ from stickslip_sim.axis import Axis, InitialState
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.input_profile import constant
 from stickslip_sim.core.types import Event, EventKind, Mode, Sample
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.reference import simulate as simulate_reference
 from stickslip_sim.runs import simulate_events
 from stickslip_sim.runs.batch import run_batch
-from stickslip_sim.scene import load_scene
 from stickslip_sim.simulation.simulator import Simulator
 from stickslip_sim.solvers import Solver, exact, fixed_step
 from tests.support.axes import COMPLIANT, RIGID, Contact, instant, paper_axis

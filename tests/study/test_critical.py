@@ -13,8 +13,9 @@ from stickslip_sim.cli.main import run
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.types import EventKind
 from stickslip_sim.extremes.shared_axes import make, of_kind
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.runs import simulate_events
-from stickslip_sim.scene import Scene, load_scene
+from stickslip_sim.scene import Scene
 from stickslip_sim.study import Variation
 from stickslip_sim.study.answer_changes import FAILED, NO, OPEN, YES, Answers, Doubt, Findings, find_transitions
 from stickslip_sim.study.critical import Critical, critical_of, default_range

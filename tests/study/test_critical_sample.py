@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 from stickslip_sim.core.errors import InputError
-from stickslip_sim.scene import changed, load_scene
+from stickslip_sim.inputs import load_scene
+from stickslip_sim.scene import changed
 from stickslip_sim.study import Saltelli, Study, Variation
 from stickslip_sim.study.answer_changes import NO, OPEN, YES, Answers
 from stickslip_sim.study.critical import critical_of

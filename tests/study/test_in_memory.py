@@ -7,7 +7,7 @@ import math
 import pytest
 
 from stickslip_sim.core.errors import InputError
-from stickslip_sim.scene import load_scene
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.study import EvenGrid, Study, variation
 from stickslip_sim.study.in_memory import critical, sweep, uncertainty
 

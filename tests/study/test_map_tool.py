@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from stickslip_sim.cli.main import run
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.runs import simulate_events
-from stickslip_sim.scene import load_scene
 from stickslip_sim.simulation.cycles import cycle_figures
 from stickslip_sim.study import EvenGrid, Study, variation
 from stickslip_sim.study.bifurcation import bifurcation

@@ -13,8 +13,9 @@ import pytest
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.types import Event, EventKind, Mode
 from stickslip_sim.extremes.shared_axes import elapsed
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.runs import simulate_events
-from stickslip_sim.scene import Scene, load_scene
+from stickslip_sim.scene import Scene
 from stickslip_sim.simulation.cycles import cycle_figures
 from stickslip_sim.study import MOTIONS, EvenGrid, Figures, Motion, Sobol, Study, variation
 from stickslip_sim.study.point_figures import RUN_FIELDS

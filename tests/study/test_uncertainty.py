@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy import stats
 
 from stickslip_sim.core.errors import InputError
-from stickslip_sim.scene import load_scene
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.study import Distribution, Saltelli, Study
 from stickslip_sim.study.description import description, study_of
 from stickslip_sim.study.point_figures import FIGURES, Motion

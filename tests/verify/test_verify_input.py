@@ -11,10 +11,10 @@ import pytest
 from stickslip_sim.cli.main import run
 from stickslip_sim.core.errors import StickslipError
 from stickslip_sim.core.types import EventKind
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import read_run
 from stickslip_sim.runs import simulate_events
 from stickslip_sim.runs.receipt import plain
-from stickslip_sim.scene import load_scene
 from tests.support.rewritten_bags import rewritten
 from tests.support.tool import Capture
 from tests.support.verify_tool import refused, verified

@@ -9,7 +9,8 @@ from ..core.errors import InputError
 from ..core.input_profile import InputProfile, constant
 from ..friction import KineticTable, StaticLaw, StaticLawKind
 from ..friction.kinetic import default_excess
-from ..scene import load_scene, scene_names
+from ..inputs import load_scene
+from ..scene import scene_names
 from .problem import Problem
 
 LETTERS = ('A', 'B', 'C', 'D')

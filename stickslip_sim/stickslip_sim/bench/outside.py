@@ -24,7 +24,7 @@ _PLAIN_MARK, _PLAIN_AIM = 200.0, 400.0                    # times
 _COLD_MARK, _START_MARK, _START_AIM = 6.0, 0.6, 0.2       # s
 # up to the first slip: an axis that nothing has moved yet needs little of the hot path
 FIRST_SLIP = '''
-from stickslip_sim.scene import load_scene
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.simulation.simulator import Simulator
 from stickslip_sim.core.types import Instant
 scene = load_scene('paper_fig8')

@@ -8,7 +8,8 @@ import click
 @click.command()
 def scenes() -> None:
     """List the shipped scenes with a line each."""
-    from ..scene import load_scene, scene_names
+    from ..inputs import load_scene
+    from ..scene import scene_names
 
     names = scene_names()
     width = max(map(len, names))

@@ -11,7 +11,7 @@ from typing import NamedTuple
 from ..axis import Axis, CompliantContact, InitialState
 from ..core.input_profile import InputProfile, Sinusoid, constant, steps
 from ..core.types import Instant
-from ..scene import load_scene
+from ..inputs import load_scene
 from ..simulation.simulator import Simulator
 from ..solvers import Solver
 from .outcome import Measurement, Setup, Tally, require

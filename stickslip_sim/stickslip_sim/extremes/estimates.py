@@ -16,10 +16,11 @@ from typing import NamedTuple
 
 from ..core.errors import InputError, SolverError
 from ..core.types import Event, EventKind
+from ..inputs import load_scene
 from ..reference import simulate
 from ..runs import SimulatedRun, simulate_events
 from ..runs.error_estimate import ErrorEstimate, error_estimate
-from ..scene import Scene, SolverSettings, load_scene, scene_names
+from ..scene import Scene, SolverSettings, scene_names
 from .against import DIGITS
 from .outcome import Measurement, Setup, Tally, require
 from .shared_axes import random_axis, random_profiles

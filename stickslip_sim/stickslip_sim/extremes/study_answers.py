@@ -9,7 +9,8 @@ from functools import cache
 import numpy as np
 
 from ..core.types import EventKind, Mode
-from ..scene import Scene, load_scene
+from ..inputs import load_scene
+from ..scene import Scene
 from ..solvers import Solver
 from ..study import EvenGrid, Motion, Study, Variation
 from ..study.answer_changes import Transition

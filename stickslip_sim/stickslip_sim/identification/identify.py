@@ -9,10 +9,9 @@ from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 
-from ..inputs import load_scene
+from ..inputs import SceneOrName, scene_of
 from ..recording import read_run
 from ..runs import Run
-from ..scene import Scene, SceneOrName
 from .findings import identification_of
 from .fit.direct_motion import with_delay
 from .fit.problem import FitProblem
@@ -45,7 +44,7 @@ def identify(run: Run | str | os.PathLike[str], start: SceneOrName, free: str | 
     """
     began = time.perf_counter()
     say = progress or (lambda stage, share: None)
-    scene = start if isinstance(start, Scene) else load_scene(start)
+    scene = scene_of(start)
     parameters = free_parameters(scene, free)
     found = read_run(os.fspath(run)) if isinstance(run, str | os.PathLike) else run
     measurement = readings_of(found, scene, resolutions or {})

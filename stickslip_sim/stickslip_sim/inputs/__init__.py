@@ -2,6 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What comes from outside: profiles and measured numbers from files, in the units that are stated."""
 
-from .scene_files import load_scene
+from .scene_files import SceneOrName, load_scene, scene_of
 
-__all__ = ['load_scene']
+__all__ = ['SceneOrName', 'load_scene', 'scene_of']

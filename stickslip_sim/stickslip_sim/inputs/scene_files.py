@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Scenes whose profiles may be in files."""
+"""Scenes by name or path, whose profiles may be in files."""
 
 import os
 from collections.abc import Mapping
@@ -12,6 +12,8 @@ from ..scene.build import build_scene
 from ..scene.load import merged_parameters, named, read_scene
 from ..scene.profile_schema import PROFILES
 from .profile_file import prepared, sections_with_file, with_profiles
+
+SceneOrName = Scene | str | os.PathLike[str]
 
 
 def load_scene(name_or_path: str | os.PathLike[str], overrides: Mapping[str, object] | None = None) -> Scene:
@@ -26,6 +28,11 @@ def load_scene(name_or_path: str | os.PathLike[str], overrides: Mapping[str, obj
         found = read_scene(name)
         return scene_with_profiles(found.values, overrides or {}, dict.fromkeys(PROFILES, found.folder),
                                    found.summary)
+
+
+def scene_of(given: SceneOrName) -> Scene:
+    """Return a scene, or the one of that name or path; raises as `load_scene`."""
+    return given if isinstance(given, Scene) else load_scene(given)
 
 
 def scene_with_profiles(values: Mapping[str, object], overrides: Mapping[str, object], folders: Mapping[str, Path],

@@ -16,7 +16,7 @@ from ..core.time_grid import decimal, instant_of, instants, multiples
 from ..core.types import Event, Instant, Mode, Sample
 from ..rig import Rig
 from ..rig.marks import Mark, marks_of_faults
-from ..scene import Scene, SceneOrName, scene_of
+from ..scene import Scene
 from ..simulation.cycles import Summary, summary
 from .normal_force import normal_force_of
 from .receipt import CostMeter, receipt_of
@@ -96,20 +96,19 @@ class SimulatedRun(Views):
 Progress = Callable[[float], None] | None
 
 
-def simulate(scene: SceneOrName, duration: float, sample_period: float | Fraction | None = None,
+def simulate(scene: Scene, duration: float, sample_period: float | Fraction | None = None,
              progress: Progress = None) -> SimulatedRun:
     """Simulate `duration` seconds of a scene, with a sample every `sample_period` seconds from 0 on (None: each step).
 
     `progress` is called with the share that is done.  Raises InputError on times without a meaning and on a run too
     long to hold, SolverError when the solver gives up.
     """
-    found = scene_of(scene)
-    return _simulated(found, duration, found.time.step if sample_period is None else sample_period, progress)
+    return _simulated(scene, duration, scene.time.step if sample_period is None else sample_period, progress)
 
 
-def simulate_events(scene: SceneOrName, duration: float, progress: Progress = None) -> SimulatedRun:
+def simulate_events(scene: Scene, duration: float, progress: Progress = None) -> SimulatedRun:
     """Simulate as `simulate` does, without any sample: for long runs, and where events say all."""
-    return _simulated(scene_of(scene), duration, None, progress)
+    return _simulated(scene, duration, None, progress)
 
 
 def columns_of_rows(rows: NDArray[np.float64]) -> Columns:

@@ -4,21 +4,18 @@
 
 from ..config.parameter import Parameter, When
 from .load import (
-    SceneOrName,
     changed,
-    load_scene,
     parse_override,
     parse_scene,
     scene_from_values,
     scene_names,
-    scene_of,
 )
 from .model import CommandSettings, RecordSettings, Scene, TimeSettings
 from .schema import PARAMETERS
 from .solver import SolverSettings
 
 __all__ = [
-    'PARAMETERS', 'CommandSettings', 'Parameter', 'RecordSettings', 'Scene', 'SceneOrName', 'SolverSettings',
-    'TimeSettings', 'When',
-    'changed', 'load_scene', 'parse_override', 'parse_scene', 'scene_from_values', 'scene_names', 'scene_of',
+    'PARAMETERS', 'CommandSettings', 'Parameter', 'RecordSettings', 'Scene', 'SolverSettings', 'TimeSettings',
+    'When',
+    'changed', 'parse_override', 'parse_scene', 'scene_from_values', 'scene_names',
 ]

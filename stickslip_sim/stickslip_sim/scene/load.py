@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Scenes by name, from a file, or from values."""
+"""Scenes from text or values, and what the file of a scene says."""
 
 import os
 import pathlib
@@ -18,7 +18,6 @@ from .sections import describes_an_axis, of_a_scene, parameters_of
 from .values import overridden, stated
 
 _SHIPPED = pathlib.Path(__file__).parent.parent / 'scenes'
-SceneOrName = Scene | str | os.PathLike[str]
 _ENDINGS = ('.yaml', '.yml')
 
 
@@ -33,23 +32,6 @@ class SceneFile(NamedTuple):
 def scene_names() -> list[str]:
     """Return the names of the shipped scenes."""
     return sorted(path.stem for path in _SHIPPED.glob('*.yaml'))
-
-
-def load_scene(name_or_path: str | os.PathLike[str], overrides: Mapping[str, object] | None = None) -> Scene:
-    """Return a shipped scene or one from a file, with other values by dotted name.
-
-    An override of a choice (contact.model) drops the values of the file for the old one (contact.stiffness).  Raises
-    InputError, whose text begins with the file.
-    """
-    name = os.fspath(name_or_path)
-    with named(name):
-        found = read_scene(name)
-        return scene_of_parameters(found.values, overrides or {}, found.summary)
-
-
-def scene_of(given: SceneOrName) -> Scene:
-    """Return a scene, or the one of that name or path; raises InputError."""
-    return given if isinstance(given, Scene) else load_scene(given)
 
 
 def read_scene(name_or_path: str) -> SceneFile:

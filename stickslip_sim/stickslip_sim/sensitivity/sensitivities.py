@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import InputError, SolverError
+from ..inputs import SceneOrName, scene_of
 from ..runs.frame import data_frame
-from ..scene import Scene, SceneOrName, changed, scene_of
+from ..scene import Scene, changed
 from .figures import Figure, figure_of
 from .moved_number import LARGEST, SMALLEST, MovedNumber, moved_number, moved_numbers
 from .multiplier import Multiplier, multiplier_of

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from ..inputs import SceneOrName, scene_of
 from ..runs.frame import data_frame
-from ..scene import SceneOrName, scene_of
 from . import critical as search
 from .point_figures import FIGURES, MOTIONS, Motion
 from .sample import EvenGrid, Saltelli, Sobol

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.runs import simulate_events
-from stickslip_sim.scene import load_scene
 from tests.support.repository import ROOT
 from tests.support.tool import Capture, answered, refused
 

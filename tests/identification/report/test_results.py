@@ -37,8 +37,9 @@ from stickslip_sim.identification.report.results import (
     POSTERIOR,
     write_results,
 )
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording.measured_run import MeasuredRun
-from stickslip_sim.scene import load_scene, scene_from_values
+from stickslip_sim.scene import scene_from_values
 from stickslip_sim.scene.load import parse_scene
 from stickslip_sim.study import Saltelli, Study
 from stickslip_sim.study.point_figures import FIGURES

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from stickslip_sim.core.types import EventKind, Instant
-from stickslip_sim.scene import load_scene
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.scene.schema import PARAMETERS
 from stickslip_sim.simulation.simulator import Simulator
 from tests.support.busy_machine import judged_by_time

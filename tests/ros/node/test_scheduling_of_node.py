@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from stickslip_sim.core.errors import InputError
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import open_bag
-from stickslip_sim.scene import load_scene
 from stickslip_sim.scene.load import parse_scene
 from tests.support.forked_programs import ended_at_once
 from tests.support.node_processes import recording_into, running

@@ -16,9 +16,10 @@ import numpy as np
 import pytest
 
 from stickslip_sim.core.errors import InputError
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import Bag, open_bag
 from stickslip_sim.runs import simulate_events
-from stickslip_sim.scene import Scene, load_scene
+from stickslip_sim.scene import Scene
 from tests.support.busy_machine import judged_by_time
 from tests.support.node_processes import NodeProcess, assert_clean, running
 from tests.support.replays import FIELDS, assert_same_states, made_again

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from stickslip_sim.core.errors import InputError
-from stickslip_sim.scene import load_scene
+from stickslip_sim.inputs import load_scene
 from tests.support.forked_programs import ended_at_once
 from tests.support.node_processes import assert_clean, executable, running
 from tests.support.ros_nodes import client

@@ -15,8 +15,8 @@ from stickslip_sim.core.input_profile import InputProfile, Sinusoid, steps, tabl
 from stickslip_sim.core.types import Event, EventKind, Mode
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
 from stickslip_sim.friction.kinetic import default_excess
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.runs import simulate_events
-from stickslip_sim.scene import load_scene
 from stickslip_sim.solvers import adaptive
 from tests.conftest import Program
 from tests.support.axes import COMPLIANT, RIGID, instant, of_kind, paper_axis

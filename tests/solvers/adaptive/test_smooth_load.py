@@ -10,9 +10,9 @@ from stickslip_sim.axis import Axis, Friction, InitialState, RigidContact
 from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant, table
 from stickslip_sim.core.types import EventKind
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.runs import simulate_events
 from stickslip_sim.runs.error_estimate import error_estimate
-from stickslip_sim.scene import load_scene
 from stickslip_sim.simulation.simulator import Simulator
 from stickslip_sim.solvers import adaptive
 from tests.support.axes import instant

@@ -20,9 +20,9 @@ from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant, s
 from stickslip_sim.core.types import Event, EventKind
 from stickslip_sim.extremes.shared_axes import random_profiles, with_static
 from stickslip_sim.friction import StaticLawKind
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import read_run
 from stickslip_sim.reference import simulate as simulate_reference
-from stickslip_sim.scene import load_scene
 from stickslip_sim.simulation.simulator import Simulator
 from stickslip_sim.solvers import Solver, adaptive, exact, fixed_step
 from tests.support.axes import COMPLIANT, RIGID, Contact, instant, make, paper_axis, random_axis, run_events

@@ -16,8 +16,9 @@ from stickslip_sim.core.types import Event, EventKind, Instant
 from stickslip_sim.extremes.against import error_of_events
 from stickslip_sim.extremes.shared_axes import random_profiles
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind, kinetic_table, smooth
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.runs import simulate_events
-from stickslip_sim.scene import Scene, load_scene
+from stickslip_sim.scene import Scene
 from stickslip_sim.simulation.simulator import Simulator
 from stickslip_sim.solvers import adaptive, exact, fixed_step
 from tests.support.axes import COMPLIANT, RIGID, Contact, instant, make, paper_axis, random_axis

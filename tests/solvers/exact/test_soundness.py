@@ -17,8 +17,8 @@ from stickslip_sim.core.errors import UnsoundError
 from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant
 from stickslip_sim.core.types import EventKind, Mode
 from stickslip_sim.extremes.shared_axes import COMPLIANT, RIGID, Contact, instant, paper_axis
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.runs.batch import figures_in, new_rows
-from stickslip_sim.scene import load_scene
 from stickslip_sim.simulation.simulator import Simulator
 from stickslip_sim.solvers import Solver, exact
 from tests.support.states import scale_number, set_number

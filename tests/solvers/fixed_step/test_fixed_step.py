@@ -13,7 +13,7 @@ from stickslip_sim.core.errors import InputError, SolverError
 from stickslip_sim.core.input_profile import InputProfile, Sinusoid, steps, table
 from stickslip_sim.core.types import EventKind, Mode
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
-from stickslip_sim.scene import load_scene
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.solvers import adaptive, fixed_step
 from tests.conftest import Program
 from tests.support.axes import COMPLIANT, RIGID, instant, of_kind, paper_axis
@@ -133,7 +133,7 @@ class TestAskingChangesNothing:
 
     def test_plain_python_gives_the_bits_of_the_machine_code(self, in_a_process: Program) -> None:
         program = '''
-from stickslip_sim.scene import load_scene
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.solvers import fixed_step
 from tests.support.solver_runs import of_scene
 for method in ('euler', 'rk4'):
