@@ -5,7 +5,6 @@
 import os
 import resource
 import threading
-import time
 from collections.abc import Callable
 
 import pytest
@@ -14,6 +13,7 @@ from stickslip_sim.core.errors import InputError
 from stickslip_sim.realtime import scheduling
 from stickslip_sim.realtime.core_share import STRETCH, CoreShare
 from stickslip_sim.realtime.scheduling import Scheduling, StepThread
+from tests.support.fake_clock import FakeClock
 from tests.support.rights import needs_fifo
 
 
@@ -110,10 +110,13 @@ def test_memory_is_not_locked_under_a_limit_that_later_growth_would_meet(monkeyp
 
 
 def test_a_loop_without_a_wait_rests_now_and_then() -> None:
-    share, begin = CoreShare(), time.monotonic_ns()
+    clock = FakeClock()
+    share, begin = CoreShare(clock), clock.now()
     share.waited(begin)
     share.worked(begin + STRETCH)
-    assert time.monotonic_ns() - begin < STRETCH
-    rested = time.monotonic_ns()
+    assert clock.now() == begin
     share.worked(begin + STRETCH + 1)
-    assert time.monotonic_ns() - rested >= 2_000_000
+    rested = clock.now()
+    assert rested == begin + 2_000_000
+    share.worked(rested + STRETCH)    # the rest is counted on the clock of the steps, too
+    assert clock.now() == rested

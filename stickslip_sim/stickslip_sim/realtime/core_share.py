@@ -6,16 +6,17 @@ A loop that never waits would keep the threads of the middleware from its core, 
 beyond RLIMIT_RTTIME without one.
 """
 
-import time
+from .pacing import Clock
 
 STRETCH = 50_000_000    # ns of steps without a wait
 _REST = 2e-3            # s
 
 
 class CoreShare:
-    """For the thread of the step loop; times are ns on the steady clock."""
+    """For the thread of the step loop; times are ns on its `clock`."""
 
-    def __init__(self) -> None:
+    def __init__(self, clock: Clock) -> None:
+        self._clock = clock
         self._since = 0
 
     def waited(self, now: int) -> None:
@@ -25,5 +26,5 @@ class CoreShare:
     def worked(self, now: int) -> None:
         """Wait a little when the loop has worked for too long."""
         if now - self._since > STRETCH:
-            time.sleep(_REST)
-            self._since = time.monotonic_ns()
+            self._clock.sleep(_REST)
+            self._since = self._clock.now()

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The only wall clock: which step is due when, on the steady clock.  Everywhere else time is an argument.
+"""The only clock of steps: which step is due when, on the steady clock.  What a step does takes time as an argument.
 
 Deadlines are absolute: step n is due at start + n / (rate · factor), computed from the integer n, so that nothing
 accumulates.  A late step is caught up at once; what is later than the allowed backlog is skipped and counted.
@@ -44,8 +44,8 @@ def wake_precisely() -> None:
         ctypes.CDLL(None).prctl(_PR_SET_TIMERSLACK, 1, 0, 0, 0)
 
 
-class StepClock(Protocol):
-    """What releases the steps of the step loop; durations in ns."""
+class StepClock(Clock, Protocol):
+    """What releases the steps of the step loop, on the steady clock; durations in ns."""
 
     period: int
     counters: 'PacingCounters'
@@ -58,9 +58,6 @@ class StepClock(Protocol):
 
     def begin(self, step: int) -> tuple[int, int]:
         """Count a step that begins; return the time now and how late it is."""
-
-    def now(self) -> int:
-        """Return the time on the steady clock."""
 
     def watch_time(self, time: int) -> int:
         """Return the time by which silence is measured: on the steady clock, or simulation `time`."""
@@ -97,7 +94,7 @@ class Pacer:
         self._watches_steady = watches_steady
         self._backlog = max(_MAX_BACKLOG, 2 * self.period)
         self._clock: Clock = clock or SteadyClock()
-        self.now = self._clock.now
+        self.now, self.sleep = self._clock.now, self._clock.sleep
         self._origin = self._latest = self._watched = 0
         self._waited = False
         self.restart(0)
@@ -149,7 +146,7 @@ class Unpaced:
     def __init__(self, grid: Grid) -> None:
         self.period = round(NANOSECONDS / grid.rate)
         self.counters = PacingCounters()
-        self.now = SteadyClock.now
+        self.now, self.sleep = SteadyClock.now, SteadyClock.sleep
 
     def restart(self, step: int, lead: int = 0) -> None:
         """Do nothing: no step waits for another."""

@@ -50,7 +50,7 @@ class StepLoop:
         self.timing_statistics, self.pacing_counters = TimingStatistics(), clock.counters
         self._clock, self._sinks, self._watchdog = clock, sinks, watchdog
         self._inputs, self._hear = CommandInputs(slots), hear
-        self.step_thread, self._core_share = StepThread(scheduling), CoreShare()
+        self.step_thread, self._core_share = StepThread(scheduling), CoreShare(clock)
         self._requests: deque[Callable[[], None]] = deque()
         self._is_over, self._wake = threading.Event(), threading.Event()
         self._thread = threading.Thread(target=self._run, name='steps', daemon=True)
