@@ -49,7 +49,7 @@ def topic_list() -> str:
     """Return a row for each topic of the node."""
     found = [value for value in vars(topics).values() if isinstance(value, topics.Topic)]
     return _table(('topic', 'type', 'direction', 'QoS', 'in a bag'), [
-        (f'`{one.name}`', f'`{one.type}`', 'in' if one.qos.reliability == 'best_effort' else 'out', _qos(one.qos),
+        (f'`{one.name}`', f'`{one.type}`', 'in' if one.kept else 'out', quality(one),
          'yes' if one in topics.RECORDED else 'no') for one in found])
 
 
@@ -155,7 +155,9 @@ def _public(kind: type) -> list[str]:
     return sorted(name for name in own if not name.startswith('_') and name not in hidden)
 
 
-def _qos(qos: topics.QosProfile) -> str:
+def quality(topic: topics.Topic) -> str:
+    """Return the quality of service that the node sends or hears a topic with."""
+    qos = topic.qos_of_node
     durability = '' if qos.durability == 'volatile' else f', {qos.durability.replace("_", " ")}'
     return f'{qos.reliability.replace("_", " ")}, keep last {qos.depth}{durability}'
 

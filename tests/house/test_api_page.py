@@ -7,8 +7,9 @@ import re
 import pytest
 
 import stickslip_sim
-from dev.api import LISTS, PAGE, page
+from dev.api import LISTS, PAGE, page, quality
 from stickslip_sim.core import errors
+from stickslip_sim.recording import topics
 from tests.support.repository import ROOT
 
 
@@ -42,6 +43,15 @@ def test_each_list_has_what_users_meet() -> None:
     assert 'KIND_TIME_LOST 9' in LISTS['messages']()
     assert '`velocity` float64, `force` float64 → `success` bool' in LISTS['messages']()
     assert '| `axis` | `mass`, `drive_stiffness`,' in LISTS['parameters']()
+
+
+def test_the_pages_of_topics_say_the_quality_of_service_of_the_node() -> None:
+    assert '| `drive_velocity` | `stickslip_msgs/msg/DriveVelocity` | in | best effort, keep last 64 | yes |' in (
+        LISTS['topics']())
+    joints, loop = ((ROOT / 'docs' / name).read_text(encoding='utf-8') for name in ('ros2_control.md', 'hil.md'))
+    for topic in (topics.JOINT_STATES, topics.JOINT_COMMANDS):
+        assert f'\n`{topic.name}`, {quality(topic)}' in joints
+    assert f'up to {topics.DRIVE_VELOCITY.kept} of' in loop
 
 
 def test_the_exit_codes_are_those_of_the_errors(text: str) -> None:

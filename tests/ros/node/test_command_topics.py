@@ -53,7 +53,7 @@ def test_heard_as_sent(node: Any, topic: topics.Topic, field: str) -> None:
     from stickslip_sim.ros.node.topics import command_reader, publisher, raw_subscription
     heard: list[float] = []
     read = command_reader(topic)
-    raw_subscription(node, topic, lambda data: heard.append(read(data)), 1)
+    raw_subscription(node, topic, lambda data: heard.append(read(data)))
     out = publisher(node, topic)
     wait_for(out.get_subscription_count, 'the subscription')
     for frame_id, value in (('', 0.002), ('abc', -1e300), ('axis_drive', math.inf), ('', 5e-324)):

@@ -133,11 +133,11 @@ def test_the_order_stays_when_taking_takes_long(pair: NodePair, monkeypatch: pyt
 
 
 def test_of_more_than_fit_the_latest_are_heard(pair: NodePair) -> None:
-    from stickslip_sim.ros.node.inbox import DEPTH
-    pair.send(*(1e-3 * number for number in range(3 * DEPTH)))
+    kept = topics.DRIVE_VELOCITY.kept
+    pair.send(*(1e-3 * number for number in range(3 * kept)))
     settle(pair)
     pair.subscribers.hear()
-    assert 1 <= pair.velocity.received <= DEPTH
+    assert 1 <= pair.velocity.received <= kept
 
     def last_is_heard() -> bool:
         pair.send(0.9)    # again: one may get lost on a best-effort topic

@@ -11,7 +11,6 @@ from typing import Any, NamedTuple
 from rclpy.exceptions import InvalidHandle
 from rclpy.utilities import get_rmw_implementation_identifier
 
-DEPTH = 64            # messages of a topic that may come within a step; of more the latest count
 SWITCH = 'STICKSLIP_COMMANDS'
 _CALLBACKS = 'callbacks'
 _STAMPING = ('rmw_fastrtps_cpp', 'rmw_fastrtps_dynamic_cpp')    # say when a message was received
@@ -26,13 +25,13 @@ class Message(NamedTuple):
 
 
 class Inbox:
-    """A subscription that no executor knows; for the thread of the step loop."""
+    """A subscription that no executor knows and that keeps `depth` messages; for the thread of the step loop."""
 
-    def __init__(self, subscription: Any) -> None:
-        self._handle, self._type = subscription.handle, subscription.msg_type
+    def __init__(self, subscription: Any, depth: int) -> None:
+        self._handle, self._type, self._depth = subscription.handle, subscription.msg_type, depth
 
     def take(self, since: int, now: int, ahead: int) -> list[Message]:
-        """Return what has come since the last time, at most DEPTH messages, the oldest first.
+        """Return what has come since the last time, at most as many as are kept, the oldest first.
 
         That time, `since`, and `now` are ns on the steady clock and bound the arrivals: the clock of the middleware,
         that of the day, may be set.  The steady clock is `ahead` ns of it now; for all messages, however long taking
@@ -41,7 +40,8 @@ class Inbox:
         messages: list[Message] = []
         try:
             with self._handle:
-                while len(messages) < DEPTH and (taken := self._handle.take_message(self._type, True)) is not None:
+                while (len(messages) < self._depth
+                       and (taken := self._handle.take_message(self._type, True)) is not None):
                     since = max(since, min(taken[1][_RECEIVED] + ahead, now))
                     messages.append(Message(since, taken[0]))
         except InvalidHandle:    # the node is coming down

@@ -15,7 +15,7 @@ from rclpy.node import Node
 from ...core.errors import InputError
 from ...realtime.command_slot import CommandSlot
 from ...recording import topics as names
-from .inbox import DEPTH, Inbox, Message, trouble
+from .inbox import Inbox, Message, trouble
 from .joints import DRIVE, commanded_velocity, disregarded
 from .topics import command_reader, message_of, raw_subscription
 
@@ -72,11 +72,11 @@ class Subscribers:
 
     def _open(self, node: Node, sources: Iterable[_Source]) -> None:
         for source in sources:
-            subscription = raw_subscription(node, source.topic, self._callback(source), DEPTH)
+            subscription = raw_subscription(node, source.topic, self._callback(source))
             self.trouble = self.trouble or trouble(subscription)
             if not self.trouble:
                 self.hidden.append(subscription)
-                self._inboxes.append((Inbox(subscription), source))
+                self._inboxes.append((Inbox(subscription, source.topic.kept), source))
 
     def _callback(self, source: _Source) -> Callable[[bytes], None]:
         def take(data: bytes) -> None:

@@ -60,10 +60,9 @@ def subscription(node: Node, topic: Topic, callback: Callable[[Any], None]) -> A
     return node.create_subscription(message_type(topic), topic.name, callback, qos(topic.qos))
 
 
-def raw_subscription(node: Node, topic: Topic, callback: Callable[[bytes], None], depth: int) -> Any:
-    """Create a subscription that keeps `depth` messages, whose callback gets the bytes of each, unchecked."""
-    quality = qos(topic.qos._replace(depth=depth))
-    return node.create_subscription(message_type(topic), topic.name, callback, quality, raw=True)
+def raw_subscription(node: Node, topic: Topic, callback: Callable[[bytes], None]) -> Any:
+    """Create the node's subscription of a topic of commands, whose callback gets the bytes of each, unchecked."""
+    return node.create_subscription(message_type(topic), topic.name, callback, qos(topic.qos_of_node), raw=True)
 
 
 def message_of(topic: Topic, data: bytes) -> Any:
