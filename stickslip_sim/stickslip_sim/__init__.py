@@ -10,7 +10,7 @@
 All names of `__all__` are imported when they are first used (docs/python.md shows them).  The rooms, from the top
 floor down; each imports only from the floors below it:
 
-    cli             the tool `stickslip`, one file a verb; the only room that prints
+    cli             the tool `stickslip`, one file a verb; prints what the rooms below find
     ros             the nodes, and the demo of `make run`; the only room that imports ROS
     extremes        what breaks other simulators, measured on this one
     compare         the figures and statements of the paper, on any run
