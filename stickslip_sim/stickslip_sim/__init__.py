@@ -18,11 +18,11 @@ floor down; each imports only from the floors below it:
     design          the experiment that would narrow parameters most
     check           a run against limits
     verify          a recorded run again, bit by bit, or as something else had been
-    identification  from measurements to a scene: friction curves, and runs from which all parameters are fitted
+    identification  from measured channels, in SI, to a scene: friction curves, and runs that give all parameters
     sensitivity     derivatives of what a run shows with respect to the numbers of its scene
     study           sweeps, maps, critical values, uncertainty
-    bench           this solver beside its rivals, which are in bench/peers
-    inputs          what comes from outside: profiles and measured numbers from files, in their units
+    bench           cost, error and time to start of this solver, and of its rivals, which are in bench/peers
+    inputs          what comes from outside: scenes by name or path, profiles and measurements from files, units to SI
     recording       runs as bags: written, read back, played
     runs            a run as one thing, simulated or recorded; its receipt and error; batches of thousands
     realtime        steps that keep the time of a clock, and how well they do
@@ -33,7 +33,7 @@ floor down; each imports only from the floors below it:
     simulation      one axis through time: simulator, inputs, checkpoint, cycles
     solvers         from event to event: exact, adaptive and fixed steps
     reference       an independent solver that judges the others
-    axis            the physics of the paper: motion in each mode, transitions, sinusoids
+    axis            the physics of the paper: motion in each mode, transitions; the records that solvers work on
     friction        the laws of friction
     linear          closed forms of linear motion, and roots that are not missed
     config          strict YAML, and what a parameter is
