@@ -12,7 +12,6 @@ import functools
 import importlib.metadata
 import importlib.util
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -21,13 +20,13 @@ from ...core.errors import SolverError
 from ..problem import Outcome, Problem
 from .always_compiled import NUMBA_MISSING
 from .automaton import GUARDS, Q_F_RATE, SIZE, TIME, U, X, guards, motion_of, rates
+from .cvode_functions import CvodeFunctions
 from .peer import Peer, Setting, tolerances
 from .resets import end_of_piece, enter_piece, move, note, reset
 
 _ADAMS, _NORMAL, _ROOT_RETURN = 1, 1, 2   # CV_ADAMS, CV_NORMAL, CV_ROOT_RETURN
 _MAX_STEPS = 1_000_000
 _Q = Q_F_RATE + 1                         # numbers of a motion
-_WORD, _REAL, _INT = ctypes.c_size_t, ctypes.c_double, ctypes.c_int   # a pointer is a word
 
 
 def _missing() -> str | None:
@@ -36,138 +35,125 @@ def _missing() -> str | None:
     return NUMBA_MISSING
 
 
-def _library(name: str) -> ctypes.CDLL:
-    """Load a library of the wheel; raises SolverError when the wheel is laid out in another way."""
-    spec = importlib.util.find_spec('sksundae')
-    assert spec is not None
-    assert spec.origin is not None
-    found = sorted((Path(spec.origin).parents[1] / 'scikit_sundae.libs').glob(f'lib{name}-*.so*'))
-    if not found:
-        raise SolverError(f'scikit-sundae has no library {name}: install the wheel of scikit-sundae 1.2')
-    return ctypes.CDLL(str(found[0]), mode=ctypes.RTLD_GLOBAL)
-
-
-class _C:
-    """The C functions, with pointers as words, as compiled code can call them."""
-
-    def __init__(self) -> None:
-        core, vectors, cvode = (_library(f'sundials_{name}') for name in ('core', 'nvecserial', 'cvode'))
-
-        def declare(library: ctypes.CDLL, name: str, result: Any, *arguments: Any) -> Any:
-            function = getattr(library, name)
-            function.restype, function.argtypes = result, list(arguments)
-            return function
-
-        self.context = declare(core, 'SUNContext_Create', _INT, _INT, _WORD)
-        self.data = declare(core, 'N_VGetArrayPointer', _WORD, _WORD)
-        self.destroy = declare(core, 'N_VDestroy', None, _WORD)
-        self.free_context = declare(core, 'SUNContext_Free', _INT, _WORD)
-        self.free_solver = declare(core, 'SUNNonlinSolFree', _INT, _WORD)
-        self.vector = declare(vectors, 'N_VMake_Serial', _WORD, ctypes.c_int64, _WORD, _WORD)
-        self.create = declare(cvode, 'CVodeCreate', _WORD, _INT, _WORD)
-        self.init = declare(cvode, 'CVodeInit', _INT, _WORD, _WORD, _REAL, _WORD)
-        self.reinit = declare(cvode, 'CVodeReInit', _INT, _WORD, _REAL, _WORD)
-        self.tolerances = declare(cvode, 'CVodeSStolerances', _INT, _WORD, _REAL, _REAL)
-        self.roots = declare(cvode, 'CVodeRootInit', _INT, _WORD, _INT, _WORD)
-        self.directions = declare(cvode, 'CVodeSetRootDirection', _INT, _WORD, _WORD)
-        self.no_warnings = declare(cvode, 'CVodeSetNoInactiveRootWarn', _INT, _WORD)
-        self.user_data = declare(cvode, 'CVodeSetUserData', _INT, _WORD, _WORD)
-        self.max_steps = declare(cvode, 'CVodeSetMaxNumSteps', _INT, _WORD, ctypes.c_long)
-        self.max_step = declare(cvode, 'CVodeSetMaxStep', _INT, _WORD, _REAL)
-        self.stop = declare(cvode, 'CVodeSetStopTime', _INT, _WORD, _REAL)
-        self.fixed_point = declare(cvode, 'SUNNonlinSol_FixedPoint', _WORD, _WORD, _INT, _WORD)
-        self.set_solver = declare(cvode, 'CVodeSetNonlinearSolver', _INT, _WORD, _WORD)
-        self.advance = declare(cvode, 'CVode', _INT, _WORD, _REAL, _WORD, _WORD, _INT)
-        self.root_info = declare(cvode, 'CVodeGetRootInfo', _INT, _WORD, _WORD)
-        self.free = declare(cvode, 'CVodeFree', None, _WORD)
-
-
 class _Code:
     """What has to be compiled once the libraries are there: two callbacks and the loop."""
 
-    def __init__(self, c: _C) -> None:
-        import numba
-        from numba import carray, types
-        from numba.extending import intrinsic
+    def __init__(self, c: CvodeFunctions) -> None:
+        self.right_side, self.root_function = _callbacks(c.data, _numbers())
+        self.run = _run(_to_event(c))
 
-        data, reinit, stop, advance, root_info = c.data, c.reinit, c.stop, c.advance, c.root_info
-        word, real = types.uintp, types.float64
 
-        @intrinsic
-        def pointer(context: Any, address: Any) -> Any:
-            def generate(backend: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-                return builder.inttoptr(arguments[0], backend.get_value_type(signature.return_type))
-            return types.CPointer(real)(word), generate
+def _numbers() -> Any:
+    """Return compiled code that takes an address and a count for an array."""
+    import numba
+    from numba import carray, types
+    from numba.extending import intrinsic
 
-        @numba.njit
-        def numbers(address: Any, count: Any) -> Any:
-            return carray(pointer(address), (count,))
+    @intrinsic
+    def pointer(context: Any, address: Any) -> Any:
+        def generate(backend: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            return builder.inttoptr(arguments[0], backend.get_value_type(signature.return_type))
+        return types.CPointer(types.float64)(types.uintp), generate
 
-        @numba.cfunc(types.intc(real, word, word, word))
-        def right_side(t: Any, y: Any, dy: Any, user: Any) -> Any:
-            sinusoids = int(numbers(user, 1)[0])
-            known = numbers(user, 1 + _Q + sinusoids)
-            state, rate = numbers(data(y), 2), numbers(data(dy), 2)
-            rate[0], rate[1] = rates(known[1:1 + _Q], known[1 + _Q:], t, state[0], state[1])
-            return 0
+    @numba.njit
+    def numbers(address: Any, count: Any) -> Any:
+        return carray(pointer(address), (count,))
 
-        @numba.cfunc(types.intc(real, word, word, word))
-        def root_function(t: Any, y: Any, out: Any, user: Any) -> Any:
-            sinusoids = int(numbers(user, 1)[0])
-            known = numbers(user, 1 + _Q + sinusoids)
-            state, values = numbers(data(y), 2), numbers(out, 3)
-            values[0], values[1], values[2] = guards(known[1:1 + _Q], known[1 + _Q:], t, state[0], state[1])
-            return 0
+    return numbers
 
-        @numba.njit
-        def to_event(memory: Any, vector: Any, p: Any, m: Any, w: Any, end: Any, y: Any, user: Any, at: Any,
-                     found: Any) -> Any:
-            """Integrate from the reset to the next event or to `end`; return the guard that fell, −1 or −2."""
-            q, limit = motion_of(p, m), end - m[TIME]
-            for i in range(_Q):
-                user[1 + i] = q[i]
-            y[0], y[1] = m[X], m[U]
-            flag = reinit(memory, 0.0, vector)
-            flag += stop(memory, limit)
-            if flag != 0:
-                return -2
-            flag = advance(memory, limit, vector, at.ctypes.data, _NORMAL)
-            if flag < 0:
-                return -2
-            move(p, m, w, at[0], y[0], y[1])
-            if flag == _ROOT_RETURN:
-                root_info(memory, found.ctypes.data)
-                for i in range(GUARDS):
-                    if found[i] != 0:
-                        return i
-            m[TIME] = end
-            return -1
 
-        @numba.njit
-        def run(memory: Any, vector: Any, p: Any, begin: Any, pieces: Any, w: Any, duration: Any, m: Any, y: Any,
-                user: Any, events: Any) -> Any:
-            at, found, rows = np.zeros(1), np.zeros(GUARDS, np.int32), 0
-            for k in range(len(pieces)):
-                end = end_of_piece(pieces, k, duration)
-                kind, direction = enter_piece(p, m, w, begin, pieces, k)
-                rows = note(events, rows, m, kind, direction)
-                while m[TIME] < end and rows >= 0:
-                    fallen = to_event(memory, vector, p, m, w, end, y, user, at, found)
-                    if fallen == -2:
-                        return -2
-                    if fallen >= 0:
-                        kind, direction = reset(p, m, w, fallen)
-                        rows = note(events, rows, m, kind, direction)
-                if rows < 0:
-                    return rows
-            return rows
+def _callbacks(data: Any, numbers: Any) -> tuple[Any, Any]:
+    """Return the right side and the root functions, as CVODE calls them."""
+    import numba
+    from numba import types
 
-        self.right_side, self.root_function, self.run = right_side, root_function, run
+    @numba.njit
+    def known_of(user: Any) -> Any:
+        sinusoids = int(numbers(user, 1)[0])
+        known = numbers(user, 1 + _Q + sinusoids)
+        return known[1:1 + _Q], known[1 + _Q:]
+
+    callback = numba.cfunc(types.intc(types.float64, types.uintp, types.uintp, types.uintp))
+
+    @callback
+    def right_side(t: Any, y: Any, dy: Any, user: Any) -> Any:
+        q, w = known_of(user)
+        state, rate = numbers(data(y), 2), numbers(data(dy), 2)
+        rate[0], rate[1] = rates(q, w, t, state[0], state[1])
+        return 0
+
+    @callback
+    def root_function(t: Any, y: Any, out: Any, user: Any) -> Any:
+        q, w = known_of(user)
+        state, values = numbers(data(y), 2), numbers(out, 3)
+        values[0], values[1], values[2] = guards(q, w, t, state[0], state[1])
+        return 0
+
+    return right_side, root_function
+
+
+def _to_event(c: CvodeFunctions) -> Any:
+    """Return compiled code that lets CVODE integrate up to an event."""
+    import numba
+
+    reinit, stop, advance, root_info = c.reinit, c.stop, c.advance, c.root_info
+
+    @numba.njit
+    def to_event(memory: Any, vector: Any, p: Any, m: Any, w: Any, end: Any, y: Any, user: Any, at: Any,
+                 found: Any) -> Any:
+        """Integrate from the reset to the next event or to `end`; return the guard that fell, −1 or −2."""
+        q, limit = motion_of(p, m), end - m[TIME]
+        for i in range(_Q):
+            user[1 + i] = q[i]
+        y[0], y[1] = m[X], m[U]
+        flag = reinit(memory, 0.0, vector)
+        flag += stop(memory, limit)
+        if flag != 0:
+            return -2
+        flag = advance(memory, limit, vector, at.ctypes.data, _NORMAL)
+        if flag < 0:
+            return -2
+        move(p, m, w, at[0], y[0], y[1])
+        if flag == _ROOT_RETURN:
+            root_info(memory, found.ctypes.data)
+            for i in range(GUARDS):
+                if found[i] != 0:
+                    return i
+        m[TIME] = end
+        return -1
+
+    return to_event
+
+
+def _run(to_event: Any) -> Any:
+    """Return compiled code that goes from event to event, through the pieces of the inputs."""
+    import numba
+
+    @numba.njit
+    def run(memory: Any, vector: Any, p: Any, begin: Any, pieces: Any, w: Any, duration: Any, m: Any, y: Any,
+            user: Any, events: Any) -> Any:
+        at, found, rows = np.zeros(1), np.zeros(GUARDS, np.int32), 0
+        for k in range(len(pieces)):
+            end = end_of_piece(pieces, k, duration)
+            kind, direction = enter_piece(p, m, w, begin, pieces, k)
+            rows = note(events, rows, m, kind, direction)
+            while m[TIME] < end and rows >= 0:
+                fallen = to_event(memory, vector, p, m, w, end, y, user, at, found)
+                if fallen == -2:
+                    return -2
+                if fallen >= 0:
+                    kind, direction = reset(p, m, w, fallen)
+                    rows = note(events, rows, m, kind, direction)
+            if rows < 0:
+                return rows
+        return rows
+
+    return run
 
 
 @functools.cache
-def _loaded() -> tuple[_C, _Code]:
-    c = _C()
+def _loaded() -> tuple[CvodeFunctions, _Code]:
+    c = CvodeFunctions()
     return c, _Code(c)
 
 
