@@ -167,6 +167,16 @@ def test_a_spring_keeps_its_digits_behind_a_drive_that_speeds_up() -> None:
         (2.0 * 3.0 + 512.0 + 0.9765625 + 0.0009765625) / 1024.0, rel=1e-13)
 
 
+@pytest.mark.parametrize(('on_slideway', 'damped'), [(False, 32.0 * (4.5 - 4.25)), (True, -32.0 * 4.25)])
+def test_far_from_the_start_the_spring_is_what_the_balance_leaves(on_slideway: bool, damped: float) -> None:
+    """c w = m ẍ + F − F_e − h (v − ẋ); with the damper on the slideway h ẋ instead."""
+    p = parameters(damper_on_slideway=on_slideway)
+    s = state(mode=DECELERATING, direction=1.0, segment=2.0, v=4.5, f=-5.0)
+    friction = 64.0 * (0.0625 + 0.5 * 3.75)
+    assert motion.spring_after(p, s, 1.0, 1e9, 1e9, 4.25, 3.0) == pytest.approx(
+        (2.0 * 3.0 + friction + 5.0 - damped) / 1024.0, rel=1e-14)
+
+
 def test_what_is_kept_of_other_motions_changes_nothing() -> None:
     """A tick of one length in one mode, in another, and in the first again."""
     p = parameters()

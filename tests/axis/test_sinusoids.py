@@ -118,22 +118,36 @@ def test_the_last_rate_that_is_looked_at_is_the_fourth() -> None:
     assert sinusoids.forced_rate(parameters(), s) == (0.0, 0.0)
 
 
-def test_the_sizes_of_the_sums_are_those_of_each_sinusoid() -> None:
-    """Bounds of rounding: no term takes from another."""
-    p, t = parameters(), 0.05
-    other: Given = (3.0, 0.6, -0.25, 2.0)
+def response(t: float, *given: Given) -> sinusoids.SinusoidTravel:
+    """Return what sinusoids add to a slip within t."""
+    p, s = parameters(drive_damping=96.0), waved(*given, mode=DECELERATING, direction=1.0)
+    motion.begin_motion(p, s)
+    g, rate, first, _, _ = integrals(motion.oscillator_of(s), t)
+    return sinusoids.sinusoid_travel(p, s, motion.oscillator_of(s), t, g, rate, first)
 
-    def sizes(*given: Given) -> tuple[float, ...]:
-        s = waved(*given, mode=DECELERATING, direction=1.0)
-        motion.begin_motion(p, s)
-        g, rate, first, _, _ = integrals(motion.oscillator_of(s), t)
-        found = sinusoids.sinusoid_travel(p, s, motion.oscillator_of(s), t, g, rate, first)
-        of_motion = found.size_y, found.size_u, found.size_a
-        assert all(abs(total) <= size for total, size in zip((found.y, found.u, found.a), of_motion))
-        return (*of_motion, sinusoids.sinusoid_force(p, s, t)[2])
 
-    assert sizes(BOTH, other) == pytest.approx([a + b for a, b in zip(sizes(BOTH), sizes(other))], rel=1e-14)
-    assert min(sizes(BOTH)) > 0.0
+def test_velocity_acceleration_and_jerk_are_rates_of_each_other() -> None:
+    """By central differences, which are off by the square of the step."""
+    t, step = 0.05, 1e-5
+    at, after, before = (response(t + off, BOTH) for off in (0.0, step, -step))
+    for value, later, earlier in ((at.u, after.y, before.y), (at.a, after.u, before.u), (at.jerk, after.a, before.a)):
+        assert value == pytest.approx((later - earlier) / (2.0 * step), rel=1e-6)
+
+
+def test_the_sizes_of_the_sums_bound_them_at_any_phase() -> None:
+    """Bounds of rounding: at least the amplitude and at most twice that, and no sinusoid takes from another."""
+    t, other = 0.05, (3.0, 0.6, -0.25, 2.0)
+    found = [response(t, (BOTH[0], k / 64.0, *BOTH[2:])) for k in range(64)]
+    forces = [sinusoids.sinusoid_force(parameters(), waved((BOTH[0], k / 64.0, *BOTH[2:])), t) for k in range(64)]
+    for values, sizes in (([one.y for one in found], [one.size_y for one in found]),
+                          ([one.u for one in found], [one.size_u for one in found]),
+                          ([one.a for one in found], [one.size_a for one in found]),
+                          ([force for force, _, _ in forces], [size for _, _, size in forces])):
+        amplitude = max(map(abs, values))     # within 0.2 %: a phase every 1/64 turn
+        assert 0.99 * amplitude <= min(sizes)
+        assert max(sizes) <= 2.01 * amplitude
+    one, two, both = response(t, BOTH), response(t, other), response(t, BOTH, other)
+    assert both == pytest.approx([a + b for a, b in zip(one, two)], rel=1e-12)
 
 
 @pytest.mark.parametrize('given', [BOTH, (2.0, 0.6, 0.0, 6.0), (math.sqrt(512.0) / TURN, 0.0, 0.25, 0.0)],
