@@ -16,7 +16,7 @@ from mpmath import mp, mpf, sqrt
 
 from .flow import Expansion, Flow, State
 from .modes import ACCELERATE, COAST, DECELERATE, Mode, Slip, Stick
-from .precision import to_binary, to_decimal
+from .precision import summed_rounding, to_binary, to_decimal
 from .problem import Line, Problem
 from .series import Series, combine, integral
 from .side import Side
@@ -31,9 +31,13 @@ class Physics:
 
     axis: Problem
     sides: tuple[Side, Side] = field(init=False)
+    _highest: mpf = field(init=False)   # coefficient of friction
+    _swing: mpf = field(init=False)   # circular frequency of the slider on the spring
 
     def __post_init__(self) -> None:
         self.sides = Side(self.axis.forward), Side(self.axis.backward)
+        self._highest = max(side.highest for side in self.sides)
+        self._swing = sqrt(self.axis.stiffness / self.axis.mass)
 
     # ---- forces -------------------------------------------------------------------------------
 
@@ -86,9 +90,17 @@ class Physics:
     def force_scale(self, state: State) -> mpf:
         """Return a force that rounding is compared with."""
         a = self.axis
-        top = max(side.highest for side in self.sides)
         inputs = state.force.reach + a.damping * state.drive.reach
-        return a.normal * top + abs(a.stiffness * state.stretch) + inputs
+        return a.normal * self._highest + abs(a.stiffness * state.stretch) + inputs
+
+    def force_rounding(self, state: State) -> mpf:
+        """Return the rounding that a force may have gathered of all it was summed from, what cancels included."""
+        motion = self.axis.mass * (abs(state.velocity) + state.drive.reach) / self.time_scale(state)
+        return summed_rounding(self.force_scale(state) + motion)
+
+    def speed_rounding(self, state: State) -> mpf:
+        """Return the rounding that the velocity may have gathered."""
+        return self.force_rounding(state) * self.time_scale(state) / self.axis.mass
 
     # ---- friction -------------------------------------------------------------------------------
 
@@ -134,14 +146,12 @@ class Physics:
 
     def time_scale(self, state: State) -> mpf:
         """Return a time in which forces change."""
-        rate = state.rate
-        if self.axis.stiffness:
-            rate = max(rate, sqrt(self.axis.stiffness / self.axis.mass))
+        rate = max(state.rate, self._swing)
         return 1 / rate if rate else mpf(1)
 
     def tiny(self, state: State) -> mpf:
         """Return the rounding of a force at the working precision."""
-        return self.force_scale(state) * mpf(10) ** (18 - mp.dps)
+        return max(self.force_scale(state) * mpf(10) ** (18 - mp.dps), self.force_rounding(state))
 
     def phase(self, direction: int, excess: mpf, state: State) -> str:
         """Return the sub-mode of a slip; on a border the way R moves decides."""

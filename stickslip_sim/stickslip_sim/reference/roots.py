@@ -5,8 +5,8 @@
 A guard is a function g(τ) = Σ c_k τ^k on [0, h], positive while the mode lasts.  Written in the
 Bernstein basis of [0, h], the number of sign changes of its coefficients bounds its number of roots
 (Descartes): none proves there is no root, one proves there is exactly one; otherwise the interval is
-halved, left half first.  No crossing and no grazing minimum can be stepped over.  Whether a minimum that touches zero
-within rounding counts is said by the guard, so that rounding does not decide.
+halved, left half first.  No crossing and no grazing minimum can be stepped over.  A guard that is zero within the
+rounding it has gathered has touched zero, and not fallen below, so that rounding does not decide.
 
 On the unit interval everything is in fixed point: whole numbers in units of 2^-bits of the largest
 coefficient, with as many bits more than the working precision as the sums can lose.
@@ -21,36 +21,37 @@ from decimal import Decimal
 
 from mpmath import ldexp, mp, mpf
 
-from .precision import to_decimal
+from .precision import summed_rounding, to_decimal
 from .series import reach, scaled
 
 _SPARE = 28  # bits, against the rounding of some thousand sums
-_NOISE = 8  # bits of rounding, by which a minimum that touches zero is moved to one side of it
 _DIGITS = 0.302  # in a bit, and a little more
 _NEWTON = 400  # steps; bisection alone needs as many as there are bits
+_ZERO = mpf(0)
 
 
-def first_root(guard: Sequence[Decimal], h: mpf, scale: mpf, time_scale: mpf, touch: bool = False) -> mpf | None:
-    """Return the first τ in [0, h] at which the guard falls below zero, or where it touches zero, or None.
+def first_root(guard: Sequence[Decimal], h: mpf, scale: mpf, time_scale: mpf, rounding: mpf = _ZERO) -> mpf | None:
+    """Return the first τ in [0, h] at which the guard, known to `rounding`, falls below zero, or None.
 
     Leading coefficients that vanish against ``scale`` (a tie on entry) are divided out, so that the sign of
     the first derivative which differs from zero decides: negative is a root at 0, positive is no root there.
     """
-    lead = _leading(guard, scale, time_scale)
+    time = to_decimal(time_scale)
+    lead = _leading(guard, to_decimal(max(scale * mpf(10) ** (18 - mp.dps), rounding)), time)
     if lead == len(guard):
         return None
     if guard[lead] < 0:
         return mpf(0)
     unit = scaled(guard[lead:], h)
-    if unit[0] > reach(unit):
+    way = reach(unit)
+    if unit[0] > way:
         return None
-    s = first_unit_root(unit, touch)
+    s = first_unit_root(unit, max(to_decimal(rounding) / time**lead, summed_rounding(unit[0] + way)))
     return None if s is None else s * h
 
 
-def _leading(guard: Sequence[Decimal], scale: mpf, time_scale: mpf) -> int:
-    """Return the index of the first coefficient with |c_k| T^k above rounding."""
-    limit, time = to_decimal(scale * mpf(10) ** (18 - mp.dps)), to_decimal(time_scale)
+def _leading(guard: Sequence[Decimal], limit: Decimal, time: Decimal) -> int:
+    """Return the index of the first coefficient with |c_k| T^k above the limit."""
     for k, c in enumerate(guard):
         if abs(c) > limit:
             return k
@@ -58,18 +59,17 @@ def _leading(guard: Sequence[Decimal], scale: mpf, time_scale: mpf) -> int:
     return len(guard)
 
 
-def first_unit_root(unit: Sequence[Decimal], touch: bool) -> mpf | None:
-    """Return the first root in (0, 1] of Σ d_k s^k with d_0 > 0."""
+def first_unit_root(unit: Sequence[Decimal], rounding: Decimal) -> mpf | None:
+    """Return the first root in (0, 1] of Σ d_k s^k with d_0 > 0 behind which it falls below -rounding."""
     bits = mp.prec + _SPARE + len(unit)  # a sum of n + 1 terms in Bernstein form grows by 2^n at the most
     places = int(_DIGITS * bits) + 1
     up, one = places - 1 - max(map(abs, unit)).adjusted(), 10**places
     whole = [(int(d.scaleb(up)) << bits) // one for d in unit]
-    noise = 1 << (bits - mp.prec + _NOISE)
-    whole[0] = max(1, whole[0] - noise) if touch else whole[0] + noise
     while len(whole) > 1 and not whole[-1]:
         whole.pop()
-    root = _isolate(whole, bits)
-    return None if root is None else ldexp(mpf(root), -bits)
+    margin = (int(rounding.scaleb(up)) << bits) // one + 1
+    below = _isolate([whole[0] + margin, *whole[1:]], bits)
+    return None if below is None else ldexp(mpf(_refine(whole, 0, below, below, bits)), -bits)
 
 
 def bernstein(unit: Sequence[int]) -> list[int]:
@@ -122,7 +122,7 @@ def _isolate(unit: list[int], bits: int) -> int | None:
         if changes == 0:
             continue
         if changes == 1:
-            return _refine(unit, low, low + width, bits)
+            return _refine(unit, low, low + width, low + (width >> 1), bits)
         width >>= 1
         if width < finest:
             return low + width  # a double root to working precision: the guard is reached
@@ -132,11 +132,10 @@ def _isolate(unit: list[int], bits: int) -> int | None:
     return None
 
 
-def _refine(p: list[int], low: int, high: int, bits: int) -> int:
-    """Return the only root in [low, high] (p falls): Newton kept inside the bracket."""
+def _refine(p: list[int], low: int, high: int, x: int, bits: int) -> int:
+    """Return the root in [low, high] that Newton, kept inside the bracket, comes to from x (p falls)."""
     slope = [k * c for k, c in enumerate(p)][1:]
     tiny = 1 << (bits - mp.prec)
-    x = (low + high) >> 1
     for _ in range(_NEWTON):
         y = _horner(p, x, bits)
         if y > 0:

@@ -11,9 +11,9 @@ from decimal import Decimal
 from mpmath import mp, mpf
 
 from .flow import Expansion, Flow, Place, State, after
-from .modes import ACCELERATE, COAST, Slip, Stick
+from .modes import ACCELERATE, COAST, DECELERATE, Slip, Stick
 from .physics import Physics
-from .precision import to_binary, to_decimal
+from .precision import summed_rounding, to_binary, to_decimal
 from .roots import first_root
 from .series import Series, combine, derivative, reach, scaled, value
 
@@ -41,12 +41,20 @@ def slip_step(physics: Physics, slip: Slip, flow: Flow, state: State, h: mpf) ->
     series = flow.expand(state, h)
     guards = _coast_guards if slip.phase == COAST else _moving_guards
     time, best, name = _time_scale(flow, state, h), h, None
-    for label, guard, scale in guards(physics, slip, state, series):
-        arrest = label == SPEED_DOWN and not slip.segment   # where the speed touches zero, the slider sticks
-        root = first_root(guard, h, scale, time, touch=arrest)
+    for label, guard, scale, rounding in guards(physics, slip, state, series):
+        root = first_root(guard, h, scale, time, rounding)
         if root is not None and (name is None or root < best):
             best, name = root, label
-    return Step(best, after(state, flow, series, best), name)
+    place = after(state, flow, series, best)
+    if name == SURPLUS_UP and _touches_rest(physics, slip, state, place):
+        name = SPEED_DOWN
+    return Step(best, place, name)
+
+
+def _touches_rest(physics: Physics, slip: Slip, state: State, place: Place) -> bool:
+    """Return whether a speed that falls no further has touched zero: there the slider sticks."""
+    slowest = slip.phase == DECELERATE and not slip.segment
+    return slowest and bool(slip.direction * place.velocity <= physics.speed_rounding(state))
 
 
 def _time_scale(flow: Flow, state: State, h: mpf) -> mpf:
@@ -54,7 +62,7 @@ def _time_scale(flow: Flow, state: State, h: mpf) -> mpf:
     return 1 / rate if rate else h
 
 
-_Guard = tuple[str, Series, mpf]
+_Guard = tuple[str, Series, mpf, mpf]   # its name, its series, the size against which it ties, its rounding
 _ONE = [Decimal(1)]
 
 
@@ -65,7 +73,8 @@ def _coast_guards(physics: Physics, slip: Slip, state: State, series: Expansion)
     friction = physics.axis.normal * physics.side(slip.direction).kinetic_at(speed)
     surplus = combine((mpf(slip.direction), net), (-friction, _ONE))
     room = combine((physics.band(slip.direction, slip.excess, speed), _ONE), (mpf(-1), surplus))
-    return [(SURPLUS_UP, room, scale), (SURPLUS_DOWN, surplus, scale)]
+    rounding = physics.force_rounding(state)
+    return [(SURPLUS_UP, room, scale, rounding), (SURPLUS_DOWN, surplus, scale, rounding)]
 
 
 def _moving_guards(physics: Physics, slip: Slip, state: State, series: Expansion) -> list[_Guard]:
@@ -73,13 +82,13 @@ def _moving_guards(physics: Physics, slip: Slip, state: State, series: Expansion
     rising = slip.phase == ACCELERATE
     sense = 1 if rising else -1
     acceleration = [sense * slip.direction * c for c in derivative(series.velocity)]
-    scale = physics.force_scale(state) / physics.axis.mass
-    guards = [(SURPLUS_DOWN if rising else SURPLUS_UP, acceleration, scale)]
+    rounding, scale = physics.speed_rounding(state), physics.force_scale(state) / physics.axis.mass
+    guards = [(SURPLUS_DOWN if rising else SURPLUS_UP, acceleration, scale, rounding / physics.time_scale(state))]
     side = physics.side(slip.direction)
     bound = side.upper_breakpoint(slip.segment) if rising else side.lower_breakpoint(slip.segment)
     if bound is not None:
         distance = combine((sense * bound, _ONE), (mpf(-sense * slip.direction), series.velocity))
-        guards.append((SPEED_UP if rising else SPEED_DOWN, distance, max(bound, abs(state.velocity))))
+        guards.append((SPEED_UP if rising else SPEED_DOWN, distance, max(bound, abs(state.velocity)), rounding))
     return guards
 
 
@@ -95,8 +104,9 @@ def stick_step(physics: Physics, stick: Stick, flow: Flow, state: State, t: mpf,
     laws = [side.static for side in physics.sides]
     lowest, span = [normal * law.value(age) for law in laws], min(law.span(age) for law in laws)
     if not normal:
-        return _out(state, flow, series, h, _unheld(physics.stick_force(state), force))
+        return _out(state, flow, series, h, _unheld(physics, state, force))
     scale, time = physics.force_scale(state), _time_scale(flow, state, h)
+    rounding = physics.force_rounding(state) if physics.axis.by_drive else summed_rounding(scale)
     clear = [to_decimal(low * (1 - mpf(10) ** -9)) for low in lowest]
     while True:
         way = reach(scaled(force, h))
@@ -104,8 +114,8 @@ def stick_step(physics: Physics, stick: Stick, flow: Flow, state: State, t: mpf,
             return Step(h, after(state, flow, series, h), None)
         if h <= span:
             limits = [combine((normal, law.series(age))) for law in laws]
-            return _out(state, flow, series, h, _over(limits, force, h, scale, time))
-        found = _over([[to_decimal(low)] for low in lowest], force, h, scale, time)
+            return _out(state, flow, series, h, _over(limits, force, h, scale, time, rounding))
+        found = _over([[to_decimal(low)] for low in lowest], force, h, scale, time, rounding)
         if found is None:
             return Step(h, after(state, flow, series, h), None)
         if h < mpf(10) ** -30 * min(law.time_constant for law in laws):
@@ -117,20 +127,23 @@ _Found = tuple[mpf, int]
 _SIDES = 1, -1   # of physics.sides
 
 
-def _unheld(now: mpf, force: Sequence[Decimal]) -> _Found | None:
+def _unheld(physics: Physics, state: State, force: Sequence[Decimal]) -> _Found | None:
     """Return when and on which side a rest without a normal force ends: at once, if it is pushed at all.
 
-    No force is small beside a limit of 0; against the other forces of the axis the contact's may be.
+    No force is small beside a limit of 0; against the other forces of the axis the contact's may be.  That of the axis
+    is rounding where a slip has come to rest without any, and how it changes decides.
     """
-    first = next((c for c in (now, *force[1:]) if c), None)
+    now = physics.stick_force(state)
+    known = not physics.axis.by_drive or abs(now) > physics.force_rounding(state)
+    first = next((c for c in (now if known else 0, *force[1:], now) if c), None)
     return None if first is None else (mpf(0), 1 if first > 0 else -1)
 
 
-def _over(limits: Iterable[Series], force: Series, h: mpf, scale: mpf, time: mpf) -> _Found | None:
+def _over(limits: Iterable[Series], force: Series, h: mpf, scale: mpf, time: mpf, rounding: mpf) -> _Found | None:
     """Return when and on which side N mu_s ∓ F falls below 0 on [0, h], N mu_s being a power series for each."""
     best = None
     for side, limit in zip(_SIDES, limits):
-        root = first_root(combine((mpf(1), limit), (mpf(-side), force)), h, scale, time)
+        root = first_root(combine((mpf(1), limit), (mpf(-side), force)), h, scale, time, rounding)
         if root is not None and (best is None or root < best[0]):
             best = root, side
     return best
