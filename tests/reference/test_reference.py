@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 import random
-from decimal import Context, Decimal, localcontext
+from decimal import ROUND_UP, Context, Decimal, DefaultContext, Inexact, localcontext
 
 import pytest
 
@@ -123,6 +123,21 @@ def test_numbers_keep_the_working_digits_both_ways(number: float) -> None:
             assert abs(to_binary(to_decimal(given)) - given) <= abs(given) * mpf(10) ** -42
         with localcontext(Context(prec=2000)):
             assert abs(converted - Decimal(number)) <= abs(Decimal(number)) / 10**42
+
+
+@pytest.mark.parametrize('number', [mpmath.inf, -mpmath.inf, mpmath.nan])
+def test_what_is_not_finite_is_refused(number: mpf) -> None:
+    with working(42), pytest.raises(ValueError, match='finite'):
+        to_decimal(number)
+
+
+def test_the_default_context_of_decimal_has_no_say(monkeypatch: pytest.MonkeyPatch) -> None:
+    usual = [(e.kind, e.time) for e in simulate(coulomb(824.0, 412.0), 0.2, 20)]
+    for name, value in {'rounding': ROUND_UP, 'Emin': -9, 'Emax': 9}.items():
+        monkeypatch.setattr(DefaultContext, name, value)
+    monkeypatch.setitem(DefaultContext.traps, Inexact, True)
+    with mpmath.workdps(60):
+        assert [(e.kind, e.time) for e in simulate(coulomb(824.0, 412.0), 0.2, 20)] == usual
 
 
 # ---- root search ----------------------------------------------------------------------------------

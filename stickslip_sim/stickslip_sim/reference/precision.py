@@ -14,7 +14,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from decimal import Context, Decimal, localcontext
+from decimal import (
+    ROUND_HALF_EVEN,
+    Context,
+    Decimal,
+    DivisionByZero,
+    InvalidOperation,
+    Overflow,
+    localcontext,
+)
 from typing import TypeVar
 
 import mpmath
@@ -22,13 +30,16 @@ from mpmath import mp, mpf
 
 Number = TypeVar('Number', mpf, Decimal)
 _OF_ALL_STEPS = 7  # digits
+_LARGEST = 999_999  # power of ten
 _SPARE = 2  # digits: mpmath counts in bits, and its numbers of so many digits are up to a digit finer
 
 
 @contextmanager
 def working(digits: int) -> Iterator[None]:
-    """Compute with so many digits."""
-    with mpmath.workdps(digits), localcontext(Context(prec=digits + _SPARE)):
+    """Compute with so many digits; the default context of decimal has no say."""
+    context = Context(digits + _SPARE, ROUND_HALF_EVEN, Emin=-_LARGEST, Emax=_LARGEST, clamp=0, flags=[],
+                      traps=[InvalidOperation, DivisionByZero, Overflow])
+    with mpmath.workdps(digits), localcontext(context):
         yield
 
 
@@ -39,8 +50,10 @@ def summed_rounding(terms: Number) -> Number:
 
 
 def to_decimal(number: mpf) -> Decimal:
-    """Return a finite number of mpmath's as one of decimal's, rounded to the working precision."""
+    """Return a finite number of mpmath's as one of decimal's, rounded to the working precision; else ValueError."""
     sign, mantissa, power, _ = number._mpf_
+    if power and not mantissa:   # so mpmath writes what is not finite
+        raise ValueError(f'a power series has finite numbers, not {number}')
     whole, exponent = Decimal(-mantissa if sign else mantissa), int(power)
     return whole * (1 << exponent) if exponent >= 0 else whole / (1 << -exponent)
 
