@@ -17,8 +17,8 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stickslip_sim.core.arrays import Numbers
 from stickslip_sim.identification.identify import identify
 from stickslip_sim.identification.report.cycle_phases import slip_share, usual_cycles
 from stickslip_sim.identification.report.known_friction import known_friction
@@ -33,8 +33,6 @@ from stickslip_sim.scene.load import changed
 from . import quoted_commands
 from .page import replace_generated
 from .quoted_commands import quoted, said
-
-Numbers = NDArray[np.float64]
 
 PAGE = pathlib.Path('docs/identification.md')
 EXAMPLES, RUNS, IMAGES = pathlib.Path('examples/identify'), pathlib.Path('runs/identify'), pathlib.Path('docs/images')

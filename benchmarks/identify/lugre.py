@@ -15,12 +15,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
+from stickslip_sim.core.arrays import Numbers
 from stickslip_sim.runs import Columns
-
-Numbers = NDArray[np.float64]
 
 _TOLERANCE = 1e-9                         # relative
 _SMALLEST = (1e-13, 1e-11, 1e-13)         # m, m/s, m

@@ -8,14 +8,12 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.random import Generator
-from numpy.typing import NDArray
 
+from stickslip_sim.core.arrays import Numbers
 from stickslip_sim.recording import read_run, write_measured
 from stickslip_sim.recording.measured_run import MeasuredRun
 from stickslip_sim.runs import Columns, simulate
 from stickslip_sim.scene import Scene
-
-Numbers = NDArray[np.float64]
 
 
 class Sensors(NamedTuple):

@@ -15,15 +15,13 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stickslip_sim.core.arrays import Numbers
 from stickslip_sim.runs import simulate
 
 from .axes import RANGE, SyntheticAxis, value_of
 from .measuring import Measurement
 from .stepped import RivalFit, SteppedResiduals
-
-Numbers = NDArray[np.float64]
 
 INSTALL = "pip install 'mujoco[sysid]'"
 STEP = 1e-3          # s, that of the samples

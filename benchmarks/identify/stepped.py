@@ -10,9 +10,9 @@ import time
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
+from stickslip_sim.core.arrays import Numbers
 from stickslip_sim.core.errors import StickslipError
 from stickslip_sim.runs import simulate
 from stickslip_sim.scene import Scene
@@ -21,8 +21,6 @@ from stickslip_sim.study.points import scene_at
 
 from .axes import RANGE, SyntheticAxis, value_of
 from .measuring import Measurement
-
-Numbers = NDArray[np.float64]
 
 STEP = 1e-4         # s
 _REFUSED = 10.0     # times the residuals of the start: where the values make no scene

@@ -14,12 +14,13 @@ import pytest
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
+from stickslip_sim.core.arrays import Numbers
 from stickslip_sim.core.types import Mode
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.plots import plot_run
 from stickslip_sim.plots.drawn_run import DrawnRun, TimeWindow, drawn_run, mode_shares
 from stickslip_sim.plots.run_panels import BINS, band, bin_edges
-from stickslip_sim.plots.style import Numbers, legend_outside, thinned
+from stickslip_sim.plots.style import legend_outside, thinned
 from stickslip_sim.rig.marks import Mark
 from stickslip_sim.runs import Run, simulate, simulate_events
 from stickslip_sim.runs.picture_samples import sampled

@@ -4,13 +4,12 @@
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from stickslip_sim.core.arrays import Numbers
 from stickslip_sim.runs import Columns, reduced
 from stickslip_sim.runs.reduced import ReducedWindow
 from stickslip_sim.runs.reduced import reduced as rows_for
 
-Numbers = NDArray[np.float64]
 NAMES = 'position', 'drive_position', 'velocity'
 WHOLE = (0.0, 1e9)
 PARTS = 20

@@ -10,6 +10,7 @@ import pytest
 
 from stickslip_sim.axis import InitialState
 from stickslip_sim.cli.main import run
+from stickslip_sim.core.arrays import Numbers
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.types import EventKind
 from stickslip_sim.extremes.shared_axes import make, of_kind
@@ -22,7 +23,6 @@ from stickslip_sim.study.critical import Critical, critical_of, default_range
 from stickslip_sim.study.points import scene_at
 from stickslip_sim.study.table_facts import table_fact
 from stickslip_sim.study.theory import critical_drop, critical_feed, feed_of_theory, healing_critical_feed
-from stickslip_sim.study.variation import Numbers
 from tests.support.axes import instant
 from tests.support.repository import ROOT
 from tests.support.tool import Capture

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from stickslip_sim.core.arrays import Numbers
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.scene import changed
@@ -20,7 +21,6 @@ from stickslip_sim.study.critical_sample import ACCURACY, CriticalStudy, critica
 from stickslip_sim.study.distribution import Distribution
 from stickslip_sim.study.highest_change import ALL_OVER, NOWHERE, Places, highest_changes
 from stickslip_sim.study.theory import feed_of_theory
-from stickslip_sim.study.variation import Numbers
 from stickslip_sim.study.workers import processes
 from tests.support.repository import ROOT
 from tests.support.tool import Capture, answered, refused

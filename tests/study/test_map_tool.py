@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from stickslip_sim.cli.main import run
+from stickslip_sim.core.arrays import Numbers
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.runs import simulate_events
 from stickslip_sim.simulation.cycles import cycle_figures
@@ -21,7 +22,7 @@ from stickslip_sim.study.borders import borders
 from stickslip_sim.study.description import study_of
 from stickslip_sim.study.folder import PARTIAL, SIDECAR, TABLE, Folder
 from stickslip_sim.study.picks import ending_at
-from stickslip_sim.study.point_figures import Numbers, Runs
+from stickslip_sim.study.point_figures import Runs
 from stickslip_sim.study.table import read_columns
 from tests.support.tool import Capture, refused
 

@@ -9,6 +9,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy import stats
 
+from stickslip_sim.core.arrays import Numbers
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.study import Distribution, Saltelli, Study
@@ -16,8 +17,6 @@ from stickslip_sim.study.description import description, study_of
 from stickslip_sim.study.point_figures import FIGURES, Motion
 from stickslip_sim.study.uncertain_file import uncertain_of
 from stickslip_sim.study.uncertainty import PERCENTS, sobol_indices, uncertainty_of
-
-Numbers = NDArray[np.float64]
 
 SHARES: Numbers = np.arange(101) / 100.0
 STATIC, KINETIC, NORMAL = 0.24, 0.12, 3432.3275

@@ -7,14 +7,12 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stickslip_sim.core.arrays import Numbers
 from stickslip_sim.recording import read_run, write_measured
 from stickslip_sim.recording.measured_run import MeasuredRun
 from stickslip_sim.runs import simulate
 from stickslip_sim.scene import Scene, scene_from_values
-
-Numbers = NDArray[np.float64]
 
 RATE, DURATION = 500.0, 4.0    # Hz, s
 ENCODER, FORCE_NOISE = 1e-6, 1.0   # m, N

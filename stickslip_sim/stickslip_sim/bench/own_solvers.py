@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..axis.rows import GIVEN_SINUSOID_FIELDS
+from ..core.arrays import Numbers
 from ..core.errors import SolverError
 from ..core.hot_path import UNIT
 from ..core.types import Sample
@@ -17,7 +18,7 @@ from ..core.version import __version__
 from ..solvers import DONE, Solver, adaptive, exact, fixed_step
 from ..solvers.walk import walk_of
 from .peers.peer import NO_SETTING, Peer, Setting, time_steps, tolerances
-from .problem import Numbers, Outcome, Problem
+from .problem import Outcome, Problem
 
 _POSITION = Sample._fields.index('position')
 

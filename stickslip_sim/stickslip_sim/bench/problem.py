@@ -8,12 +8,10 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..axis import Axis, InitialState, pack
+from ..core.arrays import Numbers
 from ..core.input_profile import InputProfile
-
-Numbers = NDArray[np.float64]
 
 _EVENT_COLUMNS = 5   # time s, kind, direction of the slip, position m, velocity m/s
 

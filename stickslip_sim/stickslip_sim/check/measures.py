@@ -12,10 +12,11 @@ from typing import NamedTuple
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
+from ..core.arrays import Numbers
 from ..core.errors import InputError
 from ..core.types import EventKind, Mode
 from ..simulation.cycles import cycle_figures, mode_spans
-from .observed_motion import MotionBlock, MotionSpan, Numbers, Points
+from .observed_motion import MotionBlock, MotionSpan, Points
 
 
 class MeasuredFigure(NamedTuple):

@@ -7,13 +7,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..core.arrays import Numbers
 from ..core.types import Event, Mode
 from ..runs import Columns
 from ..runs.samples import gathered
-
-Numbers = NDArray[np.float64]
 
 
 class Reference(NamedTuple):

@@ -14,9 +14,9 @@ from .progress import progress_bar
 from .uncertainty_lines import Labels, index_lines, law_lines, percent_head
 
 if TYPE_CHECKING:
+    from ..core.arrays import Numbers
     from ..study.critical_sample import CriticalSpread, CriticalStudy
     from ..study.sample import Saltelli
-    from ..study.variation import Numbers
     from ..study.workers import Workers
 
 _TABLE, _RESULT = 'critical.csv', 'uncertainty.json'

@@ -7,11 +7,11 @@ import math
 import numpy as np
 
 from ..axis import Friction
+from ..core.arrays import Numbers
 from ..core.types import Event, EventKind, Mode
 from ..friction import StaticLaw
 from ..plots.characteristics import Characteristics, Curve
 from ..runs import Run
-from .drawn import Numbers
 from .look import look_at
 
 _BEYOND = 1.25   # of the limit velocity, and of the longest rest: how far the axes go

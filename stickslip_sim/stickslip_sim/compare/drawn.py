@@ -7,13 +7,11 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..core.arrays import Numbers
 from ..core.types import Event, EventKind
 from ..runs import Columns
 from .run_part import APPLIED, RunPart, begins_slip
-
-Numbers = NDArray[np.float64]
 
 DRAWN = ('time', 'position', 'velocity', 'acceleration', 'drive_position', 'drive_force', 'friction_force', 'mode')
 _STEADY = 1e-9   # relative: inputs that vary less are constant

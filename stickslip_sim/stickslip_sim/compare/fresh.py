@@ -9,6 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from ..core.arrays import Numbers
 from ..core.errors import InputError
 from ..core.input_profile import InputProfile
 from ..core.time_grid import Instants
@@ -17,7 +18,6 @@ from ..runs import SimulatedRun, simulate_events
 from ..runs.samples import HeldSamples
 from ..runs.simulated import columns_of_rows
 from ..scene import Scene
-from .drawn import Numbers
 from .ring_down import closed_form
 
 MAX_DRAWN_EVENTS = 50_000

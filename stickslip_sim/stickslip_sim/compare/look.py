@@ -11,11 +11,12 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from ..core.arrays import Numbers
 from ..core.types import Mode
 from ..plots.paper_panels import RANGED
 from ..runs import Columns, Run
 from ..runs.reduced import ReducedWindows
-from .drawn import DRAWN, InputsSeen, Numbers, SteadyInputs
+from .drawn import DRAWN, InputsSeen, SteadyInputs
 from .run_part import APPLIED, SEEN, PartCutter, RunPart
 from .windows import drawn_stretches
 

@@ -9,9 +9,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ..axis import CompliantContact
+from ..core.arrays import Numbers
 from ..core.types import Event, EventKind
 from ..runs import Run
-from .drawn import Numbers, complete_slips, complete_sticks, steady_inputs
+from .drawn import complete_slips, complete_sticks, steady_inputs
 from .ring_down import RingDown, closed_form
 from .run_part import RunPart
 from .statement import Finding, Statement, found, not_applicable

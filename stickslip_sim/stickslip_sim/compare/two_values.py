@@ -8,9 +8,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..core.arrays import Numbers
 from ..core.types import Event, EventKind, Mode
 from ..runs import Run
-from .drawn import Numbers, complete_slips, within
+from .drawn import complete_slips, within
 from .run_part import RunPart
 from .statement import Finding, Statement, found, not_applicable
 

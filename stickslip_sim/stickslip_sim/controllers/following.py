@@ -5,11 +5,10 @@
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from ..core.time_grid import NANOSECONDS
 from ..rig import Measured
 from .drive_controller import AT_REST, Controller, DriveCommand, Memory
 from .moves import Moves, Setpoint
-
-_NANOSECONDS = 1e9
 
 
 class MoveProgress(NamedTuple):
@@ -43,11 +42,11 @@ class Following:
 
     def answer(self, progress: MoveProgress | None, time_ns: int, measured: Measured) -> Answer:
         """Return the answer to a measurement at a time; `progress` is that of the latest one, None for the first."""
-        is_new = progress is None or not 0 <= time_ns - progress.latest_ns <= self.max_gap * _NANOSECONDS
+        is_new = progress is None or not 0 <= time_ns - progress.latest_ns <= self.max_gap * NANOSECONDS
         if progress is None or is_new:
             progress = MoveProgress(time_ns, measured.slider_position, time_ns, AT_REST)
-        relative = self.moves.at((time_ns - progress.begin_ns) / _NANOSECONDS)
+        relative = self.moves.at((time_ns - progress.begin_ns) / NANOSECONDS)
         setpoint = Setpoint(progress.origin + relative.position, relative.velocity)
-        period = (time_ns - progress.latest_ns) / _NANOSECONDS
+        period = (time_ns - progress.latest_ns) / NANOSECONDS
         memory, command = self.controller.step(progress.memory, setpoint, measured, period)
         return Answer(progress._replace(latest_ns=time_ns, memory=memory), setpoint, command, is_new)

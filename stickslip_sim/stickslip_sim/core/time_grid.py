@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from .types import Instant, tuple_of
 
+NANOSECONDS = 1_000_000_000   # of a second
 _WHOLE = 2 ** 53   # up to which integers are floats, too
 
 
@@ -29,7 +30,7 @@ class Instants(NamedTuple):
 
     def nanoseconds(self) -> NDArray[np.int64]:
         """Return them rounded to nanoseconds, as `Instant.nanoseconds` does."""
-        return self.seconds.astype(np.int64) * 1_000_000_000 + np.rint(self.fractions * 1e9).astype(np.int64)
+        return self.seconds.astype(np.int64) * NANOSECONDS + np.rint(self.fractions * 1e9).astype(np.int64)
 
     def part(self, first: int, last: int) -> 'Instants':
         """Return those from one place up to another."""

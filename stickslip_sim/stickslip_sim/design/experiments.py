@@ -3,21 +3,18 @@
 """Feeds by what their runs would say of parameters: the one that narrows them most is proposed."""
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..core.arrays import Numbers
+from ..core.callbacks import Progress
 from ..core.errors import InputError, SolverError
 from ..scene import Scene, changed
 from ..sensitivity.moved_number import moved_number
 from ..study.variation import number_at
 from .candidate_feeds import Feed, feeds
 from .information import SHARE_MOVED, Sensors, Slopes, covariance_after, run_slopes
-
-Numbers = NDArray[np.float64]
-Progress = Callable[[float], None] | None
 
 _MOST_PARAMETERS = 20
 _MOST_SAMPLES = 1_000_000

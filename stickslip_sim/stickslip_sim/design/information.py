@@ -17,14 +17,12 @@ from dataclasses import dataclass
 from itertools import takewhile
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..core.arrays import Numbers
 from ..core.types import EventKind, Sample
 from ..scene import Scene
 from ..sensitivity.moved_number import moved_number
 from ..sensitivity.trace import Trace
-
-Numbers = NDArray[np.float64]
 
 SHARE_MOVED = 1e-6   # of a parameter
 _EVEN = 12.0  # variance of a reading that is rounded: resolution² over this

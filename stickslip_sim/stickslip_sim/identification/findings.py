@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..core.arrays import Numbers
 from ..scene import Scene, changed
 from .certainty.covariance import QUANTILE, Certainty, certainty_of, combinations_of
 from .certainty.noisy_inputs import changes_by_inputs, covariance_by_inputs, more_by_inputs
@@ -31,8 +31,6 @@ from .identified import (
 from .search.criterion import CRITERION, criterion_of
 from .search.stages import Ended
 from .trial.slip_features import shown_break_away
-
-Numbers = NDArray[np.float64]
 
 _SCORE = float(np.sqrt(QUANTILE))
 _AT_END = 1e-6       # of a range

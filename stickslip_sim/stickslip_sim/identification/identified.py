@@ -4,12 +4,8 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ..core.arrays import Numbers
 from ..scene import Scene
-
-Numbers = NDArray[np.float64]
 
 FOUND, AT_BOUND, NOT_IDENTIFIABLE = 'found', 'at a bound', 'not identifiable'
 LEVEL = 0.95   # of all intervals

@@ -15,13 +15,11 @@ from pathlib import Path
 from typing import NamedTuple, NoReturn
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..core.arrays import Numbers
 from ..core.did_you_mean import paths_beside, suggestion
 from ..core.errors import InputError, not_utf8
 from .units import all_in_si, named_unit, unit_of
-
-Numbers = NDArray[np.float64]
 
 MOST_BYTES = 256 << 20
 

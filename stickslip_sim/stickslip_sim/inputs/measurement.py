@@ -10,8 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..core.arrays import Numbers
 from ..core.errors import InputError
-from .csv_table import CsvTable, Numbers, Wanted
+from .csv_table import CsvTable, Wanted
 from .units import ACCELERATIONS, FORCES, LENGTHS, SPEEDS, TIMES
 
 QUANTITIES: Mapping[str, Mapping[str, Fraction]] = {

@@ -13,13 +13,14 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
+from ..core.arrays import Numbers
 from ..core.errors import InputError
 from ..core.time_grid import decimal, multiples
 from ..scene.model import ProfileSource
 from ..scene.profile_schema import FILE_SETTINGS, MOST_POINTS
 from ..scene.schema import BY_NAME
 from ..scene.values import stated
-from .csv_table import CsvTable, Numbers, Wanted
+from .csv_table import CsvTable, Wanted
 from .units import FORCES, LENGTHS, SPEEDS, TIMES
 
 Given = Mapping[str, object]

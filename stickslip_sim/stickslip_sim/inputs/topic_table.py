@@ -9,9 +9,10 @@ from typing import Any, NoReturn
 
 import numpy as np
 
+from ..core.arrays import Numbers
 from ..core.errors import InputError
 from ..recording import Bag, RecordedMessage, open_bag
-from .csv_table import Numbers, Wanted
+from .csv_table import Wanted
 from .units import all_in_si
 
 LOG_TIME = 'log_time'

@@ -10,8 +10,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
+from ..core.arrays import Numbers
 from .scale import Scale
-from .style import BLACK, BLUE, DOUBLE_COLUMN, GREEN, JOURNAL, MILLI, ORANGE, Numbers, legend_of, letter, save
+from .style import BLACK, BLUE, DOUBLE_COLUMN, GREEN, JOURNAL, MILLI, ORANGE, legend_of, letter, save
 
 _DOT: dict[str, Any] = {'linestyle': '', 'marker': 'o', 'markersize': 1.6, 'markeredgewidth': 0.0}
 

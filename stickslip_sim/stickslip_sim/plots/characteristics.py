@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.transforms import ScaledTranslation
 
+from ..core.arrays import Numbers
 from .style import (
     BLACK,
     BLUE,
@@ -22,7 +23,6 @@ from .style import (
     ORANGE,
     PURPLE,
     RED,
-    Numbers,
     letter,
     lines_by_label,
     save,

@@ -10,7 +10,8 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from .style import GREY, JOURNAL, Numbers, save
+from ..core.arrays import Numbers
+from .style import GREY, JOURNAL, save
 
 _CELL, _MARGIN, _NAMES = 0.42, 0.5, 2.4   # in
 _DARK = 0.6                               # of a colour: white numbers above it

@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..core.arrays import Numbers
 from ..core.types import Event, EventKind, Mode
 from ..rig.marks import Mark
-from .style import Numbers
 
 _INPUTS = ('drive_velocity', 'external_force', 'normal_force')
 _OF_EVENTS = ('position', 'velocity', 'drive_position', 'drive_force', 'friction_force')

@@ -14,6 +14,7 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import FuncFormatter
 from numpy.typing import NDArray
 
+from ..core.arrays import Numbers
 from .style import (
     BLACK,
     BLUE,
@@ -26,7 +27,6 @@ from .style import (
     PURPLE,
     RED,
     SKY,
-    Numbers,
     legend_of,
     letter,
     save,

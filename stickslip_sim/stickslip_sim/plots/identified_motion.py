@@ -14,6 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
+from ..core.arrays import Numbers
 from .style import (
     BLACK,
     BLUE,
@@ -22,7 +23,6 @@ from .style import (
     JOURNAL,
     ORANGE,
     RED,
-    Numbers,
     legend_of,
     letter,
     save,

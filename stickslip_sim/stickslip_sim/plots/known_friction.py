@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
+from ..core.arrays import Numbers
 from .style import (
     BLACK,
     BLUE,
@@ -19,7 +20,6 @@ from .style import (
     MILLI,
     ORANGE,
     SKY,
-    Numbers,
     legend_of,
     letter,
     save,

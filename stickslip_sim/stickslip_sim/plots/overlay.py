@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
+from ..core.arrays import Numbers
 from .paper_panels import legend_below, part
 from .style import (
     BLACK,
@@ -23,7 +24,6 @@ from .style import (
     ORANGE,
     PURPLE,
     RED,
-    Numbers,
     letter,
     save,
     thinned,

@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
+from ..core.arrays import Numbers
 from ..core.types import Mode
 from .style import (
     BLACK,
@@ -23,7 +24,6 @@ from .style import (
     MODE_COLOURS,
     ORANGE,
     RED,
-    Numbers,
     legend_outside,
     letter,
     lines_by_label,

@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
+from ..core.arrays import Numbers
 from .style import (
     BLACK,
     BLUE,
@@ -23,7 +24,6 @@ from .style import (
     PURPLE,
     RED,
     SKY,
-    Numbers,
     legend_of,
     letter,
     save,

@@ -9,9 +9,10 @@ from itertools import groupby
 import numpy as np
 from matplotlib.axes import Axes
 
+from ..core.arrays import Numbers
 from ..rig.marks import Mark
 from .drawn_run import DrawnRun, TimeWindow, mode_shares
-from .style import BLACK, BLUE, GREEN, GREY, MILLI, MODE_COLOURS, ORANGE, PURPLE, RED, Numbers
+from .style import BLACK, BLUE, GREEN, GREY, MILLI, MODE_COLOURS, ORANGE, PURPLE, RED
 from .time_panels import force_unit, line
 
 BINS = 240            # of a band, and of the shares of the modes, at most

@@ -6,7 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .style import MILLI, Numbers
+from ..core.arrays import Numbers
+from .style import MILLI
 
 _SHOWN = {'m': (MILLI, 'mm'), 'ms': (MILLI, 'ms'), 'm/s': (MILLI, 'mm/s'), 'N/m': (1e-6, 'N/µm')}
 

@@ -20,10 +20,11 @@ from matplotlib.patheffects import Normal, Stroke
 from matplotlib.ticker import LogLocator
 from numpy.typing import NDArray
 
+from ..core.arrays import Numbers
 from ..simulation.cycles import SWINGS_ON
 from .paper_panels import DrawnMotion, phase_plane
 from .scale import Scale
-from .style import BLACK, DOUBLE_COLUMN, GREY, JOURNAL, RED, SINGLE_COLUMN, Numbers, legend_of, legend_outside, save
+from .style import BLACK, DOUBLE_COLUMN, GREY, JOURNAL, RED, SINGLE_COLUMN, legend_of, legend_outside, save
 
 PLAIN_MOTIONS = ('smooth sliding', SWINGS_ON, 'at rest', 'failed', 'undecided')
 _PLAIN_COLOURS = ('#f2f2f2', '#c4c4c4', '#56B4E9', '#ffffff', '#ffffff')

@@ -11,11 +11,9 @@ from matplotlib import rc_context
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
-from numpy.typing import NDArray
 
+from ..core.arrays import Numbers
 from ..core.types import Mode
-
-Numbers = NDArray[np.float64]
 
 # Okabe and Ito's colours, which stay apart for colour-blind eyes
 BLACK, ORANGE, SKY, GREEN = '#222222', '#E69F00', '#56B4E9', '#009E73'

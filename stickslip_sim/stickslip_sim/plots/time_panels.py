@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from .style import GREY, Numbers, thinned
+from ..core.arrays import Numbers
+from .style import GREY, thinned
 
 _KILO_FROM = 1e4     # N: larger forces are shown in kN
 

@@ -8,7 +8,8 @@ from pathlib import Path
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from .style import BLUE, MILLI, ORANGE, Numbers, save
+from ..core.arrays import Numbers
+from .style import BLUE, MILLI, ORANGE, save
 from .time_panels import dress, force_unit, head, line
 
 

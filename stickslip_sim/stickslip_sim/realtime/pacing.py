@@ -13,9 +13,8 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import Protocol
 
-from ..core.time_grid import Grid, decimal
+from ..core.time_grid import NANOSECONDS, Grid, decimal
 
-NANOSECONDS = 1_000_000_000
 _MAX_BACKLOG = NANOSECONDS // 2   # ns that a stalled loop catches up
 _PR_SET_TIMERSLACK = 29
 _SLICE = 0.05                     # s: how soon a waiting loop notices that it must stop

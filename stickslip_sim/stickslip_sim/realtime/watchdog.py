@@ -4,14 +4,14 @@
 
 import math
 
-_NANOSECONDS = 1e9
+from ..core.time_grid import NANOSECONDS
 
 
 class Watchdog:
     """Is asked before each step, from the first command on; `timeout` in s, 0: never."""
 
     def __init__(self, timeout: float) -> None:
-        self._timeout = math.ceil(timeout * _NANOSECONDS)
+        self._timeout = math.ceil(timeout * NANOSECONDS)
         self.forget()
 
     @property
@@ -36,4 +36,4 @@ class Watchdog:
         if self._is_stale or not heard or not self.is_on or silence <= self._timeout:
             return 0.0
         self._is_stale = True
-        return silence / _NANOSECONDS
+        return silence / NANOSECONDS

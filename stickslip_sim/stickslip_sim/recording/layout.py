@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from rosbags.interfaces import Nodetype
 from rosbags.typesys.store import Typestore
 
+from ..core.time_grid import NANOSECONDS
+
 # By type of field: its character in `struct`, its size in bytes, which is its alignment too.
 _NUMBERS = {
     'bool': ('?', 1), 'int8': ('b', 1), 'uint8': ('B', 1), 'int16': ('h', 2), 'uint16': ('H', 2), 'int32': ('i', 4),
@@ -20,7 +22,6 @@ _CDR = b'\0\1\0\0'                  # before the message: CDR, little endian
 _HEADER = 'std_msgs/msg/Header'
 _HEADER_FORMAT, _HEADER_SIZE = '<4siIIx', 13  # sec, nanosec, a text of one byte, which is its end
 _STAMP = {'stamp.sec': ('<i4', 4), 'stamp.nanosec': ('<u4', 8)}
-_NANOSECONDS = 1_000_000_000
 
 
 class Layout:
@@ -49,7 +50,7 @@ class Layout:
 
     def pack(self, stamp_ns: int, *numbers: float) -> bytes:
         """Return the CDR bytes of a message with its stamp (ns) and its numbers in the order of `names`."""
-        return self._struct.pack(_CDR, *divmod(stamp_ns, _NANOSECONDS), 1, *numbers)
+        return self._struct.pack(_CDR, *divmod(stamp_ns, NANOSECONDS), 1, *numbers)
 
     def numbers(self, data: bytes) -> Sequence[float] | None:
         """Return the numbers of a message in the order of `names`; None when it has a frame or is not laid out so."""

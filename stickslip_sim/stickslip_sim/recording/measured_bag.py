@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.arrays import Numbers
 from ..core.errors import InputError
 from ..core.version import __version__
 from . import topics
@@ -16,8 +17,6 @@ from .bag import BagWriter
 from .offline_bag import interleaved
 from .rows import MessageRows
 from .schemas import flat_layout
-
-Numbers = NDArray[np.float64]
 
 MEASURED = 'measured'            # the origin in the metadata of such a bag, and there the names of what was measured
 NO_MODE = 255                    # of a state whose mode nobody measured

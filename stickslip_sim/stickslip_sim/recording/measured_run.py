@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import NoReturn
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..core.arrays import Numbers
 from ..core.errors import RecordingError
 from ..core.types import Event, Mode
 from ..rig.marks import Mark
@@ -21,8 +21,6 @@ from .measured_bag import MEASURED, OF_STATE
 from .reader import Bag
 from .recorded_run import RecordedRun
 from .topics import EXTERNAL_FORCE, FRICTION_FORCE, SLIDER_STATE
-
-Numbers = NDArray[np.float64]
 
 STICK_SHARE = 0.05   # of the largest speed: the threshold where none is stated
 

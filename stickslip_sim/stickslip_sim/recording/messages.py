@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.time_grid import NANOSECONDS
 from ..core.types import Event, Sample
 from ..core.version import __version__
 from .layout import Layout
@@ -47,7 +48,7 @@ class Packer:
 
 def time_message(nanoseconds: int) -> Fields:
     """Return the fields of builtin_interfaces/Time."""
-    sec, nanosec = divmod(nanoseconds, 1_000_000_000)
+    sec, nanosec = divmod(nanoseconds, NANOSECONDS)
     return {'sec': sec, 'nanosec': nanosec}
 
 

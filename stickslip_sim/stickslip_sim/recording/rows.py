@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.time_grid import NANOSECONDS
 from .layout import Layout
 from .message_record import FIELDS, FRAME_SIZE, SEQUENCE_MASK, record_of
 
@@ -26,7 +27,7 @@ class MessageRows:
         rows = np.tile(self._empty, len(log_times)).view(self._kind)
         rows['sequence'] = sequences & SEQUENCE_MASK
         rows['log_time'], rows['publish_time'] = log_times, publish_times
-        rows['stamp.sec'], rows['stamp.nanosec'] = np.divmod(publish_times, 1_000_000_000)
+        rows['stamp.sec'], rows['stamp.nanosec'] = np.divmod(publish_times, NANOSECONDS)
         for name in self.names:
             rows[name] = numbers[name]
         return rows

@@ -19,13 +19,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..axis import Axis, InitialState, check_start
+from ..core.arrays import Numbers
 from ..core.errors import InputError
 from ..solvers import exact
 from ..solvers.exact.axis_figures import FIGURE_NAMES, ROUND_SIZE, AxisFigures
 from ..solvers.exact.many_axes import SETTLED
 from .batch_columns import array_of, check_range, common_length, parameter_rows
-
-Numbers = NDArray[np.float64]
 
 _ROWS = 64          # of the event table
 _AT_THE_START = astuple(AxisFigures())

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..axis import Axis, pack
 from ..axis.layout import (
@@ -31,11 +31,10 @@ from ..axis.layout import (
     STIFFNESS,
     TABLE,
 )
+from ..core.arrays import Numbers
 from ..core.errors import InputError
 from ..scene import PARAMETERS
 from .batch_kinetic import LISTS, kinetic_rows
-
-Numbers = NDArray[np.float64]
 
 _KINETIC, _BACKWARD = 'kinetic_', 'backward_'
 _STATIC = {'initial': (STATIC_INITIAL, BACKWARD_INITIAL), 'limit': (STATIC_LIMIT, BACKWARD_LIMIT),

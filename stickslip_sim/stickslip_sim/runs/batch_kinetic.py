@@ -7,16 +7,15 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..axis import Axis, Friction, pack
 from ..core import ranges
+from ..core.arrays import Numbers
 from ..core.errors import InputError
 from ..friction import KineticTable, kinetic_table
 from ..friction.kinetic import default_excess
 from ..friction.shapes import Decay
 
-Numbers = NDArray[np.float64]
 _Values = Mapping[str, Any]
 
 LISTS = ('velocities', 'coefficients')

@@ -11,14 +11,13 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.arrays import Numbers
 from ..core.time_grid import Instants
 from ..core.types import Event, EventKind, Sample
 from ..scene import Scene
 from .normal_force import normal_force_of
 from .run import Columns
 from .simulated import columns_of_rows
-
-Numbers = NDArray[np.float64]
 
 _IN_STRETCH = 32     # samples between two events
 _IN_BAND = 20        # where only the least and the most of a cycle are seen

@@ -3,7 +3,7 @@
 """Run a scene as fast as the machine can, and keep what happened: events, samples, receipt."""
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any, ClassVar
@@ -11,6 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.callbacks import Progress
 from ..core.errors import InputError
 from ..core.time_grid import decimal, instant_of, instants, multiples
 from ..core.types import Event, Instant, Mode, Sample
@@ -92,8 +93,6 @@ class SimulatedRun(Views):
             for second, fraction, mode, direction, *rest in zip(*(block[name].tolist() for name in Sample._fields)):
                 yield Sample(second, fraction, Mode(int(mode)), int(direction), *rest)
 
-
-Progress = Callable[[float], None] | None
 
 
 def simulate(scene: Scene, duration: float, sample_period: float | Fraction | None = None,

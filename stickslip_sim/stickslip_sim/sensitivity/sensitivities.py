@@ -3,14 +3,15 @@
 """Sensitivities: how much each figure of a run changes with each number of its scene."""
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..core.arrays import Numbers
+from ..core.callbacks import Progress
 from ..core.errors import InputError, SolverError
 from ..inputs import SceneOrName, scene_of
 from ..runs.frame import data_frame
@@ -20,9 +21,6 @@ from .moved_number import LARGEST, SMALLEST, MovedNumber, moved_number, moved_nu
 from .multiplier import Multiplier, multiplier_of
 from .sequence_change import SequenceChange, is_alike, nearest_change
 from .trace import Trace
-
-Numbers = NDArray[np.float64]
-Progress = Callable[[float], None] | None
 
 _STEP = 1e-5         # of a parameter
 _SHORTEST = 1e-2    # s, the first look for events

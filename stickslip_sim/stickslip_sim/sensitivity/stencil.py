@@ -10,9 +10,8 @@ same to the order h³.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Numbers = NDArray[np.float64]
+from ..core.arrays import Numbers
 
 _ROUNDING = 2.0 ** -50
 

@@ -5,13 +5,12 @@
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..core.arrays import Numbers
 from ..core.time_grid import Instants
 from ..core.types import Event, Instant, Sample
 from ..scene import Scene
 
-Numbers = NDArray[np.float64]
 EventKey = tuple[int, int, int]   # kind, mode and direction of an event
 
 LONGEST_TRACE = 1e6        # s

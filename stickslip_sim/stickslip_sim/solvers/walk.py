@@ -5,16 +5,12 @@
 import math
 from functools import partial
 
-import numpy as np
-from numpy.typing import NDArray
-
 from ..axis.layout import Parameters
 from ..axis.rows import Events, Sinusoids
 from ..axis.state_record import State
+from ..core.arrays import Numbers
 from ..core.input_profile import InputProfile
 from . import DONE, FULL, PieceWalk, Solver
-
-Numbers = NDArray[np.float64]
 
 
 def walk_of(solver: Solver, normal_force: InputProfile | None = None) -> PieceWalk:

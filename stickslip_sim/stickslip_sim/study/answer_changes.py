@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .point_figures import Numbers
+from ..core.arrays import Numbers
 
 NO, YES, OPEN, FAILED = 0, 1, -1, -2   # answers; OPEN: there is none; FAILED: the run went wrong
 Answers = NDArray[np.int64]

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..core.arrays import Numbers
 from ..core.types import Event, Instant
 from ..runs import simulate_events
 from ..scene import Scene
@@ -16,7 +17,6 @@ from .point_figures import Figures, Motion
 from .points import scene_at, works_in_batches
 from .steady import sliding_slope
 from .study import Study
-from .variation import Numbers
 
 _LAST = 40     # cycles of each point that are shown, or half of all
 _REACH = 1.5   # times as long as they take on average: where that was not enough all of the run is looked at

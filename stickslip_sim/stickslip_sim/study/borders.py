@@ -6,11 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..core.arrays import Numbers
 from .points import scene_at
 from .steady import sliding_slope
 from .study import Study
 from .theory import feed_of_theory
-from .variation import Numbers, Variation
+from .variation import Variation
 
 FEED = 'drive.velocity'
 _FINE = 300   # values of either parameter

@@ -12,13 +12,12 @@ distributions of the parameters themselves, for lognormal ones of their logarith
 from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..config.strict import section
+from ..core.arrays import Numbers
 from ..core.errors import InputError
 from ..scene import Parameter
 
-Numbers = NDArray[np.float64]
 Correlations = tuple[tuple[float, ...], ...]   # (k, k), in the order of the parameters
 
 _PAGE = 'docs/maps.md'

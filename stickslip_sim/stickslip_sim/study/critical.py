@@ -13,10 +13,11 @@ from itertools import pairwise
 
 import numpy as np
 
+from ..core.arrays import Numbers
 from ..core.errors import InputError
 from ..scene import Scene
 from .answer_changes import FAILED, NO, OPEN, YES, Answers, Findings, find_transitions
-from .point_figures import Motion, Numbers, figures_of_runs
+from .point_figures import Motion, figures_of_runs
 from .points import batches, runs_in_batches, scene_at, works_in_batches
 from .steady import sliding_slope
 from .table_facts import TableFact, table_fact

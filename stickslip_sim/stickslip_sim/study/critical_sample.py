@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..core.arrays import Numbers
 from ..core.errors import InputError
 from .answer_changes import Answers
 from .critical import lost_answers, stick_answers
@@ -20,7 +21,7 @@ from .highest_change import ALL_OVER, NOWHERE, Places, highest_changes
 from .sample import Saltelli
 from .study import Study
 from .uncertainty import PERCENTS, Index, sobol_indices
-from .variation import Numbers, Variation
+from .variation import Variation
 from .workers import Workers
 
 ACCURACY = 1e-4        # of the value

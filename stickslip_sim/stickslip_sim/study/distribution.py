@@ -9,7 +9,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .variation import Numbers, parameter_of
+from ..core.arrays import Numbers
+from .variation import parameter_of
 
 _TAILS = 4.0     # standard deviations: 6e-5 of the probability lies beyond
 _WIDEST = 1e6    # times the median, one standard deviation away

@@ -14,6 +14,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
+from ..core.arrays import Numbers
 from ..core.did_you_mean import paths_beside, suggestion
 from ..core.errors import InputError
 from .description import FORM, description
@@ -21,7 +22,6 @@ from .parquet import write_parquet
 from .resources import check_resources
 from .study import Study
 from .table import TableColumns, may_be_table, next_lines, read_rows, title_line, words
-from .variation import Numbers
 
 LONGEST_SIDECAR = 1 << 24   # bytes of a description; nearly all of it is the scene
 SIDECAR, TABLE, PARTIAL, PARQUET = 'study.json', 'points.csv', 'points.partial.csv', 'points.parquet'

@@ -12,8 +12,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.arrays import Numbers
 from .answer_changes import NO, YES, Answers
-from .variation import Numbers, Variation
+from .variation import Variation
 
 SCAN = 33          # values; two changes between neighbours among them cancel each other
 ALL_OVER, NOWHERE = np.inf, -np.inf    # in place of a value: the answer is YES, or NO, all over the range

@@ -2,13 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Studies for Python: a scene and ranges in, arrays out, without a folder."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from ..core.arrays import Numbers
+from ..core.callbacks import Progress
 from ..inputs import SceneOrName, scene_of
 from ..runs.frame import data_frame
 from . import critical as search
@@ -17,9 +19,7 @@ from .sample import EvenGrid, Saltelli, Sobol
 from .study import Study
 from .uncertain_file import load_uncertain, uncertain_of
 from .uncertainty import Uncertainty, uncertainty_of
-from .variation import Numbers, range_of, variation
-
-Progress = Callable[[float], None] | None
+from .variation import range_of, variation
 
 
 @dataclass(frozen=True)

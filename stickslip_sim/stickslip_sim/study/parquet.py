@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from importlib.util import find_spec
 from pathlib import Path
 
-from .variation import Numbers
+from ..core.arrays import Numbers
 
 
 def write_parquet(columns: Mapping[str, Numbers | Sequence[str]], path: Path) -> None:

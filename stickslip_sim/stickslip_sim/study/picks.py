@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..core.arrays import Numbers
 from ..core.errors import InputError
 from ..runs import SimulatedRun, simulate_events
 from .borders import FEED
@@ -13,7 +14,6 @@ from .point_figures import Motion, figures_of_runs
 from .points import runs_of_run
 from .study import Study
 from .table import TableColumns
-from .variation import Numbers
 
 
 class Ending(NamedTuple):

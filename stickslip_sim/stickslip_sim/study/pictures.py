@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.arrays import Numbers
 from ..core.errors import InputError
 from ..plots.bifurcation import plot_bifurcation
 from ..plots.scale import Scale, unit_read
@@ -20,7 +21,7 @@ from .sample import EvenGrid, Saltelli
 from .study import Study
 from .table import TableColumns, figures_among
 from .uncertainty import SPREAD, Index, Uncertainty, spread_of
-from .variation import Numbers, Variation, place_of
+from .variation import Variation, place_of
 
 _UNITS = {'amplitude': 'm', 'period': 's', 'stick_share': '', 'peak_speed': 'm/s', 'break_away_force': 'N',
          'settling_time': 's', 'cycles': '', 'duration': 's'}

@@ -30,13 +30,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.arrays import Numbers
 from ..core.types import Mode
 from ..solvers.exact.many_axes import LEAST_STICK
 
 __all__ = ['FIGURES', 'LEAST_STICK', 'MOTIONS', 'RUN_FIELDS', 'Figures', 'Flags', 'Motion', 'Numbers', 'Runs',
            'figures_of_runs', 'no_runs']
 
-Numbers = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 class Motion(IntEnum):

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..axis.rows import EventRow
+from ..core.arrays import Numbers
 from ..core.errors import InputError, SolverError
 from ..friction import StaticLawKind
 from ..runs import SimulatedRun, simulate_events
@@ -20,7 +21,7 @@ from ..scene.friction_schema import BACKWARD
 from ..scene.values import overridden
 from ..solvers.exact import many_axes
 from ..solvers.exact.axis_figures import AxisFigures
-from .point_figures import Numbers, Runs, no_runs
+from .point_figures import Runs, no_runs
 from .settling import DOUBLINGS, PATIENCE, run_settled, runs_of
 from .variation import changes_at
 

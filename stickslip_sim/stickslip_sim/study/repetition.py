@@ -13,7 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from .point_figures import LEAST_STICK, Flags, Numbers
+from ..core.arrays import Numbers
+from .point_figures import LEAST_STICK, Flags
 
 REPEATED = 1e-6      # of the scale of each number
 _STILL = 1e-11       # of the period, for stick times, and of the same for the others

@@ -8,10 +8,11 @@ from functools import cached_property
 
 import numpy as np
 
+from ..core.arrays import Numbers
 from ..core.errors import InputError
 from .correlations import Correlations, correlated, factor_of
 from .distribution import Distribution
-from .variation import Numbers, Variation
+from .variation import Variation
 
 MOST_DRAWN = 1 << 30   # points of a Sobol sequence of scipy
 LEAST_SAMPLES, MOST_SAMPLES = 16, 1 << 24

@@ -26,10 +26,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..axis import Axis, InitialState
+from ..core.arrays import Numbers
 from ..core.types import Mode
 from ..runs.batch import BatchFigures, Rounds, run_rounds
 from ..solvers.exact.axis_figures import ROUND_SIZE
-from .point_figures import RUN_FIELDS, Flags, Numbers, Runs, no_runs
+from .point_figures import RUN_FIELDS, Flags, Runs, no_runs
 from .repetition import drifts, ends_alike, group_size
 from .steady import sliding_slope
 

@@ -15,7 +15,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from ..axis import Axis
-from .point_figures import Numbers
+from ..core.arrays import Numbers
 
 
 def sliding_slope(axis: Axis, inputs: Mapping[str, Numbers]) -> Numbers:

@@ -9,6 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
+from ..core.arrays import Numbers
 from ..core.errors import InputError
 from ..runs.simulated import check_run_times
 from ..scene import Scene, scene_from_values
@@ -16,7 +17,7 @@ from ..scene.load import named
 from .point_figures import Figures, Runs, figures_of_runs
 from .points import runs_alone, runs_in_batches, scene_at, works_in_batches
 from .sample import Sampling
-from .variation import Numbers, Variation
+from .variation import Variation
 
 MOST_VARIATIONS = 10
 _IN_A_CHUNK, _ALONE_IN_A_CHUNK = 2000, 20   # points: a fraction of a second

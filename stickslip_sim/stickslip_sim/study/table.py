@@ -13,10 +13,10 @@ from typing import BinaryIO
 
 import numpy as np
 
+from ..core.arrays import Numbers
 from ..core.errors import InputError
 from .point_figures import FIGURES, MOTIONS, Figures, Motion
 from .study import Study
-from .variation import Numbers
 
 _BYTES_OF_A_NUMBER = 25   # 17 digits, sign, point, exponent of three digits with its sign, comma
 _ROUNDING = 1e-13         # of a value: another version of numpy rounds steps of one ratio otherwise

@@ -13,9 +13,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..core.arrays import Numbers
 from .point_figures import Motion
 from .sample import Saltelli
-from .variation import Numbers
 
 PERCENTS = (5, 25, 50, 75, 95)
 SPREAD = {'amplitude': 'm', 'period': 's', 'stick_share': '', 'peak_speed': 'm/s', 'break_away_force': 'N',

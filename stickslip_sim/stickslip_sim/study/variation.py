@@ -8,17 +8,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..config.parameter import Parameter
+from ..core.arrays import Numbers
 from ..core.did_you_mean import suggestion
 from ..core.errors import InputError
 from ..runs.wording import quantity
 from ..scene.friction_schema import forward_name
 from ..scene.profile_schema import PROFILES
 from ..scene.schema import BY_NAME
-
-Numbers = NDArray[np.float64]
 
 MOTION_SECTIONS = ('axis', 'contact', 'friction', *PROFILES, 'initial', 'solver')
 _ALONG = {   # where an element of a list is

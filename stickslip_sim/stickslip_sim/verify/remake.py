@@ -3,9 +3,10 @@
 """Steps made again: as a node made them, or as an offline run did."""
 
 from collections import deque
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from typing import NamedTuple, Protocol
 
+from ..core.callbacks import Progress
 from ..core.errors import InputError, RecordingError
 from ..core.types import Event, EventKind, Sample
 from ..recording import RecordedRun
@@ -17,8 +18,6 @@ from ..scene import Scene
 from .orders import Orders
 from .origin import Offline, checkpoint_of, offline_of
 from .steps import RecordedStep
-
-Progress = Callable[[float], None] | None
 
 
 class Made(NamedTuple):

@@ -5,6 +5,7 @@
 from collections import deque
 from typing import NamedTuple
 
+from ..core.callbacks import Progress
 from ..core.errors import RecordingError
 from ..recording import Bag, RecordedRun
 from ..recording.topics import MODE_EVENT, SLIDER_STATE
@@ -12,7 +13,7 @@ from ..runs import simulate
 from .blocks import same_bytes
 from .difference import Comparison, Difference
 from .origin import offline_of
-from .remake import Maker, Progress, maker_of
+from .remake import Maker, maker_of
 from .steps import RecordedStep, steps_of
 
 _REPORTED_EVERY = 1000   # steps

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from ..core.callbacks import Progress
 from ..core.errors import InputError
 from ..core.types import Event, Mode, Sample
 from ..recording import RecordedRun
@@ -16,7 +17,7 @@ from ..scene import Scene, changed
 from ..scene.schema import BY_NAME
 from ..simulation.cycles import summary
 from .origin import checkpoint_of, offline_of
-from .remake import Maker, Progress, maker_of
+from .remake import Maker, maker_of
 from .steps import steps_of
 
 

@@ -8,12 +8,13 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from stickslip_sim.core.arrays import Numbers
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.friction import SmoothKinetic, smooth
 from stickslip_sim.identification.curve.best_law import fit_laws, sides, sign_changes
 from stickslip_sim.identification.curve.law_fit import Fit
 from stickslip_sim.identification.curve.law_in_scene import Origin, scene_with_friction
-from stickslip_sim.identification.curve.measured_curve import FrictionCurve, Numbers
+from stickslip_sim.identification.curve.measured_curve import FrictionCurve
 from stickslip_sim.identification.curve.smooth_fit import fit_smooth
 from stickslip_sim.identification.curve.smooth_laws import SMOOTH_FORMS
 from stickslip_sim.identification.curve.table_fit import fit_table, points_table

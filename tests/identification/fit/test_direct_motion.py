@@ -4,15 +4,13 @@
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from stickslip_sim import Sample, Simulator, load_scene
+from stickslip_sim.core.arrays import Numbers
 from stickslip_sim.identification.fit.direct_motion import with_delay
 from stickslip_sim.identification.given.free_parameters import FreeParameter
 from stickslip_sim.identification.given.measured_inputs import profile_through
 from stickslip_sim.identification.given.readings import Channel, SensorReadings, instants_of
-
-Numbers = NDArray[np.float64]
 
 MICROMETRE = 1e-6
 MASS = FreeParameter('axis.mass', 'kg', 70.0, 50.0, 200.0)

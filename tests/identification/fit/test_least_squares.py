@@ -4,15 +4,13 @@
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
+from stickslip_sim.core.arrays import Numbers
 from stickslip_sim.identification.fit.bounded_step import bounded_step
 from stickslip_sim.identification.fit.least_squares import minimise
 from stickslip_sim.identification.fit.region import Region, region_of
 from stickslip_sim.identification.given.free_parameters import FreeParameter
-
-Numbers = NDArray[np.float64]
 
 KINETIC, STATIC, LIMIT = 'friction.kinetic.initial', 'friction.static.initial', 'friction.static.limit'
 VALUES = {KINETIC: 0.1, STATIC: 0.15, LIMIT: 0.2, 'friction.static.law': 'exponential'}

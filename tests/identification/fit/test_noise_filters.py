@@ -4,12 +4,10 @@
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from stickslip_sim.core.arrays import Numbers
 from stickslip_sim.identification.fit.noise_filters import NoiseFilter, filters_of
 from stickslip_sim.identification.given.readings import Channel, SensorReadings
-
-Numbers = NDArray[np.float64]
 
 TIMES: Numbers = np.arange(4000, dtype=np.float64) * 1e-3
 NONE: Numbers = np.array([])

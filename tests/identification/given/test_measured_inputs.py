@@ -4,11 +4,9 @@
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from stickslip_sim.core.arrays import Numbers
 from stickslip_sim.identification.given.measured_inputs import travelled, velocity_within
-
-Numbers = NDArray[np.float64]
 
 MICROMETRE = 1e-6
 TIMES: Numbers = np.arange(4000, dtype=np.float64) * 1e-3

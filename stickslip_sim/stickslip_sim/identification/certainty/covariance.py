@@ -14,10 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import gammaincinv
 
+from ...core.arrays import Numbers
 from ..given.free_parameters import FreeParameter
 from ..identified import LEVEL, Combination
-
-Numbers = NDArray[np.float64]
 
 QUANTILE = 2.0 * float(gammaincinv(0.5, LEVEL))   # of the rise of the sum of squares at the ends of an interval
 _LOST = 0.3      # of the range of a parameter: a standard deviation so large says nothing

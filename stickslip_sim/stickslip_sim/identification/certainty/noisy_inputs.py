@@ -8,12 +8,10 @@ size of the change in the residuals is what they may have beyond the noise of th
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Numbers
 from ..fit.least_squares import Solution, slopes_of
 from ..fit.problem import FitProblem
-
-Numbers = NDArray[np.float64]
 
 _TIMES = 16   # the standard deviation is known to a fifth
 

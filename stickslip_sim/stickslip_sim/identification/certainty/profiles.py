@@ -13,14 +13,12 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Numbers
 from ..fit.least_squares import Solution, minimise
 from ..fit.problem import FitProblem, Stretches
 from ..identified import Estimate
 from .covariance import QUANTILE, Certainty
-
-Numbers = NDArray[np.float64]
 
 _DIFFERS = 0.2       # of the rise of the sum of squares at an end: so far a parabola may be off
 _TOUCHES = 1e-6      # of a range

@@ -12,12 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import gammaincinv
 
+from ...core.arrays import Numbers
 from ...runs.wording import quantity
 from ..fit.problem import FitProblem, MeasuredStretch
 from ..given.readings import Channel
 from ..identified import Misfit
-
-Numbers = NDArray[np.float64]
 
 _TOGETHER = 1.5   # samples: below, the correlation is that of chance
 _CHANCE = 1e-4       # of rejecting a model that is right

@@ -13,7 +13,8 @@ from typing import Protocol
 import numpy as np
 from scipy import special
 
-from .measured_curve import FrictionCurve, Numbers
+from ...core.arrays import Numbers
+from .measured_curve import FrictionCurve
 
 _LEVEL = 0.95
 _ROUNDING = 1e-9        # of the largest coefficient: no curve is known better

@@ -15,12 +15,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.arrays import Numbers
 from ...core.errors import InputError
 from ...inputs.units import FORCES, SPEEDS, in_si, named_unit, unit_of
 from ...scene.load import named, read_text
 from ...scene.plausible import FASTEST, MEANT, ROUGHEST
-
-Numbers = NDArray[np.float64]
 
 DIRECTIONS = ('both', 'forward', 'backward')
 SLOWEST = 2e-4        # m/s: the fastest point of a plausible curve is faster

@@ -11,10 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import least_squares, nnls
 
+from ...core.arrays import Numbers
 from ...core.ranges import COEFFICIENT, SLOPE
 from ...friction.shapes import MAX_EXPONENT, MIN_EXPONENT
 from .law_fit import Fit
-from .measured_curve import FrictionCurve, Numbers
+from .measured_curve import FrictionCurve
 from .smooth_laws import SmoothForm
 
 _SCALES = 61

@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...core.arrays import Numbers
 from ...friction.shapes import MAX_EXPONENT, MIN_EXPONENT
-from .measured_curve import Numbers
 
 Falling = Callable[[Numbers, float], Numbers]
 LINEAR = ('initial', 'limit', 'viscous')

@@ -12,8 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import nnls
 
+from ...core.arrays import Numbers
 from .law_fit import Fit, enough_points
-from .measured_curve import FrictionCurve, Numbers
+from .measured_curve import FrictionCurve
 
 _CANDIDATES = 60
 _MOST = 12   # breakpoints

@@ -7,12 +7,10 @@ them is held.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import nnls
 
+from ...core.arrays import Numbers
 from .region import Region
-
-Numbers = NDArray[np.float64]
 
 _LEAST = 1e-15       # of the largest: an eigenvalue of the scaled curvature that is not rounding
 _MOST_TURNS = 1000   # of the search for the borders that hold

@@ -3,14 +3,12 @@
 """Drive spring and damper from a measured drive force alone: F = c stretch + h (v − ẋ) is linear in both."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Numbers
 from ..given.measured_inputs import travelled
 from ..given.motions import track_of
 from ..given.readings import SensorReadings
 from ..trial.axis_model import AxisModel
-
-Numbers = NDArray[np.float64]
 
 _STIFFNESS, _DAMPING = 'axis.drive_stiffness', 'axis.drive_damping'
 _WELL = 0.1    # of a number: its standard deviation, beyond which it is not taken

@@ -6,14 +6,12 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Numbers
 from ..given.measured_inputs import travelled
 from ..given.readings import SensorReadings
 from ..trial.axis_model import AxisModel
 from ..trial.slip_features import MeasuredSlip, rest_force
-
-Numbers = NDArray[np.float64]
 
 _SHARE = 0.02   # of a coefficient: so well it is known
 

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.arrays import Numbers
 from ...core.input_profile import InputProfile
 from ..given.free_parameters import FreeParameter
 from ..given.measured_inputs import travelled
@@ -21,8 +22,6 @@ from ..given.sensor_noise import noise_of, quantum_of
 from ..trial.axis_model import AxisModel
 from .least_squares import minimise
 from .region import Region
-
-Numbers = NDArray[np.float64]
 
 _CURVED = 720.0**0.5   # of the second derivative of a parabola through n readings: σ times that over n^2.5 periods²
 _FEWEST, _MOST = 5, 0.01   # readings in a parabola, and as a share of the run

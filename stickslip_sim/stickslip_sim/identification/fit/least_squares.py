@@ -14,12 +14,11 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Numbers
 from .bounded_step import bounded_step
 from .region import Region
 
-Numbers = NDArray[np.float64]
 Residuals = Callable[[Numbers], Numbers]
 _Step = float | Numbers
 

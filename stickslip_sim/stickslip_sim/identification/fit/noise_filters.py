@@ -26,10 +26,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.arrays import Numbers
 from ..given.readings import Channel, SensorReadings
 from ..given.sensor_noise import own_noise_of
-
-Numbers = NDArray[np.float64]
 
 _NOTICEABLE = 0.1   # of the noise of a sensor: less by the noise of the force over the whole run is left out
 _GAP = 1.5          # periods: after longer ones the filter starts anew

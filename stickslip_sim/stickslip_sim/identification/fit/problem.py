@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.arrays import Numbers
 from ...core.time_grid import Instants
 from ..given.free_parameters import FreeParameter
 from ..given.motions import MeasuredMotion, stops_of, track_of
@@ -30,7 +31,6 @@ from .least_squares import STEP
 from .noise_filters import NoiseFilter, filters_of, white_of
 from .region import region_of
 
-Numbers = NDArray[np.float64]
 Rows = NDArray[np.intp]
 
 _SHARP = 2.5   # of the speed of the drive: a slider that sways about it reaches 2 without any slip

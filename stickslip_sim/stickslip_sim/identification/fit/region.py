@@ -9,11 +9,9 @@ which goes there finds no way back: its sum of squares does not change with the 
 from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Numbers
 from ..given.free_parameters import FreeParameter
-
-Numbers = NDArray[np.float64]
 
 _KINETIC, _STATIC = 'friction.kinetic.', 'friction.static.'
 

@@ -5,13 +5,11 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Numbers
 from ...core.input_profile import InputProfile
 from .measured_inputs import profile_through, travelled, velocity_within
 from .sensor_noise import noise_of, quantum_of
-
-Numbers = NDArray[np.float64]
 
 LINE, HELD, PLACES = 'line', 'held', 'places'
 _WITHIN = 2.0   # standard deviations: so near to its measured position a drive is taken to move

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solveh_banded
 
+from ...core.arrays import Numbers
 from ...core.input_profile import InputProfile, Sinusoid
 
-Numbers = NDArray[np.float64]
 _Place = tuple[float, float]   # s, m
 
 _ROOM = 1.02       # of the resolution: rounding must not bend a straight way

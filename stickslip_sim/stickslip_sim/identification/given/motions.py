@@ -13,13 +13,11 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Numbers
 from ...core.input_profile import InputProfile
 from .measured_inputs import travelled
 from .readings import SensorReadings
-
-Numbers = NDArray[np.float64]
 
 _NOISE, _OF_DRIVE = 0.01, 0.05   # of the highest speed, and of a low one of the drive: so much noise a slope may have
 _SLOWEST = 0.05          # quantile of the speeds of the drive

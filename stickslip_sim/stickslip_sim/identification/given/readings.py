@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.arrays import Numbers
 from ...core.errors import InputError
 from ...core.input_profile import InputProfile
 from ...core.time_grid import Instants
@@ -16,7 +17,7 @@ from ...runs import Run
 from ...scene import Scene
 from .channel_units import OUTPUTS
 from .input_readings import HELD, LINE, PLACES, InputReadings
-from .sensor_noise import Numbers, noise_of, quantum_of, weights_of
+from .sensor_noise import noise_of, quantum_of, weights_of
 
 _FEWEST = 20          # samples
 _LONGEST_GAP = 1.0    # of the time that was measured without it

@@ -7,9 +7,8 @@ the same: a hundred equal readings in a row say no more than one.  So each of L 
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
-Numbers = NDArray[np.float64]
+from ...core.arrays import Numbers
 
 _MAD = 1.4826          # standard deviation of a normal distribution over its median absolute deviation
 _THIRD = 20.0**0.5     # of a third difference over that of a reading

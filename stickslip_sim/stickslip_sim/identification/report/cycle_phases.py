@@ -5,11 +5,9 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Numbers
 from ..identified import Identification
-
-Numbers = NDArray[np.float64]
 
 
 def measured_break_aways(found: Identification) -> Numbers:

@@ -10,16 +10,15 @@ import math
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...axis import Friction
+from ...core.arrays import Numbers
 from ...core.errors import InputError
 from ...scene import Scene, scene_from_values
 from ...study.variation import changes_at
 from ..identified import FOUND, Estimate, Identification
 from .identified_scene import OF_SENSORS
 
-Numbers = NDArray[np.float64]
 FrictionCurveOf = Callable[[Scene], Numbers]
 
 _STEP = 0.05        # of a standard deviation

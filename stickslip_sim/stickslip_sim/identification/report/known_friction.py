@@ -5,15 +5,13 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Numbers
 from ...plots.known_friction import Band, Bins, KnownFriction, Scatter
 from ...runs import Run
 from ..identified import Identification
 from .friction_band import accelerating_of, half_width, kinetic_of, static_of
 from .measured_friction import binned, friction_points, loads_at
-
-Numbers = NDArray[np.float64]
 
 _CURVE = 160          # points of a curve
 _BEYOND = 1.15        # of the fastest reading, and of the longest rest

@@ -13,13 +13,11 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Numbers
 from ...runs import Run
 from ...runs.slips import SLIP_TIMES, SlipRows, slips_of
 from ..identified import Identification
-
-Numbers = NDArray[np.float64]
 
 _STRETCH = 0.1      # of a slip
 _FEWEST = 7         # rows of a stretch

@@ -14,13 +14,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...core.arrays import Numbers
 from ...core.errors import InputError
 from ...scene import Scene, scene_from_values
 from ...study.distribution import LAWS, Distribution
 from ...study.study import MOST_VARIATIONS
 from ...study.uncertain_file import LEAST_KEPT
 from ...study.variation import changes_at, parameter_of
-from ..identified import FOUND, NOT_IDENTIFIABLE, Estimate, Identification, Numbers
+from ..identified import FOUND, NOT_IDENTIFIABLE, Estimate, Identification
 from .identified_scene import OF_SENSORS, rounded_scene
 from .shared_factors import REACH, with_shared_factors
 

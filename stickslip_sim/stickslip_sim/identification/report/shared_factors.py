@@ -11,7 +11,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..identified import FOUND, NOT_IDENTIFIABLE, Combination, Estimate, Identification, Numbers
+from ...core.arrays import Numbers
+from ..identified import FOUND, NOT_IDENTIFIABLE, Combination, Estimate, Identification
 
 REACH = 2.0   # standard deviations from the value to the nearest end of a range
 

@@ -13,14 +13,13 @@ from functools import partial
 from typing import NamedTuple, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Numbers
 from ...study.workers import processes
 from ..fit.least_squares import Solution
 from ..fit.problem import FitProblem
 from .stages import Ended, fit_from
 
-Numbers = NDArray[np.float64]
 _Arrays = Mapping[str, Numbers]
 
 

@@ -12,9 +12,9 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
+from ...core.arrays import Numbers
 from ...core.errors import InputError
 from ...friction.static import StaticLaw, StaticLawKind
 from ...scene import Scene, scene_from_values
@@ -22,7 +22,6 @@ from ...scene.schema import BY_NAME
 from ..curve.smooth_laws import SMOOTH_FORMS
 from ..given.free_parameters import FreeParameter
 
-Numbers = NDArray[np.float64]
 _Values = dict[str, float]
 _Curve = Callable[[str, _Values], Numbers]
 

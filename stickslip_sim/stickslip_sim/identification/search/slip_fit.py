@@ -10,13 +10,11 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Numbers
 from ..fit.least_squares import minimise
 from ..fit.problem import FitProblem
 from .stages import LOST, Ended, worst_square
-
-Numbers = NDArray[np.float64]
 
 _FEWEST_SLIPS, _MOST_SLIPS = 3, 30
 _POINTS = 2             # to begin from, of those where fits began and ended, and with what the force says directly

@@ -12,14 +12,13 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Numbers
 from ..fit.least_squares import STEP, Solution, minimise
 from ..fit.problem import FitProblem, Stretches
 from ..given.motions import MeasuredMotion
 from .starts import N_STARTS, ROBUST
 
-Numbers = NDArray[np.float64]
 StageProgress = Callable[[str, float], None]
 
 _SAMPLES = 4000         # about so many are enough until the last stage

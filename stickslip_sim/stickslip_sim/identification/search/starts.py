@@ -10,14 +10,12 @@ from collections.abc import Iterator, Sequence
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Numbers
 from ..fit.direct_friction import friction_at_break_aways, static_residuals
 from ..fit.least_squares import Solution, minimise
 from ..fit.problem import FitProblem
 from ..trial.slip_features import MeasuredSlip
-
-Numbers = NDArray[np.float64]
 
 N_STARTS = 8            # fitted of the trial points, the best
 ROBUST = 3.0            # figures of slips: beyond, a coarse fit counts their size

@@ -12,15 +12,13 @@ are taken.
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Numbers
 from ..certainty.covariance import certainty_of
 from ..certainty.residual_tests import inflation_of
 from ..fit.least_squares import minimise
 from ..fit.problem import FitProblem
 from .stages import Ended
-
-Numbers = NDArray[np.float64]
 
 _STEP = 1e-4     # of derivatives: the position over the whole run is far from linear only beyond
 _LEAST = 1e-12   # of the largest variance: less is rounding

@@ -17,19 +17,18 @@ from typing import Any
 from zipfile import BadZipFile
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Numbers
 from ...core.errors import InputError
 from ...runs import Run
 from ...runs.receipt import versions
 from ...scene import Scene
+from ...study.folder import KEPT
 
-Numbers = NDArray[np.float64]
 _Arrays = Mapping[str, Numbers]
 
 _SIDECAR = 'identify.json'
 _FORM = 'stickslip identification 1'
-KEPT = 'what is done is kept, --resume goes on'
 _LONGEST = 1 << 24   # bytes of a description
 
 

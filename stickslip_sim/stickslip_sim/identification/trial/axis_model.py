@@ -9,9 +9,9 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...axis import CompliantContact, InitialState
+from ...core.arrays import Numbers
 from ...core.errors import StickslipError
 from ...core.input_profile import InputProfile, constant
 from ...core.time_grid import Instants
@@ -26,8 +26,6 @@ from ..given.measured_inputs import shifted, travelled
 from ..given.motions import MeasuredMotion
 from ..given.readings import SensorReadings, drives_directly
 from .friction_tables import Breakpoints, breakpoints_of, put_in_order, with_table
-
-Numbers = NDArray[np.float64]
 
 OUTPUT_PLACES = {name: Sample._fields.index(name) for name in OUTPUTS}
 _BELOW = 1.0 - 1e-12   # of what the contact holds: rounding must not break it

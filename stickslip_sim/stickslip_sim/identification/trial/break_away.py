@@ -7,9 +7,8 @@ is taken to begin where it is faster than a slider at rest may be, or than a ten
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
-Numbers = NDArray[np.float64]
+from ...core.arrays import Numbers
 
 _SHARE = 0.1        # of the peak of the speed
 _REST_PART = 0.15   # of the rest: so much of its end says what the force is in the end

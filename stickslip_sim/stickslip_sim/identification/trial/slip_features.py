@@ -10,16 +10,14 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import Numbers
 from ...core.types import Event, EventKind, Mode, Sample
 from ...scene.build import Dynamics
 from ..given.motions import SHARES, MeasuredMotion, Track, slope_of
 from ..given.readings import SensorReadings, instants_of
 from .axis_model import AxisModel
 from .break_away import begin_of_slip, force_of_slip
-
-Numbers = NDArray[np.float64]
 
 N_FIGURES = 9  # of a slip, see `slip_distance`
 N_TELLING = 10  # see `telling_distance`

@@ -17,6 +17,7 @@ from std_srvs.srv import Trigger
 
 from ...controllers import MoveProgress
 from ...core.errors import InputError
+from ...core.time_grid import NANOSECONDS
 from ...recording.topics import JOINT_COMMANDS, JOINT_STATES
 from ...rig import Measured
 from ..node.joints import DRIVE, SLIDER
@@ -27,7 +28,6 @@ from .controller_parameters import COMMON, COMPENSATION, following, model_of
 
 _REPORT_PERIOD = 1.0   # s
 _STOPS, _STOP_PAUSE = 5, 0.02    # s between them
-_NANOSECONDS = 1_000_000_000
 
 
 class ControllerNode(ListedNode):
@@ -72,7 +72,7 @@ class ControllerNode(ListedNode):
             self._refusal = str(error)
             return
         stamp = message.header.stamp
-        its = self._following.answer(self._progress, stamp.sec * _NANOSECONDS + stamp.nanosec, measured)
+        its = self._following.answer(self._progress, stamp.sec * NANOSECONDS + stamp.nanosec, measured)
         if its.is_new:
             self.get_logger().info(f'the moves begin at {measured.slider_position:g} m')
         self._progress = its.progress

@@ -12,14 +12,15 @@ from rcl_interfaces.msg import ParameterEvent
 
 from stickslip_msgs.msg import RunInfo
 
-_NANOSECONDS = 1_000_000_000
+from ...core.time_grid import NANOSECONDS
+
 _ARRAYS = {'sequence<boolean>': np.bool_, 'sequence<octet>': np.uint8, 'sequence<int64>': np.int64,
            'sequence<double>': np.float64}
 
 
 def set_stamp(stamp: Time, nanoseconds: int) -> None:
     """Set a time stamp, ns since 1970."""
-    stamp.sec, stamp.nanosec = divmod(nanoseconds, _NANOSECONDS)
+    stamp.sec, stamp.nanosec = divmod(nanoseconds, NANOSECONDS)
 
 
 def run_info_message(fields: Mapping[str, Any]) -> RunInfo:

@@ -12,6 +12,7 @@ from rclpy.node import Node
 from sensor_msgs.msg import JointState
 
 from ...core.errors import InputError
+from ...core.time_grid import NANOSECONDS
 from ...recording import MessageCodec
 from ...recording.messages import header
 from ...recording.topics import JOINT_COMMANDS, JOINT_STATES
@@ -23,7 +24,6 @@ SLIDER, DRIVE = 'axis_slider', 'axis_drive'
 JOINTS = (SLIDER, DRIVE)
 _CDR = b'\0\1\0\0'              # before the message: CDR, little endian
 _HEAD, _NUMBERS = '<4siI', '2dI4x2dI4x2d'    # stamp; and at the end three arrays, the length of the first before them
-_NANOSECONDS = 1_000_000_000
 
 
 class JointStates:
@@ -58,7 +58,7 @@ class JointStatePacker:
     def pack(self, stamp_ns: int, measured: Measured, drive_force: float) -> bytes:
         """Return the CDR bytes of the message with a stamp (ns) and the force in the drive (N)."""
         return self._struct.pack(
-            _CDR, *divmod(stamp_ns, _NANOSECONDS), self._names,
+            _CDR, *divmod(stamp_ns, NANOSECONDS), self._names,
             measured.slider_position, measured.drive_position, len(JOINTS),
             measured.slider_velocity, measured.drive_velocity, len(JOINTS), 0.0, drive_force)
 

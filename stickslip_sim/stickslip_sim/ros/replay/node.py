@@ -10,7 +10,7 @@ from rclpy.clock import ClockType
 from rclpy.duration import Duration
 from rosgraph_msgs.msg import Clock
 
-from ...realtime.pacing import NANOSECONDS
+from ...core.time_grid import NANOSECONDS
 from ...recording.playback import Recording
 from ...recording.topics import CLOCK
 from ..node.conversion import set_stamp

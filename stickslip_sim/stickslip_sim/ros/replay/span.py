@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from ...core.errors import InputError
-from ...realtime.pacing import NANOSECONDS
+from ...core.time_grid import NANOSECONDS
 from ...recording.playback import Recording
 from .replay_settings import Settings
 

@@ -5,7 +5,8 @@
 import math
 from threading import Lock
 
-from ...realtime.pacing import NANOSECONDS, Clock, SteadyClock
+from ...core.time_grid import NANOSECONDS
+from ...realtime.pacing import Clock, SteadyClock
 
 
 class Timeline:
