@@ -27,10 +27,9 @@ from stickslip_sim.core.time_grid import Grid
 from stickslip_sim.realtime.pacing import Pacer, wake_precisely
 from stickslip_sim.realtime.scheduling import Scheduling, StepThread
 from stickslip_sim.realtime.timing_statistics import TimingStatistics
-from stickslip_sim.recording import RECORDED, RecorderThread, RunFacts, open_run
-from stickslip_sim.recording import topics as names
+from stickslip_sim.recording import RECORDED, RecorderThread, RunFacts, open_run, topics
 from stickslip_sim.ros.node.conversion import set_stamp
-from stickslip_sim.ros.node.topics import publisher, subscription
+from stickslip_sim.ros.node.endpoints import publisher, subscription
 from stickslip_sim.ros.process.program import make_executor
 
 POLL = 0.1                # s
@@ -48,9 +47,9 @@ class BareNode(Node):  # type: ignore[misc]
         self._velocity = self._force = 0.0
         self._state, self._friction = SliderState(), FrictionForce()
         self._ports = [(RECORDED.index(topic), publisher(self, topic), message) for topic, message in
-                       ((names.SLIDER_STATE, self._state), (names.FRICTION_FORCE, self._friction))]
-        subscription(self, names.DRIVE_VELOCITY, self._take_velocity)
-        subscription(self, names.EXTERNAL_FORCE, self._take_force)
+                       ((topics.SLIDER_STATE, self._state), (topics.FRICTION_FORCE, self._friction))]
+        subscription(self, topics.DRIVE_VELOCITY, self._take_velocity)
+        subscription(self, topics.EXTERNAL_FORCE, self._take_force)
         self._start_ns = self.get_clock().now().nanoseconds
         self.is_over = threading.Event()
         self.thread = threading.Thread(target=self._run)

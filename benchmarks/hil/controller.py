@@ -21,8 +21,8 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile
 
 from stickslip_msgs.msg import DriveVelocity, SliderState
-from stickslip_sim.recording import topics as names
-from stickslip_sim.ros.node.topics import publisher
+from stickslip_sim.recording import topics
+from stickslip_sim.ros.node.endpoints import publisher
 from stickslip_sim.ros.process.program import make_executor
 
 from ..loop import cpu_seconds
@@ -46,8 +46,8 @@ class Controller(Node):  # type: ignore[misc]
         self._stride = stride
         self._waiting: deque[tuple[float, int, int]] = deque(maxlen=DISTINCT // 2)
         self._message = DriveVelocity()
-        self._out = publisher(self, names.DRIVE_VELOCITY)
-        self.create_subscription(SliderState, names.SLIDER_STATE.name, self._take, QoSProfile(depth=1000))
+        self._out = publisher(self, topics.DRIVE_VELOCITY)
+        self.create_subscription(SliderState, topics.SLIDER_STATE.name, self._take, QoSProfile(depth=1000))
 
     @property
     def is_connected(self) -> bool:
@@ -95,7 +95,7 @@ def measure(controller: Controller, pid: int, seconds: float) -> dict[str, float
     executor.add_node(controller)
     spin(executor, PATIENCE, lambda: controller.heard and controller.is_connected)
     if not controller.heard:
-        raise SystemExit(f'no {names.SLIDER_STATE.name} within {PATIENCE:g} s')
+        raise SystemExit(f'no {topics.SLIDER_STATE.name} within {PATIENCE:g} s')
     spin(executor, SETTLE)
     controller.begin()
     begin, cpu, waited, step = time.monotonic(), cpu_seconds(pid), waited_seconds(pid), controller.step

@@ -9,9 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from stickslip_sim.advise import advice as work
 from stickslip_sim.advise.absent import absent_parts
-from stickslip_sim.advise.advice import Advice
+from stickslip_sim.advise.advice import Advice, advise
 from stickslip_sim.advise.advice_report import advice_as_json, is_needed, text_lines
 from stickslip_sim.advise.duration import default_duration
 from stickslip_sim.advise.figure_distance import Distance, distance_between, event_difference
@@ -38,7 +37,7 @@ def scene(name: str = 'paper_fig7', **sections: dict[str, object]) -> Scene:
 
 @pytest.fixture(scope='module')
 def advised() -> Advice:
-    return work.advise(scene(sinusoids=TWO_SINUSOIDS, breakpoints=KNOTTED), 1e-3, DURATION, rounds=1)
+    return advise(scene(sinusoids=TWO_SINUSOIDS, breakpoints=KNOTTED), 1e-3, DURATION, rounds=1)
 
 
 def test_parts_are_those_of_the_scene() -> None:
@@ -195,7 +194,7 @@ def test_the_scene_names_its_own_solver_among_the_others() -> None:
 
 def test_a_part_of_what_is_left_out_goes_with_it() -> None:
     """The contact damper alone is needed, but not without the contact."""
-    advice = work.advise(scene('positioning'), 0.2, 4.0, rounds=1)
+    advice = advise(scene('positioning'), 0.2, 4.0, rounds=1)
     rows = {line.split('  ')[0]: line for line in text_lines(advice)}
     assert rows['contact compliance'].endswith(' no')
     assert rows['contact damping'].endswith(' goes with another')

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from hypothesis import strategies as st
 from hypothesis.strategies import DrawFn, SearchStrategy
 
-from stickslip_sim.study.folder import PARTIAL, SIDECAR, TABLE
+from stickslip_sim.study.folder import PARTIAL, POINTS_TABLE, SIDECAR
 from tests.support import made_up_texts
 
 from .called_tool import call_tool
@@ -56,7 +56,7 @@ OPTIONS = st.tuples(VARIATIONS, _RANGES, st.builds('{},{}'.format, _ENDS, _ENDS)
 
 def _made(folder: Path, command: Sequence[str]) -> Edited:
     call_tool(*command, '--out', str(folder))
-    files = {name: (folder / name).read_text() for name in (SIDECAR, TABLE)}
+    files = {name: (folder / name).read_text() for name in (SIDECAR, POINTS_TABLE)}
     return Edited(files, command)
 
 
@@ -65,10 +65,10 @@ def _edited(draw: DrawFn, made: Sequence[Edited]) -> Edited:
     """Return a folder whose description or table was changed; some are incomplete."""
     files, command = draw(st.sampled_from(made))
     files = dict(files)
-    changed = draw(st.sampled_from((SIDECAR, SIDECAR, TABLE)))
+    changed = draw(st.sampled_from((SIDECAR, SIDECAR, POINTS_TABLE)))
     files[changed] = draw((_changed_json if changed == SIDECAR else _changed_table)(files[changed]))
     if draw(st.integers(0, 3)) == 0:
-        files[PARTIAL] = files.pop(TABLE)
+        files[PARTIAL] = files.pop(POINTS_TABLE)
     return Edited(files, command)
 
 

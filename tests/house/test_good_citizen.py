@@ -24,7 +24,7 @@ from stickslip_sim.recording.topics import RECORDED, Topic
 pytest.importorskip('rclpy')
 from rclpy.serialization import deserialize_message
 
-from stickslip_sim.ros.node.topics import message_type
+from stickslip_sim.ros.node.endpoints import message_type
 from tests.support.eventful_runs import eventful_run
 from tests.support.repository import ROOT
 from tests.support.ros_nodes import Client

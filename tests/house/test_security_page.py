@@ -9,12 +9,12 @@ from stickslip_sim.config import parameter, ros_yaml
 from stickslip_sim.core.input_profile import MAX_SINUSOIDS
 from stickslip_sim.friction.kinetic import MAX_BREAKPOINTS
 from stickslip_sim.inputs import csv_table
-from stickslip_sim.recording import opening, reader, records, schemas
+from stickslip_sim.recording import mcap_records, opening, reader, schemas
 from stickslip_sim.rig.faults import MAX_FAULTS
 from stickslip_sim.runs import samples, simulated
 from stickslip_sim.scene import profile_schema
 from stickslip_sim.study import folder
-from stickslip_sim.verify import steps
+from stickslip_sim.verify import recorded_steps
 from tests.support.repository import ROOT
 
 ROWS = [line for line in (ROOT / 'docs/security.md').read_text().splitlines() if '|' in line]
@@ -26,12 +26,12 @@ ROWS = [line for line in (ROOT / 'docs/security.md').read_text().splitlines() if
     ('points of a profile', (profile_schema.MOST_POINTS, csv_table.MOST_BYTES)),
     ('a text in a scene', (parameter.TEXT_LIMIT,)),
     ('breakpoints of a friction table', (MAX_BREAKPOINTS, MAX_SINUSOIDS, MAX_FAULTS)),
-    ('a record of a bag', (records.RECORD_LIMIT >> 20,)),
+    ('a record of a bag', (mcap_records.RECORD_LIMIT >> 20,)),
     ('schemas, attachments', (opening.MOST_BESIDE >> 20,)),
     ('a definition', (schemas.LONGEST_DEFINITION, schemas.MOST_ELEMENTS)),
-    ('a topic of a bag', (reader.MOST_BYTES >> 20,)),
+    ('a topic of a bag', (reader.MOST_TOPIC_BYTES >> 20,)),
     ('the description of a sweep', (folder.LONGEST_SIDECAR >> 20,)),
-    ('steps that a recording may lack', (steps.MOST_MISSING,)),
+    ('steps that a recording may lack', (recorded_steps.MOST_MISSING,)),
     ('samples and events', (simulated.MAX_SAMPLES, samples.MOST_IN_MEMORY, simulated.MAX_EVENTS)),
 ])
 def test_limits(what: str, limits: tuple[int, ...]) -> None:
@@ -44,7 +44,7 @@ def test_limits_of_the_node() -> None:
     pytest.importorskip('rclpy')
     from stickslip_msgs.srv import Step
     from stickslip_sim.ros.node.bounded_node import MOST_PARAMETERS
-    from stickslip_sim.ros.node.topics import COMMAND_SIZE
+    from stickslip_sim.ros.node.endpoints import COMMAND_SIZE
 
     page = '\n'.join(ROWS)
     assert f'| a message on a command topic | {COMMAND_SIZE} bytes |' in page

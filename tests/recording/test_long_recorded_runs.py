@@ -14,7 +14,7 @@ from stickslip_sim.cli.main import run as tool
 from stickslip_sim.compare import run_part
 from stickslip_sim.compare.report_folder import write_report
 from stickslip_sim.core.errors import RecordingError, RecordingWarning
-from stickslip_sim.recording import RecordedRun, paired_steps, read_run, recorded_run, records, run_outline
+from stickslip_sim.recording import RecordedRun, mcap_records, paired_steps, read_run, recorded_run, run_outline
 from stickslip_sim.runs import reduced
 from stickslip_sim.runs.samples import joined
 from tests.support.rewritten_bags import rewritten
@@ -27,7 +27,7 @@ def _short_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(recorded_run, 'MOST_HELD', 10)
     monkeypatch.setattr(run_part, 'MOST_HELD', 2500)
     monkeypatch.setattr(reduced, 'MOST_HELD', 2500)
-    monkeypatch.setattr(records, 'GATHERED_BYTES', 1 << 14)
+    monkeypatch.setattr(mcap_records, 'GATHERED_BYTES', 1 << 14)
     for module in (paired_steps, run_outline):
         monkeypatch.setattr(module, 'GATHERED', 200)
 

@@ -14,7 +14,7 @@ from stickslip_sim.cli.main import run as tool
 from stickslip_sim.core.errors import InputError, RecordingWarning
 from stickslip_sim.core.types import EventKind
 from stickslip_sim.inputs import load_scene
-from stickslip_sim.recording import read_run, records, topic_columns
+from stickslip_sim.recording import mcap_records, read_run, topic_columns
 from stickslip_sim.rig.marks import Mark
 from stickslip_sim.runs import COLUMNS, Run, simulate, simulate_events
 from tests.support.small_recordings import files
@@ -48,7 +48,7 @@ def test_samples_and_events_take_one_pass_over_the_bag(fig8_bag: Path, monkeypat
 
     def counted(file: Path) -> Iterator[object]:
         passes.append(file)
-        return records.contents(file)
+        return mcap_records.contents(file)
 
     run = read_run(fig8_bag)
     monkeypatch.setattr(topic_columns, 'contents', counted)

@@ -19,7 +19,7 @@ import pytest
 
 from stickslip_sim.cli.main import run
 from stickslip_sim.study.description import versions_of_a_study
-from stickslip_sim.study.folder import PARTIAL, TABLE
+from stickslip_sim.study.folder import PARTIAL, POINTS_TABLE
 from tests.support.tool import Capture, restore_interrupt
 
 pytestmark = pytest.mark.slow
@@ -96,7 +96,7 @@ def test_a_worker_killed_in_the_middle_changes_no_bit(cluster: Cluster, tmp_path
     assert (process.returncode, error) == (0, ''), error
     assert '16000 of them run now' in said
     assert run([*LONG, '--out', str(alone)]) == 0
-    assert (out / TABLE).read_bytes() == (alone / TABLE).read_bytes()
+    assert (out / POINTS_TABLE).read_bytes() == (alone / POINTS_TABLE).read_bytes()
 
 
 def test_ctrl_c_keeps_what_is_done(cluster: Cluster, tmp_path: Path) -> None:

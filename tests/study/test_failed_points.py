@@ -18,7 +18,7 @@ from stickslip_sim.extremes.shared_axes import instant, of_kind
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.runs.batch import BatchFigures, Rounds, run_rounds
 from stickslip_sim.study import EvenGrid, Motion, Study, settling, variation
-from stickslip_sim.study.folder import TABLE
+from stickslip_sim.study.folder import POINTS_TABLE
 from stickslip_sim.study.point_figures import FIGURES
 from tests.support.tool import Capture
 
@@ -65,7 +65,7 @@ def test_a_sweep_has_the_word_failed_and_no_figures(flood: str, tmp_path: Path, 
     said = capsys.readouterr().out
     assert '2 smooth sliding, 2 failed' in said or '2 failed, 2 smooth sliding' in said
     assert '2 of 4 points failed: the exact engine gave up; see column motion\n' in said
-    rows = [line.split(',')[2:] for line in (out / TABLE).read_text().splitlines()[1:]]
+    rows = [line.split(',')[2:] for line in (out / POINTS_TABLE).read_text().splitlines()[1:]]
     assert rows[:2] == [['failed', *[''] * (len(FIGURES) - 1)]] * 2
     assert [row[0] for row in rows[2:]] == ['smooth sliding'] * 2
     assert run(['map', str(out), '--out', str(tmp_path / 'map.svg')]) == 0

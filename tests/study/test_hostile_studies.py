@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from stickslip_sim.cli.main import run
-from stickslip_sim.study.folder import LONGEST_SIDECAR, PARTIAL, SIDECAR, TABLE
+from stickslip_sim.study.folder import LONGEST_SIDECAR, PARTIAL, POINTS_TABLE, SIDECAR
 
 SWEEP = ['sweep', 'paper_fig8', '--over', 'drive.velocity=1e-3:0.02:3', '--over', 'axis.drive_stiffness=1e5:1e6:2']
 
@@ -89,7 +89,7 @@ def sparse(path: Path) -> None:
 
 
 @pytest.mark.parametrize('make', [nested, endless, pipe, sparse])
-@pytest.mark.parametrize('name', [SIDECAR, TABLE])
+@pytest.mark.parametrize('name', [SIDECAR, POINTS_TABLE])
 def test_a_file_without_end(name: str, make: Callable[[Path], None], folder: Path,
                             capsys: pytest.CaptureFixture[str]) -> None:
     make(folder / name)
@@ -102,15 +102,15 @@ def test_a_line_without_end(folder: Path, capsys: pytest.CaptureFixture[str]) ->
     sidecar['over'][0]['count'] *= 10**10
     sidecar['points'] *= 10**10
     (folder / SIDECAR).write_text(json.dumps(sidecar))
-    (folder / TABLE).write_bytes((folder / TABLE).read_bytes().splitlines(keepends=True)[0])
-    sparse(folder / TABLE)
-    assert TABLE in refusal(capsys, *mapped(folder))
+    (folder / POINTS_TABLE).write_bytes((folder / POINTS_TABLE).read_bytes().splitlines(keepends=True)[0])
+    sparse(folder / POINTS_TABLE)
+    assert POINTS_TABLE in refusal(capsys, *mapped(folder))
 
 
 @pytest.mark.parametrize('make', [endless, sparse])
 def test_nobody_goes_on_with_what_has_no_end(make: Callable[[Path], None], folder: Path,
                                              capsys: pytest.CaptureFixture[str]) -> None:
-    (folder / TABLE).rename(folder / PARTIAL)
+    (folder / POINTS_TABLE).rename(folder / PARTIAL)
     make(folder / PARTIAL)
     assert 'it was changed' in refusal(capsys, *SWEEP, '--out', str(folder), '--resume')
 
@@ -118,7 +118,7 @@ def test_nobody_goes_on_with_what_has_no_end(make: Callable[[Path], None], folde
 def test_nothing_that_a_link_leads_to_is_changed(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     diary = folder.parent.absolute() / 'diary'
     diary.write_text('dear diary\n')
-    (folder / TABLE).unlink()
+    (folder / POINTS_TABLE).unlink()
     (folder / PARTIAL).symlink_to(diary)
     assert 'it was changed' in refusal(capsys, *SWEEP, '--out', str(folder), '--resume')
     assert diary.read_text() == 'dear diary\n'

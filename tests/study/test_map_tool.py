@@ -20,7 +20,7 @@ from stickslip_sim.study import EvenGrid, Study, variation
 from stickslip_sim.study.bifurcation import bifurcation
 from stickslip_sim.study.borders import borders
 from stickslip_sim.study.description import study_of
-from stickslip_sim.study.folder import PARTIAL, SIDECAR, TABLE, Folder
+from stickslip_sim.study.folder import PARTIAL, POINTS_TABLE, SIDECAR, Folder
 from stickslip_sim.study.picks import ending_at
 from stickslip_sim.study.point_figures import Runs
 from stickslip_sim.study.table import read_columns
@@ -66,7 +66,7 @@ def test_only_a_picked_point_that_the_table_lacks_is_run_until_it_settles(
 
 def test_the_table_has_the_motion_that_a_run_of_the_point_ends_in(swept: Path) -> None:
     study = study_of(Folder(swept).described())
-    table = read_columns(swept / TABLE, study)
+    table = read_columns(swept / POINTS_TABLE, study)
     without = {name: column[:0] for name, column in table.items()}
     for point in study.points(0, study.count)[::5]:
         *in_table, of_table = ending_at(study, table, point)
@@ -77,10 +77,10 @@ def test_the_table_has_the_motion_that_a_run_of_the_point_ends_in(swept: Path) -
 def test_a_sweep_whose_steps_numpy_rounded_otherwise_is_drawn(swept: Path, tmp_path: Path) -> None:
     there = tmp_path / 'there'
     shutil.copytree(swept, there)
-    titles, *rows = (there / TABLE).read_text().splitlines()
+    titles, *rows = (there / POINTS_TABLE).read_text().splitlines()
     moved = [f'{math.nextafter(float(feed), 1.0)!r},{rest}' for feed, rest in (row.split(',', 1) for row in rows)]
-    (there / TABLE).write_text('\n'.join((titles, *moved, '')))
-    assert (there / TABLE).read_text() != (swept / TABLE).read_text()
+    (there / POINTS_TABLE).write_text('\n'.join((titles, *moved, '')))
+    assert (there / POINTS_TABLE).read_text() != (swept / POINTS_TABLE).read_text()
     assert run(['map', str(there), '--out', str(tmp_path / 'map.svg')]) == 0
 
 
@@ -149,7 +149,7 @@ def test_what_is_no_complete_sweep_of_one_or_two_parameters_is_refused(swept: Pa
     picture = ['--out', str(tmp_path / 'map.png')]
     assert 'study.json' in refused(capsys, 'map', tmp_path, *picture)
     shutil.copytree(swept, tmp_path / 'part')
-    (tmp_path / 'part' / TABLE).rename(tmp_path / 'part' / PARTIAL)
+    (tmp_path / 'part' / POINTS_TABLE).rename(tmp_path / 'part' / PARTIAL)
     assert '--resume' in refused(capsys, 'map', tmp_path / 'part', *picture)
     drawn = ['--over', 'axis.mass=300:400', '--sobol', '4', '--out', str(tmp_path / 's')]
     assert run(['sweep', 'paper_fig7', *drawn]) == 0
@@ -164,7 +164,7 @@ def test_what_is_no_complete_sweep_of_one_or_two_parameters_is_refused(swept: Pa
     (tmp_path / 'part' / SIDECAR).write_text('[' * 100_000)
     assert 'study.json' in refused(capsys, 'map', tmp_path / 'part', *picture)
     shutil.copytree(swept, tmp_path / 'cut')
-    (tmp_path / 'cut' / TABLE).write_bytes((swept / TABLE).read_bytes()[:-300])
+    (tmp_path / 'cut' / POINTS_TABLE).write_bytes((swept / POINTS_TABLE).read_bytes()[:-300])
     assert 'points' in refused(capsys, 'map', tmp_path / 'cut', *picture)
 
 

@@ -17,7 +17,7 @@ import pytest
 from stickslip_sim.cli.main import run
 from stickslip_sim.study import Study, resources, table
 from stickslip_sim.study.description import study_of
-from stickslip_sim.study.folder import PARQUET, PARTIAL, SIDECAR, TABLE, Folder
+from stickslip_sim.study.folder import PARQUET, PARTIAL, POINTS_TABLE, SIDECAR, Folder
 from stickslip_sim.study.point_figures import FIGURES
 from stickslip_sim.study.table import read_columns, title_line
 from tests.support.tool import Capture, refused, restore_interrupt
@@ -49,7 +49,7 @@ def wait_for_lines(path: Path, process: 'subprocess.Popen[str]') -> None:
 def uninterrupted(tmp_path_factory: pytest.TempPathFactory) -> bytes:
     folder = tmp_path_factory.mktemp('whole') / 'out'
     assert run(['sweep', *LONG, '--out', str(folder)]) == 0
-    return (folder / TABLE).read_bytes()
+    return (folder / POINTS_TABLE).read_bytes()
 
 
 @pytest.fixture(scope='module')
@@ -67,7 +67,7 @@ def test_a_sweep_says_what_it_is_and_can_be_read_back(tmp_path: Path, capsys: Ca
     assert {'stickslip', 'numpy', 'python', 'hot_path'} <= sidecar['versions'].keys()
     assert 'mass: 300.0' in sidecar['scene_text']
     study = study_of(sidecar)
-    columns = read_columns(tmp_path / 'out' / TABLE, study)
+    columns = read_columns(tmp_path / 'out' / POINTS_TABLE, study)
     points, figures = study.points(0, 24), study.figures(0, 24)
     assert np.array_equal(columns['drive.velocity'], points[:, 0])
     for name in FIGURES:
@@ -94,7 +94,7 @@ def test_the_sidecar_is_the_study(tmp_path: Path) -> None:
 
 def test_workers_change_no_bit(tmp_path: Path, uninterrupted: bytes) -> None:
     assert run(['sweep', *LONG, '--workers', '2', '--out', str(tmp_path / 'two')]) == 0
-    assert (tmp_path / 'two' / TABLE).read_bytes() == uninterrupted
+    assert (tmp_path / 'two' / POINTS_TABLE).read_bytes() == uninterrupted
 
 
 @pytest.mark.parametrize('workers', ['1', '2'])
@@ -105,14 +105,14 @@ def test_killed_in_the_middle_and_resumed_it_gives_the_same_file(workers: str, t
     wait_for_lines(out / PARTIAL, process)
     process.kill()
     process.communicate()
-    assert not (out / TABLE).exists()
+    assert not (out / POINTS_TABLE).exists()
     with (out / PARTIAL).open('ab') as file:
         file.write(b'0.001,stick-sl')   # as a power failure would leave it
     resumed = started(*LONG, '--out', out, '--resume')
     said, error = resumed.communicate(timeout=60)
     assert resumed.returncode == 0, error
     assert ', 8000 of them run now' not in said
-    assert (out / TABLE).read_bytes() == uninterrupted
+    assert (out / POINTS_TABLE).read_bytes() == uninterrupted
     assert not (out / PARTIAL).exists()
 
 
@@ -130,7 +130,7 @@ def test_ctrl_c_keeps_what_is_done(workers: str, tmp_path: Path, uninterrupted: 
     assert uninterrupted.startswith(rows)
     assert rows.count(b'\n') % 2000 == 1
     assert run(['sweep', *LONG, '--out', str(out), '--resume']) == 0
-    assert (out / TABLE).read_bytes() == uninterrupted
+    assert (out / POINTS_TABLE).read_bytes() == uninterrupted
 
 
 def test_no_worker_outlives_a_killed_sweep(tmp_path: Path) -> None:
@@ -141,7 +141,7 @@ def test_no_worker_outlives_a_killed_sweep(tmp_path: Path) -> None:
 
 
 def test_a_full_disk_gets_one_line_and_keeps_whole_chunks(tmp_path: Path, finished: Path) -> None:
-    out, whole = tmp_path / 'out', (finished / TABLE).read_bytes()
+    out, whole = tmp_path / 'out', (finished / POINTS_TABLE).read_bytes()
     arguments = ['sweep', *SHORT, '--out', str(out)]
     program = f'{FULL}from stickslip_sim.cli.main import run; raise SystemExit(run({arguments}))'
     done = subprocess.run([sys.executable, '-c', program], capture_output=True, text=True, timeout=60, check=False)
@@ -152,7 +152,7 @@ def test_a_full_disk_gets_one_line_and_keeps_whole_chunks(tmp_path: Path, finish
     assert whole.startswith(rows)
     assert rows.count(b'\n') % 2000 == 1
     assert run(['sweep', *SHORT, '--out', str(out), '--resume']) == 0
-    assert (out / TABLE).read_bytes() == whole
+    assert (out / POINTS_TABLE).read_bytes() == whole
 
 
 def test_a_worker_that_dies_is_reported(tmp_path: Path) -> None:
@@ -169,11 +169,11 @@ def test_a_worker_that_dies_is_reported(tmp_path: Path) -> None:
 
 def test_resuming_what_is_complete_does_nothing(tmp_path: Path, capsys: Capture) -> None:
     assert run(['sweep', *SMALL, '--out', str(tmp_path / 'out')]) == 0
-    before = (tmp_path / 'out' / TABLE).stat().st_mtime_ns
+    before = (tmp_path / 'out' / POINTS_TABLE).stat().st_mtime_ns
     capsys.readouterr()
     assert run(['sweep', *SMALL, '--out', str(tmp_path / 'out'), '--resume']) == 0
     assert '0 of them run now' in capsys.readouterr().out
-    assert (tmp_path / 'out' / TABLE).stat().st_mtime_ns == before
+    assert (tmp_path / 'out' / POINTS_TABLE).stat().st_mtime_ns == before
 
 
 def test_resuming_another_study_is_refused(tmp_path: Path, capsys: Capture) -> None:
@@ -228,7 +228,7 @@ def test_places_that_cannot_be_are_refused(tmp_path: Path, capsys: Capture) -> N
 def test_a_table_of_something_else_is_not_gone_on_with(tmp_path: Path, capsys: Capture) -> None:
     out = tmp_path / 'out'
     assert run(['sweep', *SMALL, '--out', str(out)]) == 0
-    (out / TABLE).unlink()
+    (out / POINTS_TABLE).unlink()
     (out / PARTIAL).write_text('a,b\n1,2\n')
     capsys.readouterr()
     assert 'was changed' in refused(capsys, 'sweep', *SMALL, '--out', out, '--resume')
@@ -240,16 +240,16 @@ def test_a_table_of_something_else_is_not_gone_on_with(tmp_path: Path, capsys: C
 def test_a_chunk_that_is_not_whole_is_run_again(flaw: str, tmp_path: Path, finished: Path) -> None:
     out = tmp_path / 'out'
     shutil.copytree(finished, out)
-    rows = (finished / TABLE).read_bytes().splitlines(keepends=True)
+    rows = (finished / POINTS_TABLE).read_bytes().splitlines(keepends=True)
     bad = {'a line is gone': b'', 'no motion': rows[3000].replace(b'stick-slip', b'slick-stip'), 'no text': b'\xff\n',
            'zeros': b'\0' * 100 + b'\n', 'a number of another point': b'1' + rows[3000],
            'no number': rows[3000].replace(b'slip,1.0,', b'slip,inf,')}
     assert bad[flaw] != rows[3000]
-    (out / TABLE).unlink()
+    (out / POINTS_TABLE).unlink()
     (out / PARTIAL).write_bytes(b''.join([*rows[:3000], bad[flaw], *rows[3001:]]))
     assert len(Folder(out).whole_chunks(study_of(Folder(out).described()))) == 1
     assert run(['sweep', *SHORT, '--out', str(out), '--resume']) == 0
-    assert (out / TABLE).read_bytes() == (finished / TABLE).read_bytes()
+    assert (out / POINTS_TABLE).read_bytes() == (finished / POINTS_TABLE).read_bytes()
 
 
 def test_two_processes_do_not_share_a_folder(tmp_path: Path, uninterrupted: bytes, capsys: Capture) -> None:
@@ -263,7 +263,7 @@ def test_two_processes_do_not_share_a_folder(tmp_path: Path, uninterrupted: byte
         process.send_signal(signal.SIGCONT)
     error = process.communicate(timeout=60)[1]
     assert process.returncode == 0, error
-    assert (out / TABLE).read_bytes() == uninterrupted
+    assert (out / POINTS_TABLE).read_bytes() == uninterrupted
 
 
 def test_more_workers_than_memory_holds_are_refused(tmp_path: Path, capsys: Capture,
@@ -283,7 +283,7 @@ def test_parquet_has_the_same_table(tmp_path: Path) -> None:
     study = study_of(Folder(tmp_path / 'out').described())
     parquet = pandas.read_parquet(tmp_path / 'out' / PARQUET)
     assert ','.join(parquet.columns) + '\n' == title_line(study).decode()
-    columns = read_columns(tmp_path / 'out' / TABLE, study)
+    columns = read_columns(tmp_path / 'out' / POINTS_TABLE, study)
     for name in (*study.names, *FIGURES[1:]):
         assert np.array_equal(parquet[name].to_numpy(), columns[name], equal_nan=True)
     assert set(parquet['motion']) == {'stick-slip', 'smooth sliding'}
@@ -296,7 +296,7 @@ def test_a_broken_pandas_keeps_no_study_from_its_end(tmp_path: Path) -> None:
                           env={**os.environ, 'PYTHONPATH': os.pathsep.join([str(tmp_path), *filter(None, sys.path)])},
                           capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode == 0, done.stderr
-    assert (tmp_path / 'out' / TABLE).exists()
+    assert (tmp_path / 'out' / POINTS_TABLE).exists()
     assert not (tmp_path / 'out' / PARQUET).exists()
 
 
@@ -304,9 +304,9 @@ def test_a_partial_table_with_other_columns_is_run_again(tmp_path: Path) -> None
     out = tmp_path / 'out'
     command = ['sweep', 'paper_fig7', '--over', 'drive.velocity=0.001:0.01:3', '--duration', '1', '--out', str(out)]
     assert run(command) == 0
-    whole = (out / TABLE).read_text()
+    whole = (out / POINTS_TABLE).read_text()
     titles, first, second, third = whole.splitlines()
-    (out / TABLE).unlink()
+    (out / POINTS_TABLE).unlink()
     (out / PARTIAL).write_text('\n'.join((titles, first, f'{second},1', third, '')))
     assert run([*command, '--resume']) == 0
-    assert (out / TABLE).read_text() == whole
+    assert (out / POINTS_TABLE).read_text() == whole

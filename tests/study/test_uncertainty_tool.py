@@ -9,7 +9,7 @@ import pytest
 
 from stickslip_sim.cli.main import run
 from stickslip_sim.study.description import study_of
-from stickslip_sim.study.folder import PARTIAL, TABLE, Folder
+from stickslip_sim.study.folder import PARTIAL, POINTS_TABLE, Folder
 from tests.support.tool import Capture, answered, refused
 
 KNOWN = """parameters:
@@ -108,12 +108,12 @@ def test_resumed_it_gives_the_same_files(tmp_path: Path, file: str) -> None:
     whole, cut = tmp_path / 'whole', tmp_path / 'cut'
     assert run([*common, '--out', str(whole)]) == 0
     assert run([*common, '--out', str(cut)]) == 0
-    lines = (cut / TABLE).read_bytes().splitlines(keepends=True)
-    (cut / TABLE).unlink()
+    lines = (cut / POINTS_TABLE).read_bytes().splitlines(keepends=True)
+    (cut / POINTS_TABLE).unlink()
     (cut / 'uncertainty.json').unlink()
     (cut / PARTIAL).write_bytes(b''.join(lines[:2500]))   # as a kill would leave it
     assert run([*common, '--out', str(cut), '--resume']) == 0
-    for name in (TABLE, 'uncertainty.json'):
+    for name in (POINTS_TABLE, 'uncertainty.json'):
         assert (cut / name).read_bytes() == (whole / name).read_bytes()
 
 
@@ -149,9 +149,9 @@ def test_where_nothing_was_solved_that_is_what_it_prints(tmp_path: Path, file: s
     command = ['uncertainty', 'paper_fig7', '--with', file, '--samples', '16', '--duration', '2', '--out',
                str(tmp_path / 'out')]
     assert run(command) == 0
-    titles, *lines = (tmp_path / 'out' / TABLE).read_text().splitlines()
+    titles, *lines = (tmp_path / 'out' / POINTS_TABLE).read_text().splitlines()
     failed = [','.join([*line.split(',')[:2], 'failed', *[''] * 10]) for line in lines]
-    (tmp_path / 'out' / TABLE).write_text('\n'.join((titles, *failed, '')))
+    (tmp_path / 'out' / POINTS_TABLE).write_text('\n'.join((titles, *failed, '')))
     capsys.readouterr()
     assert run([*command, '--resume']) == 0
     out = capsys.readouterr().out

@@ -12,7 +12,7 @@ with warnings.catch_warnings():   # rclpy loads it at the first message, and it 
     importlib.import_module('rosidl_generator_py')
 
 from stickslip_sim.recording import flat_layout, schema, topics
-from stickslip_sim.ros.node.topics import message_type
+from stickslip_sim.ros.node.endpoints import message_type
 
 for room in ('sim_node', 'cascade_controller', 'compensating_controller', 'replay_node', 'health', 'process.program',
              'node.feed_axis', 'controllers.controller_node', 'replay.node', 'diagnostics.health_node'):

@@ -31,26 +31,26 @@ def advise(scene: str, tolerance: float, duration: float | None, changes: SceneC
            scene_out: str | None, rounds: int) -> None:
     """Run SCENE without each of its parts and with each solver; print what changes, and the least that T asks for."""
     _check(out, scene_out)
-    from ..advise import advice as work
+    from ..advise import advice
     from ..advise.advice_report import advice_as_json, text_lines, verdict_lines
     from ..advise.duration import check_duration, default_duration
     from ..advise.trial_runs import changes_between
     from ..scene.values import overridden
     from .progress import progress_bar
 
-    work.check_tolerance(tolerance)
+    advice.check_tolerance(tolerance)
     if duration is not None:
         check_duration(duration)
     loaded = changes.load(scene)
     with progress_bar('advising') as progress:
-        advice = work.advise(loaded, tolerance, duration or default_duration(loaded), rounds, progress)
-    least = advice.least.trial.scene or loaded
+        found = advice.advise(loaded, tolerance, duration or default_duration(loaded), rounds, progress)
+    least = found.least.trial.scene or loaded
     overrides = overridden(changes.given(), changes_between(loaded, least))
-    print('\n'.join([*text_lines(advice), *verdict_lines(advice, overrides)]))
+    print('\n'.join([*text_lines(found), *verdict_lines(found, overrides)]))
     if out is not None:
-        write_text(out, [json.dumps(advice_as_json(advice, overrides), indent=1, allow_nan=False) + '\n'])
+        write_text(out, [json.dumps(advice_as_json(found, overrides), indent=1, allow_nan=False) + '\n'])
     if scene_out is not None:
-        _write_scene(scene_out, advice)
+        _write_scene(scene_out, found)
     say_written(out, scene_out)
 
 

@@ -30,13 +30,13 @@ _DIGITS = 12   # of ends that are too small or large to be written out
 @scene_changes('Change a parameter of the scene.')
 def critical(scene: str, name: str, between: str | None, accuracy: float, changes: SceneChanges) -> None:
     """Find where SCENE goes over from stick-slip to sliding: from rest, and from sliding."""
-    from ..study import critical as work
+    from ..study.critical import critical_of
     from .progress import progress_bar
 
     loaded = changes.load(scene)
     over = range_given(loaded, name, between, changes)
     with progress_bar('narrowing') as progress:
-        found = work.critical_of(loaded, over, accuracy, progress)
+        found = critical_of(loaded, over, accuracy, progress)
     print('\n'.join(_lines(loaded, found)))
 
 

@@ -30,12 +30,12 @@ from .design import design
 from .export import export
 from .extremes import extremes
 from .friction import friction
+from .help_sections import SectionedGroup
 from .identify import identify
 from .import_ import import_
 from .map import map_
 from .plot import plot
 from .scenes import scenes
-from .sections import SectionedGroup
 from .simulate import simulate
 from .sweep import sweep
 from .uncertainty import uncertainty

@@ -34,25 +34,25 @@ _SHOWN = 'amplitude'
 def map_(folder: str, pictures: tuple[str, ...], show: str, picks: tuple[str, ...]) -> None:
     """Draw the sweep in FOLDER: a map of two parameters, or a bifurcation diagram of one."""
     _check_pictures(pictures)
-    from ..study import pictures as work
     from ..study.description import study_of
     from ..study.folder import Folder
+    from ..study.pictures import check_drawable, draw_bifurcation, draw_map
     from ..study.table import read_columns
     from .progress import progress_bar
 
-    sweep = Folder(folder)
-    study = study_of(sweep.described())
-    work.check_drawable(study, show)
+    swept = Folder(folder)
+    study = study_of(swept.described())
+    check_drawable(study, show)
     _check_picks(study, picks)
-    _check_complete(sweep)
-    columns = read_columns(sweep.table, study)
+    _check_complete(swept)
+    columns = read_columns(swept.table, study)
     with progress_bar('drawing') as progress, ExitStack() as files:
         motions = [_pick(study, columns, text) for text in picks]
         paths = [str(files.enter_context(whole(path))) for path in pictures]
         if len(study.names) == 1:
-            work.draw_bifurcation(study, columns, paths, progress)
+            draw_bifurcation(study, columns, paths, progress)
         else:
-            work.draw_map(study, columns, show, motions, paths)
+            draw_map(study, columns, show, motions, paths)
     print_failed(study, columns)
     say_written(*pictures)
 

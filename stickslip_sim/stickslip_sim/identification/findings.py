@@ -14,7 +14,7 @@ from .certainty.covariance import QUANTILE, Certainty, certainty_of, combination
 from .certainty.noisy_inputs import changes_by_inputs, covariance_by_inputs, more_by_inputs
 from .certainty.profiles import with_profile_intervals
 from .certainty.residual_tests import correlation_length, inflation_of, misfits_of
-from .fit.problem import FitProblem
+from .fit.fit_problem import FitProblem
 from .given.free_parameters import FreeParameter
 from .given.measured_scene import with_measured_inputs
 from .identified import (

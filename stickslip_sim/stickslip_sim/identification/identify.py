@@ -14,7 +14,7 @@ from ..recording import read_run
 from ..runs import Run
 from .findings import identification_of
 from .fit.direct_motion import with_delay
-from .fit.problem import FitProblem
+from .fit.fit_problem import FitProblem
 from .given.free_parameters import free_parameters
 from .given.input_checks import check_data, check_parameters
 from .given.motions import motions_of, track_of

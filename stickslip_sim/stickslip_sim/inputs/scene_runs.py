@@ -2,13 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs of a scene, or of the one of a name or path."""
 
-from collections.abc import Callable
 from fractions import Fraction
 
 from .. import runs
+from ..core.callbacks import Progress
 from .scene_files import SceneOrName, scene_of
-
-Progress = Callable[[float], None] | None
 
 
 def simulate(scene: SceneOrName, duration: float, sample_period: float | Fraction | None = None,

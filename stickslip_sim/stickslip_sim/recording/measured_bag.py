@@ -14,8 +14,8 @@ from ..core.errors import InputError
 from ..core.version import __version__
 from . import topics
 from .bag import BagWriter
+from .message_rows import MessageRows
 from .offline_bag import interleaved
-from .rows import MessageRows
 from .schemas import flat_layout
 
 MEASURED = 'measured'            # the origin in the metadata of such a bag, and there the names of what was measured

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ..core.time_grid import NANOSECONDS
 from ..core.types import Event, Sample
 from ..core.version import __version__
-from .layout import Layout
+from .message_layout import Layout
 from .run import RunFacts
 from .schemas import flat_layout
 from .topics import Topic

@@ -18,8 +18,8 @@ from ..runs.simulated import columns_of_rows
 from . import messages, topics
 from .mcap_chunk import MessageBlock
 from .message_record import record_of
+from .message_rows import MessageRows
 from .messages import Packer, numbers_of_steps
-from .rows import MessageRows
 from .run import RunFacts, open_run, receipt_file
 from .schemas import MessageCodec, flat_layout
 from .topics import Topic

@@ -11,9 +11,9 @@ from mcap.records import Attachment, Channel, Footer, McapRecord, Metadata, Sche
 
 from ..core.errors import RecordingError, RecordingWarning
 from .bag import METADATA, NEXT_FILE
+from .mcap_records import contents
 from .message_places import Messages
 from .reader import OVERHEAD, Bag
-from .records import contents
 
 MOST_BESIDE = 64 << 20   # bytes of all that a file holds beside messages
 _PART = re.compile(r'(?P<name>.*)_(?P<number>0|[1-9]\d{0,8})\.mcap')

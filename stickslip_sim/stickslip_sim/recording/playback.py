@@ -16,8 +16,8 @@ from rosbags.rosbag2.metadata import parse_qos
 
 from ..core.errors import InputError, RecordingError
 from ..scene import Scene, parse_scene
+from .mcap_records import CUT_OFF, chunk_at, records, summary_of
 from .opening import files_of
-from .records import CUT_OFF, chunk_at, records, summary_of
 from .run import SCENE_FILE
 from .topic_columns import RecordedMessage
 from .topics import QosProfile

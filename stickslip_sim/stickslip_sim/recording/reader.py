@@ -21,15 +21,15 @@ from rosbags.typesys.store import Typestore
 from ..core.errors import InputError, RecordingError, one_line
 from ..core.types import Event, EventKind, Mode
 from ..scene import Scene, parse_scene
-from .layout import Layout, layout_of
+from .mcap_records import contents, records
+from .message_layout import Layout, layout_of
 from .message_places import Messages
-from .records import contents, records
 from .run import RECEIPT_FILE, SCENE_FILE
 from .schemas import store_of, understood
 from .topic_columns import Block, RecordedMessage, TopicColumns, column_blocks
 from .topics import MODE_EVENT, Topic
 
-MOST_BYTES = 4 << 30    # bytes of a topic in memory at once
+MOST_TOPIC_BYTES = 4 << 30    # bytes of a topic in memory at once
 OVERHEAD = 300         # bytes of a message there beside its own
 
 EVENT_FIELDS = ('time', 'kind', 'mode', 'direction', 'position', 'velocity', 'drive_force', 'friction_force',
@@ -220,7 +220,7 @@ class Bag:
     def _room(self, topic: str, first: Block) -> Block:
         """Return columns for all messages of a topic; raises RecordingError on more than fits."""
         count = self.counts[topic]
-        if (size := count * sum(column.itemsize for column in first.values())) > MOST_BYTES:
+        if (size := count * sum(column.itemsize for column in first.values())) > MOST_TOPIC_BYTES:
             raise RecordingError(f'{self.path}: {topic} has {count} messages of {size >> 20} MiB in all, which do not '
                                  'fit: take messages() one by one, or a part of the recording')
         return {name: np.empty(count, column.dtype) for name, column in first.items()}

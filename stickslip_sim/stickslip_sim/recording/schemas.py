@@ -14,7 +14,7 @@ from rosbags.typesys.store import Typestore
 
 from ..core.errors import RecordingError
 from .definitions import definition
-from .layout import Layout, number_fields
+from .message_layout import Layout, number_fields
 
 LONGEST_DEFINITION = 128 * 1024    # letters of a definition: a second or two of reading
 MOST_ELEMENTS = 1000    # of arrays of fixed length in a type, of texts and messages

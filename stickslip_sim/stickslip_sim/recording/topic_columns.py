@@ -13,11 +13,11 @@ from mcap.records import Channel
 from numpy.typing import NDArray
 from rosbags.typesys.store import Typestore
 
-from .layout import layout_of, number_fields, text_fields
+from .mcap_records import contents
+from .message_layout import layout_of, number_fields, text_fields
 from .message_places import Messages
 from .message_record import FIELDS, FRAME_SIZE
-from .records import contents
-from .rows import row_kind
+from .message_rows import row_kind
 
 Block = dict[str, NDArray[Any]]
 

@@ -10,9 +10,9 @@ from ..axis import Axis
 from ..core.errors import InputError, SolverError
 from ..core.input_profile import InputProfile, constant, plain_of, profile_of
 from ..simulation.simulator import Simulator
+from .changed_friction import with_friction_scaled
 from .drive import Drive
 from .faults import Faults
-from .friction import with_friction_scaled
 
 
 class Plant:

@@ -21,10 +21,10 @@ from stickslip_msgs.msg import DriveVelocity, ExternalForce, SliderState
 
 from ..core.errors import RecordingError, StickslipError
 from ..core.types import Mode
-from ..recording import topics as names
+from ..recording import topics
 from ..recording.stamped_folder import stamped_folder
 from .demo_report import report
-from .node.topics import publisher, subscription
+from .node.endpoints import publisher, subscription
 
 DEMO_SCENE = 'paper_fig8'
 _PATIENCE = 30.0    # s for the node to appear, and to end
@@ -55,9 +55,9 @@ class Driver(Node):  # type: ignore[misc]
         self._duration = duration
         self._orders = list(_COMMANDS)
         self._printed = -1
-        self._out = {DriveVelocity: publisher(self, names.DRIVE_VELOCITY),
-                     ExternalForce: publisher(self, names.EXTERNAL_FORCE)}
-        subscription(self, names.SLIDER_STATE, self._take)
+        self._out = {DriveVelocity: publisher(self, topics.DRIVE_VELOCITY),
+                     ExternalForce: publisher(self, topics.EXTERNAL_FORCE)}
+        subscription(self, topics.SLIDER_STATE, self._take)
 
     @property
     def is_connected(self) -> bool:

@@ -12,7 +12,7 @@ from ..axis import Axis, CompliantContact, InitialState, RigidContact, check_sta
 from ..core.errors import InputError
 from ..core.input_profile import InputProfile, Sinusoid, constant, ramp, sinusoids, steps, table
 from ..core.position_profile import check_first_position, positions
-from ..rig.friction import with_friction_scaled
+from ..rig.changed_friction import with_friction_scaled
 from ..solvers.normal_load import under_load
 from .friction import friction_of
 from .model import CommandSettings, RecordSettings, Scene, TimingSettings

@@ -7,8 +7,8 @@ import math
 from ..axis import Axis
 from ..core.errors import InputError
 from ..core.time_grid import Grid
+from ..rig.changed_friction import with_friction_scaled
 from ..rig.faults import Faults
-from ..rig.friction import with_friction_scaled
 from ..rig.settings import RigSettings
 from .solver import SolverSettings
 

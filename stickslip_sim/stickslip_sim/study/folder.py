@@ -24,7 +24,7 @@ from .study import Study
 from .table import TableColumns, may_be_table, next_lines, read_rows, title_line, words
 
 LONGEST_SIDECAR = 1 << 24   # bytes of a description; nearly all of it is the scene
-SIDECAR, TABLE, PARTIAL, PARQUET = 'study.json', 'points.csv', 'points.partial.csv', 'points.parquet'
+SIDECAR, POINTS_TABLE, PARTIAL, PARQUET = 'study.json', 'points.csv', 'points.partial.csv', 'points.parquet'
 KEPT = 'what is done is kept, --resume goes on'
 
 
@@ -37,7 +37,7 @@ class Folder:
     @property
     def table(self) -> Path:
         """Where the table of all points stands when it is complete."""
-        return self.path / TABLE
+        return self.path / POINTS_TABLE
 
     @property
     def is_complete(self) -> bool:

@@ -10,8 +10,8 @@ from ..core.types import Event, Sample
 from ..recording import Bag, RecordedMessage
 from ..recording.messages import Packer
 from ..recording.topics import FRICTION_FORCE, MODE_EVENT, SLIDER_STATE, Topic
+from .recorded_steps import RecordedStep
 from .remake import Made
-from .steps import RecordedStep
 
 
 class Difference(NamedTuple):

@@ -17,7 +17,7 @@ from ..runs import simulate
 from ..scene import Scene
 from .orders import Orders
 from .origin import Offline, checkpoint_of, offline_of
-from .steps import RecordedStep
+from .recorded_steps import RecordedStep
 
 
 class Made(NamedTuple):

@@ -13,8 +13,8 @@ from ..runs import simulate
 from .blocks import same_bytes
 from .difference import Comparison, Difference
 from .origin import offline_of
+from .recorded_steps import RecordedStep, steps_of
 from .remake import Maker, maker_of
-from .steps import RecordedStep, steps_of
 
 _REPORTED_EVERY = 1000   # steps
 

@@ -17,8 +17,8 @@ from ..scene import Scene, changed
 from ..scene.schema import BY_NAME
 from ..simulation.cycles import summary
 from .origin import checkpoint_of, offline_of
+from .recorded_steps import steps_of
 from .remake import Maker, maker_of
-from .steps import steps_of
 
 
 def other_scene(run: RecordedRun, changes: Mapping[str, object]) -> Scene:

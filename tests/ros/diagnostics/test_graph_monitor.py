@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from sensor_msgs.msg import JointState
 
-from stickslip_sim.recording import topics as names
+from stickslip_sim.recording import topics
 from stickslip_sim.ros.diagnostics.graph_monitor import PublisherWatch
 from tests.support.node_processes import running
 from tests.support.ros2_control_client import THRESHOLD, Rule, always, hardware_interface, near_is_silent
@@ -80,7 +80,7 @@ class TestGraphMonitor:
     def test_a_controller_bears_its_name_from_the_first_look_on(self) -> None:
         """ROS knows a publisher some 40 ms before it knows whose it is."""
         with client() as watcher:
-            publishers = PublisherWatch(watcher.node, [names.JOINT_COMMANDS], patience=60)
+            publishers = PublisherWatch(watcher.node, [topics.JOINT_COMMANDS], patience=60)
 
             def changed() -> bool:
                 time.sleep(0.05)

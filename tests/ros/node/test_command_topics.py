@@ -50,7 +50,7 @@ def test_other_bytes_have_no_numbers(data: bytes) -> None:
 
 @pytest.mark.parametrize(('topic', 'field'), [(topics.DRIVE_VELOCITY, 'velocity'), (topics.EXTERNAL_FORCE, 'force')])
 def test_heard_as_sent(node: Any, topic: topics.Topic, field: str) -> None:
-    from stickslip_sim.ros.node.topics import command_reader, publisher, raw_subscription
+    from stickslip_sim.ros.node.endpoints import command_reader, publisher, raw_subscription
     heard: list[float] = []
     read = command_reader(topic)
     raw_subscription(node, topic, lambda data: heard.append(read(data)))
@@ -68,7 +68,7 @@ def test_heard_as_sent(node: Any, topic: topics.Topic, field: str) -> None:
     (bytes(5000), 'at most 4096 bytes'),
 ])
 def test_bytes_that_are_no_command(topic: topics.Topic, data: bytes, reported: str) -> None:
-    from stickslip_sim.ros.node.topics import command_reader
+    from stickslip_sim.ros.node.endpoints import command_reader
     with pytest.raises(InputError, match=topic.name) as refusal:
         command_reader(topic)(data)
     assert reported in str(refusal.value)
@@ -78,7 +78,7 @@ def test_a_node_outlives_senders_that_mean_no_good(tmp_path: Path) -> None:
     """Each publishes what is no message of its type, or far too much; one that is meant well is heard after each."""
     from sensor_msgs.msg import JointState
 
-    from stickslip_sim.ros.node.topics import publisher
+    from stickslip_sim.ros.node.endpoints import publisher
     bad = [b'', b'\0\1\0\0', b'\0\1\0\0' + b'\xff' * 100, b'\0\1\0\0' + bytes(8) + b'\xff\xff\xff\x7f',
            JointState(name=['axis_drive'] * 100_000, velocity=[1.0] * 100_000)]
     with client() as axis, running('-p', 'joint_interface.enabled:=true', folder=tmp_path):
@@ -99,7 +99,7 @@ def obeys(axis: Client, velocity: float) -> bool:
 
 
 def command(topic: topics.Topic, field: str, frame_id: str, value: float) -> Any:
-    from stickslip_sim.ros.node.topics import message_type
+    from stickslip_sim.ros.node.endpoints import message_type
     message = message_type(topic)(**{field: value})
     message.header.frame_id = frame_id
     return message

@@ -16,7 +16,7 @@ from std_msgs.msg import Header
 
 from stickslip_sim.realtime.command_slot import CommandSlot
 from stickslip_sim.recording.topics import DRIVE_VELOCITY, EXTERNAL_FORCE
-from stickslip_sim.ros.node.topics import command_reader
+from stickslip_sim.ros.node.endpoints import command_reader
 from tests.support.refusals import accepts_or_refuses
 
 from stickslip_msgs.msg import DriveVelocity, ExternalForce  # isort: skip

@@ -12,8 +12,8 @@ from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState
 
 from stickslip_sim.recording.topics import JOINT_COMMANDS
+from stickslip_sim.ros.node.endpoints import message_of
 from stickslip_sim.ros.node.joints import commanded_velocity, disregarded
-from stickslip_sim.ros.node.topics import message_of
 from tests.support.refusals import accepts_or_refuses
 
 # lark, which rosidl's Python brings in, imports modules that Python wants to rename.

@@ -26,8 +26,8 @@ class NodePair:
     def __init__(self) -> None:
         from rclpy.context import Context
 
+        from stickslip_sim.ros.node.endpoints import publisher
         from stickslip_sim.ros.node.subscribers import Subscribers
-        from stickslip_sim.ros.node.topics import publisher
         self.context = Context()
         rclpy.init(context=self.context)
         self.node, self.sender = (rclpy.create_node(name, context=self.context) for name in ('inbox', 'sender'))
@@ -69,7 +69,7 @@ def pair() -> Iterator[NodePair]:
 def settle(pair: NodePair) -> None:
     """Wait until all that was sent has been received, without taking it: a later message on a topic unheard."""
     from stickslip_msgs.msg import ExternalForce
-    from stickslip_sim.ros.node.topics import publisher
+    from stickslip_sim.ros.node.endpoints import publisher
     out = publisher(pair.sender, topics.EXTERNAL_FORCE)
     wait_for(out.get_subscription_count, 'the inbox')
     force = pair.subscribers.hidden[1].handle

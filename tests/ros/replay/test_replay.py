@@ -31,7 +31,7 @@ from std_srvs.srv import SetBool, Trigger  # isort: skip
 
 from stickslip_msgs.msg import SliderState  # isort: skip
 from stickslip_sim.ros.replay.replay_settings import REPLAY_PARAMETERS  # isort: skip
-from stickslip_sim.ros.node.topics import message_type, qos  # isort: skip
+from stickslip_sim.ros.node.endpoints import message_type, qos  # isort: skip
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 

@@ -10,8 +10,8 @@ size of the change in the residuals is what they may have beyond the noise of th
 import numpy as np
 
 from ...core.arrays import Numbers
+from ..fit.fit_problem import FitProblem
 from ..fit.least_squares import Solution, slopes_of
-from ..fit.problem import FitProblem
 
 _TIMES = 16   # the standard deviation is known to a fifth
 

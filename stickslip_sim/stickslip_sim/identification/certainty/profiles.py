@@ -15,8 +15,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ...core.arrays import Numbers
+from ..fit.fit_problem import FitProblem, Stretches
 from ..fit.least_squares import Solution, minimise
-from ..fit.problem import FitProblem, Stretches
 from ..identified import Estimate
 from .covariance import QUANTILE, Certainty
 

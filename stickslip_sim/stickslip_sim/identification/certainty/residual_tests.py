@@ -14,7 +14,7 @@ from scipy.special import gammaincinv
 
 from ...core.arrays import Numbers
 from ...runs.wording import quantity
-from ..fit.problem import FitProblem, MeasuredStretch
+from ..fit.fit_problem import FitProblem, MeasuredStretch
 from ..given.readings import Channel
 from ..identified import Misfit
 

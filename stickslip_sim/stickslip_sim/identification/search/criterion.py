@@ -4,7 +4,7 @@
 
 import numpy as np
 
-from ..fit.problem import FitProblem
+from ..fit.fit_problem import FitProblem
 
 CRITERION = 'BIC'
 

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..fit.problem import FitProblem
+from ..fit.fit_problem import FitProblem
 from ..given.free_parameters import FreeParameter
 from ..identified import Identification, LawFit
 from ..trial.axis_model import AxisModel

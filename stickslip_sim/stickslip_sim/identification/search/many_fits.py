@@ -16,8 +16,8 @@ import numpy as np
 
 from ...core.arrays import Numbers
 from ...study.workers import processes
+from ..fit.fit_problem import FitProblem
 from ..fit.least_squares import Solution
-from ..fit.problem import FitProblem
 from .stages import Ended, fit_from
 
 _Arrays = Mapping[str, Numbers]

@@ -12,8 +12,8 @@ from functools import partial
 import numpy as np
 
 from ...core.arrays import Numbers
+from ..fit.fit_problem import FitProblem
 from ..fit.least_squares import minimise
-from ..fit.problem import FitProblem
 from .stages import LOST, Ended, worst_square
 
 _FEWEST_SLIPS, _MOST_SLIPS = 3, 30

@@ -14,8 +14,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ...core.arrays import Numbers
+from ..fit.fit_problem import FitProblem, Stretches
 from ..fit.least_squares import STEP, Solution, minimise
-from ..fit.problem import FitProblem, Stretches
 from ..given.motions import MeasuredMotion
 from .starts import N_STARTS, ROBUST
 

@@ -13,8 +13,8 @@ import numpy as np
 
 from ...core.arrays import Numbers
 from ..fit.direct_friction import friction_at_break_aways, static_residuals
+from ..fit.fit_problem import FitProblem
 from ..fit.least_squares import Solution, minimise
-from ..fit.problem import FitProblem
 from ..trial.slip_features import MeasuredSlip
 
 N_STARTS = 8            # fitted of the trial points, the best

@@ -16,8 +16,8 @@ import numpy as np
 from ...core.arrays import Numbers
 from ..certainty.covariance import certainty_of
 from ..certainty.residual_tests import inflation_of
+from ..fit.fit_problem import FitProblem
 from ..fit.least_squares import minimise
-from ..fit.problem import FitProblem
 from .stages import Ended
 
 _STEP = 1e-4     # of derivatives: the position over the whole run is far from linear only beyond

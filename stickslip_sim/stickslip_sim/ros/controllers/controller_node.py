@@ -20,9 +20,9 @@ from ...core.errors import InputError
 from ...core.time_grid import NANOSECONDS
 from ...recording.topics import JOINT_COMMANDS, JOINT_STATES
 from ...rig import Measured
+from ..node.endpoints import publisher, subscription
 from ..node.joints import DRIVE, SLIDER
 from ..node.listed_parameters import ListedNode
-from ..node.topics import publisher, subscription
 from ..services.answers import answer
 from .controller_parameters import COMMON, COMPENSATION, following, model_of
 

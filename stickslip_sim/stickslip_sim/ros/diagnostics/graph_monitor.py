@@ -11,11 +11,13 @@ from rclpy.node import Node
 
 from ...realtime.command_slot import CommandSlot
 from ...realtime.step_loop import StepLoop
-from ...recording import topics as names
+from ...recording import topics
+from ...recording.topics import Topic
 from ...rig import SILENT_BRIDGE
 from ...scene.model import Scene
 
-_OUTPUTS = (names.SLIDER_STATE, names.FRICTION_FORCE, names.MODE_EVENT, names.RIG_EVENT, names.TIMING, names.RUN_INFO)
+_OUTPUTS = (topics.SLIDER_STATE, topics.FRICTION_FORCE, topics.MODE_EVENT, topics.RIG_EVENT, topics.TIMING,
+            topics.RUN_INFO)
 _PATIENCE = 3            # looks at a bridge that sends nothing, or at a publisher whose node is not known
 _UNKNOWN = '_UNKNOWN_'   # in the name of such a node: ROS hears of it a moment after its topics, and never of plain DDS
 
@@ -25,17 +27,17 @@ class GraphMonitor:
 
     def __init__(self, node: Node, scene: Scene, loop: StepLoop) -> None:
         velocity, force = loop.slots
-        outputs, topics = [*_OUTPUTS], [names.DRIVE_VELOCITY]
+        outputs, commands = [*_OUTPUTS], [topics.DRIVE_VELOCITY]
         self._watched: list[_Output | _Input | _Bridge] = []
         if scene.time.makes_clock:
-            outputs.append(names.CLOCK)
+            outputs.append(topics.CLOCK)
         if scene.rig.measures:
-            outputs.append(names.JOINT_STATES)
-            topics.append(names.JOINT_COMMANDS)
+            outputs.append(topics.JOINT_STATES)
+            commands.append(topics.JOINT_COMMANDS)
             self._watched.append(_Bridge(node, velocity))
         self._watched += [_Output(node, topic) for topic in outputs]
-        self._watched += [_VelocityInput(node, topics, velocity, loop, scene.command.timeout),
-                          _Input(node, [names.EXTERNAL_FORCE], force)]
+        self._watched += [_VelocityInput(node, commands, velocity, loop, scene.command.timeout),
+                          _Input(node, [topics.EXTERNAL_FORCE], force)]
 
     def look(self) -> list[str]:
         """Look around; return the troubles, each in a line."""
@@ -48,7 +50,7 @@ class PublisherWatch:
     For `patience` looks a publisher whose node is not known yet counts as none.
     """
 
-    def __init__(self, node: Node, topics: Sequence[names.Topic], patience: int = _PATIENCE) -> None:
+    def __init__(self, node: Node, topics: Sequence[Topic], patience: int = _PATIENCE) -> None:
         self._node, self._patience = node, patience
         self._topics = [node.resolve_topic_name(topic.name) for topic in topics]
         self._counts: list[int] = []
@@ -72,7 +74,7 @@ class PublisherWatch:
 class _Output:
     """A topic that is this node's."""
 
-    def __init__(self, node: Node, topic: names.Topic) -> None:
+    def __init__(self, node: Node, topic: Topic) -> None:
         self._log, self._own = node.get_logger(), node.get_fully_qualified_name()
         self._topic = node.resolve_topic_name(topic.name)
         self._publishers = PublisherWatch(node, [topic])
@@ -97,7 +99,7 @@ class _Output:
 class _Input:
     """The topics of one kind of command, of which one controller at a time makes sense."""
 
-    def __init__(self, node: Node, topics: Sequence[names.Topic], slot: CommandSlot) -> None:
+    def __init__(self, node: Node, topics: Sequence[Topic], slot: CommandSlot) -> None:
         self._log, self._slot = node.get_logger(), slot
         self._topics = ', '.join(node.resolve_topic_name(topic.name) for topic in topics)
         self._publishers = PublisherWatch(node, topics)
@@ -132,7 +134,7 @@ class _Input:
 class _VelocityInput(_Input):
     """The drive velocity, of which a controller that dies leaves the latest in force until a time-out."""
 
-    def __init__(self, node: Node, topics: Sequence[names.Topic], slot: CommandSlot, loop: StepLoop, timeout: float
+    def __init__(self, node: Node, topics: Sequence[Topic], slot: CommandSlot, loop: StepLoop, timeout: float
                  ) -> None:
         super().__init__(node, topics, slot)
         self._loop, self._timeout = loop, timeout
@@ -157,7 +159,7 @@ class _Bridge:
 
     def __init__(self, node: Node, slot: CommandSlot) -> None:
         self._log, self._slot = node.get_logger(), slot
-        self._publishers = PublisherWatch(node, [names.JOINT_COMMANDS])
+        self._publishers = PublisherWatch(node, [topics.JOINT_COMMANDS])
         self._silent = 0     # looks
 
     def look(self) -> str:
@@ -166,7 +168,7 @@ class _Bridge:
         self._silent = self._silent + 1 if nodes and not self._slot.received else 0
         if self._silent < _PATIENCE:
             return ''
-        trouble = f'{", ".join(nodes)} sends nothing on {names.JOINT_COMMANDS.name}: {SILENT_BRIDGE}'
+        trouble = f'{", ".join(nodes)} sends nothing on {topics.JOINT_COMMANDS.name}: {SILENT_BRIDGE}'
         if self._silent == _PATIENCE:
             self._log.warning(trouble)
         return trouble

@@ -12,8 +12,8 @@ from ...config.parameter import Parameter
 from ...core.errors import StickslipError
 from ...recording.topics import DIAGNOSTICS
 from ...scene.sections import NODE
+from ..node.endpoints import subscription
 from ..node.listed_parameters import ListedNode
-from ..node.topics import subscription
 
 _PATIENCE = Parameter('patience', 'double', 8.0, 's', 'to wait for the axis; finding it may take 3 s', 1.0, 3600.0)
 

@@ -9,11 +9,11 @@ from rclpy.clock import Clock, ClockType
 from ...realtime.pacing import StepClock
 from ...realtime.step_loop import StepLoop
 from ...realtime.verdict import verdict
-from ...recording import topics as names
+from ...recording import topics
 from ...rig import RigEvent, RigEventKind
+from ..node.endpoints import publisher
 from ..node.parameters import SceneNode
 from ..node.publishers import Publishers
-from ..node.topics import publisher
 from ..services.record_service import RecordService
 from . import reports
 from .graph_monitor import GraphMonitor
@@ -32,8 +32,8 @@ class PeriodicReport:
         self._reporter = reports.Reporter(loop)
         self._graph_monitor = GraphMonitor(node, node.scene, loop)
         self._logged = ''        # the failure of the solver that was logged
-        self._timing_out = publisher(node, names.TIMING)
-        self._diagnostics_out = publisher(node, names.DIAGNOSTICS)
+        self._timing_out = publisher(node, topics.TIMING)
+        self._diagnostics_out = publisher(node, topics.DIAGNOSTICS)
         node.create_timer(_PERIOD, self.report, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def begin(self) -> None:
@@ -52,7 +52,7 @@ class PeriodicReport:
         self._log_troubles(second)
         message = reports.timing_message(second, self._loop, self._clock.period * 1e-9, bool(said.valid), stamp_ns)
         self._timing_out.publish(message)
-        self._publishers.record_message(names.TIMING, message, self._loop.time_ns, max(self._loop.step, 0))
+        self._publishers.record_message(topics.TIMING, message, self._loop.time_ns, max(self._loop.step, 0))
         self._diagnostics_out.publish(reports.diagnostics(stamp_ns, self._node.get_fully_qualified_name(), [
             reports.loop_status(self._loop, second, said),
             reports.command_status(self._loop, second),

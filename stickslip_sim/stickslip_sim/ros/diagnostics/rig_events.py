@@ -12,8 +12,8 @@ from ...recording.topics import RECORDED, RIG_EVENT
 from ...rig import RigEvent, RigEventKind, StepResult
 from ..node.conversion import set_stamp
 from ..node.deferred_log import DeferredLog
+from ..node.endpoints import publisher
 from ..node.publishers import Publishers
-from ..node.topics import publisher
 
 _WARNINGS = (RigEventKind.COMMAND_TIMEOUT, RigEventKind.COMMAND_RESUMED, RigEventKind.COMMAND_LIMITED)
 _FAULTS = (RigEventKind.FAULT_BEGIN, RigEventKind.FAULT_END, RigEventKind.FAULT_CLEARED)

@@ -11,7 +11,7 @@ from ...recording.topics import CLOCK
 from ...rig import StepResult
 from ...scene.model import TimeSettings
 from .conversion import set_stamp
-from .topics import publisher
+from .endpoints import publisher
 
 
 class ClockOut:

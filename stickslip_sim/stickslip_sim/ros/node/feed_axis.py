@@ -15,8 +15,7 @@ from ...realtime.pacing import step_clock
 from ...realtime.step_loop import Sink, StepLoop
 from ...realtime.verdict import verdict
 from ...realtime.watchdog import Watchdog
-from ...recording import RECORDED, RunFacts, messages
-from ...recording import topics as names
+from ...recording import RECORDED, RunFacts, messages, topics
 from ...runs.receipt import CostMeter
 from ...runs.simulated import warm_up
 from ...scene.model import Scene
@@ -31,12 +30,12 @@ from ..services.time_services import TimeServices
 from . import conversion
 from .clock import ClockOut
 from .deferred_log import DeferredLog
+from .endpoints import publisher
 from .joints import JointStates
 from .parameters import FileParameters, SceneNode
 from .publishers import Publishers
 from .scheduling_parameters import scheduling_of
 from .subscribers import Subscribers
-from .topics import publisher
 
 _LEAD = 20_000_000   # ns from the instant that stamps count from to step 0, which finds all prepared then
 
@@ -120,7 +119,7 @@ class FeedAxis(SceneNode):
             event = conversion.parameter_event(self.get_fully_qualified_name(), stamp_ns,
                                                [parameter.to_parameter_msg() for parameter in changed])
             data = self._record_service.recordings.parameter_event(conversion.fields_of(event))
-            self._outputs.record(RECORDED.index(names.PARAMETER_EVENTS), data, self.loop.time_ns, self.loop.step + 1)
+            self._outputs.record(RECORDED.index(topics.PARAMETER_EVENTS), data, self.loop.time_ns, self.loop.step + 1)
 
         if not self.loop.at_boundary(apply):
             self.get_logger().error('the step loop is busy: the changed parameters did not take effect')
@@ -134,7 +133,7 @@ class FeedAxis(SceneNode):
         return sinks
 
     def _open_endpoints(self, is_stopping: Callable[[], bool]) -> None:
-        self._run_info_out = publisher(self, names.RUN_INFO)
+        self._run_info_out = publisher(self, topics.RUN_INFO)
         self._record_service: RecordService = RecordService(self, self.loop, self._outputs, self._publish_run_info,
                                                             self._receipt)
         times = TimeServices(self, self.loop, self._outputs, self._restart,
@@ -179,7 +178,7 @@ class FeedAxis(SceneNode):
         message = conversion.run_info_message(messages.run_info(
             RunFacts.of(self.scene), self._now_ns(), self._outputs.start_ns, self._record_service.recordings.folder))
         self._run_info_out.publish(message)
-        self._outputs.record_message(names.RUN_INFO, message, self.loop.time_ns, max(self.loop.step, 0))
+        self._outputs.record_message(topics.RUN_INFO, message, self.loop.time_ns, max(self.loop.step, 0))
 
     def _start_ns(self, lead: int) -> int:
         """Return the stamp of simulation time 0, `lead` ns from now: 0 where it is the time of the graph."""

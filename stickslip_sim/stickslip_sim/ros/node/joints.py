@@ -17,8 +17,8 @@ from ...recording import MessageCodec
 from ...recording.messages import header
 from ...recording.topics import JOINT_COMMANDS, JOINT_STATES
 from ...rig import Measured, StepResult
+from .endpoints import publisher
 from .publishers import Publishers
-from .topics import publisher
 
 SLIDER, DRIVE = 'axis_slider', 'axis_drive'
 JOINTS = (SLIDER, DRIVE)

@@ -13,13 +13,12 @@ from rclpy.serialization import deserialize_message, serialize_message
 from stickslip_msgs.msg import FrictionForce, ModeEvent, SliderState
 
 from ...core.types import Event, EventKind, Mode, Sample
-from ...recording import flat_layout
-from ...recording import topics as names
+from ...recording import flat_layout, topics
 from ...recording.messages import Packer
 from ...recording.topics import RECORDED, Topic
 from ...rig import StepResult
 from ...simulation.cycles import EventTally
-from .topics import publisher
+from .endpoints import publisher
 
 
 class Recorder(Protocol):
@@ -39,12 +38,12 @@ class Publishers:
         self.start_ns = 0
         self.recorder: Recorder | None = None
         self.events = EventTally()    # of the run so far
-        self._state = _Port(node, names.SLIDER_STATE)
-        self._friction = _Port(node, names.FRICTION_FORCE)
-        self._event = _Port(node, names.MODE_EVENT)
+        self._state = _Port(node, topics.SLIDER_STATE)
+        self._friction = _Port(node, topics.FRICTION_FORCE)
+        self._event = _Port(node, topics.MODE_EVENT)
         self._time_ns = 0     # of the latest state
         self._commands = [(RECORDED.index(topic), flat_layout(topic.type))
-                          for topic in (names.DRIVE_VELOCITY, names.EXTERNAL_FORCE)]
+                          for topic in (topics.DRIVE_VELOCITY, topics.EXTERNAL_FORCE)]
 
     def begin_run(self, start_ns: int, mode: Mode) -> None:
         """Let simulation time 0 be a ROS time, ns, at which the slider is in a mode; forget the events."""

@@ -14,10 +14,10 @@ from rclpy.node import Node
 
 from ...core.errors import InputError
 from ...realtime.command_slot import CommandSlot
-from ...recording import topics as names
+from ...recording import topics
+from .endpoints import command_reader, message_of, raw_subscription
 from .inbox import Inbox, Message, trouble
 from .joints import DRIVE, commanded_velocity, disregarded
-from .topics import command_reader, message_of, raw_subscription
 
 _QUIET = 1_000_000_000   # ns between two warnings of refused commands of a kind
 
@@ -32,7 +32,7 @@ class Log(Protocol):
 class _Source(NamedTuple):
     """A topic of commands."""
 
-    topic: names.Topic
+    topic: topics.Topic
     slot: CommandSlot
     read: Callable[[bytes], float]    # raises InputError
 
@@ -52,10 +52,10 @@ class Subscribers:
         self._inboxes: list[tuple[Inbox, _Source]] = []
         self.hidden: list[Any] = []
         self.trouble = ''                        # why callbacks hear the commands; empty where the loop does
-        sources = [_Source(names.DRIVE_VELOCITY, velocity, command_reader(names.DRIVE_VELOCITY)),
-                   _Source(names.EXTERNAL_FORCE, force, command_reader(names.EXTERNAL_FORCE))]
+        sources = [_Source(topics.DRIVE_VELOCITY, velocity, command_reader(topics.DRIVE_VELOCITY)),
+                   _Source(topics.EXTERNAL_FORCE, force, command_reader(topics.EXTERNAL_FORCE))]
         if with_joints:
-            sources.append(_Source(names.JOINT_COMMANDS, velocity, self._velocity_of_joints))
+            sources.append(_Source(topics.JOINT_COMMANDS, velocity, self._velocity_of_joints))
         self._open(node, sources)
 
     def hear(self) -> None:
@@ -93,7 +93,7 @@ class Subscribers:
             self._log_refusal(source.slot, refusal)
 
     def _velocity_of_joints(self, data: bytes) -> float:
-        message = message_of(names.JOINT_COMMANDS, data)
+        message = message_of(topics.JOINT_COMMANDS, data)
         velocity = commanded_velocity(message)
         if not self._is_disregard_logged and (other := disregarded(message)):
             self._is_disregard_logged = True

@@ -12,10 +12,10 @@ from ...recording.playback import Recording
 from ...scene.sections import NODE
 from .live_axis import LiveAxis
 from .lockstep import InLockStep
-from .orders import COMMANDS, order_topics
 from .player import Act, Script
 from .realtime import InRealTime
 from .replay_settings import Settings
+from .replayed_orders import COMMANDS, order_topics
 from .scene_difference import compared_names, difference_between
 from .span import PlayedSpan, chosen_topics
 

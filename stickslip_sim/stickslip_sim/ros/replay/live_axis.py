@@ -20,7 +20,7 @@ from stickslip_msgs.srv import InjectFault, Step
 
 from ...core.errors import InputError
 from ...recording.topics import TIMING
-from ..node.topics import subscription
+from ..node.endpoints import subscription
 from ..process.environment import refusing
 from .player import StoppedError, wait_until
 

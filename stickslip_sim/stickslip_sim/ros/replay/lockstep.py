@@ -18,8 +18,8 @@ from ...recording import RecordedMessage, Topic
 from ...recording.playback import Recording
 from ...recording.topics import DRIVE_VELOCITY, EXTERNAL_FORCE
 from .live_axis import LiveAxis
-from .orders import COMMANDS, Request, is_timeout, order_of, refusal_in, request_of, state_topic
 from .player import Act
+from .replayed_orders import COMMANDS, Request, is_timeout, order_of, refusal_in, request_of, state_topic
 from .span import PlayedSpan
 
 _MOST = 1000    # steps at a time, so that a call takes no longer than people wait

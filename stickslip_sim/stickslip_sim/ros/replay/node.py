@@ -14,8 +14,8 @@ from ...core.time_grid import NANOSECONDS
 from ...recording.playback import Recording
 from ...recording.topics import CLOCK
 from ..node.conversion import set_stamp
+from ..node.endpoints import publisher
 from ..node.listed_parameters import ListedNode
-from ..node.topics import publisher
 from .commands import Commands
 from .player import Player, Script
 from .player_services import Services

@@ -11,10 +11,10 @@ from rclpy.node import Node
 from ...core.errors import InputError
 from ...recording import RecordedMessage, Topic
 from ...recording.playback import Recording
-from ..node.topics import publisher
+from ..node.endpoints import publisher
 from .live_axis import LiveAxis
-from .orders import COMMANDS, refusal_in, request_of
 from .player import Act, nothing, wait_until
+from .replayed_orders import COMMANDS, refusal_in, request_of
 from .span import PlayedSpan
 
 _PATIENCE = 10.0    # s for the axis to hear

@@ -11,7 +11,7 @@ from rclpy.node import Node
 from ...core.errors import InputError
 from ...recording import QosProfile, schema
 from ...recording.playback import RecordedTopic
-from ..node.topics import qos
+from ..node.endpoints import qos
 from ..process.environment import refusing
 
 _DEPTH = 1000

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.time_grid import NANOSECONDS
-from .layout import Layout
+from .message_layout import Layout
 from .message_record import FIELDS, FRAME_SIZE, SEQUENCE_MASK, record_of
 
 

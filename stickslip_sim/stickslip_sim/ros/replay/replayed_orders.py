@@ -11,7 +11,7 @@ from ...recording.playback import Recording
 from ...recording.topics import DRIVE_VELOCITY, EXTERNAL_FORCE, PARAMETER_EVENTS, RIG_EVENT, SLIDER_STATE
 from ...rig import RigEventKind
 from ...scene.schema import BY_NAME
-from ..node.topics import deserialized
+from ..node.endpoints import deserialized
 
 COMMANDS = (DRIVE_VELOCITY, EXTERNAL_FORCE)
 _CLEAR = 'clear'    # what ~/inject_fault calls the end of a fault
