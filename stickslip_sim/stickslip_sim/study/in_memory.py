@@ -13,7 +13,7 @@ from ..core.arrays import Numbers
 from ..core.callbacks import Progress
 from ..inputs import SceneOrName, scene_of
 from ..runs.frame import data_frame
-from . import critical as search
+from .critical import Critical, critical_of, default_range
 from .point_figures import FIGURES, MOTIONS, Motion
 from .sample import EvenGrid, Saltelli, Sobol
 from .study import Study
@@ -53,7 +53,7 @@ def sweep(scene: SceneOrName, *over: str, sobol: int | None = None, duration: fl
 
 
 def critical(scene: SceneOrName, name: str, between: tuple[float, float] | None = None, accuracy: float = 1e-9,
-             progress: Progress = None) -> search.Critical:
+             progress: Progress = None) -> Critical:
     """Return the values of a parameter at which stick-slip begins or ends, from rest and from sliding.
 
     They are sought `between` two values (None: 1/100 to 100 times that of the scene) to a relative `accuracy`.
@@ -61,10 +61,10 @@ def critical(scene: SceneOrName, name: str, between: tuple[float, float] | None 
     """
     scene = scene_of(scene)
     if between is None:
-        over = search.default_range(scene, name)
+        over = default_range(scene, name)
     else:
         over = range_of('between', name, '{!r}:{!r}'.format(*map(float, between)))
-    return search.critical_of(scene, over, accuracy, progress)
+    return critical_of(scene, over, accuracy, progress)
 
 
 def uncertainty(scene: SceneOrName, known: str | Path | Mapping[str, object], samples: int = 1024, seed: int = 0,

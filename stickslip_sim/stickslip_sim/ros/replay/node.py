@@ -5,7 +5,7 @@
 import threading
 import time
 
-from rclpy.clock import Clock as SteadyClock
+from rclpy.clock import Clock as RosClock
 from rclpy.clock import ClockType
 from rclpy.duration import Duration
 from rosgraph_msgs.msg import Clock
@@ -83,4 +83,4 @@ class Replay(ListedNode):
             set_stamp(message.clock, min(self._timeline.now(), self._span.end) + offset)
             out.publish(message)
 
-        self.create_timer(1.0 / rate, publish, clock=SteadyClock(clock_type=ClockType.STEADY_TIME))
+        self.create_timer(1.0 / rate, publish, clock=RosClock(clock_type=ClockType.STEADY_TIME))
