@@ -148,7 +148,7 @@ class TestSmoothLaws:
         assert errors[2] < errors[1] / 8.0
 
 
-class TestWaves:
+class TestSinusoids:
     def test_a_mass_alone_follows_the_integral(self) -> None:
         """No spring, damper or friction: the motion is known, and so is the drive's."""
         free = replace(paper_axis(RIGID, branches=False), normal_force=0.0, drive_stiffness=0.0, drive_damping=0.0)

@@ -63,7 +63,7 @@ def test_a_brake_is_a_belt_of_the_speed_of_its_disc() -> None:
     for time in times(until + 0.5 / nu):
         simulator.advance(instant(time))
         since = max(time - until, 0.0)
-        wave = math.exp(-gamma * since) * ((begin - middle) * math.cos(nu * since)
+        swing = math.exp(-gamma * since) * ((begin - middle) * math.cos(nu * since)
                                            + (disc + gamma * (begin - middle)) / nu * math.sin(nu * since))
-        angle = disc * time if since == 0.0 else middle + wave
+        angle = disc * time if since == 0.0 else middle + swing
         assert simulator.sample().position / arm + disc * time == pytest.approx(angle, abs=1e-12)
