@@ -28,7 +28,7 @@ from typing import TypeVar
 import mpmath
 from mpmath import mp, mpf
 
-Number = TypeVar('Number', mpf, Decimal)
+_Number = TypeVar('_Number', mpf, Decimal)
 _OF_ALL_STEPS = 7  # digits
 _LARGEST = 999_999  # power of ten
 _SPARE = 2  # digits: mpmath counts in bits, and its numbers of so many digits are up to a digit finer
@@ -43,7 +43,7 @@ def working(digits: int) -> Iterator[None]:
         yield
 
 
-def summed_rounding(terms: Number) -> Number:
+def summed_rounding(terms: _Number) -> _Number:
     """Return the rounding that a sum of such terms may hold of all steps up to it."""
     finer: int = 10 ** (mp.dps - _OF_ALL_STEPS)
     return terms / finer
