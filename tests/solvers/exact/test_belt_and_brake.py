@@ -64,6 +64,6 @@ def test_a_brake_is_a_belt_of_the_speed_of_its_disc() -> None:
         simulator.advance(instant(time))
         since = max(time - until, 0.0)
         swing = math.exp(-gamma * since) * ((begin - middle) * math.cos(nu * since)
-                                           + (disc + gamma * (begin - middle)) / nu * math.sin(nu * since))
+                                            + (disc + gamma * (begin - middle)) / nu * math.sin(nu * since))
         angle = disc * time if since == 0.0 else middle + swing
         assert simulator.sample().position / arm + disc * time == pytest.approx(angle, abs=1e-12)
