@@ -22,7 +22,7 @@ setup(
     name=NAME,
     cmdclass={'build_ext': BuildUnit},
     ext_modules=extensions(),
-    version='1.0.0',
+    version='1.0.1',
     description='Stick-slip of a feed axis in real time: exact engine, ROS 2 node, offline tool',
     maintainer='The stickslip developers',
     maintainer_email='stickslip@example.org',
