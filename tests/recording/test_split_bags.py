@@ -143,6 +143,22 @@ print(recorder.failure, recorder.written, sep='|')
 
 
 class TestReading:
+    def test_a_last_part_that_is_empty_is_the_end_of_a_process_that_was_killed(self, tmp_path: Path) -> None:
+        """Or of one that is just about to write it."""
+        writer = open_run(tmp_path / 'run', FACTS, split=Split(max_duration=40 * STEP))
+        put(writer, 100)
+        writer.abandon()
+        *_, last = sorted((tmp_path / 'run').glob('*.mcap'))
+        last.write_bytes(b'')
+        for place in (tmp_path / 'run', last.with_name('run_1.mcap')):
+            with pytest.warns(RecordingWarning, match='no end'):
+                bag = open_bag(place)
+            assert (bag.next_file, bag.is_complete) == ('', False)
+            assert [message.sequence for message in bag.messages()][-1] == 79
+            assert not Recording(place).is_complete
+        with pytest.raises(RecordingError, match='it is empty'):
+            open_bag(last)
+
     def test_all_parts_are_one_bag(self, tmp_path: Path) -> None:
         whole = open_bag(split_bag(tmp_path / 'whole', Split()))
         bag = open_bag(split_bag(tmp_path / 'run', Split(max_duration=7 * STEP)))

@@ -36,8 +36,9 @@ def bag_in(path: Path | str) -> Bag:
     files = files_of(Path(path))
     bag = Bag(files[0] if len(files) == 1 else Path(path), files)
     ends = [_take(bag, file) for file in files]
-    bag.next_file = ends[-1] or ''
-    bag.is_complete = None not in ends and not bag.next_file
+    next_file = ends[-1] or ''
+    bag.is_complete = None not in ends and not next_file
+    bag.next_file = '' if goes_on_empty(files[-1]) else next_file
     return bag
 
 
@@ -120,7 +121,10 @@ def files_of(path: Path) -> list[Path]:
 
 
 def _parts(path: Path, files: list[Path]) -> list[Path]:
-    """Return the files of a bag that was split in the order of their numbers; raises RecordingError."""
+    """Return the files of a bag that was split in the order of their numbers; raises RecordingError.
+
+    The last one may be empty: its process was killed as it began the file, or is just about to write.  It is left out.
+    """
     found = [_PART.fullmatch(file.name) for file in files]
     numbered = {int(match['number']): file for match, file in zip(found, files) if match}
     if len(numbered) < len(files) or len({match['name'] for match in found if match}) > 1:
@@ -130,4 +134,12 @@ def _parts(path: Path, files: list[Path]) -> list[Path]:
         if number not in numbered:
             name = numbered[first].name.rpartition('_')[0]
             raise RecordingError(f'{path}: {name}_{number}.mcap is missing; give a part of the bag by itself')
-    return [numbered[number] for number in range(first, last + 1)]
+    parts = [numbered[number] for number in range(first, last + 1)]
+    return parts[:-1] if goes_on_empty(parts[-2]) else parts
+
+
+def goes_on_empty(part: Path) -> bool:
+    """Return whether the next part of a bag is there, and empty."""
+    match = _PART.fullmatch(part.name)
+    behind = part.with_name(f'{match["name"]}_{int(match["number"]) + 1}.mcap') if match else part
+    return behind.is_file() and behind.stat().st_size == 0

@@ -17,7 +17,7 @@ from rosbags.rosbag2.metadata import parse_qos
 from ..core.errors import InputError, RecordingError
 from ..scene import Scene, parse_scene
 from .mcap_records import CUT_OFF, chunk_at, records, summary_of
-from .opening import files_of
+from .opening import files_of, goes_on_empty
 from .run import SCENE_FILE
 from .topic_columns import RecordedMessage
 from .topics import QosProfile
@@ -46,7 +46,7 @@ class Recording:
         files = files_of(Path(path))
         self.path = files[0] if len(files) == 1 else Path(path)
         self._files = list(map(_RecordedFile, files))
-        self.is_complete = all(file.is_complete for file in self._files)
+        self.is_complete = all(file.is_complete for file in self._files) and not goes_on_empty(files[-1])
         self.topics: dict[str, RecordedTopic] = {}
         for file in self._files:
             self.topics = {**file.topics, **self.topics}
