@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs of the tool that end otherwise: wrong use, full disks, readers that leave, signals; one line, nothing left."""
 
+import os
 import signal
 import subprocess
 import sys
@@ -104,6 +105,35 @@ def test_an_interrupted_run_leaves_nothing(number: signal.Signals, code: int, tm
     assert process.returncode == code
     assert err == ('stickslip: interrupted\n' if number == signal.SIGINT else '')
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(('number', 'end'), [
+    (signal.SIGINT, 'KeyboardInterrupt()'), (signal.SIGTERM, 'SystemExit(143)'),
+])
+def test_an_import_does_not_hide_what_ends_the_tool(number: signal.Signals, end: str, tmp_path: Path) -> None:
+    """One of numpy makes an ImportError of it."""
+    (tmp_path / 'hides.py').write_text(f"""
+import os, time
+try:
+    os.kill(os.getpid(), {number:d})
+    time.sleep(0.05)
+except BaseException:
+    raise ImportError('numpy._core.multiarray failed to import')
+""")
+    program = """
+from stickslip_sim.cli.interrupts import listen
+listen()
+import hides
+try:
+    while True:
+        pass
+except BaseException as found:
+    print(repr(found))
+"""
+    paths = os.pathsep.join([str(tmp_path), *sys.path])
+    done = subprocess.run([sys.executable, '-c', program], env={**os.environ, 'PYTHONPATH': paths},
+                          preexec_fn=restore_interrupt, capture_output=True, text=True, timeout=60, check=False)
+    assert (done.stdout, done.stderr) == (f'{end}\n', '')
 
 
 @pytest.mark.ros

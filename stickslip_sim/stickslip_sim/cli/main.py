@@ -7,18 +7,16 @@ Exit codes: 0 done; 1 internal error, or no node answers; 2 wrong use, scene, pa
 STICKSLIP_DEBUG=1 shows the traceback.
 """
 
-import signal
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
-from types import FrameType
 from typing import NoReturn
 
 import click
 
 from ..core.errors import StickslipError, internal_error
 from ..core.version import __version__
-from . import standard_output
+from . import interrupts, standard_output
 from .advise import advise
 from .bench import bench
 from .call import call
@@ -50,7 +48,6 @@ _SECTIONS: dict[str, tuple[click.Command, ...]] = {   # each verb by what a read
     'Measure the engine': (advise, bench, extremes),
 }
 _INTERRUPTED = 130
-_TERMINATED = 143
 
 
 @click.group(cls=SectionedGroup, context_settings={'help_option_names': ['-h', '--help'], 'max_content_width': 100},
@@ -71,7 +68,7 @@ for title, verbs in _SECTIONS.items():
 
 def main(arguments: Sequence[str] | None = None) -> NoReturn:
     """Run the tool and exit with its code."""
-    signal.signal(signal.SIGTERM, _leave)
+    interrupts.listen()
     standard_output.buffer()
     code = complete_for_shell(stickslip)
     if code is not None:
@@ -124,7 +121,3 @@ def _usage(error: click.ClickException) -> str:
     context = getattr(error, 'ctx', None)
     command = context.command_path if context else 'stickslip'
     return f'{error.format_message()} See {command} --help'
-
-
-def _leave(signum: int, frame: FrameType | None) -> NoReturn:
-    sys.exit(_TERMINATED)
