@@ -36,9 +36,17 @@ def processes(count: int) -> Iterator[Workers]:
     try:
         yield Workers(pool, count)
     except BrokenProcessPool:
+        _stop_sending(pool)
         raise WorkerError(f'a worker process was killed; {KEPT}') from None
     finally:
         pool.shutdown(cancel_futures=True)
+
+
+def _stop_sending(pool: ProcessPoolExecutor) -> None:
+    """Drop what no worker will read, as Python does from 3.11.5 on: before, a pool waits for ever until it is written."""
+    queue = getattr(pool, '_call_queue', None)
+    if queue is not None:
+        queue._reader.close()
 
 
 def _watch_the_parent() -> None:
