@@ -43,7 +43,7 @@ def processes(count: int) -> Iterator[Workers]:
 
 
 def _stop_sending(pool: ProcessPoolExecutor) -> None:
-    """Drop what no worker will read, as Python does from 3.11.5 on: before, a pool waits for ever until it is written."""
+    """Drop what no worker will read, as Python does from 3.11.5 on; an older one waits for ever until it is written."""
     queue = getattr(pool, '_call_queue', None)
     if queue is not None:
         queue._reader.close()
