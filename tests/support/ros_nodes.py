@@ -201,6 +201,12 @@ class Client:
     def switch(self, name: str, on: bool) -> Any:
         return self.call(SetBool, name, data=on)
 
+    def now(self) -> float:
+        """Return a simulation time that an axis which runs has reached, s; what is heard next may be older."""
+        answer = self.switch('set_paused', False)
+        assert answer.success
+        return 1.00001 * float(answer.message.split()[-2])    # of six digits
+
     def set_parameters(self, node: str = 'feed_axis', /, **values: object) -> Any:
         """Set parameters of a node together; `__` in a name stands for a dot."""
         parameters = [Parameter(name.replace('__', '.'), value=value).to_parameter_msg()

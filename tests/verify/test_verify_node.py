@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Recordings of a real node, run again without ROS: with all that was ordered while it ran."""
 
+import itertools
 import math
 import signal
 from pathlib import Path
@@ -50,8 +51,7 @@ def stir(axis: Client) -> None:
     axis.send_velocity(0.02)                                                # not taken
     assert axis.trigger('clear_faults').success
     keep_going(axis)
-    axis.send_velocity(0.01)
-    axis.next('slider_state', lambda state: state.drive_velocity == 0.01)
+    drive_on(axis)
     inject(axis, '', 'drive_freeze', 0.02, 0.0, 0.1)
     inject(axis, 'wet', 'friction_scale', 0.3, 0.5, 0.5)                    # planned when the recording ends
 
@@ -61,10 +61,28 @@ def keep_going(axis: Client) -> None:
     events = len(axis.heard['mode_event'])
 
     def has_moved() -> bool:
+        if axis.latest('slider_state').drive_velocity == 0.0:    # a busy machine let it time out
+            assert axis.trigger('clear_faults').success
         axis.send_velocity(0.006)
         return len(axis.heard['mode_event']) > events + 2
 
     wait_for(has_moved, 'events')
+
+
+def drive_on(axis: Client) -> None:
+    """Command the drive until it is heard to follow; each time another velocity, so that the last command counts."""
+    velocities = itertools.count(100)
+
+    def follows() -> bool:
+        velocity = next(velocities) * 1e-4
+        axis.send_velocity(velocity)
+        state = axis.next('slider_state', lambda state: state.drive_velocity in (velocity, 0.0))
+        if state.drive_velocity == velocity:
+            return True
+        assert axis.trigger('clear_faults').success    # a busy machine let it time out
+        return False
+
+    wait_for(follows, 'the velocity')
 
 
 def inject(axis: Client, name: str, kind: str, start: float, value: float, duration: float = math.inf) -> None:
@@ -85,7 +103,8 @@ def test_from_the_start_then_in_mid_run_then_killed(tmp_path: Path, capsys: pyte
         stir(axis)
         assert axis.switch('record', False).success
         middle = begun(axis)
-        axis.next('mode_event')
+        begin = axis.next('slider_state').step
+        axis.next('slider_state', lambda state: state.step > begin + 500)    # the fault that was planned has begun
         assert axis.trigger('clear_faults').success
         stir(axis)
         assert axis.switch('record', False).success

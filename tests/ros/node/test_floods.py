@@ -20,7 +20,7 @@ from stickslip_sim.recording import open_bag
 from stickslip_sim.rig import RigEventKind
 from stickslip_sim.scene import Scene
 from tests.support.node_processes import recording_into, running
-from tests.support.replays import assert_same_states, made_again
+from tests.support.replays import assert_same_states, made_again, rig_events_in
 from tests.support.ros_nodes import client, node_and_client
 from tests.support.waiting import wait_for
 
@@ -111,7 +111,7 @@ class TestController:
                 assert timing.total_timed_out == count
                 assert axis.status('command')[0].message.startswith('timed out: no drive velocity comes')
         recorded = open_bag(tmp_path / 'run')
-        kinds = [event.kind for event in map(recorded.decode, recorded.messages(['/rig_event']))]
+        kinds = [event.kind for event in rig_events_in(recorded)]
         assert kinds == [RigEventKind.COMMAND_TIMEOUT, RigEventKind.COMMAND_RESUMED, RigEventKind.COMMAND_TIMEOUT]
         assert '2 time-outs' in recorded.receipt['timing']['verdict']
         assert_same_states(recorded, made_again(recorded, scene_with(wanted)))

@@ -42,7 +42,8 @@ def test_a_smooth_law_changes_while_the_axis_moves() -> None:
         assert 'fits' in answer.reason
         assert not axis.set_parameters(friction__kinetic__law='exponential').successful
         assert axis.set_parameters(friction__kinetic__initial=0.1, friction__kinetic__viscous=0.2).successful
-        stop = axis.next('mode_event', lambda event: event.kind == EventKind.STICK)
+        now = axis.now()
+        stop = axis.next('mode_event', lambda event: event.kind == EventKind.STICK and event.time > now)
         assert stop.friction_force == pytest.approx(0.1 * 3432.3275, rel=1e-12)
         assert_clean(*process.end())
 

@@ -16,6 +16,7 @@ from tests.support.busy_machine import judged_by_time
 from tests.support.eventful_runs import eventful_run
 from tests.support.node_processes import NodeProcess, assert_clean, recording_into, running
 from tests.support.recorded_runs import FACTS, samples
+from tests.support.replays import rig_events_in
 from tests.support.ros_nodes import client
 from tests.support.waiting import wait_for
 
@@ -200,7 +201,7 @@ class TestRealTime:
             for topic in ('/drive_velocity', '/external_force'):    # the axis hears the latest, if it is late
                 field = 'velocity' if topic == '/drive_velocity' else 'force'
                 assert one.columns(topic)[field].tolist() == other.columns(topic)[field].tolist()
-        ids = [[run.decode(message).id for message in run.messages(['/rig_event'])] for run in (one, other)]
+        ids = [[event.id for event in rig_events_in(run)] for run in (one, other)]
         assert ids[0] == ids[1]
         changes = [run.decode(message).changed_parameters[0].name for run in (one, other)
                    for message in run.messages(['/parameter_events'])]
