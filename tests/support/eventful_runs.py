@@ -27,7 +27,9 @@ def eventful_run(folder: Path) -> Iterator[Client]:
         assert axis.call(InjectFault, 'inject_fault', kind='force_pulse', start=0.2, duration=0.1, value=500.0).success
         axis.send_force(300.0)
         assert axis.set_parameters(axis__mass=300.0).successful
+        pulse_is_over = axis.now() + 0.3
         axis.next('mode_event')
+        axis.next('slider_state', lambda state: state.time > pulse_is_over)
         assert axis.call(InjectFault, 'inject_fault', id='dry', kind='clear').success
         assert axis.trigger('clear_faults').success
         axis.send_force(0.0)

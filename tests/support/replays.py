@@ -46,10 +46,9 @@ def assert_same_states(recorded: Bag, results: list[StepResult]) -> None:
         np.testing.assert_array_equal(states[name], ours, err_msg=name)
 
 
-def rig_events_in(recorded: Bag) -> list[Any]:
-    """Return the rig events of a bag but for time lost, which says how fast the machine was, not what the rig did."""
-    events = map(recorded.decode, recorded.messages(['/rig_event']))
-    return [event for event in events if event.kind != RigEventKind.TIME_LOST]
+def rig_events_in(recorded: Bag, *kinds: RigEventKind) -> list[Any]:
+    """Return the rig events of some kinds in a bag."""
+    return [event for event in map(recorded.decode, recorded.messages(['/rig_event'])) if event.kind in kinds]
 
 
 def _command(message: Any) -> Order:

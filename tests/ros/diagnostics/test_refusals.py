@@ -11,7 +11,9 @@ from typing import Any
 import pytest
 
 from stickslip_sim.recording import open_bag
+from stickslip_sim.rig import RigEventKind
 from tests.support.node_processes import recording_into
+from tests.support.replays import rig_events_in
 from tests.support.ros_nodes import Client, node_and_client
 from tests.support.waiting import wait_for
 
@@ -91,7 +93,4 @@ def diagnosed(axis: Client) -> list[str]:
 
 def recorded(folder: Path) -> list[Any]:
     """Return the events of refused commands in a bag."""
-    from stickslip_msgs.msg import RigEvent
-    run = open_bag(folder)
-    return [event for event in map(run.decode, run.messages(['/rig_event']))
-            if event.kind == RigEvent.KIND_COMMAND_REFUSED]
+    return rig_events_in(open_bag(folder), RigEventKind.COMMAND_REFUSED)

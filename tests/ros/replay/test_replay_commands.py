@@ -12,6 +12,7 @@ import pytest
 from stickslip_sim.recording import RECORDED, Bag, flat_layout, open_bag, open_run
 from stickslip_sim.recording.messages import Packer
 from stickslip_sim.recording.topics import DRIVE_VELOCITY, RIG_EVENT, SLIDER_STATE, Topic, recorded_topics
+from stickslip_sim.rig import RigEventKind
 from tests.support.busy_machine import judged_by_time
 from tests.support.eventful_runs import eventful_run
 from tests.support.node_processes import NodeProcess, assert_clean, recording_into, running
@@ -201,8 +202,13 @@ class TestRealTime:
             for topic in ('/drive_velocity', '/external_force'):    # the axis hears the latest, if it is late
                 field = 'velocity' if topic == '/drive_velocity' else 'force'
                 assert one.columns(topic)[field].tolist() == other.columns(topic)[field].tolist()
-        ids = [[event.id for event in rig_events_in(run)] for run in (one, other)]
-        assert ids[0] == ids[1]
+        orders = [[(event.kind, event.id, event.fault, event.start, event.duration, event.value)
+                   for event in rig_events_in(run, RigEventKind.FAULT_INJECTED, RigEventKind.FAULT_CLEARED)]
+                  for run in (one, other)]
+        assert [order[:2] for order in orders[0]] == [
+            (RigEventKind.FAULT_INJECTED, 'dry'), (RigEventKind.FAULT_INJECTED, 'force_pulse_1'),
+            (RigEventKind.FAULT_CLEARED, 'dry')]
+        assert orders[0] == orders[1]
         changes = [run.decode(message).changed_parameters[0].name for run in (one, other)
                    for message in run.messages(['/parameter_events'])]
         assert changes == ['axis.mass'] * 2
