@@ -128,7 +128,7 @@ def test_tables_beyond_the_range_of_numbers_are_refused(law: SmoothKinetic, tole
     (stribeck, (0.1, 0.05, 0.1, 0.0, math.nan), 'kinetic.exponent'), (power, (0.1, 1.0), 'excess.exponent'),
 ])
 def test_laws_without_a_meaning_are_refused(make: Callable[..., object], arguments: tuple[float, ...],
-                                               name: str) -> None:
+                                            name: str) -> None:
     with pytest.raises(InputError) as caught:
         make(*arguments)
     assert caught.value.name == f'friction.{name}'

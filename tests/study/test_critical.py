@@ -3,13 +3,11 @@
 """Critical values: the closed forms of the literature, bistability, and what is refused."""
 
 import math
-import re
 
 import numpy as np
 import pytest
 
 from stickslip_sim.axis import InitialState
-from stickslip_sim.cli.main import run
 from stickslip_sim.core.arrays import Numbers
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.types import EventKind
@@ -25,7 +23,6 @@ from stickslip_sim.study.table_facts import table_fact
 from stickslip_sim.study.theory import critical_drop, critical_feed, feed_of_theory, healing_critical_feed
 from tests.support.axes import instant
 from tests.support.repository import ROOT
-from tests.support.tool import Capture
 
 pytestmark = pytest.mark.slow
 
@@ -218,14 +215,6 @@ def test_the_finest_accuracy_ends() -> None:
     assert one.high - one.low <= 2.0 * math.ulp(math.pi)
 
 
-def test_the_tool_prints_both_values(capsys: Capture) -> None:
-    assert run(['critical', 'paper_fig4_falling', '--of', 'axis.normal_force', '--between', '500:5000']) == 0
-    out = capsys.readouterr().out
-    assert 'from rest' in out
-    assert 'bistable' in out
-    assert 'to 2000 N both go on' in out
-
-
 def test_a_feed_on_a_breakpoint_and_a_load_decided_by_a_segment_say_so() -> None:
     scene = load_scene('paper_fig8')
     feed = critical_of(scene, Variation('drive.velocity', 0.034, 0.036), 1e-4).by_table
@@ -246,53 +235,10 @@ def test_beyond_the_last_breakpoint_the_segment_has_no_end() -> None:
     assert fact == (True, 1e3, None, 0.035, math.inf, 'friction.kinetic.velocities')
 
 
-def test_the_tool_names_breakpoint_and_segment(capsys: Capture) -> None:
-    given = ('critical', 'paper_fig7', '--accuracy', '1e-4')
-    assert run([*given, '--of', 'drive.velocity', '--between', '0.034:0.036']) == 0
-    assert 'the feed is a breakpoint, friction.kinetic.velocities[1]' in capsys.readouterr().out
-    assert run([*given, '--of', 'axis.normal_force', '--between', '1990:2010']) == 0
-    assert 'the straight segment of mu_k from 0 to 0.035 m/s decides' in capsys.readouterr().out
-
-
-def test_the_tool_says_that_there_is_no_transition(capsys: Capture) -> None:
-    assert run(['critical', 'paper_fig7', '--of', 'drive.velocity', '--between', '1e-4:1e-3']) == 0
-    out = capsys.readouterr().out
-    assert out.count('no transition') == 2
-    assert 'stick-slip all over the range' in out
-
-
-def test_the_tool_prints_what_is_undecided(capsys: Capture) -> None:
-    """With no more digits than the stretch has a use for, rounded outwards."""
-    assert run(['critical', 'paper_fig8', '--set', 'drive.velocity=0.02', '--of', 'axis.normal_force', '--between',
-                '1900:2300']) == 0
-    out = capsys.readouterr().out
-    line = r'^from rest      between [\d.]+ and [\d.]+ N, undecided: no stick-slip below, stick-slip above$'
-    assert re.search(line, out, re.MULTILINE), out
-    low, high = re.findall(r'between ([\d.]+) and ([\d.]+) N', out)[0]
-    assert float(low) < 2098.9463 < 2098.9472 < float(high)
-    assert max(len(low), len(high)) <= 10    # the stretch is 0.001 N wide
-
-
 def test_without_a_range_it_looks_about_the_value_of_the_scene() -> None:
     over = default_range(load_scene('paper_fig7'), 'drive.velocity')
     assert (over.low, over.high, over.log) == (2e-5, 0.2, True)
     assert default_range(load_scene('paper_fig7'), 'friction.kinetic.coefficients[1]').high == pytest.approx(5.0)
-
-
-@pytest.mark.parametrize(('arguments', 'said'), [
-    (['--of', 'axis.mas'], 'axis.mass'), (['--of', 'contact.model'], 'a number'),
-    (['--of', 'axis.mass', '--between', '1'], 'LOW:HIGH'), (['--of', 'axis.mass', '--between', '5:1'], 'swap'),
-    (['--of', 'axis.mass', '--between', 'a:1'], 'finite number'), (['--of', 'axis.mass', '--between', '-1:1'], '1e-09'),
-    (['--of', 'axis.mass', '--accuracy', '0'], '--accuracy'),
-    (['--of', 'axis.mass', '--accuracy', 'nan'], '--accuracy'),
-    (['--of', 'force.constant'], '--between'), (['--of', 'contact.stiffness'], '--between'),
-    (['--of', 'contact.stiffness', '--between', '1:2'], 'contact.model'),
-    (['--of', 'friction.kinetic.coefficients[7]', '--between', '0.1:0.2'], 'has 2')])
-def test_wrong_use_gets_one_line(arguments: list[str], said: str, capsys: Capture) -> None:
-    assert run(['critical', 'paper_fig7', *arguments]) == 2
-    out, err = capsys.readouterr()
-    assert (out, err.count('\n')) == ('', 1)
-    assert said in err
 
 
 def test_inputs_that_change_with_time_are_refused() -> None:

@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Advice on a scene: everything on, without each part, with each solver; then the least that a tolerance needs."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple, TypeVar
 
 from ..bench.measure import Cost
+from ..core.callbacks import Progress
 from ..core.errors import InputError
 from ..runs.error_estimate import ErrorEstimate, error_estimate
 from ..scene import Scene
@@ -45,8 +46,7 @@ def check_tolerance(tolerance: float) -> None:
         raise InputError('--tolerance', tolerance, '> 0 and < 1', 'give the relative error that is allowed, as 1e-3')
 
 
-def advise(scene: Scene, tolerance: float, duration: float, rounds: int,
-           progress: Callable[[float], None] | None = None) -> Advice:
+def advise(scene: Scene, tolerance: float, duration: float, rounds: int, progress: Progress = None) -> Advice:
     """Run a scene of `duration` s in all its variants; `rounds` are the samples of each cost.
 
     `progress` is called with the share that is done.  Raises InputError, and SolverError when the scene itself cannot
@@ -88,7 +88,7 @@ def _finer_tables(reference: ExactRun) -> list[Trial]:
 class _Progress:
     """Reports how far the work has come."""
 
-    def __init__(self, count: int, progress: Callable[[float], None] | None) -> None:
+    def __init__(self, count: int, progress: Progress) -> None:
         self._count, self._progress, self._done = count, progress, 0
 
     def through(self, items: Iterable[_T]) -> Iterator[_T]:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
+from ..core.callbacks import Progress
 from ..core.errors import SolverError
 from ..reference import simulate as simulate_reference
 from .accuracy import Errors, Truth, errors_of
@@ -38,7 +39,7 @@ class CaseResult(NamedTuple):
 
 
 def race(problems: Sequence[Problem], contestants: Sequence[Peer], rounds: int,
-         progress: Callable[[float], None] | None = None) -> list[CaseResult]:
+         progress: Progress = None) -> list[CaseResult]:
     """Run all; `progress` is called with the share that is done.  Raises InputError when mpmath is missing."""
     results = []
     for k, problem in enumerate(problems):

@@ -5,11 +5,13 @@
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
 import click
+
+from ..core.callbacks import Progress
 
 _STEPS = 1000
 _WITHOUT_SHARE = '%(label)s  %(info)s'
@@ -17,7 +19,7 @@ _WITH_SHARE = '%(label)s  [%(bar)s]  %(info)s'
 
 
 @contextmanager
-def progress_bar(label: str, patience: float = 1.0, every: float = 0.5) -> Iterator[Callable[[float], None] | None]:
+def progress_bar(label: str, patience: float = 1.0, every: float = 0.5) -> Iterator[Progress]:
     """Yield a function that takes the share that is done; None when nobody looks.
 
     A thread draws, so that one sees how long it takes also where the work does not come round to say how far it is.

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ..axis import CompliantContact
+from ..core.callbacks import Progress
 from ..plots.characteristics import plot_characteristics
 from ..plots.paper_panels import DrawnMotion, plot_motion
 from ..plots.side_by_side import plot_side_by_side
@@ -38,7 +39,7 @@ class Picture(NamedTuple):
     caption: str
 
 
-def draw(runs: Mapping[str, Run], folder: Path, progress: Callable[[float], None] | None = None) -> list[Picture]:
+def draw(runs: Mapping[str, Run], folder: Path, progress: Progress = None) -> list[Picture]:
     """Draw all pictures of runs by their names into a folder, each as PNG and SVG."""
     pictures: list[Picture] = []
     motions: dict[str, DrawnMotion] = {}

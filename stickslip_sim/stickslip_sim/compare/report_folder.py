@@ -3,10 +3,11 @@
 """A comparison as a folder: pictures, `report.json` with all figures, `report.html` with everything."""
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from ..core.callbacks import Progress
 from ..runs import Run
 from ..runs.receipt import versions
 from .cycle_figures import figures_of
@@ -31,8 +32,7 @@ class Compared(NamedTuple):
         return [statement.name for statement, finding in self.findings if finding.outcome == StatementOutcome.FAILS]
 
 
-def write_report(runs: Mapping[str, Run], folder: Path, progress: Callable[[float], None] | None = None
-                 ) -> list[Compared]:
+def write_report(runs: Mapping[str, Run], folder: Path, progress: Progress = None) -> list[Compared]:
     """Draw runs by their names, and hold them to the statements, into a folder that exists.
 
     Raises OSError when the disk refuses.

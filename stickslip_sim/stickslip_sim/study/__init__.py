@@ -14,15 +14,5 @@ from .sample import EvenGrid, Saltelli, Sobol
 from .study import Study
 from .variation import Variation, variation
 
-__all__ = [
-           'MOTIONS',
-           'Distribution',
-           'EvenGrid',
-           'Figures',
-           'Motion',
-           'Saltelli',
-           'Sobol',
-           'Study',
-           'Variation',
-           'variation',
-]
+__all__ = ['MOTIONS', 'Distribution', 'EvenGrid', 'Figures', 'Motion', 'Saltelli', 'Sobol', 'Study', 'Variation',
+           'variation']

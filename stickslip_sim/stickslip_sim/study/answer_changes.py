@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.arrays import Numbers
+from ..core.callbacks import Progress
 
 NO, YES, OPEN, FAILED = 0, 1, -1, -2   # answers; OPEN: there is none; FAILED: the run went wrong
 Answers = NDArray[np.int64]
@@ -100,7 +101,7 @@ class _Scan(NamedTuple):
 
 
 def find_transitions(question: Question, low: float, high: float, log: bool, accuracy: float,
-                     progress: Callable[[float], None] | None = None) -> Findings:
+                     progress: Progress = None) -> Findings:
     """Return how the answer goes from `low` to `high`, each change within a relative `accuracy`.
 
     Two changes between adjacent values of the scan (65, even or in steps of one ratio with `log`) cancel each other.

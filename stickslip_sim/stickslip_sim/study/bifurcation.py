@@ -3,12 +3,12 @@
 """Where the cycles of a scene go as one of its parameters changes: a bifurcation diagram, in numbers."""
 
 import math
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from ..core.arrays import Numbers
+from ..core.callbacks import Progress
 from ..core.types import Event, Instant
 from ..runs import simulate_events
 from ..scene import Scene
@@ -33,7 +33,7 @@ class Bifurcation(NamedTuple):
     sliding: Numbers
 
 
-def bifurcation(study: Study, figures: Figures, progress: Callable[[float], None] | None = None) -> Bifurcation:
+def bifurcation(study: Study, figures: Figures, progress: Progress = None) -> Bifurcation:
     """Return the last cycles of each point of a study of one parameter that sticks and slips.
 
     Such a point is run again, for the duration of its `figures`: the table has one round alone, without the arrest.

@@ -7,13 +7,14 @@ steady sliding at the drive's velocity, slightly disturbed; it is lost where h +
 both motions go on, and the start decides.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
 from ..core.arrays import Numbers
+from ..core.callbacks import Progress
 from ..core.errors import InputError
 from ..scene import Scene
 from .answer_changes import FAILED, NO, OPEN, YES, Answers, Findings, find_transitions
@@ -51,8 +52,7 @@ class Critical:
                         and self.from_sliding.at(0.5 * (a + b)) == NO])
 
 
-def critical_of(scene: Scene, over: Variation, accuracy: float,
-             progress: Callable[[float], None] | None = None) -> Critical:
+def critical_of(scene: Scene, over: Variation, accuracy: float, progress: Progress = None) -> Critical:
     """Return the critical values of a parameter of a scene; raises InputError."""
     if not FINEST <= accuracy < 1.0:
         raise InputError('--accuracy', accuracy, f'>= {FINEST:g} and < 1', 'give the relative width, as 1e-9')

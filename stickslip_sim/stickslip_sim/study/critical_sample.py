@@ -6,7 +6,7 @@ It is the highest value at which stick-slip from rest begins or ends, and the hi
 (`critical`).
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from concurrent.futures import Future
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..core.arrays import Numbers
+from ..core.callbacks import Progress
 from ..core.errors import InputError
 from .answer_changes import Answers
 from .critical import lost_answers, stick_answers
@@ -79,8 +80,7 @@ class CriticalSpread(NamedTuple):
     indices: Mapping[str, Index] | None
 
 
-def critical_values(study: CriticalStudy, workers: Workers | None = None,
-                    progress: Callable[[float], None] | None = None) -> Numbers:
+def critical_values(study: CriticalStudy, workers: Workers | None = None, progress: Progress = None) -> Numbers:
     """Return the critical values of all points, a row each and a column for each of STARTS."""
     parts = []
     for (_, last), part in zip(study.stretches, _parts(study, workers)):

@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The pictures of a study: a map of two parameters, a bifurcation diagram of one, or how figures spread."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..core.arrays import Numbers
+from ..core.callbacks import Progress
 from ..core.errors import InputError
 from ..plots.bifurcation import plot_bifurcation
 from ..plots.scale import Scale, unit_read
@@ -38,8 +39,7 @@ def check_drawable(study: Study, shown: str) -> None:
         raise InputError('--show', shown, 'one of ' + ', '.join(_UNITS), 'leave it out for the amplitude')
 
 
-def draw_bifurcation(study: Study, columns: TableColumns, paths: Sequence[str],
-                     progress: Callable[[float], None] | None = None) -> None:
+def draw_bifurcation(study: Study, columns: TableColumns, paths: Sequence[str], progress: Progress = None) -> None:
     """Draw the last cycles over the one parameter of a study into each of `paths`."""
     found = bifurcation(study, figures_among(columns), progress)
     (over,) = study.ranges

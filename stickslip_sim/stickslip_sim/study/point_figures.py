@@ -34,7 +34,7 @@ from ..core.arrays import Numbers
 from ..core.types import Mode
 from ..solvers.exact.many_axes import LEAST_STICK
 
-__all__ = ['FIGURES', 'LEAST_STICK', 'MOTIONS', 'RUN_FIELDS', 'Figures', 'Flags', 'Motion', 'Numbers', 'Runs',
+__all__ = ['FIGURES', 'LEAST_STICK', 'MOTIONS', 'RUN_FIELDS', 'Figures', 'Flags', 'Motion', 'Runs',
            'figures_of_runs', 'no_runs']
 
 Flags = NDArray[np.bool_]

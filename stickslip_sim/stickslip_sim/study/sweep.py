@@ -4,13 +4,14 @@
 
 import signal
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from concurrent.futures import Future
 from itertools import islice
 from typing import NamedTuple
 
 import numpy as np
 
+from ..core.callbacks import Progress
 from .folder import Folder
 from .point_figures import Figures
 from .study import Study
@@ -28,8 +29,7 @@ class Swept(NamedTuple):
     ran: int
 
 
-def sweep_into(study: Study, folder: Folder, workers: Workers | None = None,
-          progress: Callable[[float], None] | None = None) -> Swept:
+def sweep_into(study: Study, folder: Folder, workers: Workers | None = None, progress: Progress = None) -> Swept:
     """Run the points of a study that its folder does not have yet, finish the folder, and return all points.
 
     Without `workers` this process does it.  The table is the same for any number of workers and of interruptions.
