@@ -31,6 +31,7 @@ class Recordings:
         self.recorder: RecorderThread | None = None
         self.folder = ''             # of the recording under way
         self.failure = ''            # why the latest recording ended or did not begin
+        self.died = ''               # why the first one that did not come to its end died
         self.dropped = 0             # messages of earlier recordings
         self._namespace, self._topics = namespace, topics
         given = os.path.expanduser(scene.record.folder)
@@ -72,8 +73,7 @@ class Recordings:
         ended_well = recorder.close(receipt_file(receipt))
         self.dropped += recorder.dropped
         if not ended_well:
-            self.failure = recorder.failure or 'the bag could not be finished'
-            raise RecordingError(self.failure)
+            raise RecordingError(self._die(recorder.failure or 'the bag could not be finished'))
 
     def parameter_event(self, fields: Mapping[str, Any]) -> bytes:
         """Return the CDR bytes of a ParameterEvent.
@@ -86,10 +86,14 @@ class Recordings:
         """Return why the recording under way has failed, once; empty while all is well."""
         if self.recorder is None or self.recorder.failure is None:
             return ''
-        self.failure = self.recorder.failure
+        failure = self._die(self.recorder.failure)
         self.dropped += self.recorder.dropped
         self.recorder, self.folder = None, ''
-        return self.failure
+        return failure
+
+    def _die(self, failure: str) -> str:
+        self.failure, self.died = failure, self.died or failure
+        return failure
 
     def _folder_of(self, scene: Scene) -> Path:
         """Return the folder of the scene, or a new one that is named after namespace, scene and time.

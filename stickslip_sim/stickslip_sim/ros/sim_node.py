@@ -9,7 +9,7 @@ from .process.stop_signals import Signals
 
 
 def main(args: Sequence[str] | None = None) -> int:
-    """Run until SIGINT or SIGTERM; return the exit code: 0 ended, 1 internal error, 2 refused start."""
+    """Run until SIGINT or SIGTERM; return the exit code: 0 ended, 1 internal error, 2 refused start or broken bag."""
     signals = Signals()
     from .node.axis_program import PROGRAM
     from .process.program import live

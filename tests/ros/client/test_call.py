@@ -12,6 +12,7 @@ from tests.support.tool import Capture, answered, refused, tool
 
 from tests.support.node_processes import running  # isort: skip  # skips without ROS
 from tests.support.ros_nodes import client  # isort: skip  # skips without ROS
+from tests.support.waiting import wait_for  # isort: skip
 
 pytestmark = pytest.mark.ros
 
@@ -94,6 +95,20 @@ def test_nobody_answers(folder: Path, capsys: Capture) -> None:
     assert line == (f'stickslip: no node /feed_axis offers reset (looked for 3 s); there is {AXIS}: name it with'
                     ' --node\n')
     assert '--node' in refused(capsys, 'call', 'reset', '--node', 'a b')
+
+
+def test_two_of_one_name(folder: Path, tmp_path: Path, capsys: Capture) -> None:
+    """Each would do it, and one of the answers be told.  One that was killed is in the graph for a while, and is none.
+
+    A call may have heard of one node only when it is made: then the other does not hear of it.
+    """
+    def refusal() -> str:
+        return refused(capsys, 'call', 'step', '--node', AXIS)    # of any: time runs by itself
+
+    with running('-r', '__ns:=/cell', folder=tmp_path):
+        assert wait_for(lambda: 'two nodes' in (line := refusal()) and line, 'both').startswith(
+            f"stickslip: --node = '{AXIS}' is refused: must be the name of one node; two nodes named {AXIS} answer")
+    assert 'refused while time runs by itself' in refusal()    # it was killed
 
 
 def test_wrong_use(capsys: Capture) -> None:

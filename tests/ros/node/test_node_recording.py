@@ -52,10 +52,26 @@ class TestRecording:
             wait_for(lambda: axis.latest('run_info').bag_path == '', 'run_info without a bag')
             step = axis.latest('slider_state').step
             axis.next('slider_state', lambda state: state.step > step + 100)
-            assert_clean(*process.end())
+            for _ in range(2):    # how it ended is said as often as it is asked for
+                answer = axis.switch('record', False)
+                assert (answer.success, answer.message) == (False, f'not recording: {status.message}')
+            code, errors = process.end()
+        assert (code, errors.splitlines()[-1]) == (2, f'sim_node: {status.message}')
         with pytest.warns(RecordingWarning, match='no end'):
             run = open_bag(folder)
         assert len(run.columns('/slider_state')['step']) > 100
+
+    def test_one_that_died_is_told_at_the_end_also_when_another_did_not(self, tmp_path: Path) -> None:
+        with running(*recording_into(tmp_path / 'run'), prepare=with_small_files) as process, client() as axis:
+            axis.connect()
+            status, _ = axis.status('recorder', lambda values: int(values['dropped']) > 0)
+            assert axis.set_parameters(record__folder=str(tmp_path / 'other')).successful
+            assert axis.switch('record', True).success
+            assert axis.switch('record', False).success
+            answer = axis.switch('record', False)
+            assert (answer.success, answer.message) == (True, 'not recording')
+            code, errors = process.end()
+        assert (code, errors.splitlines()[-1]) == (2, f'sim_node: {status.message}')
 
     def test_stamps_keep_to_the_clock_when_it_records_from_the_start(self, tmp_path: Path) -> None:
         """However long the bag takes to open."""

@@ -3,6 +3,7 @@
 """One call of a service of a running node: find the node, be known to it, ask once."""
 
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
@@ -36,7 +37,7 @@ def answer_of(service: str, request: Mapping[str, object], node: str, patience: 
 
     The request to set parameters is their values by name.
 
-    Raises InputError on a name that is none, StickslipError when nobody answers.
+    Raises InputError on a name that is none, or that of several nodes; StickslipError when nobody answers.
     """
     name = f'/{node.strip("/")}'
     with _session() as session:
@@ -71,7 +72,10 @@ class _Session:
                              ' '.join(str(error).split())) from None
 
     def meet(self, client: Client, name: str, service: str, patience: float) -> None:
-        """Wait until a node knows all clients made so far; raises StickslipError when it does not answer.
+        """Wait until a node knows all clients made so far.
+
+        Raises StickslipError when it does not answer, InputError when several of its name do: each would do what is
+        asked for.  One that was killed is in the graph for a while, but does not answer.
 
         An answer to a client that a server does not know yet is lost, and not every request may be made twice.  So a
         harmless question is put until it is answered, by a client that was made later: endpoints are heard of in order.
@@ -80,10 +84,11 @@ class _Session:
         greeter = self.client(GetParameters, f'{name}/get_parameters', name)
         if not self.spin_until(lambda: client.service_is_ready() and greeter.service_is_ready(), patience):
             raise StickslipError(self._missing(name, service, patience))
+        answers = _counted_answers(greeter)
         while time.monotonic() < end:
             greeting = greeter.call_async(GetParameters.Request())
             if self.spin_until(greeting.done, min(_GREETING, end - time.monotonic())):
-                return
+                return self._check_single(name, answers)
         raise StickslipError(f'{name} is there, but does not answer within {patience:g} s; --timeout waits longer')
 
     def spin_until(self, condition: Callable[[], bool], patience: float) -> bool:
@@ -98,6 +103,13 @@ class _Session:
         self._executor.shutdown()
         self._node.destroy_node()
 
+    def _check_single(self, name: str, answers: Counter[int]) -> None:
+        """Raise InputError when a second node answers to what one has answered to."""
+        is_in_graph = self._node.count_services(f'{name}/get_parameters') > 1
+        if is_in_graph and self.spin_until(lambda: max(answers.values()) > 1, _GREETING):
+            raise InputError('--node', name, 'the name of one node',
+                             f'two nodes named {name} answer: end one, or give it a namespace (-r __ns:=/cell)')
+
     def _missing(self, name: str, service: str, patience: float) -> str:
         """Return that nobody offers a service, and who else does."""
         text = f'no node {name} offers {service} (looked for {patience:g} s)'
@@ -106,6 +118,19 @@ class _Session:
         if others:
             return f'{text}; there is {", ".join(others)}: name it with --node'
         return f'{text}; does it run, with this ROS_DOMAIN_ID? --node has other names, --timeout waits longer'
+
+
+def _counted_answers(client: Client) -> Counter[int]:
+    """Return the answers to each request of a client, by its number, counted as they come: it hands on the first."""
+    answers: Counter[int] = Counter()
+    pending_request = client.get_pending_request
+
+    def count(number: int) -> Any:
+        answers[number] += 1
+        return pending_request(number)
+
+    client.get_pending_request = count    # which an executor asks for with each answer
+    return answers
 
 
 @contextmanager

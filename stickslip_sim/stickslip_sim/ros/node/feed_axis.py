@@ -96,7 +96,7 @@ class FeedAxis(SceneNode):
         self.get_logger().info(f'{self.scene.name}: {self.scene.time.rate:g} steps a second, {self.scene.time.mode}')
 
     def end(self) -> None:
-        """Stop the steps and close the bag; raises RecordingError when it could not be written to its end."""
+        """Stop the steps and close the bag; raises RecordingError when a bag was not written to its end."""
         self.loop.stop()
         if self._record_service.is_recording:
             self._report.report()    # the second that was cut short

@@ -77,12 +77,14 @@ class RecordService:
         return ''
 
     def close(self) -> None:
-        """End the recording of a loop that has stopped; raises RecordingError when the bag could not be finished."""
+        """End the recording of a loop that has stopped; raises RecordingError when this one, or one before, died."""
         self._publishers.recorder = None
         if self.is_recording:
             folder = self.recordings.folder
             self.recordings.end(self._receipt())
             self._node.get_logger().info(f'recorded into {folder}')
+        if self.recordings.died:
+            raise RecordingError(self.recordings.died)
 
     def look(self) -> None:
         """Give a recording up that has failed."""
@@ -110,9 +112,12 @@ class RecordService:
 
     def _set_recording(self, request: Any, response: Any) -> Any:
         folder = self.recordings.folder
+        if not request.data and not folder:
+            failure = self.recordings.failure
+            return answer(response, not failure, f'not recording: {failure}' if failure else 'not recording')
         if not request.data:
             failure = self.end()
-            return answer(response, not failure, failure or (f'recorded into {folder}' if folder else 'not recording'))
+            return answer(response, not failure, failure or f'recorded into {folder}')
         if folder:
             return answer(response, True, f'already recording into {folder}')
         failure = self.begin()
