@@ -4,7 +4,8 @@
 
 A drive at 5 m/s, or friction that falls up to 100 m/s, is most likely meant in mm/s; simulated as it stands it slides
 without stick-slip, and nothing in that answer shows the mistake.  So the tool refuses such a number once, with the unit
-in which it was read, until it is said to be meant.  The node has its own guard, `command.max_velocity`.
+in which it was read, until it is said to be meant.  So does the node, whose guard for commands is
+`command.max_velocity`.
 """
 
 import difflib
@@ -18,6 +19,16 @@ MEANT = '--meant'          # the option of the tool
 FASTEST = 3.0              # m/s: 180 m/min, above the rapid traverse of linear motors
 ROUGHEST = 2.0             # a coefficient of friction: rubber on dry concrete is 1
 _SPEED_FIX, _COEFFICIENT_FIX = '5 mm/s is 0.005', 'a force is divided by the normal force'
+
+
+class Meant(NamedTuple):
+    """Where it is said that numbers are meant: under which name, and what to add for a parameter."""
+
+    name: str
+    addition: str
+
+
+OF_TOOL, OF_NODE = Meant(MEANT, f'{MEANT} {{}}'), Meant('meant', "-p 'meant:=[{}]'")
 
 
 class Plausible(NamedTuple):
@@ -41,25 +52,26 @@ PLAUSIBLE: Mapping[str, Plausible] = {
     **{backward_name(name): limit for name, limit in _FORWARDS.items() if name.startswith('friction.')}}
 
 
-def check_plausible(values: Mapping[str, object], meant: Collection[str]) -> None:
+def check_plausible(values: Mapping[str, object], meant: Collection[str], where: Meant = OF_TOOL) -> None:
     """Raise InputError on a value, SI units, that no feed axis has, unless its name is among those `meant`."""
     for name in meant:
         if name not in PLAUSIBLE:
             close = difflib.get_close_matches(name, PLAUSIBLE, 1)
-            raise InputError(MEANT, name, 'one of ' + ', '.join(PLAUSIBLE),
+            raise InputError(where.name, name, 'one of ' + ', '.join(PLAUSIBLE),
                              f'did you mean {close[0]}?' if close else 'nothing else is asked about')
     for name, limit in PLAUSIBLE.items():
         if name not in meant:
             for value in _numbers(values.get(name)):
-                check_number(name, value, limit)
+                check_number(name, value, limit, where)
 
 
-def check_number(name: str, value: float, limit: Plausible) -> None:
+def check_number(name: str, value: float, limit: Plausible, where: Meant) -> None:
     """Raise InputError on a number beyond a limit: it is asked back."""
     if abs(value) > limit.most:
         read = f'{value:g} {limit.unit}'.rstrip()
         raise InputError(name, value, f'plausible for a feed axis, up to {limit.most:g} {limit.unit}'.rstrip(),
-                         f'it was read as {read}, and {limit.usual}; if {read} is meant, add {MEANT} {name}')
+                         f'it was read as {read}, and {limit.usual}; if {read} is meant, '
+                         f'add {where.addition.format(name)}')
 
 
 def _numbers(value: object) -> Iterator[float]:

@@ -11,7 +11,7 @@ _ALL_NODES = ('/**', '/*', '/**/' + NODE)
 _PARAMETERS = 'ros__parameters'
 _NOT_OF_THE_AXIS = ('scene', 'record.', 'time.', 'clock.', 'command.', 'encoder.', 'faults.', 'joint_interface.',
                     'timing.', 'seed')
-_OF_THE_MACHINE = ('thread_priority', 'lock_memory', 'cpu_affinity', 'require_real_time')   # scheduling of the node
+_OF_THE_NODE = ('thread_priority', 'lock_memory', 'cpu_affinity', 'require_real_time', 'meant')
 _OF_ROS = ('use_sim_time', 'start_type_description_service', 'qos_overrides.')   # any node has them
 
 
@@ -40,8 +40,8 @@ def without_those_of_ros(values: Mapping[str, object]) -> dict[str, object]:
 
 
 def of_a_scene(values: Mapping[str, object]) -> dict[str, object]:
-    """Return the parameters that are of a scene: neither of every node, nor of the machine that the node runs on."""
-    return {name: value for name, value in without_those_of_ros(values).items() if name not in _OF_THE_MACHINE}
+    """Return the parameters that are of a scene: neither of every node, nor of the node of an axis alone."""
+    return {name: value for name, value in without_those_of_ros(values).items() if name not in _OF_THE_NODE}
 
 
 def describes_an_axis(values: Mapping[str, object]) -> bool:

@@ -52,8 +52,8 @@ def axis(connected: Client) -> Client:
 class TestParameters:
     def test_all_of_the_schema_and_no_other(self, connected: Client) -> None:
         of_ros = {'use_sim_time', 'start_type_description_service'}
-        of_the_machine = {'thread_priority', 'lock_memory', 'cpu_affinity', 'require_real_time'}
-        assert set(connected.parameter_names()) - of_ros - of_the_machine == {entry.name for entry in PARAMETERS}
+        of_the_node = {'thread_priority', 'lock_memory', 'cpu_affinity', 'require_real_time', 'meant'}
+        assert set(connected.parameter_names()) - of_ros - of_the_node == {entry.name for entry in PARAMETERS}
 
     def test_descriptions(self, connected: Client) -> None:
         for entry, described in zip(PARAMETERS, connected.describe(*[entry.name for entry in PARAMETERS]), strict=True):
@@ -103,7 +103,7 @@ class TestParameters:
         """It sends 'None' for what has no value, and 'inf' for .inf."""
         same = {'time__rate': 1000.0, 'time__mode': 'realtime', 'drive__times': 'None', 'initial__rest_time': 'inf',
                 'friction__excess__exponent': 'None', 'command__velocity_limit': 'inf', 'axis__mass': 350.0,
-                'start_type_description_service': True}
+                'start_type_description_service': True, 'meant': 'None'}
         for name, value in same.items():
             answer = connected.set_parameters(**{name: value})
             assert answer.successful, answer.reason
@@ -118,6 +118,17 @@ class TestParameters:
             assert event.friction_force == pytest.approx(7000.0 * event.static_coefficient, rel=1e-9)
         finally:
             assert axis.set_parameters(axis__normal_force=3432.3275).successful
+
+    def test_one_that_no_axis_has_is_asked_back(self, connected: Client) -> None:
+        usual, unusual = ({'friction__kinetic__velocities': [0.0, top]} for top in (0.035, 35.0))
+        name = 'friction.kinetic.velocities'
+        answer = connected.set_parameters(**unusual)
+        assert not answer.successful
+        assert answer.reason.endswith(f"it was read as 35 m/s, and 5 mm/s is 0.005; if 35 m/s is meant, "
+                                      f"add -p 'meant:=[{name}]'")
+        assert 'did you mean friction.kinetic.velocities?' in connected.set_parameters(meant=[f'{name}s']).reason
+        assert connected.set_parameters(**unusual, meant=[name]).successful
+        assert connected.set_parameters(**usual).successful
 
     def test_two_that_fit_only_together(self, connected: Client) -> None:
         both = {'friction__kinetic__velocities': [0.0, 0.02, 0.035],

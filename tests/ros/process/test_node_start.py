@@ -90,6 +90,8 @@ class TestRefusedStart:
         (['--nonsense'], ['--nonsense']),
         (['-p', 'record.enabled:=true', '-p', 'axis.mass:=-1.0'], ['axis.mass = -1.0']),
         (['-p', 'solver.name:=adaptive'], ['solver.name', 'exact or fixed_step in the node']),
+        (['-p', 'drive.velocity:=5.0'], ['drive.velocity = 5.0 is refused', "if 5 m/s is meant, add -p 'meant:=["]),
+        (['-p', 'meant:=drive.velocity'], ["meant = 'drive.velocity'", 'a list']),
     ])
     def test_arguments(self, arguments: list[str], reported: list[str]) -> None:
         code, errors = start(*arguments)
@@ -136,6 +138,12 @@ class TestFiles:
                 same = load_scene(str(tmp_path / '0.yaml')).values
                 assert [value.string_value for value in of_the_node[2:]] == [
                     same['contact.model'], same['friction.static.law']]
+            assert_clean(*process.end())
+
+    def test_an_unusual_one_that_is_meant(self) -> None:
+        with running('-p', 'drive.velocity:=5.0', '-p', 'meant:=[drive.velocity]') as process, client() as axis:
+            axis.connect()
+            assert axis.latest('slider_state').drive_velocity == 5.0
             assert_clean(*process.end())
 
     def test_one_without_an_axis_is_warned_of(self, tmp_path: Path) -> None:

@@ -19,6 +19,7 @@ from ...inputs.profile_file import sections_with_file
 from ...inputs.scene_files import load_scene, scene_with_profiles
 from ...scene.load import named, read_parameters, scene_from_values, scene_names
 from ...scene.model import Scene
+from ...scene.plausible import OF_NODE, check_plausible
 from ...scene.schema import BY_NAME, PARAMETERS
 from ...scene.sections import describes_an_axis, of_a_scene
 from ...scene.values import stated
@@ -29,6 +30,8 @@ from .parameter_requests import changes_of
 
 _SIM_TIME = 'use_sim_time'
 DEFAULT_SCENE = 'paper_fig8'
+_MEANT = Entry('meant', 'string_array', None, '', 'parameters of the scene whose values are meant, however unusual',
+               live=True)
 _TYPES = {
     'double': Parameter.Type.DOUBLE, 'double_array': Parameter.Type.DOUBLE_ARRAY, 'string': Parameter.Type.STRING,
     'bool': Parameter.Type.BOOL, 'integer': Parameter.Type.INTEGER, 'string_array': Parameter.Type.STRING_ARRAY,
@@ -69,10 +72,13 @@ class SceneNode(BoundedNode):
         with refusing('ROS parameters or environment', variables(), ParameterException):
             super().__init__(name)
         # rclpy has no public way to see what was given but never declared
-        given = of_a_scene({name: parameter.value for name, parameter in self._parameter_overrides.items()})
+        given = {name: parameter.value for name, parameter in self._parameter_overrides.items()}
+        declare(self, [_MEANT], {'meant': _MEANT.checked(given['meant'])} if 'meant' in given else {})
+        given = of_a_scene(given)
         with named(files.source) if files.source else nullcontext():
             self._check_addressed(files, given)
             self.scene = scene_at_start(given, files)
+            check_plausible(self.scene.values, self._meant(), OF_NODE)
         if files.values and not describes_an_axis(given) and self.scene.name not in scene_names():
             self.get_logger().warning('the parameters say nothing of an axis: it stands still, without friction')
         declare(self, PARAMETERS, self.scene.values)
@@ -101,10 +107,12 @@ class SceneNode(BoundedNode):
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
         """Set all or none; refused with one line that says what, why and what to do."""
         try:
-            wanted = changes_of(self, parameter_list, BY_NAME, self.scene.values)
+            wanted = changes_of(self, parameter_list, {**BY_NAME, _MEANT.name: _MEANT},
+                                {**self.scene.values, _MEANT.name: self._meant()})
             ours = {parameter.name: parameter.value for parameter in wanted
                     if parameter.name in BY_NAME or not self.has_parameter(parameter.name)}
             scene = scene_from_values({**self.scene.values, **ours}) if ours else self.scene
+            check_plausible({name: scene.values.get(name) for name in ours}, self._meant(wanted), OF_NODE)
             self.check_change(scene)
             warnings = [check_sim_time(scene.time, parameter.value) for parameter in wanted
                         if parameter.name == _SIM_TIME]
@@ -119,6 +127,11 @@ class SceneNode(BoundedNode):
             self.scene = scene
             self.scene_changed(scene, [parameter for parameter in wanted if parameter.name in ours])
         return result
+
+    def _meant(self, changes: Sequence[Parameter] = ()) -> Sequence[str]:
+        """Return the names of what is meant, with changes."""
+        latest = [self.get_parameter(_MEANT.name), *(each for each in changes if each.name == _MEANT.name)][-1]
+        return tuple(latest.value or ())
 
     def _warn(self, *texts: str) -> None:
         for text in filter(None, texts):
