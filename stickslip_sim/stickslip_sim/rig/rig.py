@@ -102,6 +102,12 @@ class Rig:
                                          fault=fault))
         self._plant.change_faults()
 
+    def idle_reason(self, fault: Fault) -> str:
+        """Return why a fault does nothing here; empty for one that acts."""
+        if self._measures or not fault.kind.startswith('encoder_'):
+            return ''
+        return f'{fault.kind} does nothing: no encoder is read; set joint_interface.enabled: true'
+
     def clear_faults(self) -> list[str]:
         """End all faults, that of a command time-out among them; return their ids."""
         ids = self._faults.ids

@@ -68,6 +68,10 @@ def test_faults(folder: Path, capsys: Capture) -> None:
                 ) == 'a (force_pulse -20) begins 60 s from now\n'
     assert said(capsys, 'inject-fault', 'drive_freeze', '--start', '60', '--id', 'b'
                 ) == 'b (drive_freeze) begins 60 s from now\n'
+    assert said(capsys, 'inject-fault', 'encoder_dropout', '--value', '0.5', '--id', 'c') == (
+        'c (encoder_dropout 0.5) begins 0 s from now; encoder_dropout does nothing: no encoder is read; '
+        'set joint_interface.enabled: true\n')
+    assert said(capsys, 'clear-faults', 'c') == 'c cleared\n'
     assert said(capsys, 'clear-faults', 'b') == 'b cleared\n'
     assert said(capsys, 'clear-faults', 'a') == 'a cleared\n'
     assert said(capsys, 'clear-faults') == 'cleared: friction_scale_1\n'

@@ -24,7 +24,9 @@ class FaultServices:
     """Faults on request; they take effect with the next step."""
 
     def __init__(self, node: SceneNode, loop: StepLoop) -> None:
-        self._loop = loop
+        self._loop, self._log = loop, node.get_logger()
+        for fault in node.scene.rig.faults:
+            self._warn(fault)
         node.create_service(InjectFault, '~/inject_fault', self._inject)
         node.create_service(Trigger, '~/clear_faults', self._clear_all)
 
@@ -39,7 +41,16 @@ class FaultServices:
             response.id = rig.inject(asked).id
 
         what = f'{asked.kind} {asked.value:g}' if value_of_kind(asked.kind) else asked.kind
-        return self._at_boundary(response, inject, lambda: f'{response.id} ({what}) begins {asked.start:g} s from now')
+        return self._at_boundary(response, inject, lambda: (
+            f'{response.id} ({what}) begins {asked.start:g} s from now{self._warn(asked)}'))
+
+    def _warn(self, fault: Fault) -> str:
+        """Log that a fault does nothing; return that for an answer."""
+        reason = self._loop.rig.idle_reason(fault)
+        if not reason:
+            return ''
+        self._log.warning(reason)
+        return f'; {reason}'
 
     def _clear_all(self, _: Any, response: Any) -> Any:
         cleared: list[str] = []
