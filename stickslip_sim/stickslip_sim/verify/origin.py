@@ -3,6 +3,7 @@
 """Where a recorded run came from: what it began with, and what is doubtful about it."""
 
 import hashlib
+import json
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from typing import Any, NamedTuple
@@ -11,7 +12,7 @@ from ..core.errors import RecordingError, one_line
 from ..core.version import __version__
 from ..recording import MeasuredRun, RecordedRun
 from ..recording.bag import METADATA
-from ..recording.run import CHECKPOINT_FILE, SCENE_FILE, RunFacts
+from ..recording.run import CHECKPOINT_FILE, SCENE_FILE, RunFacts, checkpoint_file
 
 _MAKERS = 'version', 'python', 'platform', 'numpy', 'hot_path'
 
@@ -41,6 +42,16 @@ def doubts_about(run: RecordedRun) -> tuple[str, ...]:
 def checkpoint_of(run: RecordedRun) -> Mapping[str, Any] | None:
     """Return the checkpoint that a run began from; None when it began at the start of its scene."""
     return run.bag.values(CHECKPOINT_FILE) if CHECKPOINT_FILE in run.bag.attachments else None
+
+
+def begins_in_mid_run(run: RecordedRun) -> bool:
+    """Return whether a run began elsewhere than its scene does: not so after a reset, while time stands still at 0."""
+    checkpoint = checkpoint_of(run)
+    if checkpoint is None:
+        return False
+    rig = run.scene.make_rig()
+    rig.make_step()
+    return bool(json.loads(checkpoint_file(rig.checkpoint())[CHECKPOINT_FILE]) != checkpoint)
 
 
 def offline_of(run: RecordedRun) -> Offline | None:

@@ -16,7 +16,7 @@ from ..rig import Rig
 from ..runs import simulate
 from ..scene import Scene
 from .orders import Orders
-from .origin import Offline, checkpoint_of, offline_of
+from .origin import Offline, begins_in_mid_run, checkpoint_of, offline_of
 from .recorded_steps import RecordedStep
 
 
@@ -70,9 +70,12 @@ class _NodeMaker:
 
 
 def _rig(run: RecordedRun, scene: Scene) -> tuple[Rig, int]:
-    """Return the rig as the recording began, and how many of the first events it has behind it."""
+    """Return the rig as the recording began, and how many of the first events it has behind it.
+
+    With another scene a recording from the start of its own begins at the start of that.
+    """
     checkpoint = checkpoint_of(run)
-    if checkpoint is None:
+    if checkpoint is None or (scene is not run.scene and not begins_in_mid_run(run)):
         return scene.make_rig(), 0
     rig = run.scene.make_rig()
     try:

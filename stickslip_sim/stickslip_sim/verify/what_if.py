@@ -16,19 +16,19 @@ from ..runs.simulated import columns_of_rows
 from ..scene import Scene, changed
 from ..scene.schema import BY_NAME
 from ..simulation.cycles import summary
-from .origin import checkpoint_of, offline_of
+from .origin import begins_in_mid_run, offline_of
 from .recorded_steps import steps_of
 from .remake import Maker, maker_of
 
 
 def other_scene(run: RecordedRun, changes: Mapping[str, object]) -> Scene:
     """Return the scene with changes; raises InputError on those that this recording leaves no room for."""
-    is_of_node, begins_in_mid_run = offline_of(run) is None, checkpoint_of(run) is not None
+    is_of_node, is_in_mid_run = offline_of(run) is None, begins_in_mid_run(run)
     for name, value in changes.items():
         entry = BY_NAME.get(name)
         if is_of_node and name.startswith('time.'):
             raise InputError(name, value, 'as in the recording', 'its orders are counted in steps')
-        if begins_in_mid_run and entry is not None and not entry.live:
+        if is_in_mid_run and entry is not None and not entry.live:
             raise InputError(name, value, 'a parameter that can change while the axis runs',
                              'this recording begins in mid-run; take one from the start')
     return changed(run.scene, changes)

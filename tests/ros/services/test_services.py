@@ -18,6 +18,7 @@ from stickslip_sim.rig import Fault
 from stickslip_sim.rig.faults import RULES
 from stickslip_sim.scene import scene_from_values
 from stickslip_sim.verify.verification import verify
+from stickslip_sim.verify.what_if import other_run, other_scene
 from tests.support.node_processes import recording_into
 from tests.support.replays import FIELDS, assert_same_states, made_again
 from tests.support.ros_nodes import Client, node_and_client
@@ -235,6 +236,19 @@ def test_a_recording_that_begins_at_step_0_is_as_one_from_the_start(tmp_path: Pa
         assert run.bag.columns('/drive_velocity')['log_time'].tolist() == [0]
         assert all(outcome.passed for outcome in outcomes_of(limits, run))
         assert verify(run).difference is None
+    changes = {'initial.position': 0.001, 'axis.mass': 300.0}    # of which the first cannot change in mid-run
+    first, second = (other_run(run, other_scene(run, changes), changes) for run in map(read_run, folders))
+    assert first.samples['position'].tolist() == second.samples['position'].tolist()
+    assert first.samples['position'][0] == 0.001
+
+
+def test_a_fault_of_the_scene_that_does_nothing_is_warned_of(tmp_path: Path) -> None:
+    fault = 'ids:=[gap]', 'kinds:=[encoder_dropout]', 'starts:=[0.1]', 'durations:=[0.1]', 'values:=[0.5]'
+    given = [word for text in fault for word in ('-p', f'faults.{text}')]
+    for is_read in (False, True):
+        with node_and_client(tmp_path, 'lockstep', *given, '-p', f'joint_interface.enabled:={is_read}') as (process, _):
+            _, log = process.end()
+        assert ('encoder_dropout does nothing: no encoder is read' in log) is not is_read
 
 
 def test_the_zeros_of_the_type_are_reported_in_place_of_an_input_profile(tmp_path: Path) -> None:
