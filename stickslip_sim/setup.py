@@ -7,6 +7,7 @@ from glob import glob
 from pathlib import Path
 
 from setuptools import find_packages, setup
+from setuptools.command.install_scripts import install_scripts
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))   # pip runs this file from elsewhere
 from hot_unit.build import BuildUnit, extensions
@@ -17,10 +18,37 @@ SHARE = f'share/{NAME}'
 # the programs of the nodes in lib/stickslip_sim, where `ros2 run` looks (setup.cfg), and the files of a ROS package.
 FOR_ROS = not {'bdist_wheel', 'dist_info', 'editable_wheel'} & set(sys.argv)
 NODES = ['cascade_controller', 'compensating_controller', 'health', 'replay_node', 'sim_node'] if FOR_ROS else []
+PROGRAM = """{python}
+import sys
+try:
+    from {module} import main
+except ModuleNotFoundError as error:
+    if error.name != '{package}':
+        raise
+    from pathlib import Path
+    places = [place / 'setup.bash' for place in Path(__file__).resolve().parents[2:4]]
+    found = next((place for place in places if place.is_file()), 'its setup.bash')
+    sys.stderr.write(f'{name}: this terminal does not know the workspace: source {{found}}, in each terminal\\n')
+    sys.exit(2)
+sys.exit(main())
+"""
+
+
+class InstallPrograms(install_scripts):
+    """Writes the programs so that a terminal that does not know the workspace gets a line, and no traceback."""
+
+    def run(self):
+        """Let each program have its interpreter, and the text above."""
+        super().run()
+        for path in map(Path, self.get_outputs()):
+            module = f'{NAME}.ros.{path.name}' if path.name in NODES else f'{NAME}.__main__'
+            python, _, _ = path.read_text().partition('\n')
+            path.write_text(PROGRAM.format(python=python, module=module, package=NAME, name=path.name))
+
 
 setup(
     name=NAME,
-    cmdclass={'build_ext': BuildUnit},
+    cmdclass={'build_ext': BuildUnit, 'install_scripts': InstallPrograms},
     ext_modules=extensions(),
     version='1.0.1',
     description='Stick-slip of a feed axis in real time: exact engine, ROS 2 node, offline tool',

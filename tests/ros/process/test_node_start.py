@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The start of the node: what is refused, in one line, and what scene its files give."""
 
+import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -97,6 +99,17 @@ class TestRefusedStart:
         code, errors = start(*arguments)
         assert (code, len(errors.splitlines())) == (2, 1), errors
         assert all(words in errors for words in reported), errors
+
+    @pytest.mark.parametrize('program', ['sim_node', 'replay_node', 'stickslip'])
+    def test_a_terminal_that_does_not_know_the_workspace(self, program: str) -> None:
+        plain = {name: os.environ[name] for name in ('PATH', 'HOME')}
+        path = executable(program)
+        done = subprocess.run([path, '--help'], capture_output=True, text=True, timeout=60, check=False, env=plain)
+        assert (done.returncode, done.stdout) == (2, '')
+        setup = re.fullmatch(rf'{program}: this terminal does not know the workspace: source (/.*/setup.bash), in each '
+                             r'terminal\n', done.stderr)
+        assert setup, done.stderr
+        subprocess.run(['bash', '-c', f'source {setup[1]} && {path} --help'], timeout=60, check=True, env=plain)
 
     def test_a_parameter_without_p_is_no_name_to_be_replaced(self) -> None:
         code, errors = run(executable('sim_node'), 'scene:=positioning')
