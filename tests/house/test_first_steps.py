@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from stickslip_sim.recording import open_bag
-from tests.support.node_processes import running
+from tests.support.node_processes import recording_into, running
 from tests.support.repository import ROOT
 from tests.support.ros_nodes import Client, client
 from tests.support.waiting import wait_for
@@ -44,6 +44,20 @@ def test_the_demonstration_records_and_has_nothing_to_complain_of(tmp_path: Path
     [folder] = tmp_path.iterdir()
     assert (folder / 'run.png').stat().st_size > 10_000
     assert open_bag(folder).receipt is not None    # it was closed
+
+
+def test_late_steps_are_no_wrong_motion(tmp_path: Path) -> None:
+    """What the demonstration says of a run whose steps were late, by limits that no machine keeps."""
+    from stickslip_sim.ros.demo_report import report
+    for most, verdict in (('1e-9', 'no'), ('60.0', 'yes')):
+        limits = '-p', f'timing.max_lateness:={most}', '-p', 'timing.max_overruns:=1.0'
+        with running(*recording_into(tmp_path / verdict), *limits) as process, client() as axis:
+            axis.connect()
+            assert process.end()[0] == 0
+        said = '\n'.join(report(tmp_path / verdict))
+        assert f'verdict  real-time valid: {verdict}, ' in said
+        assert [words in said for words in ('the motion is right, the timing was late, ', 'lock-step is the way ')
+                ] == 2 * [verdict == 'no']
 
 
 class TestDrive:

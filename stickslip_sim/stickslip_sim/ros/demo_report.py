@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..check.check_report import real_time_verdict
+from ..check.observed_run import Timing, timing_of
 from ..recording import read_run
 from ..simulation.cycles import Summary
 
@@ -26,7 +26,14 @@ def report(folder: Path) -> list[str]:
     run.plot(folder / _PICTURE)
     return [f'bag      {folder} ({sum(run.bag.counts.values())} messages)', f'picture  {folder / _PICTURE}',
             *cycle_lines(run.summary), *timing_lines(run.bag.columns('/timing')),
-            *(f'verdict  {verdict}' for verdict in [real_time_verdict(run)] if verdict)]
+            *(verdict_lines(timing) if (timing := timing_of(run)) and run.is_complete else [])]
+
+
+def verdict_lines(timing: Timing) -> list[str]:
+    """Return whether the run kept real time, and what that means where it did not."""
+    late = ['the motion is right, the timing was late, as the machine had other work; where that matters,',
+            'lock-step is the way (-p time.mode:=lockstep, docs/hil.md): time waits for steps and controller']
+    return [f'verdict  {timing.verdict}', *(f'         {line}' for line in late if timing.valid is False)]
 
 
 def cycle_lines(figures: Summary) -> list[str]:
