@@ -33,7 +33,10 @@ class Controller(Node):
 
     def _complain(self) -> None:
         self._silence.cancel()
-        self.get_logger().warning('waiting for an axis: ros2 run stickslip_sim sim_node, with this ROS_DOMAIN_ID')
+        places = [topic.removesuffix('/slider_state') or '/' for topic, _ in self.get_topic_names_and_types()
+                  if topic.endswith('/slider_state') and self.count_publishers(topic)]
+        self.get_logger().warning('waiting for an axis: start sim_node with this ROS_DOMAIN_ID; axes run in: '
+                                  f'{", ".join(places) or "no namespace"} (--ros-args -r __ns:=NAMESPACE)')
 
 
 # Ctrl-C only sets a flag: raised in the midst of a message it would come out of rclpy as another error.

@@ -37,8 +37,11 @@ def ask(client: Client, request: Any, timeout: float) -> Any:
 
 # A server that does not know its client yet loses the answer.  A second reset does no harm, but a second step would.
 while not step.wait_for_service(timeout_sec=5.0) or not (begun := ask(reset, Trigger.Request(), timeout=1.0)):
-    node.get_logger().warning('waiting for an axis: ros2 run stickslip_sim sim_node --ros-args -p time.mode:=lockstep,'
-                              ' with this ROS_DOMAIN_ID', once=True)
+    places = [topic.removesuffix('/slider_state') or '/' for topic, _ in node.get_topic_names_and_types()
+              if topic.endswith('/slider_state') and node.count_publishers(topic)]
+    node.get_logger().warning('waiting for an axis: start sim_node --ros-args -p time.mode:=lockstep with this'
+                              f' ROS_DOMAIN_ID; axes run in: {", ".join(places) or "no namespace"}'
+                              ' (--ros-args -r __ns:=NAMESPACE)', once=True)
 if not begun.success:
     raise SystemExit(begun.message)
 time = position = 0.0

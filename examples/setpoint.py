@@ -55,6 +55,14 @@ class Follower(Node):
         """Whether move and rest are over, and the drive is stopped."""
         return self.time >= _TIME + _REST + _STOP
 
+    def complain(self, needed: str) -> None:
+        """Say once that no axis is heard, what one needs, and where others are."""
+        places = [topic.removesuffix('/slider_state') or '/' for topic, _ in self.get_topic_names_and_types()
+                  if topic.endswith('/slider_state') and self.count_publishers(topic)]
+        self.get_logger().warning(f'waiting for an axis: start sim_node --ros-args {needed} with this ROS_DOMAIN_ID;'
+                                  f' axes run in: {", ".join(places) or "no namespace"}'
+                                  ' (--ros-args -r __ns:=NAMESPACE)', once=True)
+
     def _answer(self, measured: JointState) -> None:
         self.stamp = measured.header.stamp.sec * 1_000_000_000 + measured.header.stamp.nanosec
         position = measured.position[measured.name.index('axis_slider')]
@@ -92,9 +100,7 @@ def make_steps(follower: Follower) -> None:
     step, reset = follower.create_client(Step, 'feed_axis/step'), follower.create_client(Trigger, 'feed_axis/reset')
     # A server that does not know its client yet loses the answer.  A second reset does no harm; a second step would.
     while not (begun := ask(reset, Trigger.Request(), 1.0)):
-        follower.get_logger().warning('waiting for an axis: ros2 run stickslip_sim sim_node --ros-args'
-                                      ' -p time.mode:=lockstep -p joint_interface.enabled:=true, with this'
-                                      ' ROS_DOMAIN_ID', once=True)
+        follower.complain('-p time.mode:=lockstep -p joint_interface.enabled:=true')
     if not begun.success:
         raise SystemExit(begun.message)
     while not follower.is_done:
@@ -123,8 +129,7 @@ if in_lock_step:
     make_steps(follower)
 else:
     if not spin_until(lambda: follower.stamp >= 0, _PATIENCE):
-        follower.get_logger().warning('waiting for an axis: ros2 run stickslip_sim sim_node --ros-args'
-                                      ' -p joint_interface.enabled:=true, with this ROS_DOMAIN_ID')
+        follower.complain('-p joint_interface.enabled:=true')
     spin_until(lambda: follower.is_done)
     spin_until(lambda: False, 0.2)    # rest is sent again and again: the last message of a process may be lost
 follower.get_logger().info(f'done: the largest error was {follower.worst * 1e3:.6f} mm')

@@ -23,6 +23,7 @@ pytestmark = [pytest.mark.ros, pytest.mark.slow]
 DRIVE = ROOT / 'examples' / 'drive.py'
 SETPOINT = ROOT / 'examples' / 'setpoint.py'
 CONTROLLER = ROOT / 'examples' / 'controller.py'
+LOCKSTEP = ROOT / 'examples' / 'lockstep.py'
 
 
 def python(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
@@ -64,14 +65,16 @@ class TestDrive:
     def test_what_is_sent_holds(self, axis: Client) -> None:
         done = python(DRIVE, '0.005', '--force', '400')
         assert done.returncode == 0, done.stderr
+        assert done.stderr.splitlines()[-1].endswith('taken: velocity = 0.005 m/s, force = 400.0 N')
         wait_for(lambda: axis.latest('slider_state').drive_velocity == 0.005, 'its effect')
 
     @pytest.mark.parametrize('value', ['5.0', 'nan'])
     def test_a_refused_value_is_an_error_of_the_sender(self, axis: Client, value: str) -> None:
         before = axis.latest('slider_state').drive_velocity
         done = python(DRIVE, value)
-        assert done.returncode == 1
+        assert done.returncode == 2    # as of stickslip call
         assert f'velocity = {value} is refused' in done.stderr
+        assert 'taken' not in done.stderr
         assert axis.latest('slider_state').drive_velocity == before
 
 
@@ -89,15 +92,19 @@ def test_the_controller_is_the_one_of_the_page() -> None:
 
 
 def test_the_examples_say_once_that_they_wait_for_an_axis() -> None:
-    """In a namespace where there is none; all at once, as each takes its time."""
+    """In a namespace where there is none, and where there is one; all at once, as each takes its time."""
     nowhere = '--ros-args', '-r', '__ns:=/nowhere'
     with ExitStack() as ended:
+        ended.enter_context(running('-r', '__ns:=/cell', afresh=True))
+        ended.enter_context(client('/cell')).connect()
         waiting = [ended.enter_context(subprocess.Popen([sys.executable, *map(str, example), *nowhere],
                                                         stderr=subprocess.PIPE, text=True))
-                   for example in ([CONTROLLER], [SETPOINT], [SETPOINT, '--lockstep'])]
+                   for example in ([CONTROLLER], [SETPOINT], [SETPOINT, '--lockstep'], [LOCKSTEP], [DRIVE, '0.001'])]
         for each in waiting:
             assert each.stderr
-            assert 'waiting for an axis: ros2 run stickslip_sim sim_node' in each.stderr.readline()
+            line = each.stderr.readline()
+            assert 'waiting for an axis: start sim_node ' in line
+            assert line.endswith('with this ROS_DOMAIN_ID; axes run in: /cell (--ros-args -r __ns:=NAMESPACE)\n')
             each.send_signal(signal.SIGINT)
             assert each.stderr.read() == ''
 
