@@ -7,11 +7,14 @@ from pathlib import Path
 from random import Random
 
 import pytest
+from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 from stickslip_sim.cli.main import run
 from stickslip_sim.core.errors import StickslipError
 from stickslip_sim.core.types import EventKind
 from stickslip_sim.inputs import load_scene
+from stickslip_sim.plots.style import save
 from stickslip_sim.recording import read_run
 from stickslip_sim.runs import simulate_events
 from stickslip_sim.runs.receipt import plain
@@ -153,7 +156,14 @@ class TestAlteredAndForeign:
 
 
 class TestWhatIf:
-    def test_figures_of_both(self, bag: Path, tmp_path: Path, capsys: Capture) -> None:
+    def test_figures_of_both(self, bag: Path, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
+        words: list[str] = []
+
+        def look(figure: Figure, path: Path) -> None:
+            words.extend(text.get_text() for text in figure.findobj(Text))
+            save(figure, path)
+
+        monkeypatch.setattr('stickslip_sim.plots.what_if.save', look)
         out = tmp_path / 'out'
         code, report, _ = verified(capsys, bag, '--set', 'axis.normal_force=3000.0', '--set', 'drive.velocity=0.003',
                                    '--out', out)
@@ -172,6 +182,7 @@ class TestWhatIf:
         assert figures['recorded']['mean']['period'] == pytest.approx(mean.period, rel=1e-13)
         assert load_scene(str(out / 'scene.yaml')).values == load_scene('paper_fig8', changes).values
         assert (out / 'what_if.png').stat().st_size > 20_000
+        assert 'eight (paper_fig8, recorded)' in words    # which run, and not only of which scene
 
     def test_refused(self, bag: Path, tmp_path: Path, capsys: Capture) -> None:
         for words, reported in (

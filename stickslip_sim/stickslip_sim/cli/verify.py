@@ -105,7 +105,7 @@ def _write(folder: Path, changes: dict[str, object], recorded: 'Run', other: 'Ru
     scene = other.scene
     changed = ', '.join(f'{name} = {value}' for name, value in changes.items())
     was, would_be = (reduced(run.sample_blocks(), [(run.begin, run.end)], _DRAWN) for run in (recorded, other))
-    plot_beside(was, would_be, f'{scene.name}\nwhat if {changed}', folder / 'what_if.png')
+    plot_beside(was, would_be, f'{recorded.title}\nwhat if {changed}', folder / 'what_if.png')
     figures = {'scene': scene.name, 'changes': changes, 'recorded': recorded.summary, 'what_if': other.summary}
     text = json.dumps(plain(figures), indent=2, allow_nan=False) + '\n'
     (folder / 'what_if.json').write_text(text, encoding='utf-8')
