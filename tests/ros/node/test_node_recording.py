@@ -61,7 +61,7 @@ class TestRecording:
             run = open_bag(folder)
         assert len(run.columns('/slider_state')['step']) > 100
 
-    def test_one_that_died_is_told_at_the_end_also_when_another_did_not(self, tmp_path: Path) -> None:
+    def test_one_that_died_is_reported_at_the_end_also_when_another_did_not(self, tmp_path: Path) -> None:
         with running(*recording_into(tmp_path / 'run'), prepare=with_small_files) as process, client() as axis:
             axis.connect()
             status, _ = axis.status('recorder', lambda values: int(values['dropped']) > 0)
