@@ -50,12 +50,15 @@ def _study(scene: str, ranges: tuple[str, ...], sobol: int | None, duration: flo
 def _print_summary(study: 'Study', swept: 'Swept') -> None:
     from collections import Counter
 
+    import numpy as np
+
     from ..study.point_figures import MOTIONS, Motion
 
     columns = swept.columns
     counts = Counter(MOTIONS[Motion(int(motion))] for motion in columns['motion'])
     motions = ', '.join(f'{count} {word}' for word, count in counts.most_common())
-    unsettled = int(((columns['settled'] == 0.0) & (columns['motion'] != Motion.UNDECIDED)).sum())
+    named = np.isin(columns['motion'], (Motion.UNDECIDED, Motion.SWINGS_ON))
+    unsettled = int(((columns['settled'] == 0.0) & ~named).sum())
     print(f'{study.scene.name}: {study.count} points, {swept.ran} of them run now: {motions}'
           + (f'; {unsettled} had not settled' if unsettled else ''))
     print_failed(study, columns)

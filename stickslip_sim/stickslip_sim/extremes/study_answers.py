@@ -66,7 +66,7 @@ def _motion(solver: Solver, name: str, feed: float, mass: float) -> float:
     study = Study(scene.values, EvenGrid((Variation('axis.mass', mass, 1.1 * mass, 2),)))
     motion = study.figures(0, 1).motion[0]
     count = _sticks(solver, scene_at(scene.values, ['axis.mass'], np.array([mass])))
-    require(motion in (Motion.STICK_SLIP, Motion.SMOOTH_SLIDING, Motion.UNDECIDED), f'a motion without a run: {motion}')
+    require(motion not in (Motion.AT_REST, Motion.FAILED), f'a motion without a run: {motion}')
     require(motion == Motion.UNDECIDED or (motion == Motion.STICK_SLIP) == (count > 0),
             f'called {Motion(int(motion)).name}, with {count} sticks late')
     return 0.0

@@ -30,7 +30,7 @@ class SweptPoints:
 
     @property
     def motions(self) -> list[str]:
-        """What each point ends in, in words: at rest, smooth sliding, stick-slip, undecided, failed."""
+        """What each point ends in, in the words of docs/maps.md: at rest, smooth sliding, stick-slip, undecided, ..."""
         return [MOTIONS[Motion(int(motion))] for motion in self.columns['motion']]
 
     def frame(self) -> Any:

@@ -55,10 +55,10 @@ def ending_at(study: Study, columns: TableColumns, point: Numbers) -> Ending:
         run = simulate_events(scene, study.duration)
         return Ending(Motion(int(figures_of_runs(runs_of_run(run)).motion[0])), False, run)
     if len(known):
-        motion, settled, duration = (float(columns[name][known[0]]) for name in ('motion', 'settled', 'duration'))
+        motion, duration = (float(columns[name][known[0]]) for name in ('motion', 'duration'))
     else:
         runs = study.runs(point[None, :])
         motion = float(figures_of_runs(runs).motion[0])
-        settled, duration = float(runs.settled[0]), float(runs.duration[0])
-    swings_on = study.duration is None and motion == Motion.SMOOTH_SLIDING and settled == 0.0
+        duration = float(runs.duration[0])
+    swings_on = study.duration is None and motion == Motion.SWINGS_ON
     return Ending(Motion(int(motion)), swings_on, simulate_events(scene, duration))

@@ -26,7 +26,7 @@ from .variation import Variation, place_of
 
 _UNITS = {'amplitude': 'm', 'period': 's', 'stick_share': '', 'peak_speed': 'm/s', 'break_away_force': 'N',
          'settling_time': 's', 'cycles': '', 'duration': 's'}
-_PLAIN = {Motion.AT_REST: 2, Motion.SMOOTH_SLIDING: 0, Motion.FAILED: 3,
+_PLAIN = {Motion.AT_REST: 2, Motion.SMOOTH_SLIDING: 0, Motion.SWINGS_ON: 1, Motion.FAILED: 3,
           Motion.UNDECIDED: 4}
 
 
@@ -105,5 +105,5 @@ def _plain(motion: Numbers, settled: Numbers) -> NDArray[np.int64]:
     plain = np.zeros(motion.shape, dtype=np.int64)
     for code, place in _PLAIN.items():
         plain[motion == code] = place
-    plain[(motion == Motion.SMOOTH_SLIDING) & (settled == 0.0)] = 1
+    plain[(motion == Motion.SMOOTH_SLIDING) & (settled == 0.0)] = 1   # of tables that had no word for it
     return plain

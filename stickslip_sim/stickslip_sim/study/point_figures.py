@@ -10,7 +10,7 @@ A round of stick-slip goes from one break-away out of stick to the next; a slip 
 | stick_slip | | 1 or 0 |
 | amplitude | m | travel of one slip, from break-away to standstill, the longest of a round; 0 without stick-slip |
 | period | s | from break-away to break-away, both out of stick |
-| stick_share | | of the last period; 0 for smooth sliding, 1 at rest |
+| stick_share | | of the last period; 0 for sliding, 1 at rest |
 | peak_speed | m/s | of a slip |
 | break_away_force | N | friction at the break-away |
 | settling_time | s | time to the limit cycle: the break-away from which on each period is the one before, to 1e-6; of \
@@ -32,6 +32,7 @@ from numpy.typing import NDArray
 
 from ..core.arrays import Numbers
 from ..core.types import Mode
+from ..simulation.cycles import SWINGS_ON
 from ..solvers.exact.many_axes import LEAST_STICK
 
 __all__ = ['FIGURES', 'LEAST_STICK', 'MOTIONS', 'RUN_FIELDS', 'Figures', 'Flags', 'Motion', 'Runs',
@@ -47,10 +48,11 @@ class Motion(IntEnum):
     STICK_SLIP = 2
     FAILED = 3
     UNDECIDED = 4
+    SWINGS_ON = 5
 
 
 MOTIONS = {Motion.AT_REST: 'at rest', Motion.SMOOTH_SLIDING: 'smooth sliding', Motion.STICK_SLIP: 'stick-slip',
-           Motion.FAILED: 'failed', Motion.UNDECIDED: 'undecided'}
+           Motion.FAILED: 'failed', Motion.UNDECIDED: 'undecided', Motion.SWINGS_ON: SWINGS_ON}
 
 
 @dataclass(frozen=True)
@@ -152,7 +154,7 @@ _OF_A_ROUND = {'amplitude': 'round_travel', 'period': 'round_period', 'peak_spee
 def figures_of_runs(runs: Runs) -> Figures:
     """Return the figures of runs."""
     motion = _motions(runs)
-    slips, slides = motion == Motion.STICK_SLIP, motion == Motion.SMOOTH_SLIDING
+    slips, slides = motion == Motion.STICK_SLIP, np.isin(motion, (Motion.SMOOTH_SLIDING, Motion.SWINGS_ON))
     failed, unknown = motion == Motion.FAILED, (motion == Motion.FAILED) | (motion == Motion.UNDECIDED)
     with np.errstate(divide='ignore', invalid='ignore'):
         share = np.where(slips, runs.round_stick / runs.round_period, np.where(slides, 0.0, 1.0))
@@ -173,7 +175,8 @@ def _motions(runs: Runs) -> NDArray[np.int64]:
     """
     moves = (runs.final_mode != Mode.STICK) | (runs.cycles > 0)
     found = np.where(runs.sticks_on, Motion.STICK_SLIP, np.where(moves, Motion.SMOOTH_SLIDING, Motion.AT_REST))
-    found = np.where(runs.slides_on | runs.lasts, Motion.SMOOTH_SLIDING, np.where(runs.rests_on, Motion.AT_REST, found))
+    sliding = np.where(runs.settled, Motion.SMOOTH_SLIDING, Motion.SWINGS_ON)
+    found = np.where(runs.slides_on | runs.lasts, sliding, np.where(runs.rests_on, Motion.AT_REST, found))
     found = np.where(runs.undecided, Motion.UNDECIDED, found)
     return np.where(runs.complete & _is_finite(runs), found, Motion.FAILED)
 

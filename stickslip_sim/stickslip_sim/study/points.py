@@ -4,7 +4,7 @@
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import astuple, replace
+from dataclasses import astuple
 from typing import Any
 
 import numpy as np
@@ -19,6 +19,7 @@ from ..runs.batch import figures_in, rounds_in
 from ..scene import Scene, scene_from_values
 from ..scene.friction_schema import BACKWARD
 from ..scene.values import overridden
+from ..simulation.cycles import SWINGS_ON
 from ..solvers.exact import many_axes
 from ..solvers.exact.axis_figures import AxisFigures
 from .point_figures import Runs, no_runs
@@ -84,7 +85,7 @@ def runs_alone(values: Values, names: Sequence[str], points: Numbers, duration: 
         except (SolverError, InputError):   # it gave up, or found more events than can be held
             continue
         runs.put([k], runs_of_run(run))
-    return replace(runs, settled=runs.settled | runs.slides_on)
+    return runs
 
 
 def runs_of_run(run: SimulatedRun) -> Runs:
@@ -96,6 +97,7 @@ def runs_of_run(run: SimulatedRun) -> Runs:
     out = np.array([astuple(figures)])
     found = runs_of(figures_in(out), rounds_in(out), run.duration)
     found.stick_share[0] = run.summary.stick_share
+    found.settled[0] |= found.slides_on[0] and run.summary.motion != SWINGS_ON
     found.lasts[0] &= works_in_batches(run.scene)   # with other inputs and solvers a slip may still end
     return found
 

@@ -57,7 +57,8 @@ def run_settled(axis: Axis, initial: InitialState, inputs: Mapping[str, Numbers]
     count = len(inputs['drive_velocity'])
     if duration is not None:
         runs, _ = _runs(axis, initial, inputs, duration)
-        return replace(runs, settled=np.where(runs.slides_on, sliding_slope(axis, inputs) >= 0.0, runs.settled))
+        return replace(runs, settled=np.where(runs.slides_on | runs.lasts, _calms(runs, axis, initial, inputs),
+                                              runs.settled))
     runs, windows = no_runs(count), np.full((count, _WINDOW, ROUND_SIZE), np.nan)
     exponents = _first_exponents(axis, inputs)
     first, last = 2.0 ** exponents, exponents + doublings
@@ -84,6 +85,20 @@ def run_settled(axis: Axis, initial: InitialState, inputs: Mapping[str, Numbers]
         pending = pending[goes_on]
         exponents[pending] += 1
     return replace(runs, late=runs.lasts & (runs.sticks > 0.0) & (runs.last_break_away > _LATE * first))
+
+
+def _calms(runs: Runs, axis: Axis, initial: InitialState, inputs: Mapping[str, Numbers]) -> Flags:
+    """Return which slips of runs of one length, if any, come nearer to steady sliding than they were at half of it."""
+    calm: Flags = sliding_slope(axis, inputs) >= 0.0
+    slides = np.flatnonzero(calm & runs.slides_on)
+    if len(slides):
+        of_slides = {name: values[slides] for name, values in inputs.items()}
+        half, _ = _runs(axis, initial, of_slides, 0.5 * float(runs.duration[0]))
+        now, speed = _taken(runs, slides), np.abs(of_slides['drive_velocity'])
+        gaps = [np.abs(speed - one.least_speed) for one in (half, now)]
+        calm[slides] = ((half.last_break_away != now.last_break_away) | (now.events < _MORE * half.events)
+                        | ~(gaps[1] > np.maximum(_WANED * gaps[0], _CALM * speed)))
+    return calm
 
 
 class _Stage(NamedTuple):
