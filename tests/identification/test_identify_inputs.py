@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import stickslip_sim as stickslip
+from stickslip_sim.core.errors import InputError
 from stickslip_sim.recording import write_measured
 from stickslip_sim.scene import changed
 from tests.support.measured_runs import OF_FRICTION, OFF, RIGID, between, check
@@ -70,6 +71,14 @@ def test_a_motor_force_on_an_axis_that_is_not_quite_the_model(tmp_path: Path) ->
     assert not found.fits
     assert any('follows the whole run' in note for note in found.notes)
     assert found.values['axis.mass'] == pytest.approx(95.0, rel=0.02)
+
+
+def test_what_is_no_run_and_no_scene_is_said_so(tmp_path: Path) -> None:
+    columns = {'time': [0.0, 1.0], 'position': [0.0, 1.0]}
+    with pytest.raises(InputError, match="run = 'dict' is refused: must be a run, or the path of its folder"):
+        stickslip.identify(columns, RIGID, OF_FRICTION)  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="scene = 'dict' is refused: must be a Scene, or the name or path of one"):
+        stickslip.identify(tmp_path, {'axis.mass': 3.0}, OF_FRICTION)  # type: ignore[arg-type]
 
 
 def test_a_drive_that_was_measured_by_its_encoder(tmp_path: Path) -> None:

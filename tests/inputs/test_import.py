@@ -169,9 +169,37 @@ def test_nothing_to_compare_with(run: MeasuredRun, tmp_path: Path, capsys: Captu
     rest.write_text('time,velocity\n0,1e-5\n1,0\n2,1e-5\n')
     answered(capsys, 'import', rest, '--columns', 'time=time,velocity=velocity', '--stick-velocity', '1', '--out',
              tmp_path / 'rest')
+    answered(capsys, 'simulate', 'paper_fig7', '--duration', '1', '--bag', tmp_path / 'recorded')
     assert 'rest: at rest, no complete cycle to be compared' in refused(
-        capsys, 'compare', tmp_path / 'rest', 'paper_fig7', '--out', tmp_path / 'report')
+        capsys, 'compare', tmp_path / 'rest', tmp_path / 'recorded', '--out', tmp_path / 'report')
     assert not (tmp_path / 'report').exists()
+
+
+def test_millimetres_that_were_read_as_metres_are_asked_back(data: Path, tmp_path: Path, capsys: Capture) -> None:
+    wrong = tmp_path / 'mm.csv'
+    rows = np.loadtxt(data, delimiter=',', skiprows=1)
+    np.savetxt(wrong, rows[:, :3], delimiter=',', header='t [ms],x,v', comments='')
+    for columns, limit in (('position=x', 'up to 10 m'), ('velocity=v', 'up to 3 m/s')):
+        name = columns.partition('=')[0]
+        words = ('import', wrong, '--columns', f'time=t,{columns}', '--unit', 'time=ms', '--out', tmp_path / 'run')
+        line = refused(capsys, *words)
+        assert f'must be plausible for a feed axis, {limit}' in line
+        assert f'--unit {name}=mm' in line
+        assert answered(capsys, *words[:-1], tmp_path / f'meant_{name}', '--meant', name)[0] == 0
+    assert 'one of velocity' in refused(capsys, *words, '--meant', 'position')
+
+
+def test_noise_that_looks_like_slips_is_noted(simulated: SimulatedRun, tmp_path: Path, capsys: Capture) -> None:
+    """Of 20 µm at 1 kHz: the derived periods are of milliseconds; the encoder's own steps of 1 µm say nothing."""
+    samples = simulated.samples
+    noisy = samples['position'] + np.random.default_rng(0).normal(0.0, 2e-5, len(samples['time']))
+    counted = 1e-6 * np.round(samples['position'] / 1e-6)
+    for name, positions in (('noisy', noisy), ('counted', counted)):
+        path = tmp_path / f'{name}.csv'
+        np.savetxt(path, np.array([samples['time'], positions]).T, delimiter=',', header='t,x', comments='')
+        said = answered(capsys, 'import', path, '--columns', 'time=t,position=x', '--out', tmp_path / name)[1]
+        assert ('lies below the noise of the velocity' in said) == (name == 'noisy')
+        assert ('or import it with --stick-velocity 0.0' in said) == (name == 'noisy')
 
 
 def test_a_unit_has_a_factor(tmp_path: Path, capsys: Capture) -> None:

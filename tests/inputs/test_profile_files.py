@@ -140,6 +140,18 @@ def test_the_hash_is_that_of_the_values_wherever_they_come_from(tmp_path: Path) 
     assert scene.sources['drive'] == ('feed.csv', 'v', 'm/s')
 
 
+def test_a_unit_has_a_factor_as_at_an_import(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a motor with 35.15 N/V, of a sensor the other way round."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / 'volts.csv').write_text('time,force\n0,1\n1,-2\n')
+    for unit, forces in (('35.15 N', (35.15, -70.3)), ('-1 kN', (-1000.0, 2000.0))):
+        scene = load_scene('paper_fig8', {'force.file': 'volts.csv', 'force.file_unit': unit})
+        assert scene.values['force.forces'] == forces
+        assert scene.sources['force'] == ('volts.csv', 'force', unit)
+    with pytest.raises(InputError, match=r'force\.file_unit = .0 N. is refused: must be a unit, or one with a factor'):
+        load_scene('paper_fig8', {'force.file': 'volts.csv', 'force.file_unit': '0 N'})
+
+
 def test_a_file_in_an_override_takes_the_place_of_the_profile(
         tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / 'here').mkdir()

@@ -3,10 +3,19 @@
 """`stickslip import`: a measured run as a run folder."""
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from .files import check_new_folder, new_folder, say_written
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from ..recording import MeasuredRun
+
+_NOISES = 2.0   # standard deviations, of the velocity
+_ABOVE = 1.5    # of the noise: a threshold that it does not reach
 
 
 @click.command('import', short_help='Make a run folder of a measurement, from a CSV file or a bag.')
@@ -17,18 +26,20 @@ from .files import check_new_folder, new_folder, say_written
               help='Units of the columns [default: SI], with a factor if need be: position="-0.05 um".')
 @click.option('--stick-velocity', type=float, metavar='V',
               help='A slip is faster than this, m/s, and at its peak than 5 times it [default: 5 % of the highest].')
+@click.option('--meant', multiple=True, metavar='QUANTITY', help='It is meant as it was read, however fast or far.')
 @click.option('--out', required=True, metavar='RUN_FOLDER', help='New folder of the run.')
-def import_(data: str, columns: tuple[str, ...], unit: tuple[str, ...], stick_velocity: float | None, out: str
-            ) -> None:
-    """Make a run folder of what was measured, and nothing else, for plot, export, check and compare.
+def import_(data: str, columns: tuple[str, ...], unit: tuple[str, ...], stick_velocity: float | None,
+            meant: tuple[str, ...], out: str) -> None:
+    """Make a run folder of what was measured, for identify, compare, plot, export and check.
 
-    The quantities are time, position, velocity and acceleration of the slider, drive_position, drive_velocity,
-    drive_force, friction_force, external_force.  Modes and cycles are derived from the speed (docs/runs.md).
+    There is nothing else in it.  The quantities are time, position, velocity and acceleration of the slider,
+    drive_position, drive_velocity, drive_force, friction_force, external_force.  Modes and cycles are derived from the
+    speed (docs/runs.md).
     """
     check_new_folder('--out', out)
     from ..core.errors import InputError
-    from ..inputs.measurement import COLUMNS_OPTION, UNIT_OPTION, load_measurement, pairs_of
-    from ..recording import read_run, write_measured
+    from ..inputs.measurement import COLUMNS_OPTION, UNIT_OPTION, check_plausible_motion, load_measurement, pairs_of
+    from ..recording import MeasuredRun, read_run, write_measured
     from ..runs.wording import headline
 
     if stick_velocity is not None and not 0.0 < stick_velocity < 1e6:
@@ -36,6 +47,7 @@ def import_(data: str, columns: tuple[str, ...], unit: tuple[str, ...], stick_ve
     named = pairs_of(COLUMNS_OPTION, columns)
     units = pairs_of(UNIT_OPTION, unit) if unit else {}
     measured = load_measurement(Path(data), named, units)
+    check_plausible_motion(measured, meant)
     facts = {'file': Path(data).name, 'columns': _joined(named), 'units': _joined(units)}
     if stick_velocity is not None:
         facts['stick_velocity'] = repr(stick_velocity)
@@ -50,9 +62,24 @@ def import_(data: str, columns: tuple[str, ...], unit: tuple[str, ...], stick_ve
     run = read_run(out)
     print(f'{run.name}: {len(measured.times)} rows, {run.duration:.6g} s: {", ".join(measured.columns)}')
     print(f'  {headline(run.summary)}')
-    for note in run.notes:
+    assert isinstance(run, MeasuredRun)
+    for note in (*run.notes, *_of_noise(run)):
         print(f'  note: {note}')
     say_written(out)
+
+
+def _of_noise(run: 'MeasuredRun') -> 'Iterator[str]':
+    """Yield what is wrong with the threshold of a slip where noise of the velocity reaches it."""
+    from ..identification.given.sensor_noise import own_noise_of, quantum_of
+    from ..runs.wording import quantity
+
+    velocity = run.samples['velocity']
+    quantum = quantum_of(velocity)
+    noise = max(_NOISES * own_noise_of(velocity, quantum), quantum)
+    if run.stick_velocity < noise:
+        yield (f'the threshold of a slip, {quantity(run.stick_velocity, "m/s", 3)}, lies below the noise of the '
+               f'velocity, {quantity(noise, "m/s", 3)}: slips, periods and times in stick may be noise; smooth it '
+               f'before, or import it with --stick-velocity {_ABOVE * noise:.2g}')
 
 
 def _joined(pairs: dict[str, str]) -> str:

@@ -8,6 +8,7 @@ a remark.  Numbers are read by numpy; only a file that it refuses is gone throug
 
 import csv
 import math
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import islice
@@ -22,6 +23,8 @@ from ..core.errors import InputError, not_utf8
 from .units import all_in_si, named_unit, unit_of
 
 MOST_BYTES = 256 << 20
+_SCALED = re.compile(r'([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,2})?)\s*\*?\s*(.+)')   # 0.05 um
+_LARGEST = 1e15    # factor
 
 
 class Wanted(NamedTuple):
@@ -41,6 +44,20 @@ class Wanted(NamedTuple):
     def in_si(self) -> Fraction:
         """What a 1 in the column is in SI; raises InputError on an unknown unit."""
         return self.factor * self.units[unit_of(self.unit_option, self.unit, self.units)]
+
+
+def wanted_column(name_option: str, name: str, unit_option: str, unit: str | None, units: Mapping[str, Fraction]
+                  ) -> Wanted:
+    """Return a column that is wanted; its unit (None: SI, the first) may have a factor before it: `0.05 um`, `-1 mm`.
+
+    Raises InputError on a factor that is none.
+    """
+    scaled = None if unit is None else _SCALED.fullmatch(unit.strip())
+    factor = Fraction(scaled[1]) if scaled else Fraction(1)
+    if factor == 0 or abs(factor) > _LARGEST:
+        raise InputError(unit_option, unit, 'a unit, or one with a factor that is not 0', 'for example 35.15 N')
+    word = scaled[2] if scaled else unit or next(iter(units))
+    return Wanted(name_option, name, unit_option, word, units, factor)
 
 
 class CsvTable:

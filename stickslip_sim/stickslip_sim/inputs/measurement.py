@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A measurement: columns of a CSV file, or topics of a bag, over one time, in SI."""
 
-import re
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from pathlib import Path
@@ -12,7 +11,8 @@ import numpy as np
 
 from ..core.arrays import Numbers
 from ..core.errors import InputError
-from .csv_table import CsvTable, Wanted
+from ..scene.plausible import FASTEST, MEANT, Plausible, check_number
+from .csv_table import CsvTable, Wanted, wanted_column
 from .units import ACCELERATIONS, FORCES, LENGTHS, SPEEDS, TIMES
 
 QUANTITIES: Mapping[str, Mapping[str, Fraction]] = {
@@ -20,9 +20,9 @@ QUANTITIES: Mapping[str, Mapping[str, Fraction]] = {
     'drive_velocity': SPEEDS, 'drive_force': FORCES, 'friction_force': FORCES, 'external_force': FORCES,
 }
 MOST_ROWS = 2_000_000
+_FARTHEST = 10.0   # m, of a feed axis
+_APART = 20
 COLUMNS_OPTION, UNIT_OPTION = '--columns', '--unit'
-_SCALED = re.compile(r'([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,2})?)\s*\*?\s*(.+)')   # 0.05 um
-_LARGEST = 1e15    # factor
 
 
 class MeasuredColumns(NamedTuple):
@@ -58,7 +58,8 @@ def load_measurement(path: Path, columns: Mapping[str, str], units: Mapping[str,
     for name in units:
         if name not in columns:
             raise InputError(UNIT_OPTION, name, f'of a quantity in {COLUMNS_OPTION}', 'add its column')
-    wanted = {name: _wanted(name, column, units.get(name)) for name, column in columns.items()}
+    wanted = {name: wanted_column(COLUMNS_OPTION, column, UNIT_OPTION, units.get(name), QUANTITIES[name])
+              for name, column in columns.items()}
     if path.is_dir() or path.suffix == '.mcap':
         return _of_bag(path, wanted)
     if 'time' not in wanted:
@@ -76,15 +77,22 @@ def load_measurement(path: Path, columns: Mapping[str, str], units: Mapping[str,
     return MeasuredColumns(times, numbers)
 
 
-def _wanted(name: str, column: str, unit: str | None) -> Wanted:
-    """Return the column of a quantity; its unit may have a factor before it: `0.05 um` a count, `-1 mm`."""
-    known = QUANTITIES[name]
-    scaled = None if unit is None else _SCALED.fullmatch(unit.strip())
-    factor = Fraction(scaled[1]) if scaled else Fraction(1)
-    if factor == 0 or abs(factor) > _LARGEST:
-        raise InputError(UNIT_OPTION, unit, 'a unit, or one with a factor that is not 0', 'for example 35.15 N')
-    word = scaled[2] if scaled else unit or next(iter(known))
-    return Wanted(COLUMNS_OPTION, column, UNIT_OPTION, word, known, factor)
+def check_plausible_motion(measured: MeasuredColumns, meant: Sequence[str]) -> None:
+    """Raise InputError on a quantity that moves as far or as fast as no feed axis does, unless it is among `meant`."""
+    for name in meant:
+        if name not in measured.columns:
+            raise InputError(MEANT, name, 'one of ' + ', '.join(measured.columns), 'nothing else was imported')
+    for name, values in measured.columns.items():
+        unit = f'a wrong unit is the usual mistake: {UNIT_OPTION} {name}='
+        if name in meant or QUANTITIES[name] not in (LENGTHS, SPEEDS):
+            continue
+        if QUANTITIES[name] is SPEEDS:
+            check_number(name, float(np.abs(values).max()), Plausible(FASTEST, 'm/s', f'{unit}mm/s'))
+            continue
+        check_number(name, float(np.ptp(values)), Plausible(_FARTHEST, 'm', f'{unit}mm'))
+        apart = min(_APART, len(values) - 1)   # readings: noise of single ones makes no speed
+        speeds = (values[apart:] - values[:-apart]) / (measured.times[apart:] - measured.times[:-apart])
+        check_number(name, float(np.abs(speeds).max()), Plausible(FASTEST, 'm/s', f'{unit}mm'))
 
 
 def _of_bag(path: Path, wanted: Mapping[str, Wanted]) -> MeasuredColumns:

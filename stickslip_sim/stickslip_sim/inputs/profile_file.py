@@ -20,7 +20,7 @@ from ..scene.model import ProfileSource
 from ..scene.profile_schema import FILE_SETTINGS, MOST_POINTS
 from ..scene.schema import BY_NAME
 from ..scene.values import stated
-from .csv_table import CsvTable, Wanted
+from .csv_table import CsvTable, Wanted, wanted_column
 from .units import FORCES, LENGTHS, SPEEDS, TIMES
 
 Given = Mapping[str, object]
@@ -107,7 +107,7 @@ class _Profile:
         self._file = str(given['file'])
         self._column = self._wanted('file_column', kind.column, 'file_unit', kind.units)
         self._most = BY_NAME[f'{section}.{kind.values}']
-        self.source = ProfileSource(self._file, self._column.name, self._column.unit)
+        self.source = ProfileSource(self._file, self._column.name, str(given.get('file_unit', self._column.unit)))
 
     def points(self) -> tuple[list[float], list[float]]:
         """Return the times and values; raises InputError."""
@@ -131,8 +131,8 @@ class _Profile:
         return self._wanted('file_time', default, 'file_time_unit', TIMES)
 
     def _wanted(self, name: str, default: str, unit: str, units: Mapping[str, Fraction]) -> Wanted:
-        return Wanted(f'{self._section}.{name}', str(self._given.get(name, default)), f'{self._section}.{unit}',
-                      str(self._given.get(unit, next(iter(units)))), units)
+        return wanted_column(f'{self._section}.{name}', str(self._given.get(name, default)),
+                             f'{self._section}.{unit}', self._given.get(unit), units)
 
     def _check(self, table: _Table) -> None:
         times, values = table.columns

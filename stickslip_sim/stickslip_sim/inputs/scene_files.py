@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
+from ..core.errors import InputError
 from ..scene import Scene
 from ..scene.build import build_scene
 from ..scene.load import merged_parameters, named, read_scene
@@ -31,7 +32,10 @@ def load_scene(name_or_path: str | os.PathLike[str], overrides: Mapping[str, obj
 
 
 def scene_of(given: SceneOrName) -> Scene:
-    """Return a scene, or the one of that name or path; raises as `load_scene`."""
+    """Return a scene, or the one of that name or path; raises as `load_scene`, and InputError on anything else."""
+    if not isinstance(given, Scene | str | os.PathLike):
+        raise InputError('scene', type(given).__name__, 'a Scene, or the name or path of one',
+                         'load_scene(NAME, CHANGES) takes other values')
     return given if isinstance(given, Scene) else load_scene(given)
 
 

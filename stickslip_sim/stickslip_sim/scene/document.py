@@ -51,13 +51,13 @@ contradict a choice, with one line.  The shipped files in `stickslip_sim/sticksl
   pull.csv}` and `normal_load: {file: clamp.csv}` of times and forces: measured, or from another program.  A CSV file
   begins with a line of names; `file_column`, `file_unit`, `file_time` and `file_time_unit` say which columns are
   meant, and their units.  Left out they are `velocity`, `position` (`course: position`) or `force`, and `time`, in SI;
-  a heading that names another unit (`v [mm/s]`) is refused.  A decimal comma is read where the commas are not between
-  columns, what follows a `#` is not read.  `file: run:slider_state` is a topic of a bag; its column is a field of the
-  messages, like `velocity`, `wrench.force.x`, `velocity[0]` or `velocity[axis_drive]`.  The profile is linear between
-  the rows (`course: table`) unless `course: steps` says that each value holds until the next, and is resampled only
-  where `file_resample` asks for it.  The points become the times and values of the scene: its hash, the bag and the
-  receipt hold them, and `verify` needs the file no more.  Up to 200,000 rows; 25,000 are read in 0.1 s and simulated
-  in 0.01 s.
+  a heading that names another unit (`v [mm/s]`) is refused.  A unit may have a factor: `35.15 N`.  A decimal comma is
+  read where the commas are not between columns, what follows a `#` is not read.  `file: run:slider_state` is a topic
+  of a bag; its column is a field of the messages, like `velocity`, `wrench.force.x`, `velocity[0]` or
+  `velocity[axis_drive]`.  The profile is linear between the rows (`course: table`) unless `course: steps` says that
+  each value holds until the next, and is resampled only where `file_resample` asks for it.  The points become the
+  times and values of the scene: its hash, the bag and the receipt hold them, and `verify` needs the file no more.  Up
+  to 200,000 rows; 25,000 are read in 0.1 s and simulated in 0.01 s.
 * **Tables.**  The points of a table are its breakpoints; it is linear between them.
 * **Backwards.**  Real axes differ forwards and backwards.  The sections `backward` of friction have the numbers of
   motion along -x, and of a force that pulls that way: `friction: {static: {initial: 0.12, backward: {initial: 0.1}}}`.

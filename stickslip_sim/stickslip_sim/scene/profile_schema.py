@@ -94,7 +94,7 @@ def _file(section: str, left_out: tuple[str, str, str], when: When) -> tuple[Par
              ' semicolons, tabs or spaces), or BAG:TOPIC; relative to the folder of the scene; its points become the'
              ' times and values of this scene; course: table when none is given'),
         text('file_column', f'column of the values, or field of the messages like velocity[0]; left out: {column}'),
-        text('file_unit', f'unit of the values, like {other}; left out: {unit}'),
+        text('file_unit', f'unit of the values, like {other} or 2.5 {other}; left out: {unit}'),
         text('file_time', 'column of the times, or field of the messages, header.stamp or log_time; left out: time, of'
              ' messages log_time'),
         text('file_time_unit', 'unit of the times: s, ms, us, ns or min; left out: s'),
