@@ -43,7 +43,7 @@ COMMANDS: Mapping[str, tuple[str, ...]] = {   # by the name of the part of the p
         'identify runs/identify/axis --scene examples/identify/start.yaml --free examples/identify/free.yaml'
         ' --out runs/identify/axis_found'),
     'check': (
-        'compare runs/identify/axis runs/identify/axis_found/identified.yaml --duration 8'
+        'compare runs/identify/axis runs/identify/axis_found/identified.yaml'
         ' --out runs/identify/axis_beside',),
     'posterior': (
         'uncertainty runs/identify/axis_found/identified.yaml --with runs/identify/axis_found/posterior.yaml'
@@ -108,7 +108,7 @@ def pictures() -> None:
         if name == 'lugre':
             plot_residuals(channels, slip_share(found), IMAGES / 'identified_lugre.png')
         else:
-            plot_fit(channels, usual_cycles(found), IMAGES / 'identified_fit.png')
+            plot_fit(channels, usual_cycles(found), found.restarts, IMAGES / 'identified_fit.png')
             plot_known_friction(known_friction(run, found), IMAGES / 'identified_friction.png')
 
 

@@ -50,7 +50,8 @@ def identification_of(problem: FitProblem, scene: Scene, ends: Sequence[Ended], 
     whole = problem.stretches(None if best.of_slips is None else 0)
     fitted = problem.fitted(point, whole)
     assert fitted is not None
-    channels = _channels(problem, fitted)
+    channels = _channels(problem, fitted, None if best.of_slips is None else problem.fitted(point,
+                                                                                            problem.stretches(None)))
     information = best.solution.information
     changes = changes_by_inputs(problem, point) if best.of_slips is None else []
     more = more_by_inputs(problem, changes)
@@ -83,10 +84,12 @@ def identification_of(problem: FitProblem, scene: Scene, ends: Sequence[Ended], 
         n_residuals=len(whole.rows) * len(channels), runs=problem.model.runs, seconds=time.perf_counter() - began,
         notes=(*problem.measurement.notes, *([] if best.solution.is_settled else [_UNSETTLED]),
                *([] if best.of_slips is None else [_OF_SLIPS]), *([_ALONG] if best.is_along else [])),
-        shift=problem.measurement.shift)
+        shift=problem.measurement.shift,
+        restarts=tuple(part.begin + problem.measurement.shift for part in whole.parts if part.before is not None))
 
 
-def _channels(problem: FitProblem, fitted: Sequence[Numbers]) -> tuple[ChannelFit, ...]:
+def _channels(problem: FitProblem, fitted: Sequence[Numbers], free: Sequence[Numbers] | None
+              ) -> tuple[ChannelFit, ...]:
     measurement = problem.measurement
     found = []
     for k, channel in enumerate(measurement.channels):
@@ -95,7 +98,7 @@ def _channels(problem: FitProblem, fitted: Sequence[Numbers]) -> tuple[ChannelFi
         length = correlation_length(new, channel.weights)
         found.append(ChannelFit(channel.name, channel.unit, measurement.times + measurement.shift, channel.values,
                                 fitted[k], channel.resolution, (length - 1.0) * measurement.period,
-                                None if new is residuals else new))
+                                None if new is residuals else new, None if free is None else free[k]))
     return tuple(found)
 
 

@@ -46,6 +46,8 @@ class ChannelFit:
     `fitted` has the sensor's own offset and scale.  `resolution` is the standard deviation that the fit took for the
     noise, `correlation_time` (s) over how long residuals go together (0 when each sample stands for itself).  Where
     noise of a measured force moves the slider, what is `new` in each sample counts: the residuals are these.
+    Where single slips are `fitted`, each from a measured arrest, `free` is what the model does by itself from the start
+    of the run on; None where `fitted` is that, or where there is no such motion.
     """
 
     name: str
@@ -56,6 +58,7 @@ class ChannelFit:
     resolution: float
     correlation_time: float = 0.0
     new: Numbers | None = None
+    free: Numbers | None = None
 
     @property
     def residuals(self) -> Numbers:
@@ -139,7 +142,8 @@ class Identification:
     determine.  `fits` says whether no test rejects the model (`misfits` is empty).  `criterion` names the one that
     compares `laws`, `cost` is the chi-square over `n_residuals`, `runs` how many simulations it took, `notes` what a
     user must know.  The start of the simulation is at `shift` s of the measurement, whose times all of this has.
-    `measured_inputs` are the sections of the scene, `drive` or `force`, that are as they were measured.
+    `measured_inputs` are the sections of the scene, `drive` or `force`, that are as they were measured; `restarts` are
+    the measured arrests (s) at which the fitted motion begins anew.
     """
 
     start: Scene
@@ -160,6 +164,7 @@ class Identification:
     notes: tuple[str, ...] = ()
     shift: float = 0.0
     measured_inputs: tuple[str, ...] = ()
+    restarts: tuple[float, ...] = ()
 
     @property
     def fits(self) -> bool:

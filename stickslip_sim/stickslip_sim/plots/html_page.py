@@ -16,6 +16,10 @@ td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; wh
 figure { margin: 1.5em 0 } figcaption { font-size: 0.9em } img { max-width: 100%; height: auto }
 .holds { color: #00664b; font-weight: 600 } .fails { color: #b0003a; font-weight: 600 } .note { color: #b0003a }
 .other { color: #666 } .wide { overflow-x: auto }
+@media print {   /* what is wider than the paper would be cut off */
+body { font-size: 10px; max-width: none; margin: 0 } .wide { overflow: visible }
+td.number, th.number { white-space: normal } th, td { padding: 0.15em 0.4em; overflow-wrap: anywhere }
+}
 '''
 
 
@@ -41,3 +45,8 @@ def html_table(caption: str, heads: Sequence[str], rows: Iterable[Sequence[str]]
 
     return (f'<div class="wide"><table><caption>{escape(caption)}</caption>{line("th", heads)}'
             + ''.join(line('td', row) for row in rows) + '</table></div>')
+
+
+def folded(summary: str, content: str) -> str:
+    """Return HTML that is shown when its summary is clicked."""
+    return f'<details><summary>{escape(summary)}</summary>{content}</details>'

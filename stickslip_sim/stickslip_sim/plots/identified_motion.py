@@ -4,6 +4,7 @@
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from itertools import pairwise
 from pathlib import Path
 from string import ascii_lowercase
 from typing import NamedTuple
@@ -15,6 +16,7 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from ..core.arrays import Numbers
+from .scale import in_words, labelled
 from .style import (
     BLACK,
     BLUE,
@@ -41,7 +43,8 @@ class FittedChannel(NamedTuple):
     """A channel over `times` (s): measured and fitted numbers in `unit`.
 
     `residuals` (n,) are measured less fitted, or what is new in that, in standard deviations of the sensor, `phases`
-    (n,) shares of the cycle, NaN outside of one; `misfits` are the times (from, to) where a test rejects it.
+    (n,) shares of the cycle, NaN outside of one; `misfits` are the times (from, to) where a test rejects it.  `free` is
+    the run of the model by itself where `fitted` restarts; None where they are one.
     """
 
     name: str
@@ -52,15 +55,21 @@ class FittedChannel(NamedTuple):
     residuals: Numbers
     phases: Numbers
     misfits: Sequence[tuple[float, float]]
+    free: Numbers | None = None
 
 
-def plot_fit(channels: Sequence[FittedChannel], window: tuple[float, float], path: Path | str) -> None:
-    """Draw a row for each channel: the whole run, and a `window` of it (s); thin on top what was fitted."""
+def plot_fit(channels: Sequence[FittedChannel], window: tuple[float, float], restarts: Sequence[float],
+             path: Path | str) -> None:
+    """Draw a row for each channel: the whole run, and a `window` of it (s); thin on top what was fitted.
+
+    At its `restarts` (s) the fitted motion begins anew from a measured arrest: there it has a gap and a mark.
+    """
     with _figure(len(channels), share=False) as (figure, rows):
         for panels, channel in zip(rows, channels):
-            _motion(panels[0], channel, (channel.times[0], channel.times[-1]))
-            _motion(panels[1], channel, window)
-            panels[0].set_ylabel(_label(channel.name, _SCALES.get(channel.unit, (1.0, channel.unit))[1]))
+            _motion(panels[0], channel, (channel.times[0], channel.times[-1]), restarts)
+            _motion(panels[1], channel, window, restarts)
+            unit = _SCALES.get(channel.unit, (1.0, channel.unit))[1]
+            panels[0].set_ylabel(labelled(in_words(channel.name), unit))
             panels[0].axvspan(*window, color=GREY, alpha=0.15, linewidth=0.0)
         _finish(figure, rows, ('time / s', 'time / s'), path)
 
@@ -98,14 +107,36 @@ def _finish(figure: Figure, rows: Sequence[Sequence[Axes]], labels: Sequence[str
     save(figure, path)
 
 
-def _motion(panel: Axes, channel: FittedChannel, window: tuple[float, float]) -> None:
+def _motion(panel: Axes, channel: FittedChannel, window: tuple[float, float], restarts: Sequence[float]) -> None:
     scale, _ = _SCALES.get(channel.unit, (1.0, ''))
     inside = (channel.times >= window[0]) & (channel.times <= window[1])
     times = channel.times[inside]
     panel.plot(*thinned(times, scale * channel.measured[inside]), color=GREY, linewidth=2.4, alpha=0.5,
                label='measured')
-    panel.plot(*thinned(times, scale * channel.fitted[inside]), color=BLUE, linewidth=0.9, label='fitted')
+    if channel.free is not None:
+        limits = _limits(scale * channel.measured[inside], scale * channel.free[inside])
+        panel.plot(*thinned(times, scale * channel.free[inside]), color=ORANGE, linewidth=0.9,
+                   linestyle=(0, (3.0, 1.0)), label='free run from the start')
+        panel.set_ylim(*limits)
+    within = [time for time in restarts if window[0] <= time <= window[1]]
+    label = 'fitted'
+    if restarts:
+        label = 'fitted slip by slip'
+        panel.plot(within, np.zeros(len(within)), '^', color=BLUE, markersize=3.0, clip_on=False,
+                   transform=panel.get_xaxis_transform(), label='restart at a measured arrest')
+    edges = np.searchsorted(times, within)
+    for k, (first, last) in enumerate(pairwise([0, *edges.tolist(), len(times)])):
+        panel.plot(*thinned(times[first:last], scale * channel.fitted[inside][first:last]), color=BLUE, linewidth=0.9,
+                   label=label if k == 0 else None)
     panel.set_xlim(*window)
+
+
+def _limits(measured: Numbers, free: Numbers) -> tuple[float, float]:
+    """Return from where to where both are drawn: a free run that goes far away from the measured one leaves it."""
+    low, high = float(measured.min()), float(measured.max())
+    room = high - low
+    return (max(min(low, float(free.min())), low - room) - 0.05 * room,
+            min(max(high, float(free.max())), high + room) + 0.05 * room)
 
 
 def _over_time(panel: Axes, channel: FittedChannel) -> None:
@@ -146,8 +177,3 @@ def _means(phases: Numbers, values: Numbers) -> tuple[Numbers, Numbers]:
 def _lines(panel: Axes) -> None:
     panel.axhline(0.0, color=BLACK, linewidth=0.6)
     panel.axhspan(-2.0, 2.0, color=GREY, alpha=0.15, linewidth=0.0, label='±2 σ of the sensor')
-
-
-def _label(name: str, unit: str) -> str:
-    words = name.replace('_', ' ')
-    return f'{words} / ({unit})' if '/' in unit else f'{words} / {unit}'

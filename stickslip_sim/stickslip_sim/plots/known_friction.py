@@ -2,9 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Identified friction with its band beside what was measured: kinetic over speed, static over the time at rest."""
 
+from collections.abc import Mapping
 from pathlib import Path
+from string import ascii_lowercase
 from typing import NamedTuple
 
+import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -25,7 +28,8 @@ from .style import (
     save,
 )
 
-_HEIGHT = 3.2   # in
+_HEIGHT, _ROW = 3.2, 2.6   # in, with one direction, and of one more
+_ABOVE = 1.1    # of the highest curve
 _MOST = 4000    # measured points that are drawn
 
 
@@ -69,19 +73,29 @@ class KnownFriction(NamedTuple):
     break_aways: Scatter
 
 
-def plot_known_friction(friction: KnownFriction, path: Path | str) -> None:
-    """Draw kinetic friction over speed and static friction over the time at rest."""
+def plot_known_friction(directions: Mapping[str, KnownFriction], path: Path | str) -> None:
+    """Draw kinetic friction over speed and static friction over the time at rest, a row for each direction by name."""
     with rc_context(JOURNAL):
-        figure = Figure(figsize=(DOUBLE_COLUMN, _HEIGHT), layout=ConstrainedLayoutEngine(w_pad=0.06, h_pad=0.05))
-        kinetic, static = figure.subplots(1, 2, sharey=True, width_ratios=(3, 2))
-        _kinetic(kinetic, friction)
-        _static(static, friction)
-        top = max(float(axes.get_ylim()[1]) for axes in (kinetic, static))
-        kinetic.set_ylim(0.0, top)
-        for panel, name in zip((kinetic, static), 'ab'):
+        figure = Figure(figsize=(DOUBLE_COLUMN, _HEIGHT + _ROW * (len(directions) - 1)),
+                        layout=ConstrainedLayoutEngine(w_pad=0.06, h_pad=0.05))
+        panels = figure.subplots(len(directions), 2, squeeze=False, sharey=True, width_ratios=(3, 2))
+        for (kinetic, static), (name, friction) in zip(panels, directions.items()):
+            _kinetic(kinetic, friction)
+            _static(static, friction)
+            kinetic.set_title(name, fontsize=8.0, loc='left')
+        panels[0, 0].set_ylim(0.0, max(map(_top, directions.values())))
+        for panel, name in zip(panels.flat, ascii_lowercase):
             letter(panel, name)
-        legend_of(figure, 'upper center', static, kinetic, ncols=4)
+        legend_of(figure, 'upper center', panels[0, 1], panels[0, 0], ncols=4)
         save(figure, path)
+
+
+def _top(friction: KnownFriction) -> float:
+    """Return the coefficient up to which a direction is drawn; lone readings far above are left out."""
+    curves = [friction.kinetic, friction.static, *([friction.accelerating] if friction.accelerating else [])]
+    highest = max(float((band.values + np.nan_to_num(band.half)).max()) for band in curves)
+    starts = friction.start_kinetic.values, friction.start_static.values, friction.break_aways.values
+    return _ABOVE * max(highest, *(float(values.max(initial=0.0)) for values in (*starts, friction.bins.high)))
 
 
 def _kinetic(panel: Axes, friction: KnownFriction) -> None:
@@ -100,8 +114,6 @@ def _kinetic(panel: Axes, friction: KnownFriction) -> None:
                        label='measured: median and quartiles')
     panel.set(xlabel='speed / (mm/s)', ylabel='coefficient of friction')
     panel.set_xlim(0.0, MILLI * friction.kinetic.places[-1])
-    if len(friction.points.values):
-        panel.set_ylim(0.0, 1.3 * max(float(friction.static.values.max()), float(friction.kinetic.values.max())))
 
 
 def _static(panel: Axes, friction: KnownFriction) -> None:

@@ -24,6 +24,11 @@ def unit_read(unit: str, values: Numbers) -> str:
     return 'ms' if unit == 's' and len(known) and float(np.median(known)) < 1.0 else unit
 
 
+def labelled(words: str, unit: str) -> str:
+    """Return words with the unit of their numbers, as at an axis or above a column: speed / (mm/s)."""
+    return f'{words} / ({unit})' if '/' in unit or ' ' in unit else f'{words} / {unit}' if unit else words
+
+
 class Scale(NamedTuple):
     """A parameter or a figure: its name, its SI unit, whether its axis is logarithmic.
 
@@ -53,7 +58,7 @@ class Scale(NamedTuple):
         """The text at the axis."""
         unit = _SHOWN.get(self.unit, (1.0, self.unit))[1]
         words = in_words(self.name.removeprefix('axis.')) + (f' at {self.place}' if self.place else '')
-        return f'{words} / ({unit})' if '/' in unit or ' ' in unit else f'{words} / {unit}' if unit else words
+        return labelled(words, unit)
 
     @property
     def kind(self) -> str:

@@ -28,16 +28,20 @@ from stickslip_sim.identification.identify import identify
 from stickslip_sim.identification.report.cycle_phases import phases, slip_share, usual_cycles
 from stickslip_sim.identification.report.friction_band import half_width, kinetic_of, static_of
 from stickslip_sim.identification.report.identified_scene import identified_text
+from stickslip_sim.identification.report.known_friction import known_friction
 from stickslip_sim.identification.report.measured_friction import binned, friction_points
 from stickslip_sim.identification.report.posterior import posterior_text
+from stickslip_sim.identification.report.report_values import IDENTIFIED_VALUES
 from stickslip_sim.identification.report.results import (
     IDENTIFIED_PAGE,
     IDENTIFIED_SCENE,
-    IDENTIFIED_VALUES,
     POSTERIOR,
+    fitted_channels,
     write_results,
 )
 from stickslip_sim.inputs import load_scene
+from stickslip_sim.plots.identified_motion import plot_fit
+from stickslip_sim.plots.known_friction import plot_known_friction
 from stickslip_sim.recording.measured_run import MeasuredRun
 from stickslip_sim.scene import scene_from_values
 from stickslip_sim.scene.load import parse_scene
@@ -286,6 +290,72 @@ def test_a_report_shows_what_does_not_fit_and_what_is_not_known(run: MeasuredRun
     assert values['correlation'][1] == [None] * 3
     assert values['combinations'][0]['spread'] == 'inf'
     assert values['misfits'][0]['from_time'] == 1.0
+
+
+def test_of_many_misfits_three_are_listed_and_all_are_in_the_fold(run: MeasuredRun, found: Identification,
+                                                                 tmp_path: Path) -> None:
+    """The first of each channel, of all of the run, and then the one that is farthest off."""
+    misfits = tuple(Misfit(channel, 'mean square', statistic, 1.0, 0.0, 1.0, f'{channel} off by {statistic:g}')
+                    for channel in ('position', 'drive_force') for statistic in (5.0, 3.0, *range(10, 45)))
+    write_results(run, replace(found, misfits=misfits), 'start.yaml', tmp_path)
+    page = (tmp_path / IDENTIFIED_PAGE).read_text()
+    above, _, fold = page.partition('<details>')
+    assert re.findall(r'<li>(.*?)</li>', above) == ['position off by 5', 'drive_force off by 5', 'position off by 44']
+    assert fold.partition('</details>')[0].count('<tr>') == 1 + len(misfits)
+    assert page.count('drive_force off by 31') == 1
+    assert '@media print' in page
+
+
+@pytest.fixture(scope='module')
+def slip_by_slip(tmp_path_factory: pytest.TempPathFactory) -> tuple[MeasuredRun, Identification]:
+    """Return a run of another mass than that of the scene: single slips are fitted."""
+    other = readings({**TRUTH, 'axis.mass': 50.0}).as_run(tmp_path_factory.mktemp('other') / 'measured')
+    return other, identify(other, start_scene(), free_file(tmp_path_factory.mktemp('free') / 'free.yaml'))
+
+
+def test_where_single_slips_are_fitted_the_restarts_and_the_free_run_are_shown(
+        slip_by_slip: tuple[MeasuredRun, Identification], tmp_path: Path) -> None:
+    other, fitted = slip_by_slip
+    assert fitted.restarts
+    free = fitted.channels[0].free
+    assert free is not None
+    assert np.abs(free - fitted.channels[0].measured).max() > 2.0 * np.abs(fitted.channels[0].residuals).max()
+    plot_fit(fitted_channels(fitted), usual_cycles(fitted), fitted.restarts, tmp_path / 'fit.svg')
+    words = (tmp_path / 'fit.svg').read_text()
+    for label in ('free run from the start', 'restart at a measured arrest', 'fitted slip by slip'):
+        assert f'<!-- {label} -->' in words
+    write_results(other, fitted, 'start.yaml', tmp_path)
+    assert json.loads((tmp_path / IDENTIFIED_VALUES).read_text())['restarts'] == list(fitted.restarts)
+
+
+def test_a_fit_of_the_whole_run_has_no_restart(found: Identification, tmp_path: Path) -> None:
+    assert (found.restarts, found.channels[0].free) == ((), None)
+    plot_fit(fitted_channels(found), usual_cycles(found), found.restarts, tmp_path / 'fit.svg')
+    words = (tmp_path / 'fit.svg').read_text()
+    assert '<!-- fitted -->' in words
+    assert 'restart' not in words
+
+
+def test_friction_of_each_direction_is_shown_in_its_own(found: Identification, tmp_path: Path) -> None:
+    """The points of a direction lie on the curve of that direction."""
+    backward = {'friction.static.backward.initial': 0.26, 'friction.kinetic.backward.velocities': (0.0, 0.02),
+                'friction.kinetic.backward.coefficients': (0.16, 0.10)}
+    values = {**TRUTH, **backward, 'drive.course': 'steps', 'drive.times': (0.0, 2.0), 'drive.velocities': (0.002,
+                                                                                                          -0.002)}
+    del values['drive.velocity']
+    both = readings(values, duration=5.0).as_run(tmp_path / 'both')
+    directed = known_friction(both, replace(found, scene=scene_from_values(values), slips=()))
+    assert list(directed) == ['forward', 'backward']
+    for name, (rest, slope) in {'forward': (0.12, -2.0), 'backward': (0.16, -3.0)}.items():
+        assert directed[name].kinetic.values[0] == rest
+        bins = directed[name].bins
+        falling = bins.places < 0.02
+        np.testing.assert_allclose(bins.middles[falling], rest + slope * bins.places[falling], atol=0.006)
+    plot_known_friction(directed, tmp_path / 'friction.svg')
+    words = (tmp_path / 'friction.svg').read_text()
+    assert '<!-- forward -->' in words
+    assert '<!-- backward -->' in words
+    assert list(known_friction(both, replace(found, slips=()))) == ['']
 
 
 def test_an_end_beyond_all_numbers_is_that_of_the_range() -> None:

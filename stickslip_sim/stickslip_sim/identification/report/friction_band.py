@@ -37,23 +37,25 @@ def half_width(found: Identification, curve: FrictionCurveOf) -> Numbers:
     return np.asarray(_QUANTILE * np.sqrt(np.maximum(np.einsum('ij,jk,ik->i', slopes, inner, slopes), 0.0)))
 
 
-def kinetic_of(speeds: Numbers) -> FrictionCurveOf:
-    """Return the curve of kinetic friction over speeds, m/s."""
-    return lambda scene: np.array([scene.axis.friction.kinetic.coefficient(speed) for speed in speeds.tolist()])
+def kinetic_of(speeds: Numbers, direction: float = 1.0) -> FrictionCurveOf:
+    """Return the curve of kinetic friction over speeds, m/s, in a direction."""
+    return lambda scene: np.array([scene.axis.friction.along(direction).kinetic.coefficient(speed)
+                                   for speed in speeds.tolist()])
 
 
-def accelerating_of(speeds: Numbers, rest_time: float) -> FrictionCurveOf:
-    """Return the accelerating branch over speeds, m/s, of a slip after a time at rest, s."""
+def accelerating_of(speeds: Numbers, rest_time: float, direction: float = 1.0) -> FrictionCurveOf:
+    """Return the accelerating branch over speeds, m/s, of a slip after a time at rest, s, in a direction."""
     def curve(scene: Scene) -> Numbers:
-        friction = scene.axis.friction
+        friction = scene.axis.friction.along(direction)
         excess = friction.static.coefficient(rest_time) - friction.kinetic.coefficient(0.0)
-        return kinetic_of(speeds)(scene) + max(excess, 0.0) * _shape(friction, speeds.tolist())
+        return kinetic_of(speeds, direction)(scene) + max(excess, 0.0) * _shape(friction, speeds.tolist())
     return curve
 
 
-def static_of(rest_times: Numbers) -> FrictionCurveOf:
-    """Return the curve of static friction over times at rest, s."""
-    return lambda scene: np.array([scene.axis.friction.static.coefficient(time) for time in rest_times.tolist()])
+def static_of(rest_times: Numbers, direction: float = 1.0) -> FrictionCurveOf:
+    """Return the curve of static friction over times at rest, s, against a force in a direction."""
+    return lambda scene: np.array([scene.axis.friction.along(direction).static.coefficient(time)
+                                   for time in rest_times.tolist()])
 
 
 def _shape(friction: Friction, speeds: Sequence[float]) -> Numbers:

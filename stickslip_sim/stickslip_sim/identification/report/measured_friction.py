@@ -46,8 +46,8 @@ class FrictionBins(NamedTuple):
 NOTHING = FrictionPoints(np.empty(0), np.empty(0))
 
 
-def friction_points(run: Run, found: Identification) -> FrictionPoints:
-    """Return the friction at each reading within a slip; nothing where no force is known."""
+def friction_points(run: Run, found: Identification, direction: float = 0.0) -> FrictionPoints:
+    """Return the friction at each reading within a slip, of both directions (0) or one; nothing without a force."""
     times, drawn = _even(corrected(run, found))
     if len(times) < 2 * _FEWEST:
         return NOTHING
@@ -63,7 +63,8 @@ def friction_points(run: Run, found: Identification) -> FrictionPoints:
         return NOTHING
     rows = np.concatenate([np.arange(slip.first + window // 2, slip.end - window // 2) for slip in slips])
     loads = loads_at(found, times[rows])
-    rows, loads = rows[loads > 0.0], loads[loads > 0.0]
+    kept = (loads > 0.0) & (velocity[rows] * direction >= 0.0)
+    rows, loads = rows[kept], loads[kept]
     return FrictionPoints(np.abs(velocity[rows]), np.sign(velocity[rows]) * force[rows] / loads)
 
 

@@ -9,22 +9,24 @@ from typing import Any
 
 import numpy as np
 
-from ...plots.html_page import html_page, html_table
+from ...plots.html_page import folded, html_page, html_table
 from ...runs.wording import quantity
-from ..identified import Estimate, Identification
+from ..identified import Estimate, Identification, Misfit
 from .identified_scene import interval_words, number_words
 
 _CAPTIONS = {
     'fit': 'The fitted motion (thin) over the measured one (thick, grey): the whole run, and two cycles of it '
-           '(shaded).',
+           '(shaded).  Where single slips were fitted, each begins at a measured arrest, marked below: no prediction '
+           'of more than that slip.  The free run (dashed) is what the model does by itself from the start on.',
     'residuals': 'What is left, in standard deviations of the sensor: over time, and over the phase of the cycle, from '
                  'break-away to break-away, where a pattern shows what the model lacks.  Red: a test rejects the '
                  'model there.',
     'friction': 'Friction as identified, with the band that its numbers leave (95 %), and straight from the '
                 'measurement: force on the slider less its inertia, within slips.  (a) Over speed, (b) over the time '
-                'at rest.',
+                'at rest; friction that depends on the direction has a row for each.',
     'correlations': 'How the errors of the numbers go together: near 1 or −1 the run shows only their combination.',
 }
+_SHOWN = 3   # misfits, above the fold
 _ORDER = ('fit', 'residuals', 'friction')
 
 
@@ -47,9 +49,25 @@ def caption(name: str) -> str:
 def _verdict(found: Identification) -> str:
     if found.fits:
         return '<p class="holds">✓ The model fits: no test of the residuals rejects it.</p>'
-    rows = ''.join(f'<li>{escape(one.statement)}</li>' for one in found.misfits)
+    rows = ''.join(f'<li>{escape(one.statement)}</li>' for one in _foremost(found.misfits))
     return ('<p class="fails">✗ The model does not fit this run.  Its numbers are the best it can do; the intervals '
-            f'hold only for a model that fits.</p><ul>{rows}</ul>')
+            f'hold only for a model that fits.</p><ul>{rows}</ul>{_all_tests(found.misfits)}')
+
+
+def _foremost(misfits: Sequence[Misfit]) -> list[Misfit]:
+    """Return the misfits that matter most: the first of each channel, of all of the run, then those farthest off."""
+    firsts = {one.channel: one for one in reversed(misfits)}
+    others = sorted((one for one in misfits if one is not firsts[one.channel]),
+                    key=lambda one: one.statistic / one.limit if one.limit else math.inf, reverse=True)
+    return [*(one for one in misfits if one is firsts[one.channel]), *others][:_SHOWN]
+
+
+def _all_tests(misfits: Sequence[Misfit]) -> str:
+    rows = [[one.statement, one.test, f'{one.statistic:.4g}', f'{one.limit:.4g}', f'{one.from_time:.6g}',
+             f'{one.to_time:.6g}'] for one in misfits]
+    table = html_table('Tests of the residuals that reject the model', [
+        '', 'test', 'statistic', 'limit', 'from / s', 'to / s'], rows)
+    return folded(f'all tests that reject the model: {len(misfits)}', table)
 
 
 def _facts(found: Identification, run: str, start: str) -> Iterator[str]:
@@ -76,11 +94,6 @@ def _open(found: Identification) -> Iterator[str]:
     if found.combinations:
         rows = ''.join(f'<li>{escape(one.statement)}</li>' for one in found.combinations)
         yield f'<h2>What this run cannot tell apart</h2><ul>{rows}</ul>'
-    if found.misfits:
-        rows_of = [[one.channel, one.test, f'{one.statistic:.4g}', f'{one.limit:.4g}', f'{one.from_time:.6g}',
-                    f'{one.to_time:.6g}'] for one in found.misfits]
-        yield '<h2>Where the model does not fit</h2>' + html_table(
-            'Tests of the residuals', ['channel', 'test', 'statistic', 'limit', 'from / s', 'to / s'], rows_of)
 
 
 def _channels(found: Identification) -> str:

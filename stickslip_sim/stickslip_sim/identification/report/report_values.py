@@ -2,19 +2,26 @@
 # SPDX-License-Identifier: Apache-2.0
 """An identification as values for JSON, SI; what is not a finite number is null, or the text 'inf'."""
 
+import json
 import math
 from collections.abc import Mapping
 from dataclasses import asdict
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from ...core.errors import InputError
 from ...plots.known_friction import Band, KnownFriction
 from ...runs.receipt import versions
 from ..identified import LEVEL, ChannelFit, Estimate, Identification
+from .identified_scene import OF_SENSORS
+
+IDENTIFIED_VALUES = 'report.json'
 
 
-def report_values(found: Identification, run: str, start: str, friction: KnownFriction) -> dict[str, Any]:
+def report_values(found: Identification, run: str, start: str, friction: Mapping[str, KnownFriction]
+                  ) -> dict[str, Any]:
     """Return all that a report has, but for the readings themselves."""
     values: dict[str, Any] = _plain({
         'run': run, 'start': start, 'scene': found.scene.name, 'scene_hash': found.scene.hash, 'fits': found.fits,
@@ -23,11 +30,27 @@ def report_values(found: Identification, run: str, start: str, friction: KnownFr
         'misfits': [asdict(one) for one in found.misfits],
         'combinations': [asdict(one) for one in found.combinations], 'starts': [asdict(one) for one in found.starts],
         'criterion': found.criterion, 'laws': [asdict(one) for one in found.laws],
-        'slips': [asdict(one) for one in found.slips], 'friction': _friction(friction), 'cost': found.cost,
+        'slips': [asdict(one) for one in found.slips], 'friction': _friction(next(iter(friction.values()))),
+        'friction_backward': _friction(friction['backward']) if 'backward' in friction else None, 'cost': found.cost,
         'residuals': found.n_residuals, 'runs': found.runs, 'seconds': found.seconds, 'notes': list(found.notes),
-        'versions': versions(),
+        'restarts': list(found.restarts),        'versions': versions(),
     })
     return values
+
+
+def sensor_errors(folder: Path) -> dict[str, float]:
+    """Return what the report in a folder says of sensors, as `sensor.CHANNEL.offset`; nothing without a report.
+
+    Raises InputError on one that is damaged.
+    """
+    path = folder / IDENTIFIED_VALUES
+    if not path.is_file():
+        return {}
+    try:
+        estimates = json.loads(path.read_text(encoding='utf-8'))['estimates']
+        return {one['name']: float(one['value']) for one in estimates if one['name'].startswith(OF_SENSORS)}
+    except (ValueError, LookupError, TypeError, AttributeError):
+        raise InputError('report', str(path), 'as identify wrote it', 'identify again, or take it away') from None
 
 
 def _estimate(one: Estimate) -> dict[str, Any]:

@@ -3,7 +3,7 @@
 """An identification as a folder: a scene, what is left open of it, and the report as HTML and JSON."""
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -18,10 +18,10 @@ from .identified_scene import identified_text, input_texts
 from .known_friction import known_friction
 from .posterior import posterior_text
 from .report_page import caption, report_page
-from .report_values import report_values
+from .report_values import IDENTIFIED_VALUES, report_values
 
 IDENTIFIED_SCENE, POSTERIOR = 'identified.yaml', 'posterior.yaml'
-IDENTIFIED_PAGE, IDENTIFIED_VALUES = 'report.html', 'report.json'
+IDENTIFIED_PAGE = 'report.html'
 _WHOLE = 0.99   # of a run: so long a stretch is all of it
 
 
@@ -44,12 +44,12 @@ def write_results(run: Run, found: Identification, start: str, folder: Path) -> 
     (folder / IDENTIFIED_PAGE).write_text(page, encoding='utf-8')
 
 
-def _pictures(found: Identification, friction: KnownFriction) -> dict[str, str]:
+def _pictures(found: Identification, friction: Mapping[str, KnownFriction]) -> dict[str, str]:
     """Return the pictures as parts of a page, by their names."""
     channels = fitted_channels(found)
     names, window, share = [one.name for one in found.estimates], usual_cycles(found), slip_share(found)
     drawn: dict[str, Callable[[Path], None]] = {
-        'fit': lambda path: plot_fit(channels, window, path),
+        'fit': lambda path: plot_fit(channels, window, found.restarts, path),
         'residuals': lambda path: plot_residuals(channels, share, path),
         'friction': lambda path: plot_known_friction(friction, path),
         'correlations': lambda path: plot_correlations(names, found.correlation, path),
@@ -61,7 +61,7 @@ def _pictures(found: Identification, friction: KnownFriction) -> dict[str, str]:
 def fitted_channels(found: Identification) -> list[FittedChannel]:
     """Return the channels as they are drawn."""
     return [FittedChannel(one.name, one.unit, one.times, one.measured, one.fitted, one.residuals / one.resolution,
-                          phases(found, one.times), misfit_spans(found, one)) for one in found.channels]
+                          phases(found, one.times), misfit_spans(found, one), one.free) for one in found.channels]
 
 
 def misfit_spans(found: Identification, channel: ChannelFit) -> list[tuple[float, float]]:
