@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from stickslip_sim.inputs import load_scene
-from stickslip_sim.plots.run_panels import CROWDED
+from stickslip_sim.plots.drawn_run import TimeWindow
 from stickslip_sim.runs import SimulatedRun, simulate, simulate_events
 from stickslip_sim.runs.picture import windows_of
 from stickslip_sim.runs.picture_samples import sampled
@@ -58,7 +58,6 @@ def test_an_hour_is_an_overview_and_its_last_cycles(hour: SimulatedRun, tmp_path
 def test_a_long_run_takes_few_samples_and_shows_its_extremes(hour: SimulatedRun) -> None:
     windows = windows_of(hour, None)
     samples = sampled(hour.scene, hour.events, windows)
-    assert len(hour.events) > CROWDED
     assert len(samples['time']) < 60_000
     known = simulate(hour.scene, 60.0, 0.0005).samples
     for name in ('velocity', 'friction_force', 'drive_force'):
@@ -78,16 +77,36 @@ def test_a_window_as_long_as_the_run_is_the_run(hour: SimulatedRun) -> None:
     assert windows_of(hour, (5.0, 6.0)) == [(0.0, 3600.0), (5.0, 6.0)]
 
 
+def test_a_run_that_was_commanded_late_is_shown_from_its_first_command_on(hour: SimulatedRun) -> None:
+    run = simulate_events(load_scene('paper_fig8'), 20.0)
+    assert windows_of(run, None, TimeWindow(8.0, 13.0)) == [(0.0, 20.0), (8.0, 13.0)]
+    assert windows_of(run, None, TimeWindow(0.5, 20.0)) == [(0.0, 20.0)]
+    _, part = windows_of(hour, None, TimeWindow(10.0, 1000.0))
+    assert part.begin == 10.0
+    assert part.end == pytest.approx(10.0 + 40 * 0.659, abs=0.1)    # as many cycles as can be read
+
+
 class TestRefusals:
+    def test_folders_that_are_not_there(self, tmp_path: Path, capsys: Capture) -> None:
+        line = refused(capsys, 'plot', 'paper_fig7', '--duration', '1', '--out', tmp_path / 'new' / 'er' / 'a.png')
+        assert f"must be in a folder, or in a new one within one; {tmp_path / 'new'} is none" in line
+        assert not list(tmp_path.iterdir())
+        assert answered(capsys, 'plot', 'paper_fig7', '--duration', '1', '--out', tmp_path / 'new' / 'a.png')[0] == 0
+
+    def test_a_first_command_that_there_is_none_of(self, fig8_bag: Path, tmp_path: Path, capsys: Capture) -> None:
+        line = refused(capsys, 'plot', fig8_bag, '--window', 'first_command:+1', '--out', tmp_path / 'a.png')
+        assert 'must be A:B in a run without commands' in line
+
     @pytest.mark.parametrize('name', ['run.jpg', 'run', 'run.png.gz'])
     def test_another_ending(self, name: str, tmp_path: Path, capsys: Capture) -> None:
         line = refused(capsys, 'plot', 'paper_fig8', '--duration', '1', '--out', tmp_path / name)
         assert 'must be a file ending in .png, .pdf or .svg; the ending decides the format' in line
 
-    @pytest.mark.parametrize('window', ['1', '2:1', '1:1', 'a:b', '1:2:3', ':', 'nan:1'])
+    @pytest.mark.parametrize('window', ['1', '2:1', '1:1', 'a:b', '1:2:3', ':', 'nan:1', '1:+0',
+                                        'first_command:3', 'first_command:+-1'])
     def test_what_is_no_window(self, window: str, tmp_path: Path, capsys: Capture) -> None:
         line = refused(capsys, 'plot', 'paper_fig8', '--duration', '3', '--window', window, '--out', tmp_path / 'a.png')
-        assert 'must be A:B, two times in s, the first before the second; for example 2.5:4' in line
+        assert 'must be A:B or A:+B, times in s, A before B; or first_command:+B; for example 2.5:4' in line
 
     @pytest.mark.parametrize('window', ['1:4', '-1:2', '5:6', '0:inf'])
     def test_a_window_beyond_the_run(self, window: str, tmp_path: Path, capsys: Capture) -> None:

@@ -14,10 +14,12 @@ import pytest
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
+from stickslip_sim.compare.drawn_motion import drawn_motion
+from stickslip_sim.compare.fresh import simulate_densely
 from stickslip_sim.core.arrays import Numbers
 from stickslip_sim.core.types import Mode
 from stickslip_sim.inputs import load_scene
-from stickslip_sim.plots import plot_run
+from stickslip_sim.plots import plot_run, side_by_side
 from stickslip_sim.plots.drawn_run import DrawnRun, TimeWindow, drawn_run, mode_shares
 from stickslip_sim.plots.run_panels import BINS, band, bin_edges
 from stickslip_sim.plots.style import legend_outside, thinned
@@ -51,8 +53,8 @@ def test_svg_names_what_it_shows_and_pictures_are_reproducible(tmp_path: Path) -
         plot_run(drawn(run), whole(run), tmp_path / name)
     ElementTree.parse(tmp_path / 'a.svg')
     text = (tmp_path / 'a.svg').read_text()
-    for words in ('paper_fig8', 'position / mm', 'setpoint', 'error / mm', 'velocity / (mm/s)', 'force / N', 'STICK',
-                  'DECELERATING', 'drive'):
+    for words in ('paper_fig8', 'position / mm', 'drive end of the spring', 'stretch / mm', 'velocity / (mm/s)',
+                  'force / N', 'STICK', 'DECELERATING', 'drive'):
         assert words in text
     assert text == (tmp_path / 'b.svg').read_text()
     assert (tmp_path / 'a.pdf').read_bytes().startswith(b'%PDF')
@@ -67,6 +69,66 @@ def test_external_force_is_shown_only_where_there_is_one(tmp_path: Path) -> None
     assert 'external' not in (tmp_path / 'none.svg').read_text()
     assert 'external' in (tmp_path / 'some.svg').read_text()
     assert 'force / kN' in (tmp_path / 'some.svg').read_text()
+
+
+def words_of(path: Path) -> list[str]:
+    """Return the texts of an SVG file, which stand in it as comments beside their outlines."""
+    return re.findall(r'<!-- (.*?) -->', path.read_text())
+
+
+def test_what_there_is_nothing_of_has_no_panel(tmp_path: Path) -> None:
+    """Of a motor that pushes the slider without a spring: no drive end, no stretch, no drive force."""
+    scene = load_scene('paper_fig7', {'axis.drive_stiffness': 0.0, 'axis.drive_damping': 0.0, 'drive.velocity': 0.0,
+                                      'force.course': 'sine', 'force.amplitude': 1500.0, 'force.frequency': 1.0})
+    run = simulate(scene, 3.0, 0.001)
+    plot_run(drawn(run), whole(run), tmp_path / 'motor.svg')
+    words = words_of(tmp_path / 'motor.svg')
+    assert {'slider', 'external', 'friction', 'position / mm'} <= set(words)
+    assert not [word for word in words if 'drive' in word or 'stretch' in word]
+    samples = {name: column if name in ('time', 'mode', 'position', 'velocity') else np.full(len(column), np.nan)
+               for name, column in run.samples.items()}
+    plot_run(drawn_run('', samples, [], run.commands, []), whole(run), tmp_path / 'bare.svg')
+    words = words_of(tmp_path / 'bare.svg')
+    assert 'not measured' not in words
+    assert not [word for word in words if word.startswith(('force', 'stretch'))]
+
+
+@pytest.mark.parametrize(('duration', 'is_envelope'), [(23.0, False), (100.0, False), (150.0, True), (1000.0, True)])
+def test_lines_as_long_as_pixels_allow(duration: float, is_envelope: bool, tmp_path: Path) -> None:
+    """34 cycles and 150 are lines, of 6 pixels a cycle or more; beyond, the envelope says that it is one."""
+    run = simulate_events(load_scene('paper_fig8'), duration)
+    samples = sampled(run.scene, run.events, [TimeWindow(0.0, duration)])
+    plot_run(drawn_run('', samples, run.events, run.commands, []), whole(run), tmp_path / 'run.svg')
+    words = words_of(tmp_path / 'run.svg')
+    assert ('slider, envelope' in words) == ('friction, envelope' in words) == is_envelope
+    assert ('static limit at break-away' in words) == (not is_envelope)
+    assert ('STICK' in words) == (duration == 23.0)    # of lanes a mode has two pixels; else the shares of the time
+
+
+def test_a_pdf_has_letters_and_no_bitmaps_of_them(tmp_path: Path) -> None:
+    run = simulate(load_scene('paper_fig8'), 1.0, 0.01)
+    plot_run(drawn(run), whole(run), tmp_path / 'run.pdf')
+    content = (tmp_path / 'run.pdf').read_bytes()
+    assert b'/CIDFontType2' in content
+    assert b'/Type3' not in content
+
+
+def test_a_long_name_stays_clear_of_letters_and_of_the_edge(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    shown: list[Figure] = []
+    monkeypatch.setattr(side_by_side, 'save', lambda figure, *paths: shown.append(figure))
+    run = simulate_densely(load_scene('paper_fig7'), 2.0)
+    names = 'axis_at_1.2_mm_s_' * 3, 'axis_at_1.2_mm_s_' * 12
+    side_by_side.plot_side_by_side(dict.fromkeys(names, drawn_motion(run)), tmp_path / 'a.png')
+    (figure,) = shown
+    figure.savefig(BytesIO())
+    boxes = {text.get_text(): text.get_window_extent() for panel in figure.axes for text in panel.texts}
+    letters = [box for text, box in boxes.items() if re.fullmatch(r'\([a-f]\)', text)]
+    long = [box for text, box in boxes.items() if text.startswith('axis')]
+    assert (len(letters), len(long)) == (6, 2)
+    assert not any(box.overlaps(letter) for box in long for letter in letters)
+    assert all(box.xmax < figure.bbox.xmax for box in long)
+    plot_run(drawn(run, names[1]), whole(run), tmp_path / 'run.svg')
+    assert any('…' in word for word in words_of(tmp_path / 'run.svg'))
 
 
 def test_one_sample_and_no_event_can_be_drawn(tmp_path: Path) -> None:

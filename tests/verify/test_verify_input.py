@@ -184,6 +184,13 @@ class TestWhatIf:
         assert (out / 'what_if.png').stat().st_size > 20_000
         assert 'eight (paper_fig8, recorded)' in words    # which run, and not only of which scene
 
+    def test_the_picture_is_titled_by_the_run(self, bag: Path, tmp_path: Path, capsys: Capture,
+                                              monkeypatch: pytest.MonkeyPatch) -> None:
+        titles: list[str] = []
+        monkeypatch.setattr('stickslip_sim.plots.plot_beside', lambda was, would_be, title, path: titles.append(title))
+        verified(capsys, bag, '--set', 'drive.velocity=0.003', '--out', tmp_path / 'out')
+        assert titles == [f'{bag.name} (paper_fig8, recorded)\nwhat if drive.velocity = 0.003']
+
     def test_refused(self, bag: Path, tmp_path: Path, capsys: Capture) -> None:
         for words, reported in (
                 (('--out', tmp_path / 'out'), '--out is of no use alone'),

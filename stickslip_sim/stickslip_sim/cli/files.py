@@ -40,6 +40,14 @@ def check_picture(option: str, path: str) -> None:
     check_file(option, path)
 
 
+def check_near(option: str, path: str) -> None:
+    """Raise InputError unless a file would be in a folder that is there, or in a new one within such a one."""
+    folder = _real(path).parent
+    if nearest_existing(folder) not in (folder, folder.parent):
+        raise InputError(option, path, f'in a folder, or in a new one within one; {folder.parent} is none',
+                         'make it, or look at the path')
+
+
 def check_new_folder(option: str, path: str) -> None:
     """Raise InputError unless a new folder can be made there."""
     place = Path(os.path.abspath(path))

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from ..recording import RecordedRun
+    from ..runs import Run
 
 _OF_RUNS, _OF_SCENES = ('.mcap',), ('.yaml', '.yml')
 _OF_A_GLOB = '*?['
@@ -43,6 +44,13 @@ def recorded_run(path: str) -> 'RecordedRun':
     with warnings.catch_warnings(), progress_bar('reading'):
         warnings.simplefilter('ignore', RecordingWarning)
         return read_run(path)
+
+
+def file_stem(run: 'Run') -> str:
+    """Return the name of a run as that of a file, without an ending: sweep_1.0 stays sweep_1.0."""
+    from ..scene.text import file_name
+
+    return file_name(run.name.removesuffix(_OF_RUNS[0]) if run.is_recorded else run.name)
 
 
 def check_run(path: str) -> None:

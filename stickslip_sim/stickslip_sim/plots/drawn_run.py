@@ -43,7 +43,14 @@ class DrawnRun(NamedTuple):
 
 def drawn_run(title: str, samples: Mapping[str, Numbers], events: Sequence[Event], commands: Mapping[str, Numbers],
               marks: Sequence[Mark]) -> DrawnRun:
-    """Return a run as it is drawn, from its samples (columns named as in `types.Sample`, and `time`) and events."""
+    """Return a run as it is drawn, from its samples (columns named as in `types.Sample`, and `time`) and events.
+
+    A drive that never exerts a force, as of an axis without a spring, is none.
+    """
+    if not np.any(samples['drive_force']):
+        none = np.full(len(samples['time']), np.nan)
+        samples = {**samples, 'drive_position': none, 'drive_velocity': none, 'drive_force': none}
+        events = [event._replace(drive_position=np.nan, drive_force=np.nan) for event in events]
     times = np.array([event.time for event in events], dtype=np.float64)
     breaks = [event for event in events if event.kind == EventKind.BREAKAWAY and math.isfinite(event.friction_force)]
     modes = np.array([samples['mode'][0], *(event.mode for event in events)], dtype=np.float64)

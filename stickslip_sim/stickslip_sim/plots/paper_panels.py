@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The motion as in Fig. 7 and 8 of the paper: its panels, letters and units, for a journal's double column."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -38,6 +38,7 @@ _DASHES = {Mode.STICK: (0, (1.0, 1.2)), Mode.ACCELERATING: 'solid', Mode.COASTIN
 _DRIVE_DASHES: Any = (0, (4.0, 1.6))
 _MODE_NAMES = [mode.name.lower() for mode in Mode]
 _ABOVE: dict[str, Any] = {'loc': 'lower right', 'bbox_to_anchor': (1.0, 0.99), 'ncols': 2, 'borderaxespad': 0.0}
+_IN_A_LINE, _OF_A_LINE = 125, 8   # letters of a legend, and as many as a line in it takes
 _LETTERS = 'adbecf'   # the paper counts down the columns
 _ARROWED = 0.15   # of the picture's extent: a shorter stretch gets no arrow
 
@@ -92,8 +93,12 @@ def legend_below(figure: Figure, *panels: Axes) -> None:
     """Explain the lines of panels below the whole picture, those of one name once."""
     lines = lines_by_label(*panels)
     labels = sorted(lines, key=lambda label: _MODE_NAMES.index(label) if label in _MODE_NAMES else -1)
-    legend_outside(figure, 'lower center', [lines[label] for label in labels], labels, ncols=min(len(labels), 5),
+    legend_outside(figure, 'lower center', [lines[label] for label in labels], labels, ncols=_columns(labels),
                    handlelength=3.6)
+
+
+def _columns(labels: Sequence[str]) -> int:
+    return max(min(len(labels), 5, _IN_A_LINE // (max(map(len, labels), default=0) + _OF_A_LINE)), 1)
 
 
 def part(columns: Mapping[str, Numbers], begin: float, end: float) -> dict[str, Numbers]:

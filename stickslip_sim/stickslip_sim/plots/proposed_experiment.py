@@ -63,7 +63,7 @@ def plot_experiment(run: ProposedRun, changes: Mapping[str, Numbers], kinds: Seq
 def _over_time(part: SubFigure, run: ProposedRun, changes: Mapping[str, Numbers]) -> None:
     feed, position, change = part.subplots(3, 1, sharex=True)
     feed.plot(*thinned(run.times, run.feed * MILLI), color=BLACK)
-    feed.set_ylabel('feed / mm/s')
+    feed.set_ylabel('feed / (mm/s)')
     position.plot(*thinned(run.times, run.position * MILLI), color=BLACK)
     position.set_ylabel('position / mm')
     for k, (name, values) in enumerate(changes.items()):

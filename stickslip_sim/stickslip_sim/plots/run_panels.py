@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The panels of a run over time, in one window: as lines, or as bands where it has too many transitions for lines."""
+"""The panels of a run over time, in one window: as lines, or as envelopes where lines would run into each other."""
 
 import math
 from collections.abc import Mapping
@@ -12,42 +12,43 @@ from matplotlib.axes import Axes
 from ..core.arrays import Numbers
 from ..rig.marks import Mark
 from .drawn_run import DrawnRun, TimeWindow, mode_shares
-from .style import BLACK, BLUE, GREEN, GREY, MILLI, MODE_COLOURS, ORANGE, PURPLE, RED
+from .style import BLACK, BLUE, GREEN, GREY, MILLI, MODE_COLOURS, ORANGE, PURPLE, RED, thinned
 from .time_panels import force_unit, line
 
 BINS = 240            # of a band, and of the shares of the modes, at most
-CROWDED = 400         # transitions that lines do not show any more
+_OF_A_CYCLE = 6       # pixels that a cycle of lines takes at least
+_OF_A_MODE = 2        # pixels of a mode in its lane
 _MICRO, _FINE = 1e6, 1e-4   # m to µm; m: smaller errors are shown so
 _MANY = 50            # break-aways that are marked smaller
 _CLOSEST, _CLOSEST_POSITION = 1e-4, 1e-6   # of the largest value: what changes less is drawn as a constant
 _DASHES = (0, (5, 2))
+_ENVELOPE = 'envelope'
 _MARK_COLOURS = {'refused': RED, 'limited': ORANGE, 'lost': PURPLE, 'time lost': BLACK, 'time-out': RED}
 
 
 class WindowPanels:
-    """Draws a run in a window; `is_crowded` where bands take the place of lines."""
+    """Draws a run in a window, `width` pixels wide; `is_crowded` where it has too many slips for lines."""
 
-    def __init__(self, run: DrawnRun, window: TimeWindow) -> None:
-        self._run, self._window = run, window
+    def __init__(self, run: DrawnRun, window: TimeWindow, width: float) -> None:
+        self._run, self._window, self._width = run, window, width
         self._motion, self._inputs = _part(run.motion, window), _part(run.inputs, window)
-        first, last = np.searchsorted(run.event_times, window)
-        self.is_crowded = bool(last - first > CROWDED)
+        self.is_crowded = _within(run.break_aways[0], window) > width / _OF_A_CYCLE
         self._edges = bin_edges(run, window)
 
     def position(self, panel: Axes) -> None:
-        """Draw setpoint and position."""
-        line(panel, self._motion, 'drive_position', MILLI, 'setpoint (drive)', color=GREY, linewidth=1.0,
+        """Draw the positions of the slider and of the drive end of the spring."""
+        line(panel, self._motion, 'drive_position', MILLI, 'drive end of the spring', color=GREY, linewidth=1.0,
              linestyle=_DASHES)
         line(panel, self._motion, 'position', MILLI, 'slider', color=BLUE, linewidth=1.4)
         panel.set_ylabel('position / mm')
         _no_closer(panel, _CLOSEST_POSITION)
 
-    def error(self, panel: Axes) -> None:
-        """Draw the following error: setpoint less position."""
-        error = self._motion['drive_position'] - self._motion['position']
-        fine = float(np.abs(error).max(initial=0.0)) < _FINE
-        self._curve(panel, error * (_MICRO if fine else MILLI), '', BLUE, 1.2)
-        panel.set_ylabel(f'error / {"µm" if fine else "mm"}')
+    def stretch(self, panel: Axes) -> None:
+        """Draw the stretch of the drive spring: the position of its drive end less that of the slider."""
+        stretch = self._motion['drive_position'] - self._motion['position']
+        fine = float(np.abs(stretch[np.isfinite(stretch)]).max(initial=0.0)) < _FINE
+        self._curve(panel, stretch * (_MICRO if fine else MILLI), 'drive end less slider', BLUE, 1.2)
+        panel.set_ylabel(f'stretch / {"µm" if fine else "mm"}')
         _no_closer(panel, _CLOSEST)
 
     def velocity(self, panel: Axes) -> None:
@@ -87,7 +88,7 @@ class WindowPanels:
 
     def modes(self, panel: Axes) -> None:
         """Draw one lane for each mode, or their shares of the time."""
-        if self.is_crowded:
+        if self.is_crowded or _within(self._run.event_times, self._window) > self._width / _OF_A_MODE:
             self._mode_shares(panel)
             return
         starts, modes = self._run.modes
@@ -104,7 +105,7 @@ class WindowPanels:
         """Draw one lane for each kind of fault and refusal."""
         lanes = {label: list(marks) for label, marks in groupby(sorted(self._run.marks, key=_label), _label)}
         for lane, (label, marks) in enumerate(lanes.items()):
-            colour = _MARK_COLOURS.get(label, RED)
+            colour = GREY if marks[0].is_of_host else _MARK_COLOURS.get(label, RED)
             spans = [(mark.begin, mark.end - mark.begin) for mark in marks if mark.is_span]
             panel.broken_barh(spans, (lane - 0.35, 0.7), facecolors=colour, edgecolors=colour, linewidth=0.5, alpha=0.7)
             instants = [mark.begin for mark in marks if not mark.is_span]
@@ -121,14 +122,19 @@ class WindowPanels:
 
     def _curve(self, panel: Axes, values: Numbers, label: str, colour: str, width: float) -> None:
         time = self._motion['time']
-        if not self.is_crowded:
-            line(panel, {'time': time, 'values': values}, 'values', 1.0, label, color=colour, linewidth=width)
-            return
         if np.isnan(values).all():   # not measured
+            return
+        if not self.is_crowded and not self._is_dense(time, values):
+            line(panel, {'time': time, 'values': values}, 'values', 1.0, label, color=colour, linewidth=width)
             return
         middles, low, high = band(time, values, self._edges)
         panel.fill_between(middles, low, high, facecolor=colour, edgecolor=colour, linewidth=0.5, alpha=0.45,
-                           label=label)
+                           label=f'{label}, {_ENVELOPE}')
+
+    def _is_dense(self, time: Numbers, values: Numbers) -> bool:
+        """Return whether a curve goes up and down, by all of its range, more often than its pixels show."""
+        _, shown = thinned(time, values)
+        return bool(np.nansum(np.abs(np.diff(shown))) > 2.0 * self._width / _OF_A_CYCLE * np.ptp(shown))
 
 
 def band(time: Numbers, values: Numbers, edges: Numbers) -> tuple[Numbers, Numbers, Numbers]:
@@ -153,6 +159,11 @@ def bin_edges(run: DrawnRun, window: TimeWindow) -> Numbers:
     least = (end - begin) / BINS
     length = math.ceil(least / period) * period if period > 0.0 else least
     return np.asarray(np.linspace(begin, end, max(round((end - begin) / length), 1) + 1), dtype=np.float64)
+
+
+def _within(times: Numbers, window: TimeWindow) -> int:
+    first, last = np.searchsorted(times, window)
+    return int(last - first)
 
 
 def _part(columns: Mapping[str, Numbers], window: TimeWindow) -> dict[str, Numbers]:

@@ -13,9 +13,11 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from .paper_panels import DrawnMotion, forces, friction_loop, legend_below, part, velocity
-from .style import DOUBLE_COLUMN, JOURNAL, letter, save
+from .style import DOUBLE_COLUMN, JOURNAL, letter, save, shortened
 
-_ROW, _LEGEND = 1.9, 0.6   # in
+_ROW, _LEGEND = 2.05, 0.6   # in
+_ABOVE_LETTERS = 15.0        # points: a long name reaches over them
+_LONGEST = 100             # letters of a name over three panels
 ALIKE = 5.0               # so many times as large an extent, and rows do not share an axis
 
 
@@ -51,7 +53,9 @@ def _draw_row(row: Sequence[Axes], name: str, motion: DrawnMotion, length: float
     columns = part(motion.columns, begin, begin + length)
     columns['time'] = columns['time'] - begin
     forces(row[0], columns, 'time / s')
-    row[0].set_title(name, loc='left', fontsize=8.0)
+    row[0].set_title(' ', loc='left', fontsize=8.0, pad=_ABOVE_LETTERS)   # room; the name itself widens no panel
+    row[0].annotate(shortened(name, _LONGEST), (0.0, 1.0), xytext=(0.0, _ABOVE_LETTERS), xycoords='axes fraction',
+                    textcoords='offset points', fontsize=8.0, in_layout=False)
     legend = row[0].get_legend()
     if legend is not None:
         legend.remove()

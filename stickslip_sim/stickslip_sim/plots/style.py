@@ -22,8 +22,9 @@ GREY = '#666666'
 MODE_COLOURS = {Mode.STICK: SKY, Mode.ACCELERATING: ORANGE, Mode.COASTING: GREEN, Mode.DECELERATING: PURPLE}
 MILLI = 1e3          # m to mm
 _UNDATED: dict[str, dict[str, Any]] = {'svg': {'Date': None}, 'pdf': {'CreationDate': None}}
-_SAVED: dict[str, Any] = {   # the same picture is the same file, and no other layout is made
-    'svg.hashsalt': 'stickslip', 'figure.autolayout': False, 'figure.constrained_layout.use': False}
+_SAVED: dict[str, Any] = {   # the same picture is the same file, its text text, and no other layout is made
+    'pdf.fonttype': 42, 'svg.hashsalt': 'stickslip', 'figure.autolayout': False,
+    'figure.constrained_layout.use': False}
 _POINTS_PER_INCH = 72.0
 _POINTS = 8000       # per line: more than a picture can show
 JOURNAL: dict[str, Any] = {   # for pictures that are printed at the width of one or two columns
@@ -79,6 +80,12 @@ def legend_of(figure: Figure | SubFigure, place: str, *panels: Axes, **look: Any
     """Explain the lines of panels beside them all."""
     lines = lines_by_label(*panels)
     legend_outside(figure, place, lines.values(), lines, **look)
+
+
+def shortened(name: str, most: int) -> str:
+    """Return a name with at most so many letters: its middle goes."""
+    half = (most - 1) // 2
+    return name if len(name) <= most else f'{name[:half]}…{name[-half:]}'
 
 
 def letter(panel: Axes, text: str) -> None:

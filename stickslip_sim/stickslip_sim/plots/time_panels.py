@@ -9,9 +9,10 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from ..core.arrays import Numbers
-from .style import GREY, thinned
+from .style import GREY, shortened, thinned
 
 _KILO_FROM = 1e4     # N: larger forces are shown in kN
+_LONGEST = 70        # letters of a heading
 
 
 def force_unit(*forces: Numbers) -> tuple[float, str]:
@@ -45,6 +46,7 @@ def dress(panel: Axes) -> None:
 def head(first: Axes, title: str) -> None:
     """Write a title of up to three lines above the first panel; the first line is the heading."""
     heading, _, rest = title.partition('\n')
-    first.set_title(heading, loc='left', fontsize=14, fontweight='bold', pad=(22, 42, 56)[min(title.count('\n'), 2)])
+    first.set_title(shortened(heading, _LONGEST), loc='left', fontsize=14, fontweight='bold',
+                    pad=(22, 42, 56)[min(title.count('\n'), 2)])
     first.annotate(rest, (0.0, 1.0), xytext=(0.0, 25.0), xycoords='axes fraction', textcoords='offset points',
                    fontsize=10, color=GREY, in_layout=False)

@@ -20,12 +20,13 @@ from ..runs.samples import MOST_HELD, joined
 from ..runs.views import Views
 from ..scene import Scene
 from ..simulation.cycles import Summary, summary
+from .host_timing import LATE_FIELDS, gap_marks, late_marks
 from .normal_force_column import is_changed
 from .opening import shortfalls
 from .paired_steps import of_the_same_steps, paired_blocks
 from .reader import EVENT_FIELDS, Bag
 from .run_outline import RunOutline, check_samples, outline_of
-from .topics import DRIVE_VELOCITY, FRICTION_FORCE, MODE_EVENT, RIG_EVENT, SLIDER_STATE, Topic
+from .topics import DRIVE_VELOCITY, FRICTION_FORCE, MODE_EVENT, RIG_EVENT, SLIDER_STATE, TIMING, Topic
 
 _STATE = ('time', 'step', 'position', 'velocity', 'acceleration', 'drive_position', 'drive_velocity', 'drive_force',
           'rest_time', 'mode', 'direction')
@@ -184,7 +185,8 @@ class RecordedRun(Views):
     def marks(self) -> list[Mark]:
         """When faults were in force, and commands refused, limited, lost or missing; raises RecordingError.
 
-        A run of the tool has the faults of its scene, and no rig events.
+        And where steps in real time were later than `timing.max_lateness`, or commands stayed away.  A run of the tool
+        has the faults of its scene, and no rig events.
         """
         if self._is_of_the_tool:
             return marks_of_faults(self.scene.rig.faults, self.end)
@@ -192,8 +194,13 @@ class RecordedRun(Views):
         if not np.isin(columns['kind'], list(RigEventKind)).all():
             raise RecordingError(f'{self.bag.path}: rig events of unknown kinds; recorded by another version?')
         rows = zip(*(columns[name].tolist() for name in _RIG_EVENT))
-        return marks_of_events((TimedRigEvent(time, RigEventKind(kind), *rest) for time, kind, *rest in rows),
-                               self.begin, self.end)
+        marks = marks_of_events((TimedRigEvent(time, RigEventKind(kind), *rest) for time, kind, *rest in rows),
+                                self.begin, self.end)
+        if self.scene.time.mode != 'realtime':
+            return marks
+        rate, limit = self.scene.time.rate, self.scene.timing.max_lateness
+        late = late_marks(self._columns_of_any(TIMING, LATE_FIELDS), rate, limit)
+        return [*marks, *late, *gap_marks(self.command_blocks(), rate, limit)]
 
     @property
     def _is_of_the_tool(self) -> bool:

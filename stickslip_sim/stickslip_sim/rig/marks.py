@@ -14,12 +14,16 @@ TIME_OUT = 'time-out'
 
 
 class Mark(NamedTuple):
-    """Something that went on from `begin` to `end` (s; equal: an instant); `number` of them, where one is known."""
+    """Something that went on from `begin` to `end` (s; equal: an instant); `number` of them, where one is known.
+
+    It `is_of_host` where it is about the timing of the machine or of who commands, and not about the axis.
+    """
 
     begin: float
     end: float
     label: str
     number: int = 1
+    is_of_host: bool = False
 
     @property
     def is_span(self) -> bool:

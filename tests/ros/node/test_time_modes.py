@@ -17,7 +17,7 @@ import pytest
 
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.inputs import load_scene
-from stickslip_sim.recording import Bag, open_bag
+from stickslip_sim.recording import Bag, open_bag, read_run
 from stickslip_sim.runs import simulate_events
 from stickslip_sim.scene import Scene
 from tests.support.busy_machine import judged_by_time
@@ -125,6 +125,11 @@ class TestTheSameRun:
         assert_same_columns(live, stepped)
         assert_same_states(live, made_again(live, scene))
         assert stepped.receipt['commands']['lost'] == live.receipt['commands']['lost']
+        late = {name: [mark for mark in read_run(tmp_path / name).marks if mark.label.startswith('late ≤ ')]
+                for name in ('live', 'stepped')}
+        assert late['live']
+        assert all(mark.is_of_host and mark.number > 0 for mark in late['live'])
+        assert not late['stepped']
 
     def test_the_receipt_is_that_of_the_offline_run_however_long(self, tmp_path: Path) -> None:
         """A second time, after a reset, for an hour and 20 000 events; the events of the first do not count."""
