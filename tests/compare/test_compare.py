@@ -5,6 +5,7 @@
 import base64
 import json
 import re
+import shutil
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
@@ -31,7 +32,7 @@ from stickslip_sim.plots.paper_panels import plot_motion
 from stickslip_sim.recording import read_run
 from stickslip_sim.runs import simulate_events
 from tests.support.rewritten_bags import rewritten
-from tests.support.tool import Capture
+from tests.support.tool import Capture, answered
 
 PNG = b'\x89PNG\r\n\x1a\n'
 DRIVE = 0.002   # m/s
@@ -104,7 +105,7 @@ def test_one_page_that_needs_nothing_else(report: Path) -> None:
         assert kind == 'data:image/svg+xml;base64'
         ElementTree.fromstring(base64.b64decode(data))
     assert not re.search(r'url\(|@import|<script|<link', text)
-    for words in ('peak acceleration / m/s²', 'Ring-down after a slip', '✓ holds', '– not applicable', '20.1317'):
+    for words in ('peak acceleration / (m/s²)', 'Ring-down after a slip', '✓ holds', '– not applicable', '20.1317'):
         assert words in text
 
 
@@ -232,6 +233,27 @@ def test_any_motion_can_be_drawn(changes: dict[str, object], tmp_path: Path) -> 
 def test_runs_of_one_name_get_files_of_their_own(bag: Path) -> None:
     recorded, fresh = read_run(bag), simulate_densely(load_scene('paper_fig7', {'scene': '../a b'}), 1.0)
     assert list(named_apart([recorded, recorded, fresh])) == ['eight', 'eight_2', '.._a_b']
+
+
+def test_a_dot_in_the_name_of_a_run_begins_no_ending(bag: Path, tmp_path: Path, capsys: Capture,
+                                                     monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name in ('sweep_1.0', 'sweep_1.2'):
+        shutil.copytree(bag, tmp_path / name)
+        assert answered(capsys, 'plot', name)[1] == f'written: {name}.png\n'
+    assert list(named_apart([read_run('sweep_1.0'), read_run('sweep_1.2')])) == ['sweep_1.0', 'sweep_1.2']
+    (file,) = bag.glob('*.mcap')
+    assert list(named_apart([read_run(file)])) == [file.stem]
+
+
+def test_a_report_has_one_unit_for_times_and_brackets_about_quotients(tmp_path: Path, capsys: Capture,
+                                                                      monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr('stickslip_sim.compare.pictures.PICTURE_KINDS', ('svg',))
+    answered(capsys, 'compare', 'paper_fig7', '--duration', '6', '--out', tmp_path / 'out')
+    page = (tmp_path / 'out' / 'report.html').read_text()
+    for words in ('period / s', 'slip / s', 'peak speed / (mm/s)', 'peak acceleration / (m/s²)'):
+        assert words in page, words
+    assert ' / ms' not in page
 
 
 def test_exit_code_when_a_statement_does_not_hold(tmp_path: Path, capsys: Capture,

@@ -33,27 +33,27 @@ def simulate_densely(scene: Scene, duration: float) -> SimulatedRun:
     return densely_sampled(simulate_events(scene, duration))
 
 
-def densely_sampled(run: SimulatedRun) -> SimulatedRun:
-    """Return a run with samples so dense; raises InputError on too many events."""
+def densely_sampled(run: SimulatedRun, also: Numbers | None = None) -> SimulatedRun:
+    """Return a run with samples so dense, `also` at some times (s); raises InputError on too many events."""
     scene, duration = run.scene, run.duration
     if len(run.events) > MAX_DRAWN_EVENTS:
         raise InputError('duration', duration, f'short enough for at most {MAX_DRAWN_EVENTS} events',
                          f'there are {len(run.events)}: simulate a shorter time')
     simulator = scene.make_simulator()
-    instants = _instants(scene, duration, run.events)
+    instants = _instants(scene, duration, run.events, np.empty(0) if also is None else also)
     rows = np.empty((len(instants.seconds), len(Sample._fields)))
     simulator.take_samples(instants, rows)
     return replace(run, sampled=HeldSamples(columns_of_rows(rows)))
 
 
-def _instants(scene: Scene, duration: float, events: list[Event]) -> Instants:
-    """Return when to sample: at the events, before and after the jumps of an input, and finely in between."""
+def _instants(scene: Scene, duration: float, events: list[Event], also: Numbers) -> Instants:
+    """Return when to sample: at the events, before and after the jumps of an input, finely in between, and `also`."""
     jumps = sorted({border for profile in scene.inputs for border in _borders(profile, duration)})
     corners = np.array(sorted({0.0, duration, *jumps, *(event.time for event in events)}))
     count = min(max(_SPAN_BUDGET // len(corners), _IN_SPAN[0]), _IN_SPAN[1])
     between = np.linspace(corners[:-1], corners[1:], count)[1:-1].ravel()
     at_jumps = [0.0, duration, *jumps, *(max(time - _BEFORE, 0.0) for time in jumps)]
-    times = np.concatenate([between, at_jumps, *_ring_downs(scene, corners), _of_sinusoids(scene, duration)])
+    times = np.concatenate([between, at_jumps, also, *_ring_downs(scene, corners), _of_sinusoids(scene, duration)])
     seconds = np.append(np.floor(times), [event.second for event in events])
     fractions = np.append(times - np.floor(times), [event.fraction for event in events])
     order = np.lexsort((fractions, seconds))

@@ -9,11 +9,12 @@ from pathlib import Path
 from typing import Any
 
 from ..plots.html_page import figure, html_page, html_table
+from ..plots.scale import labelled
 from .pictures import Picture
 
 _SHOWN = 12   # cycles of a run that are listed, the first and the last of them
 _CYCLE = (('break-away', 'begin', 's', 1.0), ('period', 'period', 's', 1.0), ('stick', 'stick_time', 's', 1.0),
-          ('slip', 'slip_time', 'ms', 1e3), ('jump', 'jump', 'mm', 1e3), ('peak speed', 'peak_speed', 'mm/s', 1e3),
+          ('slip', 'slip_time', 's', 1.0), ('jump', 'jump', 'mm', 1e3), ('peak speed', 'peak_speed', 'mm/s', 1e3),
           ('peak acceleration', 'peak_acceleration', 'm/s²', 1.0), ('break-away force', 'break_away_force', 'kN', 1e-3),
           ('rest time before', 'rest_time', 's', 1.0))
 _RING = (('undamped frequency', 'frequency', 'Hz'), ('damped frequency', 'damped_frequency', 'Hz'),
@@ -37,7 +38,7 @@ def page(report: dict[str, Any], pictures: Sequence[Picture], folder: Path) -> s
 
 def _overview(runs: Sequence[dict[str, Any]]) -> str:
     """Return the last cycle of each run beside those of the others."""
-    rows = [[f'{name} / {unit}', *(_cell(run['cycles'][-1][field], scale) if run['cycles'] else '–' for run in runs)]
+    rows = [[labelled(name, unit), *(_cell(run['cycles'][-1][field], scale) if run['cycles'] else '–' for run in runs)]
             for name, field, unit, scale in _CYCLE[1:]]
     motion = ['motion', *(run['motion'] + (', settled' if run['settled'] else '') for run in runs)]
     return html_table('The last complete cycle', ['', *(run['name'] for run in runs)], [motion, *rows])
@@ -68,7 +69,7 @@ def _cycles(run: dict[str, Any]) -> str:
             for k, cycle in enumerate(cycles)]
     if len(rows) > _SHOWN:
         rows = [*rows[:_SHOWN // 2], ['…'] * len(rows[0]), *rows[-_SHOWN // 2:]]
-    heads = ['cycle', *(f'{name} / {unit}' for name, _, unit, _ in _CYCLE), 'change']
+    heads = ['cycle', *(labelled(name, unit) for name, _, unit, _ in _CYCLE), 'change']
     caption = 'Cycles; the change is relative, of the figure that changes most'
     if run['contraction'] is not None:
         caption += f', and becomes {run["contraction"]:.3g} times as large with each cycle'
@@ -79,7 +80,7 @@ def _ring_down(run: dict[str, Any]) -> str:
     form, found = run['ring_down']['closed_form'], run['ring_down']['identified']
     if form is None:
         return ''
-    rows = [[f'{name} / {unit}' if unit else name, _cell(found[field] if found else None, 1.0), _cell(form[field], 1.0)]
+    rows = [[labelled(name, unit), _cell(found[field] if found else None, 1.0), _cell(form[field], 1.0)]
             for name, field, unit in _RING]
     return html_table('Ring-down after a slip', ['', 'identified from the motion', 'closed form'], rows)
 

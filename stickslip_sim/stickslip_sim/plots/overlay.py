@@ -26,10 +26,12 @@ from .style import (
     RED,
     letter,
     save,
+    shortened,
     thinned,
 )
 from .time_panels import force_unit
 
+_LONGEST = 45   # letters of a name
 _COLOURS = RED, BLUE, GREEN, ORANGE, PURPLE
 _FORCES = {'drive_force': 'drive force', 'friction_force': 'friction force'}
 _DASHES = {'drive_force': 'solid', 'friction_force': (0, (4.0, 1.6))}
@@ -44,8 +46,8 @@ class DrawnOver(NamedTuple):
     is_measured: bool
 
 
-def plot_over_measured(runs: Mapping[str, DrawnOver], *paths: Path | str) -> None:
-    """Draw runs by their names over each other, those that were measured in grey below the others."""
+def plot_over_measured(runs: Mapping[str, DrawnOver], time: str, *paths: Path | str) -> None:
+    """Draw runs by their names over each other over a `time` so called, those that were measured in grey below."""
     length = max(run.length for run in runs.values())
     shown = {name: _part(run, length) for name, run in runs.items()}
     known = [name for name in _FORCES if all(np.isfinite(shown[each][name]).all() for each, run in runs.items()
@@ -57,10 +59,10 @@ def plot_over_measured(runs: Mapping[str, DrawnOver], *paths: Path | str) -> Non
         panels = list(figure.subplots(2, 2).flat)
         for name, run in sorted(runs.items(), key=lambda item: not item[1].is_measured):
             look = (BLACK, 2.6, 0.4) if run.is_measured else (next(colours), 1.0, 1.0)
-            _draw(panels, f'{name}, measured' if run.is_measured else name, shown[name], known, scale, look)
+            _draw(panels, _named(name, run), shown[name], known, scale, look)
         for panel, label in zip(panels, (f'force / {unit}', 'velocity / (mm/s)', 'travel / mm', f'force / {unit}')):
             panel.set_ylabel(label)
-            panel.set_xlabel('velocity / (mm/s)' if panel is panels[3] else 'time from a break-away / s')
+            panel.set_xlabel('velocity / (mm/s)' if panel is panels[3] else time)
             if not panel.has_data():
                 panel.text(0.5, 0.5, 'not measured', transform=panel.transAxes, ha='center', va='center')
         for panel, name in zip(panels, 'abcd'):
@@ -73,6 +75,11 @@ def plot_over_measured(runs: Mapping[str, DrawnOver], *paths: Path | str) -> Non
             panels[3].set_title(_FORCES[known[-1]], fontsize=7.0, loc='right')
         legend_below(figure, panels[1])
         save(figure, *paths)
+
+
+def _named(name: str, run: DrawnOver) -> str:
+    name = shortened(name, _LONGEST)
+    return f'{name}, measured' if run.is_measured else name
 
 
 def _part(run: DrawnOver, length: float) -> dict[str, Numbers]:
