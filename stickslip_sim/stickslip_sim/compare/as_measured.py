@@ -70,7 +70,7 @@ def as_measured(scene: Scene, source: str, measured: MeasuredRun, duration: floa
     samples = dense.samples
     if drives_directly(scene) and 'drive_force' in measured.measured:
         samples = {**samples, 'drive_force': _read(samples['external_force'], errors)}
-    notes = tuple(_notes(measured.name, sections, errors, started is not scene))
+    notes = tuple(_notes(measured, sections, errors, scene, started is not scene))
     return AsMeasured(replace(dense, sampled=HeldSamples(samples), notes=notes), readings.shift,
                       _position_rmse(samples, readings))
 
@@ -107,14 +107,18 @@ def _read(force: Numbers, errors: Mapping[str, float]) -> Numbers:
     return errors.get(f'{_FORCE}offset', 0.0) + errors.get(f'{_FORCE}scale', 1.0) * force
 
 
-def _notes(name: str, sections: tuple[str, ...], errors: Mapping[str, float], is_moved: bool) -> Iterator[str]:
+def _notes(measured: MeasuredRun, sections: tuple[str, ...], errors: Mapping[str, float], scene: Scene, is_moved: bool
+           ) -> Iterator[str]:
+    """Yield what moves the scene, and from where."""
     for section in sections:
-        words = f'its {section} is the one measured in {name}'
+        words = f'its {section} is the one measured in {measured.name}'
         off = [f'{name.removeprefix(_FORCE)} {value:.6g}' for name, value in errors.items()
                if section == 'force' and name.startswith(_FORCE)]
         yield f'{words}, less the errors of its sensor: {", ".join(off)} (SI)' if off else f'{words}, as read'
+    if not drives_directly(scene) and not set(_COLUMNS['drive']) & set(measured.measured):
+        yield f'its drive is that of its scene: {measured.name} has none that was measured'
     if is_moved:
-        yield f'it starts where {name} does'
+        yield f'it starts where {measured.name} does'
 
 
 def _position_rmse(samples: Columns, readings: SensorReadings) -> float | None:

@@ -17,6 +17,7 @@ from .time_panels import force_unit, line
 
 BINS = 240            # of a band, and of the shares of the modes, at most
 _OF_A_CYCLE = 6       # pixels that a cycle of lines takes at least
+_OF_A_PART = 8        # parts: longer cycles are resolved by parts of them
 _OF_A_MODE = 2        # pixels of a mode in its lane
 _MICRO, _FINE = 1e6, 1e-4   # m to µm; m: smaller errors are shown so
 _MANY = 50            # break-aways that are marked smaller
@@ -157,7 +158,7 @@ def bin_edges(run: DrawnRun, window: TimeWindow) -> Numbers:
     inside = starts[(starts >= begin) & (starts <= end)]
     period = (inside[-1] - inside[0]) / (len(inside) - 1) if len(inside) > 1 else 0.0
     least = (end - begin) / BINS
-    length = math.ceil(least / period) * period if period > 0.0 else least
+    length = math.ceil(least / period) * period if 0.0 < period < _OF_A_PART * least else least
     return np.asarray(np.linspace(begin, end, max(round((end - begin) / length), 1) + 1), dtype=np.float64)
 
 
