@@ -3,15 +3,20 @@
 """Scenes found again from what sensors measured of them, from starts up to 40 % off; and what is refused."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import stickslip_sim as stickslip
 from stickslip_sim.cli.identify_lines import result_lines
+from stickslip_sim.identification.certainty.residual_tests import misfits_of
 from stickslip_sim.identification.given.free_parameters import free_parameters
-from stickslip_sim.identification.identified import AT_BOUND, NOT_IDENTIFIABLE, Identification
+from stickslip_sim.identification.given.readings import readings_of
+from stickslip_sim.identification.identified import AT_BOUND, NOT_IDENTIFIABLE, VOID, Identification
+from stickslip_sim.identification.report.identified_scene import interval_words
 from stickslip_sim.scene import changed
 from tests.support.measured_runs import (
     COMPLIANT,
@@ -23,6 +28,7 @@ from tests.support.measured_runs import (
     between,
     check,
     measure,
+    truth,
 )
 
 pytestmark = pytest.mark.slow
@@ -115,6 +121,8 @@ def test_a_model_that_does_not_fit_is_rejected(rigid: stickslip.Run) -> None:
     start = changed(RIGID, {'friction.acceleration_dependence': False})
     found = stickslip.identify(rigid, start, OF_FRICTION)
     assert not found.fits
+    assert {estimate.kind for estimate in found.estimates} <= {VOID, AT_BOUND, NOT_IDENTIFIABLE}
+    assert {interval_words(estimate) for estimate in found.estimates if estimate.kind == VOID} == {'void'}
     assert {misfit.test for misfit in found.misfits} >= {'mean square', 'mean square of a stretch'}
     assert 'single slips' in found.notes[-1]
     assert all('single slips' in estimate.derivation for estimate in found.estimates)
@@ -220,6 +228,35 @@ def test_too_few_samples(tmp_path: Path) -> None:
     run = measure(tmp_path / 'run', RIGID, 1.0, rate=25.0, force=False)
     with pytest.raises(stickslip.InputError, match='5 or more for each of the 6 free parameters'):
         stickslip.identify(run, RIGID, {**OF_DRIVE, **OF_FRICTION})
+
+
+@pytest.mark.parametrize(('start', 'found_scene'), [
+    ('paper_fig7', {'axis.normal_force': 3000.0, 'friction.static.limit': 0.26}),
+    ('paper_fig8', {'axis.normal_force': 3000.0, 'friction.static.limit': 0.26})])
+def test_a_right_model_without_noise_is_not_rejected(start: str, found_scene: dict[str, float]) -> None:
+    """What is left is rounding of 1e-14 m, which goes together from sample to sample."""
+    axis = stickslip.load_scene(start, found_scene)
+    found = stickslip.identify(stickslip.simulate(axis, 6.0), start, {
+        'axis.normal_force': between(1000.0, 10000.0), 'friction.static.limit': between(0.1, 0.6)})
+    assert found.fits, found.misfits
+    for estimate in found.estimates:
+        assert estimate.value == pytest.approx(truth(axis, estimate.name), rel=1e-6)
+        assert estimate.interval[0] < estimate.interval[1]
+        assert ' ± ' in interval_words(estimate)   # and not "3 kN to 3 kN"
+
+
+def test_a_small_misfit_rejects_where_it_matters(rigid: stickslip.Run) -> None:
+    """A part of residuals that goes together counts beside the noise: below it, it rejects nothing."""
+    (channel, _) = readings_of(rigid, RIGID, {}).channels
+    noise = np.random.default_rng(0).normal(0.0, channel.resolution, len(channel.values))
+    channel = replace(channel, quantum=0.0, values=0.1 * channel.values)
+    times = 1e-3 * np.arange(len(noise))
+    slow = np.sin(2.0 * np.pi * times)
+    for size, rejected in ((0.0, False), (0.3, False), (1.0, True)):
+        residuals = (noise + size * channel.resolution * slow) / np.hypot(1.0, size / 2.0**0.5)
+        assert bool(misfits_of(channel, residuals, residuals, times, ())) is rejected, size
+    wide = replace(channel, values=1e6 * channel.values)   # the same misfit, of a motion a million times as large
+    assert not misfits_of(wide, residuals, residuals, times, ())
 
 
 def test_a_run_that_starts_elsewhere(tmp_path: Path) -> None:

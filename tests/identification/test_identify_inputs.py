@@ -9,6 +9,7 @@ import pytest
 
 import stickslip_sim as stickslip
 from stickslip_sim.core.errors import InputError
+from stickslip_sim.identification.identified import NOT_IDENTIFIABLE, VOID
 from stickslip_sim.recording import write_measured
 from stickslip_sim.scene import changed
 from tests.support.measured_runs import OF_FRICTION, OFF, RIGID, between, check
@@ -79,6 +80,52 @@ def test_what_is_no_run_and_no_scene_is_said_so(tmp_path: Path) -> None:
         stickslip.identify(columns, RIGID, OF_FRICTION)  # type: ignore[arg-type]
     with pytest.raises(InputError, match="scene = 'dict' is refused: must be a Scene, or the name or path of one"):
         stickslip.identify(tmp_path, {'axis.mass': 3.0}, OF_FRICTION)  # type: ignore[arg-type]
+
+
+def positioned(folder: Path) -> stickslip.Run:
+    """Return 25 s of a positioning axis at 1 kHz: the force acts 2 ms late and is read 3 N too low; friction varies."""
+    random = np.random.default_rng(4)
+    times = 1e-3 * np.arange(25_001)
+    way = 0.08 * np.sin(0.9 * times) + 0.04 * np.sin(2.3 * times)
+    speed = np.gradient(way, times)
+    force = 95.0 * np.gradient(speed, times) + 20.0 * np.sign(speed) + 200.0 * speed
+    late = (0.0, *(times[1:] + 2e-3).tolist())
+    uneven = force - 2.0 * np.sin(2.0 * np.pi * way / 0.03)   # N
+    axis = changed(without_a_spring(), {'force.course': 'table', 'force.times': late, 'force.forces': tuple(uneven)})
+    samples = stickslip.simulate(axis, 25.0, 1e-3).samples
+    write_measured(folder, times, {'position': np.round(samples['position'], 6),
+                                   'drive_force': force - 3.0 + random.normal(0.0, 0.1, len(times))}, {})
+    return stickslip.read_run(folder)
+
+
+@pytest.mark.parametrize('static', [0.2, 0.6])   # with the second each noisy break-away is a jump
+def test_an_offset_alone_under_a_measured_force(static: float, tmp_path: Path) -> None:
+    start = changed(without_a_spring(), {'force.course': 'constant', 'friction.static.initial': static})
+    found = stickslip.identify(positioned(tmp_path / 'run'), start, {
+        'sensor.external_force.offset': between(-20.0, 20.0)})
+    offset = found.estimates[0]
+    assert not found.fits
+    assert offset.value == pytest.approx(-3.0, abs=0.5)
+    assert offset.standard_deviation > 1e-3      # N: as a jump has it, 1e-6
+    assert offset.kind == VOID
+    assert np.isnan(offset.interval).all()
+
+
+def test_static_friction_without_a_break_away_is_not_identifiable(tmp_path: Path) -> None:
+    """It moves at the start, and only turns: nothing rests."""
+    axis = changed(without_a_spring(), {'initial.velocity': 0.1, 'force.amplitude': 80.0})
+    samples = stickslip.simulate(axis, 3.0).samples
+    noise = np.random.default_rng(2).normal(0.0, 0.3, len(samples['time']))
+    write_measured(tmp_path / 'run', samples['time'], {
+        'position': np.round(samples['position'], 6), 'drive_force': samples['external_force'] + noise}, {})
+    start = changed(axis, {'axis.mass': 120.0, 'initial.velocity': 0.0, 'force.course': 'constant'})
+    found = stickslip.identify(stickslip.read_run(tmp_path / 'run'), start, {
+        'axis.mass': between(50.0, 200.0), 'friction.static.initial': between(0.05, 0.9)})
+    static = next(one for one in found.estimates if one.name == 'friction.static.initial')
+    assert static.kind == NOT_IDENTIFIABLE
+    assert static.value == static.start
+    assert (static.interval, static.profile) == ((0.05, 0.9), None)
+    assert found.values['axis.mass'] == pytest.approx(95.0, rel=0.02)
 
 
 def test_a_drive_that_was_measured_by_its_encoder(tmp_path: Path) -> None:

@@ -43,11 +43,11 @@ def _misfits(found: 'Identification') -> Iterator[str]:
 
 
 def _estimates(found: 'Identification') -> Iterator[str]:
-    from ..identification.identified import FOUND
+    from ..identification.identified import FOUND, VOID
     from ..identification.report.identified_scene import interval_words, number_words
 
     for one in found.estimates:
-        kind = '' if one.kind == FOUND else f', {one.kind}'
+        kind = '' if one.kind in (FOUND, VOID) else f', {one.kind}'
         yield (f'{one.name:{_NAME}}{number_words(one.start, one.unit):>{_NUMBER}}'
                f'{number_words(one.value, one.unit):>{_NUMBER}}   {interval_words(one)}{kind}')
 

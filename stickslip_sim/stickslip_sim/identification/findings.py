@@ -21,6 +21,7 @@ from .identified import (
     AT_BOUND,
     FOUND,
     NOT_IDENTIFIABLE,
+    VOID,
     ChannelFit,
     Estimate,
     Identification,
@@ -69,6 +70,8 @@ def identification_of(problem: FitProblem, scene: Scene, ends: Sequence[Ended], 
     if best.of_slips is None and not misfits:
         estimates = with_profile_intervals(estimates, problem, best.solution, of_readings, inflation)
         estimates = tuple(map(_widened, estimates, problem.parameters, np.sqrt(np.diag(by_inputs))))
+    if misfits:
+        estimates = tuple(map(_void, estimates))
     dynamics = problem.model.dynamics(values)
     assert dynamics is not None
     found, inputs = with_measured_inputs(changed(scene, problem.model.changes(values)), problem.measurement, dynamics)
@@ -120,6 +123,13 @@ def _estimate(one: FreeParameter, value: float, deviation: float, is_known: bool
                         (one.low, one.high), None, kind, 'the data do not determine it by itself')
     return Estimate(one.name, one.unit, value, one.start, one.low, one.high, one.logarithmic, own, ends, None, kind,
                     derivation)
+
+
+def _void(one: Estimate) -> Estimate:
+    """Return an estimate of a model that a test rejects."""
+    if one.kind == NOT_IDENTIFIABLE:
+        return one
+    return replace(one, kind=VOID if one.kind == FOUND else one.kind, interval=(float('nan'), float('nan')))
 
 
 def _widened(one: Estimate, parameter: FreeParameter, deviation: float) -> Estimate:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from ..core.arrays import Numbers
 from ..scene import Scene
 
-FOUND, AT_BOUND, NOT_IDENTIFIABLE = 'found', 'at a bound', 'not identifiable'
+FOUND, AT_BOUND, NOT_IDENTIFIABLE, VOID = 'found', 'at a bound', 'not identifiable', 'void'
 LEVEL = 0.95   # of all intervals
 
 
@@ -17,7 +17,8 @@ class Estimate:
 
     `low` and `high` are its range in the file of free parameters.  `interval` (low, high) is that of the covariance,
     `profile` that of the profile likelihood (None where it was not computed); an end may lie at that of the range.
-    `kind` is FOUND, AT_BOUND or NOT_IDENTIFIABLE; with the last, value and interval are those of the start and range.
+    `kind` is FOUND, AT_BOUND, NOT_IDENTIFIABLE, whose interval is the range, or VOID: the best number of a model that
+    a test rejects.  Then no interval holds: both ends are NaN, `standard_deviation` is that of the rejected fit.
     """
 
     name: str

@@ -43,11 +43,12 @@ class Certainty(NamedTuple):
 
 def certainty_of(information: Numbers, inflation: float, parameters: Sequence[FreeParameter]) -> Certainty:
     """Return what JᵀJ (k, k) of all residuals says; `inflation` is the factor on the covariance."""
-    scale = np.sqrt(np.diag(information))
+    moves = np.diag(information) > 0.0   # not what is held
+    scale = np.sqrt(np.where(moves, np.diag(information), 1.0))
     scales = np.outer(scale, scale)
     covariance = inflation * np.linalg.pinv(information / scales, hermitian=True) / scales
     widths = np.array([one.inner(one.high) - one.inner(one.low) for one in parameters])
-    return Certainty(covariance, np.sqrt(np.diag(covariance)) < _LOST * widths)
+    return Certainty(covariance, moves & (np.sqrt(np.diag(covariance)) < _LOST * widths))
 
 
 def combinations_of(information: Numbers, parameters: Sequence[FreeParameter]) -> tuple[Combination, ...]:

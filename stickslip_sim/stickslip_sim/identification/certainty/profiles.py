@@ -124,6 +124,7 @@ class Profile:
 def with_profile_intervals(estimates: Sequence[Estimate], problem: FitProblem, best: Solution, known: Certainty,
                            inflation: float) -> tuple[Estimate, ...]:
     """Return estimates with their profile intervals, where those of the covariance do not hold."""
-    profiles = [Profile(problem, best, known, inflation, k) for k in range(len(estimates))]
-    return tuple(replace(one, profile=profile.interval() if profile.needs() else None)
+    is_free = problem.region.low < problem.region.high
+    profiles = [Profile(problem, best, known, inflation, k) if is_free[k] else None for k in range(len(estimates))]
+    return tuple(replace(one, profile=profile.interval() if profile and profile.needs() else None)
                  for one, profile in zip(estimates, profiles, strict=True))

@@ -3,7 +3,9 @@
 """Tests that reject a model which does not fit: by the size of its residuals, as a whole and stretch by stretch.
 
 The noise of a sensor is known from its own readings, neighbour by neighbour, without any model.  Residuals that are
-larger than that, or that go together from sample to sample where the noise does not, are the model's.
+larger than that, or of which a part goes together from sample to sample where the noise does not, are the model's.
+That part, too, counts by its size: beside the noise, and beside the motion, for what is neither seen by the sensor nor
+matters for the motion rejects no model.
 """
 
 from collections.abc import Sequence
@@ -22,7 +24,8 @@ _TOGETHER = 1.5   # samples: below, the correlation is that of chance
 _CHANCE = 1e-4       # of rejecting a model that is right
 _SLACK = 1.15        # on a mean square: the noise is known only so well
 _BY_INPUTS = 1.1     # of a mean square: more by the noise of inputs, whose residuals go together
-_CORRELATED = 0.2    # of neighbouring residuals
+_CORRELATED = 0.2    # of the square of the noise: the part of residuals that goes together
+_MATTERS = 1e-5      # of the range of the readings: a smaller misfit is none
 
 
 def misfits_of(channel: Channel, residuals: Numbers, white: Numbers, times: Numbers,
@@ -62,28 +65,27 @@ def _size(channel: Channel, residuals: Numbers, squares: Numbers, times: Numbers
     count = float(channel.weights[rows].sum())
     mean = float(squares[rows].sum()) / count
     limit = _SLACK * 2.0 * float(gammaincinv(0.5 * count, 1.0 - _CHANCE / tests)) / count
-    if mean <= limit:
+    off, span = float(np.sqrt(np.mean(residuals[rows]**2))), float(np.ptp(channel.values))
+    if mean <= limit or off <= _MATTERS * span:
         return None
     begin, end = float(times[rows[0]]), float(times[rows[-1]])
-    off = float(np.sqrt(np.mean(residuals[rows]**2)))
-    part = 100.0 * off / float(np.ptp(channel.values))
     return Misfit(channel.name, name, mean, limit, begin, end,
-                  f'{channel.name} is off by {quantity(off, channel.unit, 3)} (rms), {part:.2g} % of its range, from '
-                  f'{begin:.6g} to {end:.6g} s: {mean**0.5:.3g} times what the noise explains')
+                  f'{channel.name} is off by {quantity(off, channel.unit, 3)} (rms), {100.0 * off / span:.2g} % of its '
+                  f'range, from {begin:.6g} to {end:.6g} s: {mean**0.5:.3g} times what the noise explains')
 
 
 def _correlation(channel: Channel, residuals: Numbers, times: Numbers) -> Misfit | None:
-    """Return the failure where neighbouring residuals go together; a sensor that counts in steps makes them do so."""
+    """Return the failure where a part of residuals goes together; a sensor that counts in steps makes them do so."""
     if channel.quantum > channel.resolution:
         return None
     own = residuals - residuals.mean()
-    share = float(own[1:] @ own[:-1]) / max(float(own @ own), 1e-300)
-    limit = max(_CORRELATED, 4.0 / len(own)**0.5)
-    if share <= limit:
+    together = max(float(own[1:] @ own[:-1]), 0.0) / len(own)
+    share, limit = together / channel.resolution**2, max(_CORRELATED, 4.0 / len(own)**0.5)
+    if share <= limit or together**0.5 <= _MATTERS * float(np.ptp(channel.values)):
         return None
     return Misfit(channel.name, 'correlation of neighbours', share, limit, float(times[0]), float(times[-1]),
-                  f'the residuals of {channel.name} go together from sample to sample (correlation {share:.2g}): they '
-                  'are no noise')
+                  f'of the residuals of {channel.name} {quantity(together**0.5, channel.unit, 3)} (rms) go together '
+                  f'from sample to sample, {share**0.5:.2g} times the noise: they are no noise')
 
 
 def _by_runs(residuals: Numbers, weights: Numbers) -> Numbers:

@@ -129,7 +129,7 @@ def direct_motion(model: AxisModel, parameters: Sequence[FreeParameter], motion:
 
     `start` (k,) and the region are likewise.
     """
-    spread = region.high - region.low
+    spread = np.array([one.inner(one.high) - one.inner(one.low) for one in parameters])
     forwards = motion.velocity > 0.0
 
     def residuals(point: Numbers) -> Numbers:

@@ -14,7 +14,8 @@ from ...core.time_grid import Instants
 from ..given.free_parameters import FreeParameter
 from ..given.motions import MeasuredMotion, stops_of, track_of
 from ..given.readings import Channel, SensorReadings, instants_of
-from ..given.rests import ends_in_rest
+from ..given.rests import ends_in_rest, has_break_away
+from ..given.run_start import start_force
 from ..trial.axis_model import OUTPUT_PLACES, AxisModel
 from ..trial.slip_features import (
     N_FIGURES,
@@ -29,7 +30,7 @@ from .direct_drive import direct_drive
 from .direct_motion import direct_motion, force_noise_of, sliding_motion
 from .least_squares import STEP
 from .noise_filters import NoiseFilter, filters_of, white_of
-from .region import region_of
+from .region import Region, region_of
 
 Rows = NDArray[np.intp]
 
@@ -37,6 +38,7 @@ _SHARP = 2.5   # of the speed of the drive: a slider that sways about it reaches
 _ROUGH = 0.02  # of a slip: so well the motion after a measured arrest is known
 _MOVES = 5.0   # standard deviations: a speed that is one
 _STATIC, _NOISY_STEP = 'friction.static.', 0.02
+_STRETCH = 'initial.stretch'
 _STEP = 0.02   # of the logarithm of a mass: how far noise of the force moves it is taken in such steps
 _LOOSE = 2.0   # ranges: the standard deviation of a weak prior, which holds what the data do not determine
 
@@ -80,12 +82,24 @@ class FitProblem:
         self.clear_slips = [slip for slip in self.slips if slip.before is None or id(slip.before) in rests]
         self.sharp_slips = [slip for slip in self.clear_slips if _SHARP <= slip.overtakes < np.inf]
         self.start = np.array([one.inner(one.start) for one in parameters])
-        self.region = region_of(parameters, model.scene.values)
+        self.region = self._region(has_break_away(motions, self.track, drive))
+        self._start_force = start_force(measurement)
+        self._is_stretch = np.array([self._start_force is not None and one.prior is None and one.name == _STRETCH
+                                     for one in parameters])
         self.widths = np.array([one.inner(one.high) - one.inner(one.low) for one in parameters])
         self._mass, self._force_noise = model.scene.axis.mass, force_noise_of(measurement)
         self._filters: tuple[NoiseFilter | None, ...] = (None,) * len(measurement.channels)
         self._sliding = self._of_sliding()
         self.take_input_noise_of(self.values(self.with_direct(self.start)))
+
+    def _region(self, has_break_away: bool) -> Region:
+        """Return where the parameters may go: static friction nowhere, where no measured break-away shows it."""
+        found = region_of(self.parameters, self.model.scene.values)
+        if has_break_away:
+            return found
+        held = np.array([one.name.startswith(_STATIC) for one in self.parameters])
+        return Region(np.where(held, self.start, found.low), np.where(held, self.start, found.high)) \
+            if held.any() else found
 
     def _of_sliding(self) -> dict[int, float]:
         """Return the parameters that the motion under a measured force shows by itself, by place."""
@@ -232,15 +246,32 @@ class FitProblem:
         return found
 
     def beforehand(self, point: Numbers) -> Numbers:
-        """Return the residuals of what is known beforehand (k,): the prior of each parameter, or a loose one."""
+        """Return the residuals of what is known beforehand (k,): the prior of each parameter, or a loose one.
+
+        The stretch at the start is known by the drive force that was measured then.
+        """
         found = []
         for one, number, begin, width in zip(self.parameters, point, self.start, self.widths, strict=True):
             mean, spread = one.prior or (begin, _LOOSE * width)
             found.append((number - mean) / spread)
+        if self._start_force is not None and self._is_stretch.any():
+            off = self.model.start_force(self.values(point)) - self._start_force.value
+            return np.where(self._is_stretch, off / self._start_force.deviation, found)
         return np.array(found)
 
+    def tied(self, point: Numbers) -> Numbers:
+        """Return a point (k,) with the stretch at the start, if it is free, to which the measured force stretches it."""
+        if self._start_force is None or not self._is_stretch.any():
+            return point
+        values, k = self.values(point), int(self._is_stretch.argmax())
+        force = self.model.start_force(values)
+        of_one = self.model.start_force(values + self._is_stretch) - force   # of 1 m: it is linear
+        one, found = self.parameters[k], point.copy()
+        found[k] = one.inner(min(max(values[k] + (self._start_force.value - force) / of_one, one.low), one.high))
+        return found
+
     def information_beforehand(self) -> Numbers:
-        """Return JᵀJ (k, k) of `beforehand`, diagonal."""
+        """Return JᵀJ (k, k) of `beforehand`, diagonal, but for what was measured."""
         spreads = [_LOOSE * width if one.prior is None else one.prior[1]
                    for one, width in zip(self.parameters, self.widths, strict=True)]
-        return np.diag(1.0 / np.array(spreads)**2)
+        return np.diag(np.where(self._is_stretch, 0.0, 1.0 / np.array(spreads)**2))

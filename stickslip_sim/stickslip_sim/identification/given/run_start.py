@@ -13,21 +13,29 @@ from ...scene import Scene, changed
 from .free_parameters import FreeParameter
 from .measured_inputs import travelled
 from .motions import YIELDS, MeasuredMotion
-from .readings import Channel, SensorReadings
+from .readings import Channel, SensorReadings, drives_directly
 
 _FIRST = 10          # samples, of which the start is the mean
 _NOISES = 5.0        # standard deviations of one sample: nearer, the start of the scene is as good
 _OF_FORCES = 0.03    # of the range of the drive force, likewise
-_WIDEST = 2.0        # ranges of the drive force: so far the spring may be stretched at the start
+_WIDEST = 2.0        # ranges of a position or a drive force: so far the start may be off
 _SHORT = 0.45        # of the second rest: no spring that was slack at the start breaks away after so short a way
 _LENGTHS = 10, 20, 40, 80   # of a parabola through the first samples
 _WELL, _MOVING = 0.005, 0.01   # of the highest speed: as well a speed at the start is known; one below is no motion
-_SPEED_NOISES, _OF_SPEED = 20.0, 0.5   # so far from the measured speed at the start, and of it, the true one may be
+_SPEED_NOISES = 20.0   # so far from the measured speed at the start the true one may be: a parabola is none of it
+_LINE_NOISES = 3.0     # of what is left of a line through the first samples: so far it may be off at the start
 _RESTS = 1e-3, 1e4   # s: so long the slider may have been at rest before
 _PART = 0.5          # of a usual rest: there the search for that begins
 _OFFSET = 'sensor.drive_force.offset'
 _POSITION, _STRETCH, _VELOCITY, _REST = ('initial.position', 'initial.stretch', 'initial.velocity',
                                          'initial.rest_time')
+
+
+class StartForce(NamedTuple):
+    """The drive force at the start of a run as it was measured, and its standard deviation, N."""
+
+    value: float
+    deviation: float
 
 
 class _Speed(NamedTuple):
@@ -49,7 +57,8 @@ def from_measured_start(scene: Scene, parameters: tuple[FreeParameter, ...], mea
     if scene.values['drive.course'] == 'position' or measurement.times[0] > _FIRST * measurement.period:
         return scene, parameters, ()
     if not names & {_POSITION, 'sensor.position.offset'}:
-        scene = _moved(scene, measurement, notes)
+        scene, own = _moved(scene, measurement, notes)
+        parameters = (*parameters, *own)
     if _VELOCITY not in names:
         parameters = (*parameters, *_velocity(scene, measurement, notes))
     if _STRETCH not in names:
@@ -57,16 +66,34 @@ def from_measured_start(scene: Scene, parameters: tuple[FreeParameter, ...], mea
     return scene, parameters, tuple(notes)
 
 
-def _moved(scene: Scene, measurement: SensorReadings, notes: list[str]) -> Scene:
-    """Return the scene with the first measured position, if that is another one."""
+def start_force(measurement: SensorReadings) -> StartForce | None:
+    """Return the measured drive force at the start, by a line through the first samples; None without one."""
+    channel = measurement.channel('drive_force')
+    if channel is None or measurement.times[0] > _FIRST * measurement.period:
+        return None
+    times, forces = measurement.times[:_FIRST], channel.values[:_FIRST]
+    slope, value = np.polyfit(times, forces, 1)
+    off = _LINE_NOISES * float(np.sqrt(np.mean((forces - value - slope * times)**2)))
+    return StartForce(float(value), max(channel.resolution, off))
+
+
+def _moved(scene: Scene, measurement: SensorReadings, notes: list[str]) -> tuple[Scene, Sequence[FreeParameter]]:
+    """Return the scene with the first measured position, and that as a parameter, if it is another one.
+
+    It is known only as well as one reading, and the error would be in all others.  Where noise of a measured force
+    moves the slider, what is new in each sample counts, which does not know it.
+    """
     channel = measurement.channel('position')
-    if channel is None:
-        return scene
-    first = float(channel.values[0] if channel.quantum else np.mean(channel.values[:_FIRST]))
-    if abs(first - scene.initial.position) <= _NOISES * channel.resolution:
-        return scene
-    notes.append(f'the run starts at {first:g} m: so does the scene')
-    return changed(scene, {_POSITION: first})
+    if channel is None or abs(float(channel.values[0]) - scene.initial.position) <= _NOISES * channel.resolution:
+        return scene, ()
+    first = float(channel.values[0])
+    scene = changed(scene, {_POSITION: first})
+    if drives_directly(scene):
+        notes.append(f'the run starts at {first:g} m: so does the scene')
+        return scene, ()
+    notes.append(f'the run starts at {first:g} m: so does the scene, and {_POSITION} is free, too')
+    most = _WIDEST * max(abs(first), float(np.ptp(channel.values)))
+    return scene, (FreeParameter(_POSITION, 'm', first, -most, most),)
 
 
 def _velocity(scene: Scene, measurement: SensorReadings, notes: list[str]) -> Sequence[FreeParameter]:
@@ -79,9 +106,10 @@ def _velocity(scene: Scene, measurement: SensorReadings, notes: list[str]) -> Se
                 0.0 if scene.axis.drive_stiffness == 0.0 else YIELDS * abs(drive.value_at(0.0)))
     if abs(speed.value) <= still or abs(speed.value - scene.initial.velocity) <= _NOISES * speed.deviation:
         return ()
-    reach = max(_SPEED_NOISES * speed.deviation, _OF_SPEED * abs(speed.value))
+    most = _WIDEST * max(speed.highest, abs(speed.value))
     notes.append(f'the run starts at {speed.value:.3g} m/s: {_VELOCITY} is free, too')
-    return (FreeParameter(_VELOCITY, 'm/s', speed.value, speed.value - reach, speed.value + reach),)
+    known = speed.value / (2.0 * most), _SPEED_NOISES * speed.deviation / (2.0 * most)
+    return (FreeParameter(_VELOCITY, 'm/s', speed.value, -most, most, known),)
 
 
 def _measured_speed(measurement: SensorReadings) -> _Speed | None:
@@ -119,19 +147,19 @@ def _stretch(scene: Scene, parameters: Sequence[FreeParameter], measurement: Sen
     channel, stiffness = measurement.channel('drive_force'), scene.axis.drive_stiffness
     if stiffness == 0.0:
         return ()
-    if channel is None or _OFFSET in {one.name for one in parameters}:
+    first = start_force(measurement)
+    if channel is None or first is None or _OFFSET in {one.name for one in parameters}:
         return _stretch_by_motion(scene, parameters, measurement, motions, notes)
-    first = float(np.polyfit(measurement.times[:_FIRST] - measurement.times[0], channel.values[:_FIRST], 1)[1])
     speed = _measured_speed(measurement) if moves else None
     velocity = scene.initial.velocity if speed is None else speed.value
     drive = measurement.drive or scene.drive
     damped = scene.axis.drive_damping * (drive.value_at(0.0) - velocity)
     span = float(np.ptp(channel.values))
-    if abs(first - stiffness * scene.initial.stretch - damped) <= max(_NOISES * channel.resolution, _OF_FORCES * span):
+    if abs(first.value - stiffness * scene.initial.stretch - damped) <= max(_NOISES * channel.resolution, _OF_FORCES * span):
         return ()
-    most = _WIDEST * max(span, abs(first)) / stiffness
-    notes.append(f'the run starts with a drive force of {first:g} N: {_STRETCH} is free, too')
-    return (FreeParameter(_STRETCH, 'm', (first - damped) / stiffness, -most, most),
+    most = _WIDEST * max(span, abs(first.value)) / stiffness
+    notes.append(f'the run starts with a drive force of {first.value:g} N: {_STRETCH} is free, too')
+    return (FreeParameter(_STRETCH, 'm', (first.value - damped) / stiffness, -most, most),
             *(() if moves else _rest_time(scene, parameters, motions, notes)))
 
 

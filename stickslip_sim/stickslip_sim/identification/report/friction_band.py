@@ -27,7 +27,12 @@ _LIMITED = 0.2      # of the value: beyond, a step of a logarithm is no small on
 
 
 def half_width(found: Identification, curve: FrictionCurveOf) -> Numbers:
-    """Return half the width of the 95 % band of a curve that a scene has; 0 where nothing that was found moves it."""
+    """Return half the width of the 95 % band of a curve that a scene has; 0 where nothing that was found moves it.
+
+    NaN of a model that a test rejects, of whose error nothing is known.
+    """
+    if not found.fits:
+        return np.full_like(curve(found.scene), np.nan)
     free = [k for k, one in enumerate(found.estimates) if _is_known(one)]
     if not free:
         return np.zeros_like(curve(found.scene))

@@ -13,7 +13,7 @@ from ...scene.schema import BY_NAME
 from ...study.variation import parameter_of
 from ..curve.law_in_scene import short_text
 from ..given.measured_scene import FORMS
-from ..identified import AT_BOUND, NOT_IDENTIFIABLE, Estimate, Identification
+from ..identified import AT_BOUND, FOUND, NOT_IDENTIFIABLE, Estimate, Identification
 
 OF_SENSORS = 'sensor.'
 _BEYOND = 1e-3    # of the standard deviation: digits below it say nothing
@@ -64,9 +64,14 @@ def number_words(value: float, unit: str) -> str:
 
 
 def interval_words(one: Estimate) -> str:
-    """Return the 95 % interval of an estimate, for people."""
+    """Return the 95 % interval of an estimate, for people: by its width where the digits of its ends do not differ."""
     low, high = one.best_interval
-    return f'{number_words(low, one.unit)} to {number_words(high, one.unit)}'
+    if math.isnan(low):
+        return 'void'
+    ends = [number_words(end, one.unit) for end in (low, high)]
+    if ends[0] != ends[1] or low == high:
+        return ' to '.join(ends)
+    return f'{ends[0]} ± {quantity(0.5 * (high - low), one.unit, 2)}'
 
 
 def _put(value: object, index: int | None, number: float) -> object:
@@ -90,7 +95,7 @@ def _head(found: Identification, run: str, start: str) -> Iterator[str]:
     yield f'# {found.scene.name}: identified from {channels} of the run {run}, with {start} to begin with.'
     yield f'# By stickslip {__version__}; the figures in brackets are 95 % intervals.'
     if not found.fits:
-        yield '# THE MODEL DOES NOT FIT this run: the intervals are too narrow; report.html shows where.'
+        yield '# THE MODEL DOES NOT FIT this run: no interval holds; report.html shows where.'
     for one in found.estimates:
         if one.name.startswith(OF_SENSORS):
             value = number_words(one.value, one.unit)
@@ -120,6 +125,8 @@ def _with_unit(unit: str, text: str) -> str:
 def _origin(one: Estimate) -> str:
     if one.kind == NOT_IDENTIFIABLE:
         return f'not identifiable from this run: {one.derivation}'
-    where = f'at the end of its range {one.low:g} to {one.high:g}' if one.kind == AT_BOUND else 'found'
+    where = {AT_BOUND: f'at the end of its range {one.low:g} to {one.high:g}', FOUND: 'found'}.get(
+        one.kind, 'the best of a model that does not fit')
     low, high = one.best_interval
-    return f'{where} ({low:.6g} to {high:.6g}), start {one.start:.6g}: {one.derivation}'
+    interval = '' if math.isnan(low) else f' ({low:.6g} to {high:.6g})'
+    return f'{where}{interval}, start {one.start:.6g}: {one.derivation}'

@@ -21,7 +21,7 @@ from ...study.distribution import LAWS, Distribution
 from ...study.study import MOST_VARIATIONS
 from ...study.uncertain_file import LEAST_KEPT
 from ...study.variation import changes_at, parameter_of
-from ..identified import FOUND, NOT_IDENTIFIABLE, Estimate, Identification
+from ..identified import FOUND, NOT_IDENTIFIABLE, VOID, Estimate, Identification
 from .identified_scene import OF_SENSORS, rounded_scene
 from .shared_factors import REACH, with_shared_factors
 
@@ -48,7 +48,9 @@ def posterior_text(found: Identification, run: str) -> str:
     estimates = [every[k] for k in chosen]
     entries = _entries(rounded_scene(found), estimates, shared)
     lines = [f'# What the run {run} leaves open of {found.scene.name}, for stickslip uncertainty --with.',
-             '# Correlations are those of the fit.', *_left_out(found, free, chosen), 'seed: 0', 'parameters:']
+             '# Correlations are those of the fit.',
+             *([] if found.fits else ['# THE MODEL DOES NOT FIT this run: neither do these spreads hold.']),
+             *_left_out(found, free, chosen), 'seed: 0', 'parameters:']
     lines += [f'  {_key(one.name)}: {{{entry.words}}}' for one, entry in zip(estimates, entries, strict=True)]
     return '\n'.join([*lines, *_correlation_lines(estimates, correlation[np.ix_(chosen, chosen)])]) + '\n'
 
@@ -89,7 +91,7 @@ def _entry(one: Estimate, tails: float) -> _Entry:
     if one.kind == NOT_IDENTIFIABLE:
         return _Entry(f'distribution: uniform, low: {one.low!r}, high: {one.high!r}', one.low, one.high)
     spread = _spread(one)
-    if one.kind != FOUND:
+    if one.kind not in (FOUND, VOID):
         return _one_sided(one, spread)
     if one.logarithmic:
         law, numbers = 'lognormal', (one.value, math.exp(spread))
@@ -142,7 +144,7 @@ def _correlation_lines(estimates: Sequence[Estimate], correlation: Numbers) -> I
 
 def _definite(estimates: Sequence[Estimate], correlation: Numbers) -> Numbers:
     """Return the correlations of numbers that were found, shrunk until they are definite; 0 for all others."""
-    known = np.array([one.kind == FOUND for one in estimates])
+    known = np.array([one.kind in (FOUND, VOID) for one in estimates])
     matrix = np.where(np.isfinite(correlation) & known & known[:, None], correlation, 0.0)
     matrix[np.abs(matrix) <= _WEAKEST] = 0.0
     np.fill_diagonal(matrix, 1.0)

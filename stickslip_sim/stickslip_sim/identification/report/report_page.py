@@ -50,8 +50,8 @@ def _verdict(found: Identification) -> str:
     if found.fits:
         return '<p class="holds">✓ The model fits: no test of the residuals rejects it.</p>'
     rows = ''.join(f'<li>{escape(one.statement)}</li>' for one in _foremost(found.misfits))
-    return ('<p class="fails">✗ The model does not fit this run.  Its numbers are the best it can do; the intervals '
-            f'hold only for a model that fits.</p><ul>{rows}</ul>{_all_tests(found.misfits)}')
+    return ('<p class="fails">✗ The model does not fit this run.  Its numbers are the best it can do; their '
+            f'intervals are void.</p><ul>{rows}</ul>{_all_tests(found.misfits)}')
 
 
 def _foremost(misfits: Sequence[Misfit]) -> list[Misfit]:

@@ -3,7 +3,8 @@
 """A model that is not that of the axis: single slips fitted, each from a measured arrest.
 
 In the whole run its slips come ever more too late or too early, and the least sum of squares means nothing.  It still
-can have the right rests and break-aways, and these weigh most here: they are what such a model is used for.
+can have the right rests and break-aways, and these weigh most here: they are what such a model is used for.  Where the
+force was measured, the spring begins as far stretched as that says: the stretch must not make up for other errors.
 """
 
 from collections.abc import Callable, Sequence
@@ -13,7 +14,7 @@ import numpy as np
 
 from ...core.arrays import Numbers
 from ..fit.fit_problem import FitProblem
-from ..fit.least_squares import minimise
+from ..fit.least_squares import minimise, slopes_of
 from .stages import LOST, Ended, worst_square
 
 _FEWEST_SLIPS, _MOST_SLIPS = 3, 30
@@ -31,7 +32,11 @@ def best_of_slips(problem: FitProblem, ends: Sequence[Ended]) -> list[Ended]:
     if ends[0].mean_square < LOST or count < _FEWEST_SLIPS:
         return [*ends]
     rows = np.unique(np.linspace(0, count - 1, min(count, _MOST_SLIPS)).round().astype(int))
-    residuals = partial(problem.of_slips, slips=[problem.sharp_slips[k] for k in rows], telling=True)
+    slips = [problem.sharp_slips[k] for k in rows]
+
+    def residuals(point: Numbers) -> Numbers:
+        return problem.of_slips(problem.tied(point), slips, telling=True)
+
     ended = [point for end in ends for point in (end.start, end.solution.point)]
     direct = [problem.region.inside(problem.with_direct(point)) for point in (*ended, problem.start)]
     points = [point for of in (ended, direct)
@@ -41,13 +46,16 @@ def best_of_slips(problem: FitProblem, ends: Sequence[Ended]) -> list[Ended]:
         nearest = _nearest(residuals, nearest, problem)
     best = minimise(residuals, nearest, problem.region, most=10, tolerance=1e-3, share=1e-4, robust=_ROBUST,
                     step=_STEP, steepest=_STEEPEST)
-    whole = problem.of_stretches(best.point, problem.stretches())
+    point = problem.tied(best.point)
+    whole = problem.of_stretches(point, problem.stretches())
     if not np.isfinite(whole).all():
         return [*ends]
-    figures = residuals(best.point)
-    cost = float(whole @ whole)
-    return [Ended(ends[0].start, best._replace(cost=cost), worst_square(problem, best.point),
-                  float(figures @ figures) / len(figures)), *ends]
+    untied = partial(problem.of_slips, slips=slips, telling=True)
+    figures = untied(point)
+    slopes = slopes_of(untied, point, figures, problem.region, _STEP)
+    slopes[np.abs(slopes) > _STEEPEST] = 0.0
+    best = best._replace(point=point, cost=float(whole @ whole), information=slopes.T @ slopes)
+    return [Ended(ends[0].start, best, worst_square(problem, point), float(figures @ figures) / len(figures)), *ends]
 
 
 def _nearest(residuals: Callable[[Numbers], Numbers], start: Numbers, problem: FitProblem) -> Numbers:

@@ -15,7 +15,7 @@ import numpy as np
 
 from ...core.arrays import Numbers
 from ..fit.fit_problem import FitProblem, Stretches
-from ..fit.least_squares import STEP, Solution, minimise
+from ..fit.least_squares import STEP, Solution, minimise, steps_over_jumps
 from ..given.motions import MeasuredMotion
 from .starts import N_STARTS, ROBUST
 
@@ -80,8 +80,14 @@ def _nearer(problem: FitProblem, start: Numbers) -> Numbers:
 
 
 def _of_whole(problem: FitProblem, start: Numbers) -> Solution:
-    return minimise(partial(problem.of_stretches, stretches=problem.stretches()), start, problem.region,
-                    most=_MOST_STEPS, tolerance=1e-3, step=problem.steps)
+    residuals, steps = partial(problem.of_stretches, stretches=problem.stretches()), problem.steps
+    found = minimise(residuals, start, problem.region, most=_MOST_STEPS, tolerance=1e-3, step=steps)
+    while problem.model.is_pushed:
+        before, steps = steps, steps_over_jumps(residuals, found.point, problem.region, steps)
+        if np.array_equal(steps, before):
+            break
+        found = minimise(residuals, found.point, problem.region, most=_MOST_STEPS, tolerance=1e-3, step=steps)
+    return found
 
 
 def _polished(problem: FitProblem, found: Solution) -> Solution:

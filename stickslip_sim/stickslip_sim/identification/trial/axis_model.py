@@ -121,6 +121,14 @@ class AxisModel:
         put_in_order(own)
         return own
 
+    def start_force(self, values: Numbers) -> float:
+        """Return the drive force at the start as its sensor would measure it, N."""
+        own, (offset, scale) = self._values(values), self.gain(values, 'drive_force')
+        stiffness, damping, stretch, velocity = (float(str(own[name])) for name in (
+            'axis.drive_stiffness', 'axis.drive_damping', 'initial.stretch', 'initial.velocity'))
+        drive = self._measurement.drive or self.scene.drive
+        return offset + scale * (stiffness * stretch + damping * (drive.value_at(0.0) - velocity))
+
     def drive_of(self, values: Numbers) -> InputProfile:
         """Return the velocity of the drive: as it was measured, or with trial values."""
         found = self.dynamics(values)
