@@ -15,6 +15,7 @@ from pathlib import Path
 from ..loop import machine
 from .axes import SyntheticAxis, axes
 from .foreign import identify_lugre
+from .measuring import OTHERS, USUAL, Sensors
 from .outcomes import Outcome, load, outcome_of, save
 from .page import page
 from .rivals import METHODS, OURS, RivalOutcome, our_outcomes, rival_outcome
@@ -27,20 +28,22 @@ def main() -> None:
     options = parse()
     drawn = axes(options.axes, options.seed)
     outcomes = identify_all(drawn, KEPT / f'seed_{options.seed}.json', options.again)
+    others = {words: identify_all(drawn, KEPT / f'{words.replace(" ", "_")}_{options.seed}.json', options.again, sensors)
+              for words, sensors in OTHERS.items()}
     few = drawn[:options.rivals]
     kept = KEPT / f'rivals_{options.seed}.json'
     rivals = {OURS: our_outcomes(outcomes[:len(few)]), **rivals_on(few, kept, options.again)}
-    text = page(outcomes, rivals, identify_lugre(), machine(), options.seed)
+    text = page(outcomes, others, rivals, identify_lugre(), machine(), options.seed)
     options.out.write_text(text, encoding='utf-8')
     print(text)
 
 
-def identify_all(drawn: list[SyntheticAxis], kept: Path, again: bool) -> list[Outcome]:
-    """Return what came of each axis, of those in a file what was found before."""
+def identify_all(drawn: list[SyntheticAxis], kept: Path, again: bool, sensors: Sensors = USUAL) -> list[Outcome]:
+    """Return what came of each axis through its sensors, of those in a file what was found before."""
     done = {} if again else {outcome.axis: outcome for outcome in load(kept)}
     for axis in drawn:
         if axis.name not in done:
-            done[axis.name] = outcome_of(axis)
+            done[axis.name] = outcome_of(axis, sensors)
             save(list(done.values()), kept)
         print(line(done[axis.name]), file=sys.stderr)
     return [done[axis.name] for axis in drawn]

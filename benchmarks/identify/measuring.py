@@ -17,17 +17,21 @@ from stickslip_sim.scene import Scene
 
 
 class Sensors(NamedTuple):
-    """How an axis is measured: samples a second, resolution of the encoder (m), noise of the force.
+    """How an axis is measured: samples a second, resolution of the encoder (m, 0: it does not count), and noise.
 
-    `force_noise` is a standard deviation, as a share of the root mean square of the force.
+    `force_noise` is a standard deviation, as a share of the root mean square of the force, `noise` that of the position
+    (m).
     """
 
     rate: float = 1000.0
     resolution: float = 1e-6
     force_noise: float = 0.01
+    noise: float = 0.0
 
 
 USUAL = Sensors()
+OTHERS = {'without noise': Sensors(resolution=0.0, force_noise=0.0),
+          '1 µm of noise': Sensors(resolution=0.0, noise=1e-6)}
 
 
 class Measurement(NamedTuple):
@@ -64,8 +68,10 @@ def shown(samples: Columns, rng: Generator, sensors: Sensors = USUAL) -> Measure
     """Return what sensors show of the slider's position and the drive's force, of true samples at their rate."""
     force = samples['drive_force']
     noise = sensors.force_noise * float(np.sqrt(np.mean(force**2)))
-    return Measurement(
-        samples['time'],
-        {'position': np.round(samples['position'] / sensors.resolution) * sensors.resolution,
-         'drive_force': force + noise * rng.standard_normal(len(force))},
-        {'position': sensors.resolution / np.sqrt(12.0), 'drive_force': noise})
+    shown_force = force + noise * rng.standard_normal(len(force))
+    position = samples['position'] + (sensors.noise * rng.standard_normal(len(force)) if sensors.noise else 0.0)
+    if sensors.resolution:
+        position = np.round(position / sensors.resolution) * sensors.resolution
+    return Measurement(samples['time'], {'position': position, 'drive_force': shown_force},
+                       {'position': float(np.hypot(sensors.resolution / 12.0**0.5, sensors.noise)),
+                        'drive_force': noise})

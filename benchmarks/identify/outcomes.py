@@ -16,7 +16,7 @@ from stickslip_sim.identification.identify import identify
 
 from .axes import SyntheticAxis
 from .machines import DURATION
-from .measuring import Measurement, measure
+from .measuring import USUAL, Measurement, Sensors, measure
 
 CLOSE = 0.01   # a share of the true value
 
@@ -72,9 +72,9 @@ class Outcome:
         return bool(self.parameters) and all(parameter.is_found for parameter in self.parameters)
 
 
-def measured_axis(axis: SyntheticAxis) -> Measurement:
+def measured_axis(axis: SyntheticAxis, sensors: Sensors = USUAL) -> Measurement:
     """Return what the sensors show of an axis."""
-    return measure(axis.truth, DURATION, np.random.default_rng(axis.seed))
+    return measure(axis.truth, DURATION, np.random.default_rng(axis.seed), sensors)
 
 
 def identified(axis: SyntheticAxis, measured: Measurement) -> Identification:
@@ -84,9 +84,9 @@ def identified(axis: SyntheticAxis, measured: Measurement) -> Identification:
         return identify(run, axis.start, axis.free_file())
 
 
-def outcome_of(axis: SyntheticAxis) -> Outcome:
+def outcome_of(axis: SyntheticAxis, sensors: Sensors = USUAL) -> Outcome:
     """Return what came of an axis; a refusal or a failure is an outcome, too."""
-    measured = measured_axis(axis)
+    measured = measured_axis(axis, sensors)
     begin = time.process_time()
     try:
         found = identified(axis, measured)

@@ -8,6 +8,8 @@ from operator import itemgetter
 from statistics import median
 from typing import TypeVar
 
+from stickslip_sim.identification.identified import FOUND
+
 from .axes import FARTHEST, FREE, LEAST_SLIPS, NEAREST
 from .foreign import ForeignOutcome
 from .measuring import USUAL
@@ -21,8 +23,8 @@ COVERAGE_MARK = 92, 98             # %
 Entry = TypeVar('Entry')
 
 
-def page(outcomes: Sequence[Outcome], rivals: Mapping[str, Sequence[RivalOutcome]], foreign: ForeignOutcome,
-         machine: str, seed: int) -> str:
+def page(outcomes: Sequence[Outcome], others: Mapping[str, Sequence[Outcome]],
+         rivals: Mapping[str, Sequence[RivalOutcome]], foreign: ForeignOutcome, machine: str, seed: int) -> str:
     """Return the page for what was measured."""
     return '\n'.join([
         '# Identification, measured', '',
@@ -40,6 +42,7 @@ def page(outcomes: Sequence[Outcome], rivals: Mapping[str, Sequence[RivalOutcome
         *_marks(outcomes), '',
         '* Found: within 1 % of the truth, or the truth within the 95 % interval that is given with it.',
         '* Covered: the truth lies within that interval.', '',
+        '### Other sensors', '', 'The same axes through an encoder that does not count:', '', *_by_sensors(others), '',
         '### By model', '', *_by_model(outcomes), '',
         '### By parameter', '', *_by_parameter(outcomes), '', *_failures(outcomes),
         *beside(rivals), *foreign_data(foreign), ''])
@@ -60,6 +63,17 @@ def _marks(outcomes: Sequence[Outcome]) -> list[str]:
         f'| processor time, median | {median(each.seconds for each in outcomes):.1f} s | {TIME_MARK:g} s |',
         f'| processor time, longest | {max(each.seconds for each in outcomes):.1f} s | – |',
         f'| simulations, median | {median(each.runs for each in outcomes):,.0f} | – |']
+
+
+def _by_sensors(others: Mapping[str, Sequence[Outcome]]) -> list[str]:
+    rows = [f'| {words} | {sum(each.fits for each in of)} of {len(of)} | {sum(each.is_found for each in of)} | '
+            f'{share(max(_far(of), default=0.0))} |' for words, of in others.items()]
+    return ['| sensors | said to fit | of which all is found | farthest from the truth of what is called found |',
+            '|---|---|---|---|', *rows]
+
+
+def _far(outcomes: Sequence[Outcome]) -> Iterable[float]:
+    return [each.error for each in all_parameters(outcomes) if each.kind == FOUND]
 
 
 def _by_model(outcomes: Sequence[Outcome]) -> list[str]:

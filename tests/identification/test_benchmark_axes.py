@@ -9,8 +9,9 @@ import pytest
 
 from benchmarks.identify.axes import FARTHEST, FREE, NEAREST, SyntheticAxis, axes, value_of
 from benchmarks.identify.lugre import LuGreAxis
-from benchmarks.identify.measuring import Sensors, measure
-from benchmarks.identify.outcomes import Outcome, ParameterOutcome, load, models_of, save
+from benchmarks.identify.measuring import OTHERS, Sensors, measure
+from benchmarks.identify.outcomes import Outcome, ParameterOutcome, load, models_of, outcome_of, save
+from stickslip_sim.identification.identified import FOUND
 from stickslip_sim.inputs.measurement import load_measurement
 from stickslip_sim.runs import simulate
 from stickslip_sim.study.uncertain_file import uncertain_of
@@ -56,6 +57,15 @@ def test_sensors_count_in_steps_and_have_noise(tmp_path: Path, few: list[Synthet
     read = load_measurement(tmp_path / 'axis.csv', names, {})
     assert (read.times == shown.times).all()
     assert all((read.columns[name] == shown.columns[name]).all() for name in shown.columns)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize('words', OTHERS)
+@pytest.mark.parametrize('k', range(0, FEW, 4))
+def test_right_models_are_not_rejected_and_what_is_found_is_near(few: list[SyntheticAxis], k: int, words: str) -> None:
+    outcome = outcome_of(few[k], OTHERS[words])
+    assert outcome.fits
+    assert all(each.is_found for each in outcome.parameters if each.kind == FOUND), outcome.parameters
 
 
 def test_the_foreign_axis_sticks_slips_and_keeps_the_balance_of_forces() -> None:

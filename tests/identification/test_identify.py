@@ -250,7 +250,7 @@ def test_a_small_misfit_rejects_where_it_matters(rigid: stickslip.Run) -> None:
     (channel, _) = readings_of(rigid, RIGID, {}).channels
     noise = np.random.default_rng(0).normal(0.0, channel.resolution, len(channel.values))
     channel = replace(channel, quantum=0.0, values=0.1 * channel.values)
-    times = 1e-3 * np.arange(len(noise))
+    times = 1e-3 * np.arange(len(noise), dtype=np.float64)
     slow = np.sin(2.0 * np.pi * times)
     for size, rejected in ((0.0, False), (0.3, False), (1.0, True)):
         residuals = (noise + size * channel.resolution * slow) / np.hypot(1.0, size / 2.0**0.5)

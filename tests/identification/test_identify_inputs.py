@@ -85,7 +85,7 @@ def test_what_is_no_run_and_no_scene_is_said_so(tmp_path: Path) -> None:
 def positioned(folder: Path) -> stickslip.Run:
     """Return 25 s of a positioning axis at 1 kHz: the force acts 2 ms late and is read 3 N too low; friction varies."""
     random = np.random.default_rng(4)
-    times = 1e-3 * np.arange(25_001)
+    times = 1e-3 * np.arange(25_001, dtype=np.float64)
     way = 0.08 * np.sin(0.9 * times) + 0.04 * np.sin(2.3 * times)
     speed = np.gradient(way, times)
     force = 95.0 * np.gradient(speed, times) + 20.0 * np.sign(speed) + 200.0 * speed

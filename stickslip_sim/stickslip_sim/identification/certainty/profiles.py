@@ -17,7 +17,8 @@ import numpy as np
 from ...core.arrays import Numbers
 from ..fit.fit_problem import FitProblem, Stretches
 from ..fit.least_squares import Solution, minimise
-from ..identified import Estimate
+from ..given.free_parameters import FreeParameter
+from ..identified import FOUND, NOT_IDENTIFIABLE, Estimate
 from .covariance import QUANTILE, Certainty
 
 _DIFFERS = 0.2       # of the rise of the sum of squares at an end: so far a parabola may be off
@@ -25,6 +26,7 @@ _TOUCHES = 1e-6      # of a range
 _NEAR = 0.02         # of the score: so well an end is found
 _STEEP = 3.0         # a score from which on the interval is halved, as where the range of another parameter ends
 _FITS = 20           # at most for an end
+_WIDE = 0.6          # of a range: a number whose interval is as wide is not known
 _FIRST = 0.1         # of the range: the first step, at most
 _FARTHER = 2.0       # times, at most, from one step to the next
 
@@ -126,5 +128,14 @@ def with_profile_intervals(estimates: Sequence[Estimate], problem: FitProblem, b
     """Return estimates with their profile intervals, where those of the covariance do not hold."""
     is_free = problem.region.low < problem.region.high
     profiles = [Profile(problem, best, known, inflation, k) if is_free[k] else None for k in range(len(estimates))]
-    return tuple(replace(one, profile=profile.interval() if profile and profile.needs() else None)
-                 for one, profile in zip(estimates, profiles, strict=True))
+    return tuple(_with(one, profile.interval() if profile and profile.needs() else None, parameter)
+                 for one, profile, parameter in zip(estimates, profiles, problem.parameters, strict=True))
+
+
+def _with(one: Estimate, profile: tuple[float, float] | None, parameter: FreeParameter) -> Estimate:
+    """Return an estimate with its profile interval, if there is one; where that is wide, it was not found."""
+    if profile is None:
+        return one
+    low, high, *ends = (parameter.inner(value) for value in (*profile, one.low, one.high))
+    is_wide = one.kind == FOUND and high - low > _WIDE * (ends[1] - ends[0])
+    return replace(one, profile=profile, kind=NOT_IDENTIFIABLE if is_wide else one.kind)

@@ -26,6 +26,7 @@ _SLACK = 1.15        # on a mean square: the noise is known only so well
 _BY_INPUTS = 1.1     # of a mean square: more by the noise of inputs, whose residuals go together
 _CORRELATED = 0.2    # of the square of the noise: the part of residuals that goes together
 _MATTERS = 1e-5      # of the range of the readings: a smaller misfit is none
+_EXACT = 1e-6        # of that range: no closer does a model know its axis, whatever the sensor
 
 
 def misfits_of(channel: Channel, residuals: Numbers, white: Numbers, times: Numbers,
@@ -99,8 +100,12 @@ def _by_runs(residuals: Numbers, weights: Numbers) -> Numbers:
 
 
 def inflation_of(problem: FitProblem, fitted: Sequence[Numbers]) -> float:
-    """Return the factor on the covariance: what residuals are larger than the noise, and go together, of the worst."""
-    factors = [1.0]
+    """Return the factor on the covariance: what residuals are larger than the noise, and go together, of the worst.
+
+    Readings without noise know no number better than the model is one: its tables of smooth laws are no closer.
+    """
+    factors = [1.0, min((_EXACT * float(np.ptp(channel.values)) / channel.resolution)**2
+                        for channel in problem.measurement.channels)]
     for k, channel in enumerate(problem.measurement.channels):
         residuals = problem.white(k, channel.values - fitted[k])
         mean = float((channel.weights * residuals**2).sum() / channel.weights.sum()) / channel.resolution**2

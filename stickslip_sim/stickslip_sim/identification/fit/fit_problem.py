@@ -260,7 +260,7 @@ class FitProblem:
         return np.array(found)
 
     def tied(self, point: Numbers) -> Numbers:
-        """Return a point (k,) with the stretch at the start, if it is free, to which the measured force stretches it."""
+        """Return a point (k,) with the stretch at the start, if it is free, that the measured force says."""
         if self._start_force is None or not self._is_stretch.any():
             return point
         values, k = self.values(point), int(self._is_stretch.argmax())

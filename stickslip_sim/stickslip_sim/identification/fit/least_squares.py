@@ -29,7 +29,7 @@ _UNDAMPED, _SETTLED = 1e-6, 100.0   # a damping, and times what the last step ma
 _SHARES = 1.0, 0.3, 0.1, 0.03   # of a step without damping that are tried, where it promises more
 _PROBE = 0.1           # of a step: there its second derivative is taken
 _MOST_TURN = 0.75      # of the length of a step
-_LONGER, _JUMPS, _LONGEST = 10.0, 0.5, 1e-2   # a step so much longer, at which a derivative falls so far, up to a length
+_LONGER, _JUMPS, _LONGEST = 10.0, 0.5, 1e-2   # a step so much longer, at which a derivative falls so far; up to
 
 
 class Solution(NamedTuple):
@@ -67,15 +67,16 @@ def steps_over_jumps(residuals: Residuals, point: Numbers, region: Region, step:
     A fit likes to end at the edge of a jump.  Over a short step there the derivative is that of the jump, as large as
     the step is short: the fit stands still, and takes the parameter for known.
     """
-    here, steps = residuals(point), np.broadcast_to(step, point.shape).copy()
-    sizes, longer = np.full(len(point), np.inf), steps
+    here = residuals(point)
+    sizes: Numbers = np.full(len(point), np.inf)
+    steps = longer = np.asarray(np.broadcast_to(step, point.shape), dtype=np.float64)
     while True:
         again = np.linalg.norm(slopes_of(residuals, point, here, region, longer), axis=0)
         falls = (again < _JUMPS * sizes) & (longer <= _LONGEST)
         if not falls.any():
             return steps
-        steps, sizes = np.where(falls, longer, steps), np.where(falls, again, 0.0)
-        longer = np.where(falls, _LONGER * steps, steps)
+        steps = np.asarray(np.where(falls, longer, steps))
+        sizes, longer = np.where(falls, again, 0.0), np.where(falls, _LONGER * steps, steps)
 
 
 def minimise(residuals: Residuals, point: Numbers, region: Region, *, most: int, tolerance: float,

@@ -33,8 +33,9 @@ def ends_in_rest(motions: Sequence[MeasuredMotion], track: Track, drive: InputPr
 
     How far a slider at rest goes with its drive is the same share in all rests of an axis, about.
     """
-    rests = [_Rest(motion, *_gone(motion.end, _rest_end(after, track), track, drive)) for motion, after in zip(motions, [*motions[1:], None])
-             if _rest_end(after, track) - motion.end >= _SHORT * (motion.end - motion.begin)]
+    ends = [*(motion.begin for motion in motions[1:]), float(track.times[-1])]
+    rests = [_Rest(motion, *_gone(motion.end, end, track, drive)) for motion, end in zip(motions, ends)
+             if end - motion.end >= _SHORT * (motion.end - motion.begin)]
     noise = _NOISES * track.position_noise
     rests = [rest for rest in rests if rest.gone <= _FOLLOWS * rest.driven + noise]
     shares = [rest.gone / rest.driven for rest in rests if rest.driven > 0.0]
@@ -52,10 +53,6 @@ def has_break_away(motions: Sequence[MeasuredMotion], track: Track, drive: Input
     gaps = [(end, motion.begin) for end, motion in zip(ends, motions) if motion.begin - end >= shortest]
     gone = [_gone(*gap, track, drive, part) for gap in gaps for part in (_MIDDLE, _FIRST_HALF)]
     return any(own <= _FOLLOWS * driven + _NOISES * track.position_noise for own, driven in gone)
-
-
-def _rest_end(after: MeasuredMotion | None, track: Track) -> float:
-    return float(track.times[-1]) if after is None else after.begin
 
 
 def _gone(begin: float, end: float, track: Track, drive: InputProfile, part: tuple[float, float] = _MIDDLE

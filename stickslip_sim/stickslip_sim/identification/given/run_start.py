@@ -155,7 +155,8 @@ def _stretch(scene: Scene, parameters: Sequence[FreeParameter], measurement: Sen
     drive = measurement.drive or scene.drive
     damped = scene.axis.drive_damping * (drive.value_at(0.0) - velocity)
     span = float(np.ptp(channel.values))
-    if abs(first.value - stiffness * scene.initial.stretch - damped) <= max(_NOISES * channel.resolution, _OF_FORCES * span):
+    off = abs(first.value - stiffness * scene.initial.stretch - damped)
+    if off <= max(_NOISES * channel.resolution, _OF_FORCES * span):
         return ()
     most = _WIDEST * max(span, abs(first.value)) / stiffness
     notes.append(f'the run starts with a drive force of {first.value:g} N: {_STRETCH} is free, too')

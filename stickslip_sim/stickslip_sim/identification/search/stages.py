@@ -25,6 +25,7 @@ _SAMPLES = 4000         # about so many are enough until the last stage
 _FIRST_SLIPS = 1, 3, 8, 20, 50   # that are fitted as one, before the whole run
 _MOST_STEPS = 60
 _ROUNDS, _GAIN = 4, 0.1 # of further fits at most, and what each must gain
+_FAR = 0.5              # of the sum of squares: so much it must gain far from the run
 _OFF, _TIMES_OFF = 4.0, 100.0    # a mean square of a stretch: of 2 % of a slip, and of the median of all
 _GOOD = 1.2             # a mean square up to that, and no other start is tried
 LOST = 100.0            # a mean square from which on the whole run is not followed
@@ -91,14 +92,15 @@ def _of_whole(problem: FitProblem, start: Numbers) -> Solution:
 
 
 def _polished(problem: FitProblem, found: Solution) -> Solution:
-    """Return a better end of a fit that follows the run but has not come to rest, or is not good.
+    """Return a better end of a fit that has not come to rest, or follows the run but is not good.
 
+    One that does not follow it goes on as long as each round gains by far.
     The table of a smooth law has now and then a breakpoint more or less, a step that bars the way: held as it is, it
     lets the fit by.
     """
     for _ in range(_ROUNDS):
         square = worst_square(problem, found.point)
-        if square > LOST or (square < _GOOD and found.is_settled):
+        if found.is_settled and not _GOOD <= square <= LOST:
             break
         has_table = problem.model.hold_table(problem.values(found.point))
         again = _of_whole(problem, found.point)
@@ -109,7 +111,7 @@ def _polished(problem: FitProblem, found: Solution) -> Solution:
         gained = found.cost - again.cost
         if gained > 0.0:
             found = again
-        if gained < _GAIN:
+        if gained < (_GAIN if square <= LOST else _FAR * found.cost):
             return found._replace(is_settled=is_settled or found.is_settled)
     return found
 

@@ -17,7 +17,7 @@ from ..fit.fit_problem import FitProblem
 from ..fit.least_squares import Solution, minimise
 from ..trial.slip_features import MeasuredSlip
 
-N_STARTS = 8            # fitted of the trial points, the best
+N_STARTS, N_WHOLE = 8, 2   # fitted of the trial points, the best by figures of slips and by the whole run
 ROBUST = 3.0            # figures of slips: beyond, a coarse fit counts their size
 _COARSE_STEP = 1e-5
 _STEEPEST = 1e4          # figures of slips over a logarithm: a hundred times in proportion
@@ -55,7 +55,8 @@ def starts_of(problem: FitProblem, seed: int) -> Iterator[Numbers]:
     costs = [_cost(problem.of_slips(trial, few)) for trial in trials]
     found = [first, *(_coarse(problem, trials[k], chosen) for k in np.argsort(costs)[:N_STARTS])]
     found.sort(key=lambda solution: solution.cost)
-    points = [solution.point for solution in found]
+    whole = partial(problem.of_stretches, stretches=problem.stretches())
+    points = [*(solution.point for solution in found), *sorted(trials, key=lambda trial: _cost(whole(trial)))[:N_WHOLE]]
     yield from _distinct([first.point, *points], problem)[1:] if is_near else _distinct(points, problem)
 
 
