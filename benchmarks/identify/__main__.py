@@ -28,8 +28,8 @@ def main() -> None:
     options = parse()
     drawn = axes(options.axes, options.seed)
     outcomes = identify_all(drawn, KEPT / f'seed_{options.seed}.json', options.again)
-    others = {words: identify_all(drawn, KEPT / f'{words.replace(" ", "_")}_{options.seed}.json', options.again, sensors)
-              for words, sensors in OTHERS.items()}
+    others = {words: identify_all(drawn, KEPT / f'other_{k}_{options.seed}.json', options.again, sensors)
+              for k, (words, sensors) in enumerate(OTHERS.items())}
     few = drawn[:options.rivals]
     kept = KEPT / f'rivals_{options.seed}.json'
     rivals = {OURS: our_outcomes(outcomes[:len(few)]), **rivals_on(few, kept, options.again)}

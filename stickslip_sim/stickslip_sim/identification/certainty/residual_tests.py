@@ -26,7 +26,7 @@ _SLACK = 1.15        # on a mean square: the noise is known only so well
 _BY_INPUTS = 1.1     # of a mean square: more by the noise of inputs, whose residuals go together
 _CORRELATED = 0.2    # of the square of the noise: the part of residuals that goes together
 _MATTERS = 1e-5      # of the range of the readings: a smaller misfit is none
-_EXACT = 1e-6        # of that range: no closer does a model know its axis, whatever the sensor
+_EXACT = 1e-6        # of that range: no closer does a model know its axis, even where a sensor has no noise
 
 
 def misfits_of(channel: Channel, residuals: Numbers, white: Numbers, times: Numbers,

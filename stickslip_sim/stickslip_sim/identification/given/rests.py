@@ -46,7 +46,7 @@ def ends_in_rest(motions: Sequence[MeasuredMotion], track: Track, drive: InputPr
 def has_break_away(motions: Sequence[MeasuredMotion], track: Track, drive: InputProfile) -> bool:
     """Return whether one of the motions begins from a rest that was measured, so that it shows static friction.
 
-    The slider stands still in the middle of it, or in its first half: the begin of a slow motion is found too late.
+    The slider stands still in the middle of it, or in its first half: where a slow motion begins is found too late.
     """
     shortest = _FEWEST * float(track.times[1] - track.times[0])
     ends = [float(track.times[0]), *(motion.end for motion in motions)]

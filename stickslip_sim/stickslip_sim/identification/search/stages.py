@@ -25,6 +25,8 @@ _SAMPLES = 4000         # about so many are enough until the last stage
 _FIRST_SLIPS = 1, 3, 8, 20, 50   # that are fitted as one, before the whole run
 _MOST_STEPS = 60
 _ROUNDS, _GAIN = 4, 0.1 # of further fits at most, and what each must gain
+_COARSER = 1.0, 1.0, 1.33, 1.6   # times the tolerance of a table that is held, in rounds
+_NEAR = 1e4             # a mean square up to which a table may bar the way
 _FAR = 0.5              # of the sum of squares: so much it must gain far from the run
 _OFF, _TIMES_OFF = 4.0, 100.0    # a mean square of a stretch: of 2 % of a slip, and of the median of all
 _GOOD = 1.2             # a mean square up to that, and no other start is tried
@@ -96,13 +98,13 @@ def _polished(problem: FitProblem, found: Solution) -> Solution:
 
     One that does not follow it goes on as long as each round gains by far.
     The table of a smooth law has now and then a breakpoint more or less, a step that bars the way: held as it is, it
-    lets the fit by.
+    lets the fit by.  Where the breakpoints themselves make a minimum, those of a coarser table do not.
     """
-    for _ in range(_ROUNDS):
+    for coarser in _COARSER:
         square = worst_square(problem, found.point)
-        if found.is_settled and not _GOOD <= square <= LOST:
+        if found.is_settled and not _GOOD <= square <= _NEAR:
             break
-        has_table = problem.model.hold_table(problem.values(found.point))
+        has_table = problem.model.hold_table(problem.values(found.point), coarser)
         again = _of_whole(problem, found.point)
         is_settled = again.is_settled
         if has_table:
@@ -112,7 +114,9 @@ def _polished(problem: FitProblem, found: Solution) -> Solution:
         if gained > 0.0:
             found = again
         if gained < (_GAIN if square <= LOST else _FAR * found.cost):
-            return found._replace(is_settled=is_settled or found.is_settled)
+            found = found._replace(is_settled=is_settled or found.is_settled)
+            if not has_table or square < _GOOD:
+                break
     return found
 
 

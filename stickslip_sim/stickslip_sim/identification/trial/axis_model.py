@@ -48,14 +48,14 @@ class AxisModel:
         self._held: Breakpoints | None = None
         self.runs = 0
 
-    def hold_table(self, values: Numbers | None) -> bool:
+    def hold_table(self, values: Numbers | None, coarser: float = 1.0) -> bool:
         """Hold the breakpoints of a smooth kinetic law as they are with these values; None: they go with the trial.
 
-        Return whether there is such a law.
+        They may be those of a table that is so much `coarser`.  Return whether there is such a law.
         """
         law = self.scene.axis.friction.kinetic.law
         if law is not None:
-            self._held = None if values is None else breakpoints_of(self._values(values), law.shape)
+            self._held = None if values is None else breakpoints_of(self._values(values), law.shape, coarser)
         return law is not None
 
     @property

@@ -48,10 +48,13 @@ def with_table(values: dict[str, object], shape: Shape, held: Breakpoints | None
     return table
 
 
-def breakpoints_of(values: dict[str, object], shape: Shape) -> Breakpoints:
-    """Return the breakpoints (z, p) of the falling part of a law; raises InputError if they are too many."""
+def breakpoints_of(values: dict[str, object], shape: Shape, coarser: float = 1.0) -> Breakpoints:
+    """Return the breakpoints (z, p) of the falling part of a law; raises InputError if they are too many.
+
+    Those of a `coarser` table are for a tolerance so many times as large.
+    """
     initial, limit, tolerance = (float(str(values[_LAW + name])) for name in ('initial', 'limit', 'tolerance'))
-    return _breakpoints(shape, tolerance / abs(initial - limit)) if initial != limit else ((0.0, 0.0),)
+    return _breakpoints(shape, coarser * tolerance / abs(initial - limit)) if initial != limit else ((0.0, 0.0),)
 
 
 @lru_cache(maxsize=64)
