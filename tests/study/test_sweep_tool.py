@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -36,13 +37,23 @@ def started(*arguments: str | Path) -> 'subprocess.Popen[str]':
                             preexec_fn=restore_interrupt)
 
 
-def wait_for_lines(path: Path, process: 'subprocess.Popen[str]') -> None:
-    """Wait until there is a whole chunk, and the sweep still runs."""
+def wait_until(process: 'subprocess.Popen[str]', holds: Callable[[], bool]) -> None:
+    """Wait for something while a sweep still runs."""
     end = time.monotonic() + 60.0
-    while not path.exists() or path.read_bytes().count(b'\n') <= 2000:
+    while not holds():
         assert time.monotonic() < end
         assert process.poll() is None, process.communicate()
         time.sleep(0.005)
+
+
+def out_lines(path: Path) -> int:
+    """Return how many lines of points a sweep has written, and the line above them."""
+    return path.read_bytes().count(b'\n') if path.exists() else 0
+
+
+def wait_for_lines(path: Path, process: 'subprocess.Popen[str]') -> None:
+    """Wait until there is a whole chunk, and the sweep still runs."""
+    wait_until(process, lambda: out_lines(path) > 2000)
 
 
 @pytest.fixture(scope='module')
@@ -155,16 +166,22 @@ def test_a_full_disk_gets_one_line_and_keeps_whole_chunks(tmp_path: Path, finish
     assert (out / POINTS_TABLE).read_bytes() == whole
 
 
-def test_a_worker_that_dies_is_reported(tmp_path: Path) -> None:
-    process = started(*LONG, '--workers', '2', '--out', tmp_path / 'out')
-    wait_for_lines(tmp_path / 'out' / PARTIAL, process)
-    children = Path(f'/proc/{process.pid}/task/{process.pid}/children').read_text().split()
-    workers = [pid for pid in children if b'spawn_main' in Path(f'/proc/{pid}/cmdline').read_bytes()]
-    os.kill(int(workers[0]), signal.SIGKILL)
+@pytest.mark.parametrize('lines', [0, 1, 2001, 4001], ids=lambda lines: f'{lines} lines written')
+@pytest.mark.parametrize('which', [0, -1], ids=['first', 'last'])
+def test_a_worker_that_dies_is_reported(lines: int, which: int, tmp_path: Path, finished: Path) -> None:
+    out = tmp_path / 'out'
+    process = started(*SHORT, '--workers', '2', '--out', out)
+    children = Path(f'/proc/{process.pid}/task/{process.pid}/children')
+    wait_until(process, lambda: len(children.read_text().split()) == 2)
+    wait_until(process, lambda: not lines or out_lines(out / PARTIAL) >= lines)
+    workers = children.read_text().split()
+    os.kill(int(workers[which]), signal.SIGKILL)
     said, error = process.communicate(timeout=60)
-    assert (process.returncode, said, error.count('\n')) == (1, '', 1)
-    assert 'worker' in error
-    assert '--resume' in error
+    assert (process.returncode, said, error.count('\n')) == (1, '', 1), error
+    assert 'a worker process was killed by signal 9; what is done is kept, --resume goes on' in error
+    assert not [pid for pid in workers if Path(f'/proc/{pid}').exists()]
+    assert run(['sweep', *SHORT, '--out', str(out), '--resume']) == 0
+    assert (out / POINTS_TABLE).read_bytes() == (finished / POINTS_TABLE).read_bytes()
 
 
 def test_resuming_what_is_complete_does_nothing(tmp_path: Path, capsys: Capture) -> None:

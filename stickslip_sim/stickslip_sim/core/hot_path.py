@@ -71,12 +71,8 @@ def _is_built_from(names: tuple[str, ...], wanted: str) -> bool:
 
 
 def _say(what: str) -> None:
-    """Say once that it is plain Python that runs; processes that this one starts do not say it again."""
-    from multiprocessing import parent_process  # slow to import, and mostly not needed
-
-    if parent_process() is None:
-        sys.stderr.write(f'stickslip: {what}; plain Python runs instead, hundreds of times slower.  Build the package '
-                         'again (pip install, colcon build or make build), or set STICKSLIP_COMPILED=0 to mean it\n')
+    sys.stderr.write(f'stickslip: {what}; plain Python runs instead, hundreds of times slower.  Build the package '
+                     'again (pip install, colcon build or make build), or set STICKSLIP_COMPILED=0 to mean it\n')
 
 
 UNIT = _load()

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """All points of a study, chunk by chunk and in their order, by one process, several, or a cluster."""
 
-import signal
 from collections import deque
 from collections.abc import Iterable, Iterator
 from concurrent.futures import Future
@@ -68,9 +67,4 @@ def _by_workers(study: Study, stretches: Iterator[_Stretch], workers: Workers) -
 
 
 def _submitted(study: Study, stretches: Iterable[_Stretch], workers: Workers) -> list[Future[Figures]]:
-    """Hand out stretches; workers that this starts inherit that Ctrl-C is held back, and leave it to their parent."""
-    signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
-    try:
-        return [workers.pool.submit(workers.work, study, *stretch) for stretch in stretches]
-    finally:
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])
+    return [workers.pool.submit(workers.work, study, *stretch) for stretch in stretches]

@@ -1,17 +1,28 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The workers on the chunks of a study beside this process: other processes of this machine."""
+"""The workers on the chunks of a study beside this process: other processes of this machine.
+
+Each has a connection of its own, and nothing is shared: one that is killed, at any moment, leaves no lock taken and no
+message of another one cut off.  Its connection ends, and what it was at raises an error here.
+"""
 
 import os
+import pickle
+import select
+import signal
+import subprocess
+import sys
 import threading
+import traceback
 from collections.abc import Callable, Iterator
-from concurrent.futures import Executor, ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
-from multiprocessing import get_context, parent_process
-from typing import NamedTuple, NoReturn
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from contextlib import contextmanager, suppress
+from multiprocessing.connection import Connection, Pipe
+from queue import SimpleQueue
+from typing import Any, NamedTuple, NoReturn
 
 from ..core.errors import StickslipError
+from ..core.hot_path import hot_path
 from .folder import KEPT
 from .point_figures import Figures
 from .study import Study
@@ -31,31 +42,107 @@ class Workers(NamedTuple):
 
 @contextmanager
 def processes(count: int) -> Iterator[Workers]:
-    """Yield processes; on any error waiting chunks are dropped and those under way are waited for."""
-    pool = ProcessPoolExecutor(count, get_context('spawn'), _watch_the_parent)
+    """Yield processes; at the end, and on any error, they are killed: their parent alone keeps what they found."""
+    pool = _Processes(count)
     try:
         yield Workers(pool, count)
-    except BrokenProcessPool:
-        _stop_sending(pool)
-        raise WorkerError(f'a worker process was killed; {KEPT}') from None
     finally:
-        pool.shutdown(cancel_futures=True)
+        pool.kill()
 
 
-def _stop_sending(pool: ProcessPoolExecutor) -> None:
-    """Drop what no worker will read, as Python does from 3.11.5 on; an older one waits for ever until it is written."""
-    queue = getattr(pool, '_call_queue', None)
-    if queue is not None:
-        queue._reader.close()
+class _Processes(Executor):
+    """Up to `count` processes, started as they are needed; for each a thread hands over work and waits."""
+
+    def __init__(self, count: int) -> None:
+        self._count = count
+        self._started: list[_Process] = []
+        self._idle: SimpleQueue[_Process] = SimpleQueue()
+        self._threads = ThreadPoolExecutor(count)
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Have a process call a function; raises WorkerError."""
+        # what is started here inherits that Ctrl-C is held back, and leaves it to the thread that asked
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+        try:
+            if len(self._started) < self._count:
+                self._started.append(_Process())
+                self._idle.put(self._started[-1])
+            return self._threads.submit(self._done_by_one, fn, args, kwargs)
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+    def _done_by_one(self, *work: Any) -> Any:
+        process = self._idle.get()    # there are no more threads than processes
+        try:
+            return process.do(work)
+        finally:
+            self._idle.put(process)
+
+    def kill(self) -> None:
+        """Drop all that is not done, and end the processes."""
+        self._threads.shutdown(wait=False, cancel_futures=True)
+        for process in self._started:
+            process.kill()
+        self._threads.shutdown()
 
 
-def _watch_the_parent() -> None:
-    """Have a worker go when its parent is gone, however it went: nothing else would end it."""
-    threading.Thread(target=_go_with_the_parent, daemon=True).start()
+class _Process:
+    """A process that does one piece of work after the other for this one, and ends with it, however that ends."""
+
+    def __init__(self) -> None:
+        program = f'import sys; sys.path[:] = sys.argv[2:]; from {__name__} import {serve.__name__} as serve; '
+        # plain Python here is plain Python there, without a second line that says so
+        hot = {'STICKSLIP_COMPILED': '0'} if hot_path() == 'plain python' else {}
+        try:
+            self._connection, end = Pipe()
+            with end:
+                self._process = subprocess.Popen(
+                    [sys.executable, '-c', f'{program}serve(int(sys.argv[1]))', str(end.fileno()), *sys.path],
+                    stdin=subprocess.DEVNULL, pass_fds=[end.fileno()], env={**os.environ, **hot})
+        except OSError as error:
+            raise WorkerError(f'a worker process cannot be started: {error.strerror}; {KEPT}') from None
+
+    def do(self, work: tuple[Any, ...]) -> Any:
+        """Have it call a function with arguments; raises what that raises, and WorkerError when the process is gone."""
+        try:
+            self._connection.send(work)
+            result, error, where = self._connection.recv()
+        except (EOFError, OSError):
+            raise WorkerError(f'a worker process {_ended(self._process.wait())}; {KEPT}') from None
+        if error is not None:
+            raise error from RuntimeError(where)
+        return result
+
+    def kill(self) -> None:
+        """End it, and wait for that."""
+        self._process.kill()
+        self._process.wait()
 
 
-def _go_with_the_parent() -> NoReturn:
-    parent = parent_process()
-    if parent is not None:
-        parent.join()
+def _ended(code: int) -> str:
+    return f'was killed by signal {-code}' if code < 0 else f'ended with exit code {code}'
+
+
+def serve(descriptor: int) -> None:
+    """Do the work that comes over a connection, until that ends: all that a worker process does."""
+    with Connection(descriptor) as parent, suppress(EOFError, OSError):
+        threading.Thread(target=_end_with, args=(parent,), daemon=True).start()
+        while True:
+            parent.send_bytes(_answer(parent.recv_bytes()))
+
+
+def _end_with(parent: Connection) -> NoReturn:
+    """End this process, at work or not, as soon as nobody holds the other end of its connection."""
+    hung_up = select.poll()
+    hung_up.register(parent, 0)    # a hang-up is reported with any mask
+    hung_up.poll()
     os._exit(1)
+
+
+def _answer(request: bytes) -> bytes:
+    """Return the result of the work that was asked for, or its error and where that came from."""
+    try:
+        function, args, kwargs = pickle.loads(request)
+        return pickle.dumps((function(*args, **kwargs), None, ''))
+    except Exception as error:
+        return pickle.dumps((None, error, traceback.format_exc()))
