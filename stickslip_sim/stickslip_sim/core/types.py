@@ -9,12 +9,13 @@ tuple_of = tuple.__new__    # tuple_of(Instant, (0.0, 0.5)) costs half of what I
 
 
 class Mode(IntEnum):
-    """What the slider does: it sticks, or slips in one of three sub-modes."""
+    """What the slider does: it sticks, slips in one of three sub-modes, or its compliant contact yields."""
 
     STICK = 0
     ACCELERATING = 1
     COASTING = 2
     DECELERATING = 3
+    YIELDING = 4
 
 
 class EventKind(IntEnum):
@@ -27,6 +28,7 @@ class EventKind(IntEnum):
     STICK = 4
     REVERSE = 5
     KNOT = 6
+    YIELD = 7
 
 
 class Instant(NamedTuple):
@@ -53,14 +55,14 @@ class Event(NamedTuple):
     fraction: float            # s, rest of the time
     kind: EventKind
     mode: Mode                 # after the event
-    direction: int             # of the slip that begins, goes on or ends
+    direction: int             # of the slip that begins, goes on or ends; of the force of a contact that yields
     position: float            # m
     velocity: float            # m/s
     drive_position: float      # m
     drive_force: float         # N
     friction_force: float      # N
     static_coefficient: float  # mu_s(rest_time)
-    rest_time: float           # s, 0 in slip
+    rest_time: float           # s, 0 where it does not stick
 
     @property
     def instant(self) -> Instant:
@@ -79,7 +81,7 @@ class Sample(NamedTuple):
     second: float                # whole seconds of the time
     fraction: float              # s, rest of the time
     mode: Mode
-    direction: int               # of slip, 0 in stick
+    direction: int               # of slip, 0 in stick; of the force of a contact that yields
     position: float              # m
     velocity: float              # m/s
     acceleration: float          # m/s²
@@ -90,7 +92,7 @@ class Sample(NamedTuple):
     friction_force: float        # N
     friction_coefficient: float  # |friction force| / normal force, 0 without one
     contact_deflection: float    # m
-    rest_time: float             # s, 0 in slip
+    rest_time: float             # s, 0 where it does not stick
 
     @property
     def instant(self) -> Instant:

@@ -28,7 +28,7 @@ def simulate(
 ) -> ReferenceRun:
     """Return the run from time 0 to `duration` (s), right to about `digits` digits.
 
-    `drive` is in m/s, `force` in N; a `load` in N, which may jump but not vary smoothly, is added to the normal force.
+    `drive` is in m/s, `force` in N; a `load` in N is added to the normal force, the sum not to fall below 0.
     Raises InputError when mpmath is missing or an argument has no meaning, and SolverError when the events do not end.
     """
     if not 0.0 <= duration < float('inf'):

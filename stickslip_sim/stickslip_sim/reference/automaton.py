@@ -10,15 +10,14 @@ import mpmath
 from mpmath import mpf
 
 from ..core.errors import SolverError
-from ..core.input_profile import constant
 from .exact_run import Event, Run, Stretch, sample
 from .flow import Flow, State
-from .inputs import Input
-from .modes import ACCELERATE, COAST, DECELERATE, Mode, Slip, Stick, word
+from .inputs import Input, Signal
+from .modes import ACCELERATE, COAST, DECELERATE, Mode, Slip, Stick, Yield, word
 from .physics import Physics
 from .precision import working
 from .problem import Problem
-from .search import LIMIT, SPEED_DOWN, SPEED_UP, SURPLUS_UP, Step, slip_step, stick_step
+from .search import HOLDS, LIMIT, SPEED_DOWN, SPEED_UP, SURPLUS_UP, TURNS, Step, slip_step, stick_step, yield_step
 
 GUARD_DIGITS = 12
 UNSEEN_COAST = mpf(10) ** -15  # |R - B| against N mu_b after a compliant break-away
@@ -37,14 +36,11 @@ class _Automaton:
 
     def __init__(self, axis: Problem, duration: mpf, digits: int) -> None:
         self.axis, self.physics, self.duration = axis, Physics(axis), duration
-        self.drive, self.force = Input(axis.drive), Input(axis.force)
-        self.load = Input(axis.load or constant(0.0))
+        self.inputs = [Input(profile) for profile in axis.inputs]
         self.result = Run(self.physics, digits)
-        zero = self.t = mpf(0)
-        self.state = State(
-            axis.stretch, axis.velocity, axis.deflection, axis.position, self.drive.at(zero), self.force.at(zero)
-        )
-        self.mode: Mode = Stick(zero, axis.rest_time)
+        self.t = mpf(0)
+        self.state = State(axis.stretch, axis.velocity, axis.deflection, axis.position, *self._signals())
+        self.mode: Mode = Stick(self.t, axis.rest_time)
         self.flow: Flow
 
     def run(self) -> Run:
@@ -52,7 +48,7 @@ class _Automaton:
         if self.axis.velocity and not self.axis.deflection:
             self._enter_slip(1 if self.axis.velocity > 0 else -1, mpf(0))
         self.flow = self.physics.flow(self.mode)
-        while (stop := min(self.drive.until, self.force.until, self.load.until)) <= self.duration:
+        while (stop := min(one.until for one in self.inputs)) <= self.duration:
             self._advance_to(stop)
             self._change_inputs()
         self._advance_to(self.duration)
@@ -63,10 +59,9 @@ class _Automaton:
         while self.t < stop:
             left = stop - self.t
             step = self._step(self.flow.longest_step(self.state, left))
-            self.result.stretches.append(Stretch(self.t, step.length, self.state, self.flow, self.mode,
-                                                 self.physics))
+            self.result.stretches.append(Stretch(self.t, step.length, self.state, self.flow, self.mode))
             self.t = stop if step.length == left else self.t + step.length
-            self.state = State(*step.place, self.drive.at(self.t), self.force.at(self.t))
+            self.state = State(*step.place, *self._signals())
             if step.guard:
                 self._transition(step)
                 self.flow = self.physics.flow(self.mode)
@@ -74,31 +69,38 @@ class _Automaton:
     def _step(self, h: mpf) -> Step:
         if isinstance(self.mode, Slip):
             return slip_step(self.physics, self.mode, self.flow, self.state, h)
+        if isinstance(self.mode, Yield):
+            return yield_step(self.physics, self.mode, self.flow, self.state, h)
         return stick_step(self.physics, self.mode, self.flow, self.state, self.t, h)
+
+    def _signals(self) -> list[Signal]:
+        return [one.at(self.t) for one in self.inputs]
 
     def _change_inputs(self) -> None:
         """Load the new inputs and re-classify a slip; a rest leaves by its own guard, at once if need be.
 
         The normal force jumps with them, and the state, the rest time and E of a slip stay.
         """
-        self.drive.enter(self.t)
-        self.force.enter(self.t)
-        self.load.enter(self.t)
-        if self.axis.load is not None:
-            self.axis = replace(self.axis, normal=self.load.at(self.t).value)
-            self.physics = Physics(self.axis)
-        self.state = self.state._replace(drive=self.drive.at(self.t), force=self.force.at(self.t))
+        for one in self.inputs:
+            one.enter(self.t)
+        self.state = State(*self.state[:4], *self._signals())
         if isinstance(self.mode, Slip):
             phase = self.physics.phase(self.mode.direction, self.mode.excess, self.state)
             if phase != self.mode.phase:
                 self._change_phase(phase)
+        elif isinstance(self.mode, Yield) and not self.axis.contact_damping:
+            self._follow_limit(self.mode)
         self.flow = self.physics.flow(self.mode)
 
     # ---- transitions --------------------------------------------------------------------------
 
     def _transition(self, step: Step) -> None:
         if step.guard == LIMIT:
-            self._break_away(step.sign)
+            self._leave_rest(step.sign)
+        elif step.guard == HOLDS:
+            self._hold(self._yielding())
+        elif step.guard == TURNS:
+            self._turn(self._yielding())
         elif step.guard == SPEED_UP:
             self._cross_breakpoint(1)
         elif step.guard == SPEED_DOWN and self._slip().segment > 0:
@@ -117,7 +119,7 @@ class _Automaton:
         slip = self._slip()
         if slip.phase == COAST:
             return ACCELERATE if upward else DECELERATE
-        if self.physics.band(slip.direction, slip.excess, abs(self.state.velocity)) > self.physics.tiny(self.state):
+        if self.physics.band(slip.direction, slip.excess, self.state) > self.physics.tiny(self.state):
             return COAST
         return ACCELERATE if upward else DECELERATE
 
@@ -143,17 +145,69 @@ class _Automaton:
         self.state = self.state._replace(deflection=mpf(0))
         self.mode = Slip(direction, phase, excess, segment)
 
-    def _break_away(self, sign: int) -> None:
-        """Leave the rest at |F| = N mu_s on a side, in the direction of F (of the motion where the slider moves)."""
+    # ---- a contact that yields ------------------------------------------------------------------
+
+    def _leave_rest(self, sign: int) -> None:
+        """Leave the rest at |F| = N mu_s on a side: the slider breaks away, or the contact yields."""
         assert isinstance(self.mode, Stick)
         age = self.mode.rest_time(self.t)
         static = self.physics.side(sign).static.value(age)
+        if self.axis.by_drive or self._goes_along(sign):
+            self._break_away(sign, static, age)
+            return
+        force = self.physics.stick_force(self.state)
+        self.mode = Yield(sign)
+        if not self.axis.contact_damping:
+            self._deflect(self.mode)
+        self._emit('yield', sign, force, static, age)
+
+    def _goes_along(self, sign: int) -> bool:
+        """Return whether the slider moves in the direction of the contact's force, or is about to."""
+        u = self.state.velocity
+        if abs(u) * self.flow.rate * self.axis.mass > self.physics.tiny(self.state):
+            return bool(sign * u > 0)
+        left = sign * self.physics.net_force(self.state) - self.state.normal.value * self.physics.side(sign).at_rest
+        return bool(left >= 0)
+
+    def _deflect(self, mode: Yield) -> None:
+        """Let the deflection of a contact without a damper be that of its force."""
+        self.state = self.state._replace(deflection=self.physics.friction(mode, self.state)
+                                         / self.axis.contact_stiffness)
+
+    def _follow_limit(self, mode: Yield) -> None:
+        """Let the deflection of a contact without a damper follow a normal force that has jumped: up, it holds."""
+        kept = mode.direction * self.axis.contact_stiffness * self.state.deflection
+        if kept < mode.direction * self.physics.friction(mode, self.state) - self.physics.tiny(self.state):
+            self._hold(mode)
+        else:
+            self._deflect(mode)
+
+    def _yielding(self) -> Yield:
+        assert isinstance(self.mode, Yield)
+        return self.mode
+
+    def _hold(self, mode: Yield) -> None:
+        """Stick again, with no rest time."""
+        self.mode = Stick(self.t, mpf(0))
+        self._emit('stick', mode.direction, self.physics.friction(mode, self.state))
+
+    def _turn(self, mode: Yield) -> None:
+        """Let the slider, which has come to stand, slip along the force."""
+        self.state = self.state._replace(velocity=mpf(0))
+        friction = self.physics.friction(mode, self.state)
+        self._enter_slip(mode.direction, mpf(0))
+        self._emit('breakaway', mode.direction, friction)
+
+    # ---- slips ----------------------------------------------------------------------------------
+
+    def _break_away(self, sign: int, static: mpf, age: mpf) -> None:
+        """Begin a slip in the direction of F, or of the motion where the drive's force ends the rest."""
         direction = self._direction(sign)
         speed, side = abs(self.state.velocity), self.physics.side(direction)
         self.result.disputed += direction != sign or bool(side.kinetic_at(speed) > static)
         self._enter_slip(direction, side.excess_at(static, speed))
         self._hide_short_coast(static)
-        self._emit('breakaway', direction, sign * self.axis.normal * static, static, age)
+        self._emit('breakaway', direction, sign * self.state.normal.value * static, static, age)
 
     def _direction(self, sign: int) -> int:
         """σ = sign(ẋ); at rest the sign of the force."""
@@ -167,12 +221,11 @@ class _Automaton:
         slip = self._slip()
         if slip.phase != COAST or self.axis.by_drive:
             return
-        gap = self.physics.surplus(slip.direction, self.state) - self.physics.band(
-            slip.direction, slip.excess, abs(self.state.velocity)
-        )
+        gap = self.physics.surplus(slip.direction, self.state) - self.physics.band(slip.direction, slip.excess,
+                                                                                   self.state)
         if (
-            abs(gap) <= UNSEEN_COAST * self.axis.normal * static
-            and self.physics.surplus_rate(slip.direction, self.state) > 0
+            abs(gap) <= UNSEEN_COAST * self.state.normal.value * static
+            and self.physics.surplus_rate(slip.direction, self.state, slip.excess) > 0
         ):
             self.mode = replace(slip, silent=True)
 
@@ -182,7 +235,7 @@ class _Automaton:
         self.state = self.state._replace(velocity=mpf(0))
         back = self.physics.side(-sigma)
         static = back.static.value(mpf(0))
-        friction = sigma * self.axis.normal * self.physics.side(sigma).at_rest
+        friction = sigma * self.state.normal.value * self.physics.side(sigma).at_rest
         if self.axis.by_drive and self._pulled_back(sigma, static):
             self._enter_slip(-sigma, back.excess_at(static, mpf(0)))
             self._emit('reverse', -sigma, friction)
@@ -194,7 +247,7 @@ class _Automaton:
         self._emit('stick', sigma, friction)
 
     def _pulled_back(self, sigma: int, static: mpf) -> bool:
-        excess = -sigma * self.physics.net_force(self.state) - self.axis.normal * static
+        excess = -sigma * self.physics.net_force(self.state) - self.state.normal.value * static
         return bool(excess > self.physics.tiny(self.state))
 
     def _emit(self, kind: str, direction: int, friction: mpf, static: mpf | None = None, rest: mpf = _ZERO) -> None:

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""A run in multiple precision: its events, and its motion in closed form."""
+"""A run in multiple precision: its events, and its motion as power series."""
 
 from __future__ import annotations
 
@@ -54,25 +54,21 @@ class Sample:
 
 @dataclass(frozen=True)
 class Stretch:
-    """A stretch of one mode: it starts at ``start`` in ``state`` and is followed in closed form.
-
-    ``physics`` are the equations there: the normal force may jump between two.
-    """
+    """A stretch of one mode: it starts at ``start`` in ``state`` and is followed by a power series."""
 
     start: mpf
     length: mpf
     state: State
     flow: Flow
     mode: Mode
-    physics: Physics
 
 
 class Run(list[Event]):
-    """The events of a simulation, with its motion in closed form.
+    """The events of a simulation, with its motion as power series.
 
     `final` is the state at its end.
-    `disputed` counts compliant break-aways on which the model is silent: force and motion of opposite
-    signs, or kinetic friction at the break-away speed above the static limit (E is then kept at 0).
+    `disputed` counts compliant break-aways on which the model is silent: force and motion of opposite signs where the
+    drive's force ends a stick, or kinetic friction at the break-away speed above the static limit (E is then 0).
     """
 
     def __init__(self, physics: Physics, digits: int) -> None:
@@ -93,16 +89,16 @@ class Run(list[Event]):
         if index < 0 or t > self.stretches[-1].start + self.stretches[-1].length:
             raise ValueError('the time lies outside the simulated interval')
         stretch = self.stretches[index]
-        drive, force = self._inputs(t)
+        inputs = self._inputs(t)
         series = stretch.flow.expand(stretch.state, stretch.length)
         place = after(stretch.state, stretch.flow, series, t - stretch.start)
-        return sample(stretch.physics, stretch.mode, t, State(*place, drive, force))
+        return sample(self.physics, stretch.mode, t, State(*place, *inputs))
 
-    def _inputs(self, t: mpf) -> tuple[Signal, Signal]:
-        drive, force = Input(self.physics.axis.drive), Input(self.physics.axis.force)
-        drive.enter(t)
-        force.enter(t)
-        return drive.at(t), force.at(t)
+    def _inputs(self, t: mpf) -> list[Signal]:
+        inputs = [Input(profile) for profile in self.physics.axis.inputs]
+        for one in inputs:
+            one.enter(t)
+        return [one.at(t) for one in inputs]
 
 
 def sample(physics: Physics, mode: Mode, t: mpf, state: State) -> Sample:

@@ -64,13 +64,18 @@ class Signal(NamedTuple):
         return max((turn.omega for turn in self.turns), default=mpf(0))
 
     @property
+    def is_constant(self) -> bool:
+        """Return whether it keeps its value."""
+        return not self.slope and not self.turns
+
+    @property
     def reach(self) -> mpf:
         """Return a size that its value does not exceed now, at any phases."""
         return abs(self.offset) + sum((abs(turn.amplitude) for turn in self.turns), mpf(0))
 
 
 class Input:
-    """An input profile v(t) or F(t), followed in time; right-continuous.
+    """An input profile v(t), F(t) or N(t), followed in time; right-continuous.
 
     `until` is the instant at which the next segment begins (infinite behind the last).
     """

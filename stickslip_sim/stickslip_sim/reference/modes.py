@@ -36,7 +36,14 @@ class Slip:
     silent: bool = False
 
 
-Mode = Stick | Slip
+@dataclass(frozen=True)
+class Yield:
+    """A compliant contact that gives way at its limit, in the direction of its force, while the slider does not."""
+
+    direction: int
+
+
+Mode = Stick | Slip | Yield
 _WORDS = {ACCELERATE: types.Mode.ACCELERATING, COAST: types.Mode.COASTING, DECELERATE: types.Mode.DECELERATING}
 
 
@@ -44,4 +51,6 @@ def word(mode: Mode) -> types.Mode:
     """Return the package's name of a mode."""
     if isinstance(mode, Stick):
         return types.Mode.STICK
+    if isinstance(mode, Yield):
+        return types.Mode.YIELDING
     return types.Mode.ACCELERATING if mode.silent else _WORDS[mode.phase]

@@ -6,6 +6,8 @@ F_d = c w + h (v - u)                 drive force
 R   = σ (F_d + F_e) - N mu_k(|u|)     driving surplus over the lower branch
 B   = N E psi(|u|)                    height of the upper branch over the lower one
 m σ u' = R - B (accelerating),  0 (coasting),  R (decelerating)
+
+N(t) is part of the state, as are the other inputs.
 """
 
 from __future__ import annotations
@@ -15,7 +17,7 @@ from dataclasses import dataclass, field, replace
 from mpmath import mp, mpf, sqrt
 
 from .flow import Expansion, Flow, State
-from .modes import ACCELERATE, COAST, DECELERATE, Mode, Slip, Stick
+from .modes import ACCELERATE, COAST, DECELERATE, Mode, Slip, Stick, Yield
 from .precision import summed_rounding, to_binary, to_decimal
 from .problem import Line, Problem
 from .series import Series, combine, integral
@@ -82,16 +84,18 @@ class Physics:
         """Friction (slip) or contact force (stick), positive when it opposes positive motion."""
         if isinstance(mode, Stick) and self.axis.contact == 'compliant':
             return self.axis.contact_stiffness * state.deflection + self.axis.contact_damping * state.velocity
+        if isinstance(mode, Yield):
+            return mode.direction * state.normal.value * self.side(mode.direction).at_rest
         if isinstance(mode, Stick) or mode.phase == COAST:
             return self.net_force(state)
         line = self.branch(mode)
-        return mode.direction * self.axis.normal * line.at(mode.direction * state.velocity)
+        return mode.direction * state.normal.value * line.at(mode.direction * state.velocity)
 
     def force_scale(self, state: State) -> mpf:
         """Return a force that rounding is compared with."""
         a = self.axis
         inputs = state.force.reach + a.damping * state.drive.reach
-        return a.normal * self._highest + abs(a.stiffness * state.stretch) + inputs
+        return state.normal.reach * self._highest + abs(a.stiffness * state.stretch) + inputs
 
     def force_rounding(self, state: State) -> mpf:
         """Return the rounding that a force may have gathered of all it was summed from, what cancels included."""
@@ -120,23 +124,29 @@ class Physics:
     def surplus(self, direction: int, state: State) -> mpf:
         """R = σ (F_d + F_e) - N mu_k(|u|)."""
         mu = self.side(direction).kinetic_at(abs(state.velocity))
-        return direction * self.net_force(state) - self.axis.normal * mu
+        return direction * self.net_force(state) - state.normal.value * mu
 
-    def band(self, direction: int, excess: mpf, speed: mpf) -> mpf:
-        """B = N E psi(w)."""
-        return self.axis.normal * excess * self.side(direction).psi_at(speed)
+    def band(self, direction: int, excess: mpf, state: State) -> mpf:
+        """B = N E psi(|u|)."""
+        return state.normal.value * self.raised(direction, excess, state)
+
+    def raised(self, direction: int, excess: mpf, state: State) -> mpf:
+        """E psi(|u|), by which the upper branch is above the lower one."""
+        return excess * self.side(direction).psi_at(abs(state.velocity))
 
     # ---- classification -----------------------------------------------------------------------
 
-    def surplus_rate(self, direction: int, state: State) -> mpf:
-        """First non-vanishing coefficient of R in time at constant speed; 0 when all vanish.
+    def surplus_rate(self, direction: int, state: State, excess: mpf) -> mpf:
+        """First non-vanishing coefficient in time of R - B, of R without an excess, at constant speed; 0 if none.
 
-        R' = σ (c (v - u) + h v' + F'), and so on: with sinusoids the higher ones matter too.
+        (R - B)' = σ (c (v - u) + h v' + F') - N' (mu_k + E psi), and so on: with sinusoids the higher ones matter too.
         """
         a, time = self.axis, self.time_scale(state)
         drive = state.drive.series(_TIE_ORDER)
         slip = [drive[0] - to_decimal(state.velocity), *drive[1:]]
-        rates = combine((a.stiffness, integral(slip)), (a.feed_damping, drive), (_ONE, state.force.series(_TIE_ORDER)))
+        mu = self.side(direction).kinetic_at(abs(state.velocity)) + self.raised(direction, excess, state)
+        rates = combine((a.stiffness, integral(slip)), (a.feed_damping, drive), (_ONE, state.force.series(_TIE_ORDER)),
+                        (-direction * mu, state.normal.series(_TIE_ORDER)))
         limit = self.tiny(state)
         for rate in map(to_binary, rates[1:]):
             limit = limit / time
@@ -156,15 +166,14 @@ class Physics:
     def phase(self, direction: int, excess: mpf, state: State) -> str:
         """Return the sub-mode of a slip; on a border the way R moves decides."""
         surplus, tiny = self.surplus(direction, state), self.tiny(state)
-        band = self.band(direction, excess, abs(state.velocity))
+        band = self.band(direction, excess, state)
         if surplus > band + tiny:
             return ACCELERATE
         if surplus < -tiny:
             return DECELERATE
-        rate = self.surplus_rate(direction, state)
-        if rate > 0 and surplus >= band - tiny:
+        if surplus >= band - tiny and self.surplus_rate(direction, state, excess) > 0:
             return ACCELERATE
-        if rate < 0 and surplus <= tiny:
+        if surplus <= tiny and self.surplus_rate(direction, state, mpf(0)) < 0:
             return DECELERATE
         return COAST
 
@@ -174,20 +183,31 @@ class Physics:
         """Return the linear dynamics of a mode."""
         if isinstance(mode, Slip):
             return Flow() if mode.phase == COAST else self._slip_flow(mode)
+        if isinstance(mode, Yield):
+            return self._yielding_flow(mode)
         return Flow() if self.axis.contact == 'rigid' else self._ringing_flow()
 
     def _slip_flow(self, slip: Slip) -> Flow:
         """Return the flow of m u' = F_d + F_e - σ N (α + β σ u)."""
-        a, line = self.axis, self.branch(slip)
-        return self._free(a.damping + a.normal * line.slope, a.stiffness, slip.direction * a.normal * line.offset)
+        line = self.branch(slip)
+        flow = self._free(self.axis.damping, self.axis.stiffness)
+        return replace(flow, grip=slip.direction * line.offset, fall=line.slope)
+
+    def _yielding_flow(self, mode: Yield) -> Flow:
+        """Return the flow of m u' = F_d + F_e - s N mu_k(0), and of the deflection under that force."""
+        a = self.axis
+        flow = self._free(a.damping, a.stiffness)
+        follows = a.contact_stiffness / a.contact_damping if a.contact_damping else mpf(0)
+        return replace(flow, grip=mode.direction * self.side(mode.direction).at_rest, rate=flow.rate + follows,
+                       yields=(a.contact_stiffness, a.contact_damping))
 
     def _ringing_flow(self) -> Flow:
         """Return the flow of m u' = F_d + F_e - c_c (d + y) - h_c u; the constant c_c d comes with the state."""
         a = self.axis
-        flow = self._free(a.damping + a.contact_damping, a.stiffness + a.contact_stiffness, mpf(0))
+        flow = self._free(a.damping + a.contact_damping, a.stiffness + a.contact_stiffness)
         return replace(flow, contact=a.contact_stiffness)
 
-    def _free(self, damping: mpf, stiffness: mpf, constant: mpf) -> Flow:
+    def _free(self, damping: mpf, stiffness: mpf) -> Flow:
         a = self.axis
         gamma, omega2 = damping / a.mass, stiffness / a.mass
-        return Flow(sqrt(omega2) + abs(gamma), a.mass, a.stiffness, a.feed_damping, gamma, omega2, constant, free=True)
+        return Flow(sqrt(omega2) + abs(gamma), a.mass, a.stiffness, a.feed_damping, gamma, omega2, free=True)

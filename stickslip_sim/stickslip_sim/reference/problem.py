@@ -13,7 +13,6 @@ from mpmath import mpf
 
 from ..axis import parameters as product
 from ..core import input_profile as profiles
-from ..core.errors import InputError
 from ..friction import ExcessTable, KineticTable
 from .statics import StaticLaw
 
@@ -65,14 +64,13 @@ class SideOfProblem:
 class Problem:
     """Everything the automaton needs; names as in docs/model.md.
 
-    `normal` holds at the start, and `load` is the normal force over time, where it jumps.
+    `normal` is the normal force over time.
     """
 
     mass: mpf
     stiffness: mpf
     damping: mpf
     feed_damping: mpf
-    normal: mpf
     contact: str
     contact_stiffness: mpf
     contact_damping: mpf
@@ -82,12 +80,17 @@ class Problem:
     backward: SideOfProblem
     drive: profiles.InputProfile
     force: profiles.InputProfile
+    normal: profiles.InputProfile
     position: mpf
     velocity: mpf
     rest_time: mpf
     stretch: mpf
     deflection: mpf
-    load: profiles.InputProfile | None
+
+    @property
+    def inputs(self) -> tuple[profiles.InputProfile, ...]:
+        """v(t), F(t) and N(t)."""
+        return self.drive, self.force, self.normal
 
 
 def problem(axis: product.Axis, initial: product.InitialState, drive: profiles.InputProfile,
@@ -97,16 +100,12 @@ def problem(axis: product.Axis, initial: product.InitialState, drive: profiles.I
     The normal force under a load is the sum in doubles, as everything given is taken as the double that it is.
     """
     product.check_start(axis, initial, load.value_at(0.0) if load else 0.0)
-    normal_force = load.plus(axis.normal_force) if load else None
-    if normal_force and not normal_force.is_stepwise:
-        raise InputError('load', 'one that varies smoothly', 'constant but for jumps', 'the reference knows no other')
     contact = axis.contact if isinstance(axis.contact, product.CompliantContact) else None
     return Problem(
         mass=mpf(axis.mass),
         stiffness=mpf(axis.drive_stiffness),
         damping=mpf(axis.drive_damping),
         feed_damping=mpf(0 if axis.damper_on_slideway else axis.drive_damping),
-        normal=mpf(normal_force.value_at(0.0) if normal_force else axis.normal_force),
         contact='compliant' if contact else 'rigid',
         contact_stiffness=mpf(contact.stiffness if contact else 0.0),
         contact_damping=mpf(contact.damping if contact else 0.0),
@@ -116,12 +115,12 @@ def problem(axis: product.Axis, initial: product.InitialState, drive: profiles.I
         backward=_side(axis.friction.backward or axis.friction),
         drive=drive,
         force=force,
+        normal=load.plus(axis.normal_force) if load else profiles.constant(axis.normal_force),
         position=mpf(initial.position),
         velocity=mpf(initial.velocity),
         rest_time=mpf(initial.rest_time),
         stretch=mpf(initial.stretch),
         deflection=mpf(initial.deflection),
-        load=normal_force,
     )
 
 

@@ -5,20 +5,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from decimal import Decimal
 
 from mpmath import mp, mpf
 
 from .flow import Expansion, Flow, Place, State, after
-from .modes import ACCELERATE, COAST, DECELERATE, Slip, Stick
+from .modes import ACCELERATE, COAST, DECELERATE, Slip, Stick, Yield
 from .physics import Physics
-from .precision import summed_rounding, to_binary, to_decimal
+from .precision import summed_rounding, to_decimal
 from .roots import first_root
-from .series import Series, combine, derivative, reach, scaled, value
+from .series import Series, combine, derivative, product, reach, scaled, value
 
-LIMIT, SURPLUS_UP, SURPLUS_DOWN, SPEED_UP, SPEED_DOWN = (
+LIMIT, HOLDS, TURNS, SURPLUS_UP, SURPLUS_DOWN, SPEED_UP, SPEED_DOWN = (
     'limit',
+    'contact holds',
+    'slider turns',
     'surplus up',
     'surplus down',
     'speed up',
@@ -40,15 +42,37 @@ def slip_step(physics: Physics, slip: Slip, flow: Flow, state: State, h: mpf) ->
     """Advance a slip by at most h, or to its first event."""
     series = flow.expand(state, h)
     guards = _coast_guards if slip.phase == COAST else _moving_guards
+    step = _first(guards(physics, slip, state, series), flow, state, series, h)
+    if step.guard == SURPLUS_UP and _touches_rest(physics, slip, state, step.place):
+        return replace(step, guard=SPEED_DOWN)
+    return step
+
+
+def yield_step(physics: Physics, mode: Yield, flow: Flow, state: State, h: mpf) -> Step:
+    """Advance a contact that yields by at most h, or until it holds again (s z' = 0), or the slider turns (s u = 0)."""
+    series = flow.expand(state, h)
+    stiffness, damping, scale = physics.axis.contact_stiffness, physics.axis.contact_damping, physics.force_scale(state)
+    limit = combine((physics.side(mode.direction).at_rest, series.normal))
+    speed, slow = physics.speed_rounding(state), scale * physics.time_scale(state) / physics.axis.mass
+    if damping:   # h_c s z'
+        slide = combine((mode.direction * damping, series.velocity), (mode.direction * stiffness, series.deflection),
+                        (mpf(-1), limit))
+        holds = HOLDS, slide, scale + damping * slow, physics.force_rounding(state) + damping * speed
+    else:
+        slide = combine((mpf(mode.direction), series.velocity), (-1 / stiffness, derivative(limit)))
+        holds = HOLDS, slide, slow, speed
+    turns = TURNS, combine((mpf(-mode.direction), series.velocity)), slow, speed
+    return _first([holds, turns], flow, state, series, h)
+
+
+def _first(guards: Iterable[_Guard], flow: Flow, state: State, series: Expansion, h: mpf) -> Step:
+    """Advance by at most h, or to the first root of these guards."""
     time, best, name = _time_scale(flow, state, h), h, None
-    for label, guard, scale, rounding in guards(physics, slip, state, series):
+    for label, guard, scale, rounding in guards:
         root = first_root(guard, h, scale, time, rounding)
         if root is not None and (name is None or root < best):
             best, name = root, label
-    place = after(state, flow, series, best)
-    if name == SURPLUS_UP and _touches_rest(physics, slip, state, place):
-        name = SPEED_DOWN
-    return Step(best, place, name)
+    return Step(best, after(state, flow, series, best), name)
 
 
 def _touches_rest(physics: Physics, slip: Slip, state: State, place: Place) -> bool:
@@ -58,7 +82,7 @@ def _touches_rest(physics: Physics, slip: Slip, state: State, place: Place) -> b
 
 
 def _time_scale(flow: Flow, state: State, h: mpf) -> mpf:
-    rate = flow.rate + state.rate
+    rate = flow.pace(state) + state.rate
     return 1 / rate if rate else h
 
 
@@ -70,9 +94,8 @@ def _coast_guards(physics: Physics, slip: Slip, state: State, series: Expansion)
     """0 <= R <= B while u is constant."""
     speed, scale = abs(state.velocity), physics.force_scale(state)
     net = physics.net_series(state, series)
-    friction = physics.axis.normal * physics.side(slip.direction).kinetic_at(speed)
-    surplus = combine((mpf(slip.direction), net), (-friction, _ONE))
-    room = combine((physics.band(slip.direction, slip.excess, speed), _ONE), (mpf(-1), surplus))
+    surplus = combine((mpf(slip.direction), net), (-physics.side(slip.direction).kinetic_at(speed), series.normal))
+    room = combine((physics.raised(slip.direction, slip.excess, state), series.normal), (mpf(-1), surplus))
     rounding = physics.force_rounding(state)
     return [(SURPLUS_UP, room, scale, rounding), (SURPLUS_DOWN, surplus, scale, rounding)]
 
@@ -95,31 +118,31 @@ def _moving_guards(physics: Physics, slip: Slip, state: State, series: Expansion
 def stick_step(physics: Physics, stick: Stick, flow: Flow, state: State, t: mpf, h: mpf) -> Step:
     """Advance a rest by at most h, or to the first break-away: F = N mu_s forwards, or -F = N mu_s backwards.
 
-    mu_s never falls, so an interval is clear when F stays below N mu_s at its start, either way; where that does
-    not prove it, the interval is shortened until mu_s is a power series on it and the guards are solved.
+    mu_s never falls, so an interval is clear when F stays below mu_s at its start times the least N, either way; where
+    that does not prove it, the interval is shortened until mu_s is a power series on it and the guards are solved.
     """
     series = flow.expand(state, h)
     force = physics.stick_force_series(state, series)
-    normal, age = physics.axis.normal, stick.rest_time(t)
+    normal, age = series.normal, stick.rest_time(t)
     laws = [side.static for side in physics.sides]
-    lowest, span = [normal * law.value(age) for law in laws], min(law.span(age) for law in laws)
-    if not normal:
+    lowest, span = [to_decimal(law.value(age)) for law in laws], min(law.span(age) for law in laws)
+    if not any(normal):
         return _out(state, flow, series, h, _unheld(physics, state, force))
     scale, time = physics.force_scale(state), _time_scale(flow, state, h)
     rounding = physics.force_rounding(state) if physics.axis.by_drive else summed_rounding(scale)
-    clear = [to_decimal(low * (1 - mpf(10) ** -9)) for low in lowest]
+    nearly = 1 - Decimal(10) ** -9
     while True:
-        way = reach(scaled(force, h))
-        if all(sign * force[0] + way < low for sign, low in zip(_SIDES, clear)):
+        way, least = reach(scaled(force, h)), (normal[0] - reach(scaled(normal, h))) * nearly
+        if all(sign * force[0] + way < low * least for sign, low in zip(_SIDES, lowest)):
             return Step(h, after(state, flow, series, h), None)
         if h <= span:
-            limits = [combine((normal, law.series(age))) for law in laws]
+            limits = [product(normal, law.series(age)) for law in laws]
             return _out(state, flow, series, h, _over(limits, force, h, scale, time, rounding))
-        found = _over([[to_decimal(low)] for low in lowest], force, h, scale, time, rounding)
+        found = _over([product(normal, [low]) for low in lowest], force, h, scale, time, rounding)
         if found is None:
             return Step(h, after(state, flow, series, h), None)
         if h < mpf(10) ** -30 * min(law.time_constant for law in laws):
-            return _out(state, flow, series, h, _at_once(physics, stick, force, t, h, found))
+            return _out(state, flow, series, h, _at_once(physics, stick, series, force, t, h, found))
         h = max(span, h / 8)
 
 
@@ -149,15 +172,17 @@ def _over(limits: Iterable[Series], force: Series, h: mpf, scale: mpf, time: mpf
     return best
 
 
-def _at_once(physics: Physics, stick: Stick, force: Series, t: mpf, h: mpf, found: _Found) -> _Found | None:
+def _at_once(physics: Physics, stick: Stick, series: Expansion, force: Series, t: mpf, h: mpf, found: _Found
+             ) -> _Found | None:
     """Decide a rest of no age whose law has no power series there (Kato): pass if mu_s outruns F, either way."""
     age = stick.rest_time(t)
 
-    def holds(pull: mpf, age: mpf, slack: mpf) -> bool:
-        return all(sign * pull <= physics.axis.normal * side.static.value(age) * (1 + slack)
+    def holds(time: mpf, slack: mpf) -> bool:
+        pull, normal = value(force, time), value(series.normal, time)
+        return all(sign * pull <= normal * side.static.value(age + time) * (1 + slack)
                    for sign, side in zip(_SIDES, physics.sides))
 
-    if holds(to_binary(force[0]), age, mpf(10) ** (18 - mp.dps)) and holds(value(force, h), age + h, mpf(0)):
+    if holds(mpf(0), mpf(10) ** (18 - mp.dps)) and holds(h, mpf(0)):
         return None
     return mpf(0), found[1]
 

@@ -48,6 +48,16 @@ def combine(*terms: tuple[mpf, Sequence[Decimal]]) -> Series:
     return total
 
 
+def product(p: Sequence[Decimal], q: Sequence[Decimal]) -> Series:
+    """Return the coefficients of p(τ) q(τ)."""
+    total = [_ZERO] * (len(p) + len(q) - 1)
+    for j, factor in enumerate(p):
+        if factor:
+            for k, c in enumerate(q, j):
+                total[k] += factor * c
+    return total
+
+
 def scaled(coefficients: Sequence[Decimal], h: mpf) -> Series:
     """Return the coefficients c_k h^k of the same function on the unit interval."""
     out, power, ratio = [], _ONE, to_decimal(h)
