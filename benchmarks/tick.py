@@ -21,7 +21,7 @@ from rclpy.node import Node
 
 from stickslip_msgs.msg import FrictionForce, SliderState
 from stickslip_sim.bench.cases import make_case
-from stickslip_sim.bench.own_solvers import state_for
+from stickslip_sim.bench.own_solvers import sinusoids_for, state_for
 from stickslip_sim.bench.ratios import at_most
 from stickslip_sim.solvers import exact
 
@@ -36,7 +36,7 @@ def tick_cost() -> Callable[[], float]:
     problem, solver = make_case('B'), exact.SOLVER
     of = solver.records
     p, state, events = of.Parameters(problem.parameters.tolist()), state_for(problem, of), of.Events(64)
-    sinusoids = of.Sinusoids(problem.sinusoids.tolist())
+    sinusoids = sinusoids_for(problem, of)
     instants = [(float(k // 1000), k % 1000 / 1000.0) for k in range(1, TICKS + 1)]
 
     def measure() -> float:

@@ -21,8 +21,8 @@ def record_words(package: Path) -> dict[str, Any]:
     """Return what stands in the template of the records: structures, fields, and how many numbers they hold."""
     fields, layout, state_record, rows, axis_figures = (_module(package, name) for name in RECORD_FILES)
     structures = _Structures(fields)
-    for record in (layout.Segment, state_record.SinusoidRecord, rows.GivenSinusoid, rows.EventRow,
-                   axis_figures.AxisFigures, axis_figures.KeptRound):
+    for record in (layout.Segment, state_record.SinusoidRecord, state_record.SeriesScratch, rows.GivenSinusoid,
+                   rows.EventRow, axis_figures.AxisFigures, axis_figures.KeptRound):
         structures.add(record)
     state = [structures.declared(field, public='public ') for field in fields.record_fields(state_record.State)]
     return {
@@ -32,6 +32,7 @@ def record_words(package: Path) -> dict[str, Any]:
         'SEGMENT_SIZE': len(layout.SEGMENT_FIELDS),
         'STATE_FIELDS': '\n    '.join(f'cdef {field}' for field in state),
         'STATE_SIZE': len(state_record.STATE_PLACES),
+        'SERIES_ROWS': state_record.ORDERS + 1,
         'SINUSOID_SIZE': len(fields.names_of(state_record.SinusoidRecord)),
         'GIVEN_SINUSOID_SIZE': len(rows.GIVEN_SINUSOID_FIELDS),
         'EVENT_VALUES': _of('e', fields.names_of(rows.EventRow)),

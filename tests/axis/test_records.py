@@ -49,13 +49,13 @@ def test_a_state_goes_on_from_its_numbers() -> None:
     """Each number has its place, sinusoids behind the others."""
     s = State(2)
     count = len(s.numbers())
-    assert count == len(STATE_PLACES) + 2 * 9
+    assert count == len(STATE_PLACES) + 2 * 10
     s.take(range(count))
     assert s.numbers() == list(range(count))
     assert s.velocity == STATE_PLACES.index('velocity')
     assert s.inputs.v_rate == STATE_PLACES.index('inputs.v_rate')
     assert s.cache.oscillators[3].fast == STATE_PLACES.index('cache.oscillators[3].fast')
-    assert s.sinusoids[1].frequency == len(STATE_PLACES) + 9
+    assert s.sinusoids[1].frequency == len(STATE_PLACES) + 10
     other = State(2)
     other.take(s.numbers())
     assert other.numbers() == s.numbers()
@@ -74,9 +74,9 @@ def test_rows_have_the_order_of_what_is_made_of_them() -> None:
 
 
 def test_sinusoids_come_from_a_flat_row() -> None:
-    given = Sinusoids([1.0, 0.25, 2.0, 3.0, 5.0, 0.5, 7.0, 8.0])
-    assert [(one.frequency, one.phase, one.v, one.f) for one in given.rows] == [
-        (1.0, 0.25, 2.0, 3.0), (5.0, 0.5, 7.0, 8.0)]
+    given = Sinusoids([1.0, 0.25, 2.0, 3.0, 4.0, 5.0, 0.5, 7.0, 8.0, 9.0])
+    assert [(one.frequency, one.phase, one.v, one.f, one.n) for one in given.rows] == [
+        (1.0, 0.25, 2.0, 3.0, 4.0), (5.0, 0.5, 7.0, 8.0, 9.0)]
     assert given.count == 2
 
 

@@ -75,15 +75,14 @@ def test_a_compliant_stick_may_end_by_the_force_of_the_drive() -> None:
     assert (s.mode, s.acceleration, s.excess) == (COASTING, 0.0, (0.5 - 0.1875) / 0.75)
 
 
-def test_a_slip_goes_along_the_velocity_where_the_contact_pulls_the_other_way() -> None:
-    """Friction turns round: it was +32 N, and opposes a motion backwards from now on."""
-    p = parameters(contact=COMPLIANT)
-    s = state(mode=STICK, velocity=-0.125, deflection=(32.0 + 8.0) / 4096.0, rest=math.inf, f=-4.0,
-              acceleration=(0.0 - 32.0) / 2.0)      # F_d = 4 N, F_e = −4 N
+def test_a_slip_by_the_force_of_the_drive_goes_along_the_velocity() -> None:
+    """Where F_d + F_e ends a stick that moves the other way: friction was +32 N, and opposes the motion from now on."""
+    p = parameters(contact=replace(COMPLIANT, ends_by_drive=True))
+    s = state(mode=STICK, velocity=-0.125, deflection=0.0, rest=math.inf, f=28.0)      # F_d = 4 N
     row = released(p, s)
     assert (row.direction, row.friction) == (-1.0, 32.0)
-    # nothing is applied, and friction pushes forwards: the slider, moving backwards, is slowed down
-    assert (s.mode, s.direction, s.acceleration) == (DECELERATING, -1.0, 64.0 * 0.1875 / 2.0)
+    # friction pushes forwards with the drive: the slider, moving backwards, is slowed down
+    assert (s.mode, s.direction, s.acceleration) == (DECELERATING, -1.0, (32.0 + 64.0 * 0.1875) / 2.0)
 
 
 @pytest.mark.parametrize(('force', 'rest', 'direction', 'static'), [

@@ -29,7 +29,7 @@ def waved(*given: Given, v: float = 0.0, v_rate: float = 0.0, f: float = 0.0, f_
     s.inputs.v, s.inputs.v_rate, s.inputs.f, s.inputs.f_rate = v, v_rate, f, f_rate
     for name, number in numbers.items():
         setattr(s, name, number)
-    sinusoids.load_sinusoids(s, Sinusoids([number for one in given for number in one]))
+    sinusoids.load_sinusoids(s, Sinusoids([number for one in given for number in (*one, 0.0)]))
     return s
 
 
@@ -54,12 +54,12 @@ def test_the_inputs_go_on_with_the_time() -> None:
 
 def test_the_same_sinusoids_are_known_again() -> None:
     s = waved(BOTH, v=1.0, f=2.0)
-    assert sinusoids.same_sinusoids(s, 1.0, 2.0, Sinusoids(list(BOTH)))
-    for k in range(4):
-        other = [number + (k == i) for i, number in enumerate(BOTH)]
+    assert sinusoids.same_sinusoids(s, 1.0, 2.0, Sinusoids([*BOTH, 0.0]))
+    for k in range(5):
+        other = [number + (k == i) for i, number in enumerate((*BOTH, 0.0))]
         assert not sinusoids.same_sinusoids(s, 1.0, 2.0, Sinusoids(other))
-    assert not sinusoids.same_sinusoids(s, 1.5, 2.0, Sinusoids(list(BOTH)))
-    assert not sinusoids.same_sinusoids(s, 1.0, 2.5, Sinusoids(list(BOTH)))
+    assert not sinusoids.same_sinusoids(s, 1.5, 2.0, Sinusoids([*BOTH, 0.0]))
+    assert not sinusoids.same_sinusoids(s, 1.0, 2.5, Sinusoids([*BOTH, 0.0]))
     assert not sinusoids.same_sinusoids(s, 1.0, 2.0, Sinusoids([]))
 
 
@@ -79,7 +79,7 @@ def test_under_a_still_slider_the_force_changes_with_the_stretch_and_with_the_da
     p, t, w, phase = parameters(damper_on_slideway=on_slideway), 0.07, TURN * 2.0, TURN * 0.1
     s = waved(BOTH, mode=STICK)
     damped = (0.0 if on_slideway else 32.0 * 0.25) + 6.0
-    force, rate, size = sinusoids.sinusoid_force(p, s, t)
+    force, rate, size = sinusoids.sinusoid_force(p, s, 0.0, t)
     assert force == pytest.approx(1024.0 * 0.25 / w * (math.cos(phase) - math.cos(phase + w * t))
                                   + damped * (math.sin(phase + w * t) - math.sin(phase)), rel=1e-12)
     assert rate == pytest.approx(1024.0 * 0.25 * math.sin(phase + w * t) + damped * w * math.cos(phase + w * t),
@@ -138,7 +138,8 @@ def test_the_sizes_of_the_sums_bound_them_at_any_phase() -> None:
     """Bounds of rounding: at least the amplitude and at most twice that, and no sinusoid takes from another."""
     t, other = 0.05, (3.0, 0.6, -0.25, 2.0)
     found = [response(t, (BOTH[0], k / 64.0, *BOTH[2:])) for k in range(64)]
-    forces = [sinusoids.sinusoid_force(parameters(), waved((BOTH[0], k / 64.0, *BOTH[2:])), t) for k in range(64)]
+    forces = [sinusoids.sinusoid_force(parameters(), waved((BOTH[0], k / 64.0, *BOTH[2:])), 0.0, t)
+              for k in range(64)]
     for values, sizes in (([one.y for one in found], [one.size_y for one in found]),
                           ([one.u for one in found], [one.size_u for one in found]),
                           ([one.a for one in found], [one.size_a for one in found]),

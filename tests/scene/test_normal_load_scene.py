@@ -44,10 +44,13 @@ def test_a_scene_with_it_comes_back_from_its_text() -> None:
 
 
 @pytest.mark.parametrize(('changes', 'name', 'hint'), [
-    ({**SINE}, 'normal_load', 'constant or steps with solver.name: exact'),
+    ({**SINE, 'friction.static.law': 'kato', 'friction.static.exponent': 0.5}, 'friction.static.law',
+     'normal_load.course: steps, or solver.name: adaptive'),
     ({**SINE, 'solver.name': 'fixed_step'}, 'normal_load', 'constant or steps with solver.name: fixed_step'),
-    ({**STEPS, 'normal_load.course': 'table'}, 'normal_load', 'normal_load.course: steps, or solver.name: adaptive'),
-    ({**STEPS, 'normal_load.amplitudes': [1.0], 'normal_load.frequencies': [1.0]}, 'normal_load', 'closed form'),
+    ({**STEPS, 'normal_load.course': 'table', 'solver.name': 'fixed_step'}, 'normal_load',
+     'normal_load.course: steps, or solver.name: exact'),
+    ({**STEPS, 'normal_load.amplitudes': [1.0], 'normal_load.frequencies': [1.0], 'solver.name': 'fixed_step'},
+     'normal_load', 'solver.name: exact'),
     ({**STEPS, 'normal_load.forces': [0.0, 1.0, -3433.0]}, 'axis.normal_force + normal_load', '>= 0 N at all times'),
     ({**SINE, 'normal_load.amplitude': 3433.0, 'solver.name': 'adaptive'}, 'axis.normal_force + normal_load',
      'whole amplitudes'),

@@ -32,6 +32,8 @@ for seed in range(25):
     axis = random_axis(rng)
     printed(run_events(axis, rng.choice((-1, 1)) * 10 ** rng.uniform(-3, -1.5), 3.0))
 '''
+LOAD = {'normal_load.course': 'sine', 'normal_load.constant': 500.0, 'normal_load.amplitude': 400.0,
+        'normal_load.frequency': 7.0}
 STEPS = [(method, {'solver.name': 'fixed_step', 'solver.method': method, 'solver.step': 1e-3})
          for method in ('euler', 'rk4')]
 
@@ -39,6 +41,7 @@ STEPS = [(method, {'solver.name': 'fixed_step', 'solver.method': method, 'solver
 @pytest.mark.parametrize('program', [
     *(pytest.param(SCENES.replace('OVERRIDES', repr(overrides)), id=name)
       for name, overrides in (('exact', {}), *STEPS)),
+    pytest.param(SCENES.replace('OVERRIDES', repr(LOAD)), id='a load'),
     pytest.param(RANDOM, id='random axes'),
 ])
 def test_compiled_and_plain_python_agree_bit_by_bit(program: str, in_a_process: Program) -> None:

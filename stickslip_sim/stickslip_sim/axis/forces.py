@@ -3,8 +3,8 @@
 """The forces on the slider: of the drive, the contact and friction; their rounding and rates at the segment start."""
 
 from ..core.hot_path import inlined
-from .codes import ACCELERATING, COASTING, STICK
-from .friction_segments import friction_line
+from .codes import ACCELERATING, COASTING, STICK, YIELDING
+from .friction_segments import friction_line, kinetic_at_rest
 from .layout import Parameters
 from .sinusoids import forced_rate
 from .state_record import State
@@ -56,10 +56,18 @@ def friction_force(p: Parameters, s: State, deflection: float, u: float, applied
         return applied
     if mode == STICK:
         return contact_force(p, deflection, u)
+    if mode == YIELDING:
+        return yielding_force(p, s)
     coefficient, _, psi, _ = friction_line(p, int(s.segment), abs(u))
     if mode == ACCELERATING:
         coefficient += s.excess * psi
     return s.direction * p.normal_force * coefficient
+
+
+@inlined
+def yielding_force(p: Parameters, s: State) -> float:
+    """Return the force of a contact that yields, N mu_k(0) along its direction."""
+    return s.direction * p.normal_force * kinetic_at_rest(p, s.direction)
 
 
 @inlined

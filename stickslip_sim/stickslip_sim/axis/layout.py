@@ -32,7 +32,7 @@ class Parameters:
     stiffness: float          # N/m, of the drive
     damping: float            # N s/m, of the drive
     feed_share: float         # of the drive's velocity, at the far end of its damper: 1, or 0 where that is fixed
-    normal_force: float       # N
+    normal_force: float       # N; where it varies, that at the segment start
     compliant: float          # 1 in a compliant contact, 0 in a rigid one
     contact_stiffness: float  # N/m
     contact_damping: float    # N s/m
@@ -53,6 +53,7 @@ class Parameters:
     backward_tau: float
     backward_exponent: float
     backward_segment: float   # index of the first segment backwards; 0: the same table
+    normal_rate: float        # N/s, of the normal force but for its sinusoids
     segments: list[Segment]
 
     def __init__(self, numbers: Sequence[float]) -> None:
@@ -66,5 +67,5 @@ PARAMETER_FIELDS, SEGMENT_FIELDS = names_of(Parameters), names_of(Segment)
 # where the numbers of `pack` stand
 (MASS, STIFFNESS, DAMPING, _, NORMAL, COMPLIANT, CONTACT_STIFFNESS, CONTACT_DAMPING, _, _, STATIC_LAW, STATIC_INITIAL,
  STATIC_LIMIT, STATIC_TAU, STATIC_EXPONENT, _, BRANCHES, END_SLOPE, SEGMENT_COUNT, SIDED, BACKWARD_INITIAL,
- BACKWARD_LIMIT, BACKWARD_TAU, BACKWARD_EXPONENT, BACKWARD_SEGMENT, TABLE) = range(26)
+ BACKWARD_LIMIT, BACKWARD_TAU, BACKWARD_EXPONENT, BACKWARD_SEGMENT, _, TABLE) = range(27)
 SEGMENT_SIZE = len(SEGMENT_FIELDS)

@@ -1,15 +1,24 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""How a mode begins: which sub-mode a slip takes, its excess E, and stick at standstill.
+"""How a mode begins: which sub-mode a slip takes, its excess E, stick at standstill, and a contact that yields.
 
 Ties are decided by where the force moves next: a residual within rounding of zero counts as zero, and the sign of its
 rate, then of the rate's rate, decides.
 """
 
+import math
+
 from ..core.hot_path import inlined
-from .codes import ACCELERATING, COASTING, DECELERATING, STICK
-from .forces import applied_force, force_rate, force_rounding, holds_by_drive
-from .friction_segments import friction_line, has_branches, kinetic_at_rest, segment_above, segment_below
+from .codes import ACCELERATING, COASTING, DECELERATING, STICK, YIELDING
+from .forces import ROUNDING, applied_force, contact_force, force_rate, force_rounding, holds_by_drive, yielding_force
+from .friction_segments import (
+    first_segment,
+    friction_line,
+    has_branches,
+    kinetic_at_rest,
+    segment_above,
+    segment_below,
+)
 from .layout import Parameters
 from .state_record import State
 
@@ -28,17 +37,19 @@ def choose_slip(p: Parameters, s: State, residual: float, lower: float, toleranc
     rate, second_rate = force_rate(p, s)
     rate *= direction
     second_rate *= direction
+    segment = segment_above(p, direction, speed)
+    coefficient, _, psi, _ = friction_line(p, segment, speed)
+    upper_rate = rate - s.inputs.n_rate * (coefficient + s.excess * psi)
     if abs(residual) <= tolerance:
         residual = 0.0
-    if residual > 0.0 or (residual == 0.0 and (rate > 0.0 or (rate == 0.0 and second_rate > 0.0))):
+    if residual > 0.0 or (residual == 0.0 and (upper_rate > 0.0 or (upper_rate == 0.0 and second_rate > 0.0))):
         s.mode = ACCELERATING
-        s.segment = segment_above(p, direction, speed)
+        s.segment = segment
         s.acceleration = direction * residual / p.mass
         return True
     if speed == 0.0:
         return False
-    segment = segment_above(p, direction, speed)
-    coefficient, _, psi, _ = friction_line(p, segment, speed)
+    rate -= s.inputs.n_rate * coefficient
     band = p.normal_force * s.excess * psi
     if abs(lower) <= min(tolerance, force_rounding(p, s, coefficient)):
         lower = 0.0
@@ -103,3 +114,52 @@ def rest(p: Parameters, s: State) -> None:
         s.deflection = friction / p.contact_stiffness
         s.acceleration = (applied_force(p, s) - friction) / p.mass
     s.direction = 0.0
+
+
+@inlined
+def yields(p: Parameters, s: State, side: float, limit: float) -> bool:
+    """Whether a contact whose force is at N mu_s = N `limit` of a side yields: unless the slider moves to that side.
+
+    A velocity within rounding of 0 counts as 0; then the force beyond the limit says where it moves next, and in a tie
+    the rate of that.  See docs/model.md.
+    """
+    if holds_by_drive(p):
+        return False
+    tolerance = force_rounding(p, s, limit)
+    if abs(s.velocity) * math.sqrt(p.mass * (p.stiffness + p.contact_stiffness)) > tolerance:
+        return side * s.velocity < 0.0
+    beyond = side * applied_force(p, s) - p.normal_force * limit
+    if abs(beyond) > tolerance:
+        return beyond < 0.0
+    rate, _ = force_rate(p, s)
+    return side * rate < s.inputs.n_rate * limit
+
+
+@inlined
+def begin_yielding(p: Parameters, s: State, side: float) -> None:
+    """Let the contact yield, or go on to yield under new inputs: its force is N mu_k(0), which δ follows.
+
+    Without a damper δ jumps.
+    """
+    s.mode = YIELDING
+    s.direction = side
+    s.segment = float(first_segment(p, side))
+    s.excess = 0.0
+    s.rest = 0.0
+    if p.contact_damping == 0.0:
+        s.deflection = yielding_force(p, s) / p.contact_stiffness
+    s.acceleration = (applied_force(p, s) - yielding_force(p, s)) / p.mass
+
+
+@inlined
+def keeps_yielding(p: Parameters, s: State) -> bool:
+    """Whether a contact that yields slides on: at rest it would carry more than N mu_k(0), in a tie soon."""
+    coefficient = kinetic_at_rest(p, s.direction)
+    held = s.direction * contact_force(p, s.deflection, s.velocity)
+    beyond = held - p.normal_force * coefficient
+    acceleration = (applied_force(p, s) - yielding_force(p, s)) / p.mass
+    sizes = p.contact_stiffness * abs(s.deflection) + p.contact_damping * abs(s.velocity)
+    if abs(beyond) > force_rounding(p, s, coefficient) + ROUNDING * sizes:
+        return beyond > 0.0
+    rate = s.direction * (p.contact_stiffness * s.velocity + p.contact_damping * acceleration)
+    return rate > s.inputs.n_rate * coefficient

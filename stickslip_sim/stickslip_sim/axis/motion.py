@@ -10,17 +10,24 @@ Every mode is m y″ + (h + …) y′ + (c + …) y = polynomial of the time, y 
 | stick, compliant | h + h_c        | c + c_c       | c w₀ + h v + F_e − c_c δ₀             |
 | slip             | h + N b        | c             | c w₀ + h v + F_e − N (mu − b ẋ₀)      |
 | coasting         | y′ constant    |               |                                       |
+| yielding         | h              | c             | c w₀ + h v + F_e ∓ N mu_k(0)          |
 
 with w = s − x, and b the slope of the friction branch on the present segment of the table.  With a damper on the
 slideway there is no h v.  Sines in v and F_e add their own answer, see `sinusoids`.
+
+The deflection of a contact that yields follows N mu_k(0)/c_c with the time constant h_c/c_c.
 """
+
+import math
 
 from ..core.hot_path import compiled, inlined
 from ..linear.oscillator import Oscillator, ShortIntegrals, integrals, oscillator, short_integrals
-from .codes import ACCELERATING, COASTING, STICK
-from .forces import feed_damping, friction_force, is_rigid_stick
+from .codes import ACCELERATING, COASTING, STICK, YIELDING
+from .forces import feed_damping, friction_force, is_rigid_stick, yielding_force
 from .friction_segments import friction_line
 from .layout import Parameters
+from .normal_force import begin_load, load_share
+from .series import begin_series, moves_by_series, series_deflection, series_travel
 from .sinusoids import begin_sinusoids, move_sinusoids, sinusoid_drive_travel, sinusoid_travel
 from .state_record import State
 
@@ -34,17 +41,20 @@ _SPLIT = 131073.0      # splits off the upper 36 bits of a number (Dekker 1971)
 def begin_motion(p: Parameters, s: State) -> None:
     """Set the closed form of the motion from the segment start on."""
     v = s.inputs.v
-    if s.sinusoid_count != 0.0:
-        begin_sinusoids(p, s)
-        v = s.inputs.base_v
     mode = s.mode
+    if s.sinusoid_count != 0.0:
+        begin_sinusoids(p, s, load_share(p, s))
+        v = s.inputs.base_v
     damping, stiffness, contact = p.damping, p.stiffness, 0.0
     if mode == COASTING or is_rigid_stick(p, s):
+        return
+    if moves_by_series(s):
+        begin_series(p, s)
         return
     if mode == STICK:
         damping += p.contact_damping
         contact = p.contact_stiffness
-    else:
+    elif mode != YIELDING:
         _, slope, _, psi_slope = friction_line(p, int(s.segment), 0.0)
         if mode == ACCELERATING:
             slope += s.excess * psi_slope
@@ -99,6 +109,8 @@ def travel(p: Parameters, s: State, t: float) -> tuple[float, float, float]:
         return s.velocity * t, s.velocity, 0.0
     if is_rigid_stick(p, s):
         return 0.0, 0.0, 0.0
+    if moves_by_series(s):
+        return series_travel(s, t)
     u, a, jerk, snap = s.velocity, s.acceleration, s.jerk, s.snap
     if snap == 0.0:
         g, rate, first, second = tick_integrals(s, t)
@@ -158,6 +170,15 @@ def travel_to_event(p: Parameters, s: State, t: float) -> tuple[float, float, fl
 
 
 @inlined
+def yielded_deflection(p: Parameters, s: State, t: float) -> float:
+    """Return δ at t after the segment start of a contact that yields under a constant N, m."""
+    settled = yielding_force(p, s) / p.contact_stiffness
+    if p.contact_damping == 0.0:
+        return settled
+    return settled + (s.deflection - settled) * math.exp(-p.contact_stiffness / p.contact_damping * t)
+
+
+@inlined
 def drive_travel(s: State, t: float) -> float:
     """Return how far the drive moves within t after the segment start."""
     if s.sinusoid_count != 0.0:
@@ -173,7 +194,8 @@ def spring_after(p: Parameters, s: State, t: float, drive: float, y: float, u: f
     digits.
     """
     stretch = s.spring + (drive - y)
-    if abs(drive) <= _LONG * abs(stretch) or s.mode == STICK or p.stiffness == 0.0 or s.sinusoid_count != 0.0:
+    if (abs(drive) <= _LONG * abs(stretch) or s.mode == STICK or p.stiffness == 0.0 or s.sinusoid_count != 0.0
+            or moves_by_series(s)):
         return stretch
     v = s.inputs.v + s.inputs.v_rate * t
     if s.mode == COASTING:
@@ -197,6 +219,8 @@ def move_start(p: Parameters, s: State, second: float, fraction: float, t: float
     if s.mode == STICK:
         s.rest += t
         s.deflection += y
+    elif s.mode == YIELDING:
+        s.deflection, _ = series_deflection(s, t)
     s.spring = spring_after(p, s, t, drive, y, u, a)
     s.position += y
     s.drive += drive
@@ -206,5 +230,8 @@ def move_start(p: Parameters, s: State, second: float, fraction: float, t: float
     s.inputs.f += s.inputs.f_rate * t
     s.second = second
     s.fraction = fraction
-    if s.sinusoid_count != 0.0:
+    if s.sinusoid_count != 0.0 or s.is_loaded != 0.0:
         move_sinusoids(s, t)
+    if s.is_loaded != 0.0:
+        s.inputs.base_n += p.normal_rate * t
+        begin_load(p, s)

@@ -190,5 +190,5 @@ def pack(axis: Axis) -> Sequence[float]:
             static.delay,
             float(friction.excess is not None), friction.kinetic.end_slope, float(sum(map(len, tables))),
             float(friction.backward is not None), back.initial, back.limit, back.time_constant, back.exponent,
-            float(len(tables[0])) if friction.backward is not None else 0.0,
+            float(len(tables[0])) if friction.backward is not None else 0.0, 0.0,
             *(number for table in tables for breakpoint in table for number in breakpoint)]

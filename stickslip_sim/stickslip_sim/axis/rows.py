@@ -16,6 +16,7 @@ class GivenSinusoid:
     phase: float = 0.0       # turns at time 0
     v: float = 0.0           # m/s, amplitude in the drive's velocity
     f: float = 0.0           # N, amplitude in the external force
+    n: float = 0.0           # N, amplitude in the normal force
 
 
 class Sinusoids:

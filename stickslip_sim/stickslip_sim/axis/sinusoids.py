@@ -43,7 +43,7 @@ def load_sinusoids(s: State, given: Sinusoids) -> None:
     s.sinusoid_count = float(given.count)
     for k in range(given.count):
         s.sinusoids[k].frequency, s.sinusoids[k].phase = given.rows[k].frequency, given.rows[k].phase
-        s.sinusoids[k].v, s.sinusoids[k].f = given.rows[k].v, given.rows[k].f
+        s.sinusoids[k].v, s.sinusoids[k].f, s.sinusoids[k].n = given.rows[k].v, given.rows[k].f, given.rows[k].n
     s.inputs.base_v, s.inputs.base_f = s.inputs.v, s.inputs.f
     if given.count > 0:
         _add_sinusoids(s)
@@ -56,7 +56,8 @@ def same_sinusoids(s: State, v: float, f: float, given: Sinusoids) -> bool:
         return False
     for k in range(given.count):
         if (s.sinusoids[k].frequency != given.rows[k].frequency or s.sinusoids[k].phase != given.rows[k].phase
-                or s.sinusoids[k].v != given.rows[k].v or s.sinusoids[k].f != given.rows[k].f):
+                or s.sinusoids[k].v != given.rows[k].v or s.sinusoids[k].f != given.rows[k].f
+                or s.sinusoids[k].n != given.rows[k].n):
             return False
     return True
 
@@ -93,11 +94,12 @@ def inputs_at(s: State, second: float, fraction: float, t: float) -> tuple[float
 
 
 @compiled
-def begin_sinusoids(p: Parameters, s: State) -> None:
-    """Set the force rate of each sinusoid at the segment start."""
+def begin_sinusoids(p: Parameters, s: State, share: float) -> None:
+    """Set the force rate of each sinusoid at the segment start; a normal force takes its `share`."""
     for k in range(int(s.sinusoid_count)):
         re = p.stiffness * s.sinusoids[k].v
-        im = TURN * s.sinusoids[k].frequency * (p.damping * p.feed_share * s.sinusoids[k].v + s.sinusoids[k].f)
+        im = TURN * s.sinusoids[k].frequency * (p.damping * p.feed_share * s.sinusoids[k].v + s.sinusoids[k].f
+                                                - share * s.sinusoids[k].n)
         sine, cosine = s.sinusoids[k].sine, s.sinusoids[k].cosine
         s.sinusoids[k].force_rate_re = re * cosine - im * sine
         s.sinusoids[k].force_rate_im = re * sine + im * cosine
@@ -138,8 +140,11 @@ def sinusoid_drive_travel(s: State, t: float) -> float:
 
 
 @compiled
-def sinusoid_force(p: Parameters, s: State, t: float) -> tuple[float, float, float]:
-    """Return what the sinusoids add to F_d + F_e within t under a still slider, its rate, and the size of the sum."""
+def sinusoid_force(p: Parameters, s: State, share: float, t: float) -> tuple[float, float, float]:
+    """Return what the sinusoids add to F_d + F_e within t under a still slider, its rate, and the size of the sum.
+
+    A normal force takes its `share`.
+    """
     force, rate, size = 0.0, 0.0, 0.0
     for k in range(int(s.sinusoid_count)):
         frequency = s.sinusoids[k].frequency
@@ -147,7 +152,7 @@ def sinusoid_force(p: Parameters, s: State, t: float) -> tuple[float, float, flo
         cycle = turns(frequency, t)
         half, middle = 0.5 * cycle, TURN * (s.sinusoids[k].turns + 0.5 * cycle)
         stiff = p.stiffness * s.sinusoids[k].v
-        damped = p.damping * p.feed_share * s.sinusoids[k].v + s.sinusoids[k].f
+        damped = p.damping * p.feed_share * s.sinusoids[k].v + s.sinusoids[k].f - share * s.sinusoids[k].n
         chord = 2.0 * math.sin(TURN * half)
         force += chord * (stiff / w * math.sin(middle) + damped * math.cos(middle))
         size += abs(chord) * (abs(stiff) / w + abs(damped))
@@ -162,7 +167,7 @@ def forced_rate(p: Parameters, s: State) -> tuple[float, float]:
 
     Both count as 0 within rounding.  A transition asks before `begin_motion` has set the force rates of its instant.
     """
-    begin_sinusoids(p, s)
+    begin_sinusoids(p, s, 0.0)
     damping = p.damping * p.feed_share
     base = p.stiffness * (s.inputs.base_v - s.velocity) + damping * s.inputs.v_rate + s.inputs.f_rate
     size = (p.stiffness * (abs(s.inputs.base_v) + abs(s.velocity)) + damping * abs(s.inputs.v_rate)

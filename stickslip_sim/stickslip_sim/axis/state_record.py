@@ -14,6 +14,8 @@ from typing import Annotated
 
 from .fields import RowOf, filled, numbers_in, places_of, record_fields, zeros
 
+ORDERS = 24   # of the series of a segment under a normal force that varies
+
 
 @dataclass(slots=True)
 class InputsRecord:
@@ -25,6 +27,9 @@ class InputsRecord:
     f_rate: float   # N/s
     base_v: float   # m/s, v at the segment start without the sinusoids of the exact engine
     base_f: float   # N, f likewise
+    base_n: float   # N, the normal force likewise, where it varies
+    n: float        # N, the normal force at the segment start, where it varies smoothly
+    n_rate: float   # N/s, its rate there
 
 
 @dataclass(slots=True)
@@ -78,8 +83,8 @@ class Cache:
 
     at: Evaluation             # near the next event, or where its search ended
     near: TickEvaluation       # at the nearest time of 36 bits, see `motion.tick_integrals`
-    last: Annotated[list[float], RowOf(4)]                # s, how long each mode lasted last time: a first guess
-    oscillators: Annotated[list[OscillatorRecord], RowOf(4, OscillatorRecord)]   # that each mode had last
+    last: Annotated[list[float], RowOf(5)]                # s, how long each mode lasted last time: a first guess
+    oscillators: Annotated[list[OscillatorRecord], RowOf(5, OscillatorRecord)]   # that each mode had last
 
 
 @dataclass(slots=True)
@@ -128,11 +133,32 @@ class SinusoidRecord:
     phase: float       # turns at time 0
     v: float           # m/s, amplitude in the drive's velocity
     f: float           # N, amplitude in the external force
+    n: float           # N, amplitude in the normal force
     turns: float       # phase at the segment start, turns
     sine: float        # of that phase
     cosine: float
     force_rate_re: float     # N/s, the complex amplitude of its force rate there
     force_rate_im: float
+
+
+@dataclass(slots=True)
+class SeriesOrder:
+    """The terms of one order of the power series in τ = t/H of a segment that lasts H (`axis.series`)."""
+
+    u: float            # m/s, of the velocity
+    deflection: float   # m, of a contact that yields
+
+
+@dataclass(slots=True)
+class SeriesScratch:
+    """What is needed for one order while series are made and searched."""
+
+    v: float        # m/s, of the drive's velocity
+    push: float     # N, of the forces that do not depend on the motion
+    n: float        # N, of the normal force
+    tail: float     # N, bound on this order of the normal force and all that follow
+    guard: float    # of what is searched for its first root
+    control: float  # of Bernstein's form of it
 
 
 @dataclass(slots=True, init=False)
@@ -143,7 +169,7 @@ class State:
     second: float             # s, whole ones
     fraction: float           # s
     mode: float               # `types.Mode`
-    direction: float          # of the slip: 1, −1, in stick 0
+    direction: float          # of the slip, or of the force of a contact that yields: 1, −1, in stick 0
     segment: float            # of the friction tables, its index among those of both directions
     position: float           # m, from `origin`
     drive: float              # m, position of the drive from `origin`
@@ -162,12 +188,16 @@ class State:
     accounting: float         # 1 where an account of energy is kept
     stored_at_start: float    # J, where it is
     given_sinusoids: float    # how many, of a solver that steps
+    is_loaded: float          # 1 where the normal force varies smoothly from the segment start on
+    series_end: float         # s, H of the series below
+    series_error: float       # m/s, bound on what their velocity is off by within H, see `axis.series`
     # of the axis
     inputs: InputsRecord
     oscillator: OscillatorRecord   # of the mode
     # of the exact engine
     next: NextEvent
     cache: Cache
+    series: Annotated[list[SeriesOrder], RowOf(ORDERS + 1, SeriesOrder)]   # from the segment start on
     # of the account of energy, up to the segment start
     sums: EnergySums
     lost: EnergySums               # what rounding lost of each sum
@@ -175,10 +205,12 @@ class State:
     given: GivenInputs
     grid: StepGrid
     sinusoids: list[SinusoidRecord]
+    scratch: list[SeriesScratch]
 
     def __init__(self, sinusoids: int = 0) -> None:
         clear_state(self)
         self.sinusoids = [filled(SinusoidRecord, zeros()) for _ in range(sinusoids)]
+        self.scratch = [filled(SeriesScratch, zeros()) for _ in range(ORDERS + 1)]
 
     def numbers(self) -> list[float]:
         """Return all numbers, from which `take` goes on to the last bit."""

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""What happens between two modes: break-away, arrest, turns of a slip, breakpoints, jumps of the inputs.
+"""What happens between two modes: break-away, yielding, arrest, turns of a slip, breakpoints, jumps of the inputs.
 
 Each writes the row of its event and begins the mode that follows (`mode_entry`).
 """
@@ -18,6 +18,8 @@ from .codes import (
     KNOT,
     REVERSE,
     STICK,
+    YIELD,
+    YIELDING,
 )
 from .forces import (
     ROUNDING,
@@ -31,10 +33,11 @@ from .forces import (
     holds_by_drive,
     stated_drive_force,
     stick_force,
+    yielding_force,
 )
 from .friction_segments import breakpoint_speed, friction_line, kinetic_at_rest, segment_above
 from .layout import Parameters
-from .mode_entry import break_away, choose_slip, enter_branch, rest
+from .mode_entry import begin_yielding, break_away, choose_slip, enter_branch, keeps_yielding, rest, yields
 from .rows import Events
 from .state_record import State
 from .static_limits import static_at_once, static_limit
@@ -61,7 +64,13 @@ def write_event(p: Parameters, s: State, events: Events, row: int, kind: float, 
 
 @inlined
 def arrest(p: Parameters, s: State, events: Events, row: int) -> None:
-    """End a slip at standstill: stick, or reverse at once where a rigid contact cannot hold the force."""
+    """End a slip at standstill: stick, or reverse at once where a rigid contact cannot hold the force.
+
+    Or end yielding where it no longer slides: stick, with velocity and deflection as they are.
+    """
+    if s.mode == YIELDING:
+        _hold_again(p, s, events, row)
+        return
     s.velocity = 0.0
     friction = s.direction * p.normal_force * kinetic_at_rest(p, s.direction)
     force = applied_force(p, s)
@@ -79,17 +88,28 @@ def arrest(p: Parameters, s: State, events: Events, row: int) -> None:
 
 @inlined
 def release(p: Parameters, s: State, events: Events, row: int) -> None:
-    """Begin a slip from stick, where |F| has reached N mu_s(t⁻)."""
+    """End stick where |F| has reached N mu_s(t⁻): slip, or yield; or begin the slip that yielding ends with."""
+    if s.mode == YIELDING:
+        _let_go(p, s, events, row)
+        return
     force = stick_force(p, s)
     direction = _direction_out(p, s, force)
     limit = static_limit(p, s.rest, direction)
+    if yields(p, s, direction, limit):
+        write_event(p, s, events, row, YIELD, direction, force, limit)
+        begin_yielding(p, s, direction)
+        events.rows[row].mode = YIELDING
+        return
     margin = direction * force - p.normal_force * limit
     if margin <= force_rounding(p, s, limit):
         margin = 0.0
     friction = direction * p.normal_force * limit
-    if s.velocity * direction < 0.0:   # friction turns round: it opposes the motion from now on
-        direction = -direction
-        margin = -(margin + 2.0 * p.normal_force * limit)
+    if s.velocity * direction < 0.0:
+        if holds_by_drive(p):   # friction turns round: it opposes the motion from now on
+            direction = -direction
+            margin = -(margin + 2.0 * p.normal_force * limit)
+        else:   # by rounding alone
+            s.velocity = 0.0
     write_event(p, s, events, row, BREAKAWAY, direction, friction, limit)
     break_away(p, s, direction, limit, margin)
     events.rows[row].mode = s.mode
@@ -113,6 +133,26 @@ def _direction_out(p: Parameters, s: State, force: float) -> float:
 
 
 @inlined
+def _hold_again(p: Parameters, s: State, events: Events, row: int) -> None:
+    held = contact_force(p, s.deflection, s.velocity)
+    write_event(p, s, events, row, ARREST, s.direction, held, static_at_once(p, s.direction))
+    events.rows[row].mode = s.mode = STICK
+    s.direction = 0.0
+    s.acceleration = (applied_force(p, s) - held) / p.mass
+
+
+@inlined
+def _let_go(p: Parameters, s: State, events: Events, row: int) -> None:
+    """Begin a slip where a slider that moved against the force of its contact has come to a stop; friction stays."""
+    s.velocity = 0.0
+    friction = yielding_force(p, s)
+    s.acceleration = (applied_force(p, s) - friction) / p.mass
+    write_event(p, s, events, row, BREAKAWAY, s.direction, friction, static_at_once(p, s.direction))
+    break_away(p, s, s.direction, kinetic_at_rest(p, s.direction), 0.0)
+    events.rows[row].mode = s.mode
+
+
+@inlined
 def turn(p: Parameters, s: State, events: Events, row: int) -> None:
     """Leave a sub-mode where its acceleration vanishes: coast, or pass to the other branch where they coincide."""
     mode = s.mode
@@ -121,7 +161,7 @@ def turn(p: Parameters, s: State, events: Events, row: int) -> None:
     band = band_of(p, s)
     s.acceleration = 0.0
     rate, second_rate = force_rate(p, s)
-    slides_steadily = rate == 0.0 and second_rate == 0.0
+    slides_steadily = rate == 0.0 and second_rate == 0.0 and s.inputs.n_rate == 0.0
     if band > 0.0 or slides_steadily:
         if slides_steadily and s.inputs.f_rate == 0.0:
             s.velocity = s.inputs.v
@@ -177,6 +217,8 @@ def apply_inputs(p: Parameters, s: State, events: Events, row: int) -> bool:
     mode = s.mode
     if mode == STICK:
         return _press_stick(p, s, events, row)
+    if mode == YIELDING:
+        return _press_yielding(p, s, events, row)
     direction = s.direction
     if direction * s.velocity < 0.0:   # standstill is due, and passed by rounding alone
         s.velocity = 0.0
@@ -208,4 +250,21 @@ def _press_stick(p: Parameters, s: State, events: Events, row: int) -> bool:
     if abs(force) - p.normal_force * limit <= force_rounding(p, s, limit):
         return False
     release(p, s, events, row)
+    return True
+
+
+@inlined
+def _press_yielding(p: Parameters, s: State, events: Events, row: int) -> bool:
+    direction = s.direction
+    if holds_by_drive(p):   # another contact since, which does not yield
+        s.mode, s.direction = STICK, 0.0
+        if not _press_stick(p, s, events, row):
+            held = friction_force(p, s, s.deflection, s.velocity, applied_force(p, s))
+            write_event(p, s, events, row, ARREST, direction, held, static_at_once(p, direction))
+            events.rows[row].mode = STICK
+        return True
+    if keeps_yielding(p, s):
+        begin_yielding(p, s, direction)
+        return False
+    _hold_again(p, s, events, row)
     return True

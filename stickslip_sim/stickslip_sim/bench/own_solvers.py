@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from ..axis.rows import GIVEN_SINUSOID_FIELDS
 from ..core.arrays import Numbers
 from ..core.errors import SolverError
 from ..core.hot_path import UNIT
@@ -56,7 +55,12 @@ def exact_solver() -> Peer:
 
 def state_for(problem: Problem, records: Any) -> Any:
     """Return an empty state with room for the sinusoids of a problem."""
-    return records.State(len(problem.sinusoids) // len(GIVEN_SINUSOID_FIELDS))
+    return records.State(len(problem.sinusoids) // 4)
+
+
+def sinusoids_for(problem: Problem, records: Any) -> Any:
+    """Return the sinusoids of a problem, whose normal force does not vary."""
+    return records.Sinusoids(np.pad(problem.sinusoids.reshape(-1, 4), ((0, 0), (0, 1))).ravel().tolist())
 
 
 def _prepare(problem: Problem, solver: Solver) -> Callable[[], Outcome]:
@@ -64,7 +68,7 @@ def _prepare(problem: Problem, solver: Solver) -> Callable[[], Outcome]:
     position, velocity, rest = problem.start.tolist()
     _, v, v_rate, f, f_rate = problem.pieces[0].tolist()
     p, s = of.Parameters(problem.parameters.tolist()), state_for(problem, of)
-    sinusoids = of.Sinusoids(problem.sinusoids.tolist())
+    sinusoids = sinusoids_for(problem, of)
     events, sample = of.Events(len(problem.event_rows())), of.SampleRow()
     walk = walk_of(solver)
     drive, force = walk.pieces_of(problem.drive), walk.pieces_of(problem.force)

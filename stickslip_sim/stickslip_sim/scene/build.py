@@ -95,7 +95,7 @@ def _check_read(given: Mapping[str, object]) -> None:
 def _check_load(axis: Axis, solver: SolverSettings, load: InputProfile) -> None:
     """Raise InputError when the solver cannot follow an axis with a load on top of its normal force."""
     normal_force = load.plus(axis.normal_force)
-    under_load(solver.make(axis), normal_force)
+    under_load(solver.make(axis), axis, normal_force)
     for normal in normal_force.bounds() if normal_force.is_stepwise else ():
         solver.check(replace(axis, normal_force=normal))
 

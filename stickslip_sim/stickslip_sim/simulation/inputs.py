@@ -3,11 +3,11 @@
 """The inputs of an axis, drive velocity and external force: what is in force, and which pieces of it."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator
 from typing import Any
 
 from ..core.errors import InputError
-from ..core.input_profile import Input, InputProfile, Piece, Sinusoid, constant
+from ..core.input_profile import Input, InputProfile, Piece, constant
 
 
 class Inputs:
@@ -67,18 +67,16 @@ class Inputs:
 
     def sinusoids(self) -> list[float]:
         """Return the sinusoids of both inputs, in a row, but for those of no amplitude."""
-        both = [(one.frequency, one.phase, one.amplitude, 0.0) for one in _sinusoids(self.drive)]
-        both += [(one.frequency, one.phase, 0.0, one.amplitude) for one in _sinusoids(self.force)]
-        return [number for frequency, phase, v, f in both
-                if v != 0.0 or f != 0.0 for number in (frequency, math.fmod(0.5 * phase / math.pi, 1.0), v, f)]
+        return [*_rows_of(self.drive, 0), *_rows_of(self.force, 1)]
 
 
 class LoadedInputs(Inputs):
-    """Inputs beside a load normal to the slideway, whose pieces count in `until`."""
+    """Inputs beside a load normal to the slideway, whose pieces count in `until`, and sinusoids among those of both."""
 
     def __init__(self, drive: InputProfile, force: InputProfile, load: InputProfile) -> None:
         self._load = load
         super().__init__(drive, force)
+        self.most_sinusoids += len(load.sinusoids)
 
     def reset(self) -> tuple[Piece, Piece]:
         """Take the original input profiles again; return their first pieces, without that of the load."""
@@ -91,6 +89,10 @@ class LoadedInputs(Inputs):
         entered = super().enter(time)
         self.go_on(min(self.until, self._load.pieces_at(time)[2]))
         return entered
+
+    def sinusoids(self) -> list[float]:
+        """Return the sinusoids of both inputs and of the load, in a row, but for those of no amplitude."""
+        return [*super().sinusoids(), *_rows_of(self._load, 2)]
 
 
 class _KeptPieces:
@@ -113,8 +115,13 @@ def _pieces_at(given: Input, time: float) -> tuple[float, float, float]:
     return given + 0.0, 0.0, math.inf    # no -0.0, as in a profile
 
 
-def _sinusoids(given: Input) -> Sequence[Sinusoid]:
-    return given.sinusoids if isinstance(given, InputProfile) else ()
+def _rows_of(given: Input, place: int) -> Iterator[float]:
+    """Yield the numbers of an input's sinusoids as solvers take them; `place` is that of its amplitude."""
+    for one in given.sinusoids if isinstance(given, InputProfile) else ():
+        if one.amplitude != 0.0:
+            amplitudes = [0.0, 0.0, 0.0]
+            amplitudes[place] = one.amplitude
+            yield from (one.frequency, math.fmod(0.5 * one.phase / math.pi, 1.0), *amplitudes)
 
 
 def _check(name: str, value: Input, unit: str, first: InputProfile) -> None:

@@ -177,8 +177,8 @@ class SolvedAxis:
         self._parameters = self._solver.records.Parameters(pack(axis))
         normal_force = None if self._load is None else self._load.plus(axis.normal_force)
         if normal_force is not None:
-            self._solver = under_load(self._solver, normal_force)
-            self._parameters.normal_force = normal_force.value_at(self.time.seconds)
+            self._solver = under_load(self._solver, axis, normal_force)
+            self._parameters.normal_force, self._parameters.normal_rate, _ = normal_force.pieces_at(self.time.seconds)
         self._walk = walk_of(self._solver, normal_force)
 
     def _take_sinusoids(self) -> None:

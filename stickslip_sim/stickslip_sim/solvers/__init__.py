@@ -65,13 +65,14 @@ class Solver(Protocol):
                        row: int, /) -> int:
         """Let the axis have other parameters from a time on, up to which the state was advanced with the old ones."""
 
-    def set_load(self, p: Parameters, s: State, second: float, fraction: float, normal_force: float, v: float,
-                 v_rate: float, f: float, f_rate: float, sinusoids: Sinusoids, events: Events, row: int, /) -> int:
-        """Let the normal force, N, and the inputs be others from a time on, both at once, as `set_inputs`."""
+    def set_load(self, p: Parameters, s: State, second: float, fraction: float, normal_force: float,
+                 normal_rate: float, v: float, v_rate: float, f: float, f_rate: float, sinusoids: Sinusoids,
+                 events: Events, row: int, /) -> int:
+        """Let the normal force N + N′ t (N, N/s) and the inputs be others from a time on, both at once."""
 
     @property
     def with_normal_force(self) -> 'Callable[[InputProfile], Solver] | None':
-        """What returns the solver for a normal force that varies smoothly, N; None: it takes one that jumps alone."""
+        """What returns the solver for a normal force that may vary smoothly, N; None: it takes one that jumps alone."""
 
     def sample(self, p: Parameters, s: State, second: float, fraction: float, out: SampleRow, /) -> None:
         """Fill a row with the state at the time that it was advanced to."""
@@ -119,7 +120,7 @@ class SolverOfFunctions(NamedTuple):
     records: Any = PLAIN
     advice: str = 'a parameter or an input is too extreme for this axis: check the scene'
     walk: PieceWalk | None = None
-    with_normal_force: None = None
+    with_normal_force: 'Callable[[InputProfile], Solver] | None' = None
 
 
 def with_advance(solver: Solver, advance: Callable[..., tuple[int, int]]) -> Solver:

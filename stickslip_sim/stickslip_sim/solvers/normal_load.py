@@ -3,15 +3,17 @@
 """Solvers under a normal force that varies with time.
 
 Between its jumps a normal force that is constant leaves every mode a linear equation with constant coefficients.  One
-that varies smoothly makes those of a slip vary, where mu_k has a slope: that has no closed form (docs/model.md).
+that varies smoothly makes those of a slip vary, where mu_k has a slope: its motion is a power series (`axis.series`).
 """
 
+from ..axis import Axis
 from ..core.errors import InputError
 from ..core.input_profile import InputProfile
+from ..friction.static import StaticLawKind
 from . import Solver
 
 
-def under_load(solver: Solver, normal_force: InputProfile) -> Solver:
+def under_load(solver: Solver, axis: Axis, normal_force: InputProfile) -> Solver:
     """Return what solves an axis under a normal force, N; raises InputError where it has no meaning or no solution."""
     normal_force.check('normal_load')
     least, _ = normal_force.bounds()
@@ -19,11 +21,13 @@ def under_load(solver: Solver, normal_force: InputProfile) -> Solver:
         raise InputError('axis.normal_force + normal_load', least, '>= 0 N at all times',
                          'a slideway does not pull: raise axis.normal_force, or make the load smaller (sinusoids count '
                          'with their whole amplitudes)')
-    if solver.with_normal_force is not None:
-        return solver.with_normal_force(normal_force)
     if not normal_force.is_stepwise:
-        raise InputError('normal_load', 'a load that varies smoothly',
-                         f'constant or steps with solver.name: {solver.name}',
-                         'a slip then has no closed form (docs/model.md): use normal_load.course: steps, or '
-                         'solver.name: adaptive')
-    return solver
+        if solver.with_normal_force is None:
+            raise InputError('normal_load', 'a load that varies smoothly',
+                             f'constant or steps with solver.name: {solver.name}',
+                             'use normal_load.course: steps, or solver.name: exact')
+        if solver.name == 'exact' and any(side.static.kind == StaticLawKind.KATO for side in axis.friction.sides):
+            raise InputError('friction.static.law', 'kato', 'another law under a normal load that varies smoothly',
+                             'its growth is singular at rest time 0 (docs/model.md): use law: exponential, '
+                             'normal_load.course: steps, or solver.name: adaptive')
+    return solver if solver.with_normal_force is None else solver.with_normal_force(normal_force)

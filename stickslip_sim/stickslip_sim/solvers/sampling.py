@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The row of a sample, for every solver."""
 
-from ..axis.codes import STICK
+from ..axis.codes import STICK, YIELDING
 from ..axis.forces import stated_drive_force
 from ..axis.layout import Parameters
+from ..axis.motion import yielded_deflection
 from ..axis.rows import SampleRow
 from ..axis.state_record import State
 from ..core.hot_path import inlined
@@ -29,4 +30,6 @@ def write_sample(p: Parameters, s: State, second: float, fraction: float, t: flo
     out.friction = friction
     out.coefficient = abs(friction) / p.normal_force if p.normal_force > 0.0 else 0.0
     out.deflection = s.deflection + y if stuck and p.compliant != 0.0 else 0.0
+    if s.mode == YIELDING:
+        out.deflection = yielded_deflection(p, s, t)
     out.rest = s.rest + t if stuck else 0.0

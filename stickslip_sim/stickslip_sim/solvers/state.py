@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """How a state begins, and how it takes another contact, for solvers that step."""
 
-from ..axis.codes import DECELERATING, STICK
+from ..axis.codes import DECELERATING, STICK, YIELDING
+from ..axis.forces import applied_force, contact_force, is_rigid_stick
 from ..axis.layout import Parameters
 from ..axis.state_record import State, clear_state
 from ..core.hot_path import compiled, inlined
@@ -28,10 +29,16 @@ def is_stuck(velocity: float, deflection: float) -> bool:
     return velocity == 0.0 or deflection != 0.0
 
 
+@inlined
+def held_force(p: Parameters, s: State) -> float:
+    """Return what the contact carries at the segment start, or would where the interface of one that yields stood."""
+    return applied_force(p, s) if is_rigid_stick(p, s) else contact_force(p, s.deflection, s.velocity)
+
+
 @compiled
 def change_contact(new: Parameters, s: State, force: float) -> None:
-    """Let a stuck slider go on with the contact of other parameters; a compliant one carries the same force, N."""
-    if s.mode != STICK:
+    """Let a slider that does not slip go on with the contact of other parameters; at rest that carries `force`, N."""
+    if s.mode != STICK and s.mode != YIELDING:
         return
     if new.compliant != 0.0:
         s.deflection = (force - new.contact_damping * s.velocity) / new.contact_stiffness

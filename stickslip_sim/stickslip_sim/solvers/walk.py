@@ -42,11 +42,14 @@ def walk(solver: Solver, p: Parameters, s: State, drive: InputProfile, force: In
         v, v_rate, v_end = drive.pieces_at(until)
         f, f_rate, f_end = force.pieces_at(until)
         inputs = v, v_rate, f, f_rate, sinusoids, events, row
-        if normal_force is None or (normal := normal_force.value_at(until)) == p.normal_force:
+        normal, n_rate, n_end = p.normal_force, 0.0, math.inf
+        if normal_force is not None:
+            normal, n_rate, n_end = normal_force.pieces_at(until)
+        if normal == p.normal_force and n_rate == p.normal_rate == 0.0:
             row = solver.set_inputs(p, s, second, until - second, *inputs)
         else:
-            row = solver.set_load(p, s, second, until - second, normal, *inputs)
-        until = min(v_end, f_end, math.inf if normal_force is None else normal_force.pieces_at(until)[2])
+            row = solver.set_load(p, s, second, until - second, normal, n_rate, *inputs)
+        until = min(v_end, f_end, n_end)
     return until, row, DONE
 
 

@@ -95,7 +95,7 @@ class TestAgainstTheExactEngine:
             modes.add(a.mode)
             assert (a.mode, a.direction) == (b.mode, b.direction)
             assert b[4:] == pytest.approx(a[4:], rel=1e-6, abs=1e-7)
-        assert modes == set(Mode)
+        assert modes == set(Mode) - {Mode.YIELDING}
 
 
 def test_splits_agree_within_the_tolerance() -> None:
@@ -193,11 +193,12 @@ class TestItEnds:
             assert final.velocity == pytest.approx(0.08, rel=1e-6)
             assert len(events) < 500
 
-    def test_guards_that_fire_for_ever_end_the_run_soon(self) -> None:
-        """Smooth sliding decays to the speed of the drive, where guards are zero to within the tolerance."""
-        scene = load_scene('fast_feed', {'solver.name': 'adaptive'})
-        with pytest.raises(SolverError, match=r'^\d\d events up to .* time hardly goes on'):
-            simulate_events(scene, 10.0)
+    def test_sliding_that_settles_ends_in_no_flood_of_events(self) -> None:
+        """It decays to the speed of the drive, where guards are zero to within rounding."""
+        wanted, found = (simulate_events(load_scene('fast_feed', {'solver.name': name}), 10.0).events
+                         for name in ('exact', 'adaptive'))
+        assert [event.kind for event in found[:40]] == [event.kind for event in wanted[:40]]
+        assert len(found) <= len(wanted)
 
     def test_numbers_that_end_are_a_solver_error(self) -> None:
         simulator = make(adaptive.solver(), paper_axis(RIGID), 0.0, 0.0, InitialState(velocity=1e305))

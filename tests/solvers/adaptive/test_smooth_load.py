@@ -3,6 +3,7 @@
 """A normal force that varies smoothly: closed forms where a slip has one, and a rest that it ends."""
 
 import math
+from collections.abc import Callable
 
 import pytest
 
@@ -11,10 +12,11 @@ from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant, t
 from stickslip_sim.core.types import EventKind
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
 from stickslip_sim.inputs import load_scene
-from stickslip_sim.runs import simulate_events
+from stickslip_sim.runs import simulate, simulate_events
 from stickslip_sim.runs.error_estimate import error_estimate
 from stickslip_sim.simulation.simulator import Simulator
 from stickslip_sim.solvers import adaptive
+from stickslip_sim.solvers.adaptive.first_root import SAMPLED_AT, first_root
 from tests.support.axes import instant
 
 SWAY = InputProfile((0.0,), (0.0,), (0.0,), math.inf, (Sinusoid(6.0, 1.5, 0.4),))
@@ -75,3 +77,43 @@ def test_the_error_is_estimated_and_holds() -> None:
     assert estimate.until_s == 1.5
     assert 0.0 < max(abs(a.time - b.time) for a, b in pairs) <= estimate.event_time_s < 1e-4
     assert '0.001 of the tolerances' in estimate.how
+
+
+@pytest.mark.parametrize(('scene', 'amplitude', 'frequency'), [
+    ('paper_fig7', 1000.0, 7.0), ('paper_fig7', 1500.0, 0.9), ('paper_fig8', 343.0, 25.0), ('paper_fig8', 1000.0, 7.0)])
+def test_events_are_the_same_with_and_without_samples(scene: str, amplitude: float, frequency: float) -> None:
+    """A limit that is touched for less than a step is no longer passed over: 31 break-aways in 8 s of the first."""
+    changes = {'solver.name': 'adaptive', 'solver.rtol': 1e-12, 'solver.atol': 1e-15, 'normal_load.course': 'sine',
+               'normal_load.constant': 0.0, 'normal_load.amplitude': amplitude, 'normal_load.frequency': frequency}
+    loaded = load_scene(scene, changes)
+    whole, sampled = simulate_events(loaded, 2.5).events, simulate(loaded, 2.5, 0.004).events
+    assert [(event.kind, event.direction) for event in whole] == [(event.kind, event.direction) for event in sampled]
+    assert [event.time for event in whole] == pytest.approx([event.time for event in sampled], abs=1e-6)
+    if frequency == 7.0 and scene == 'paper_fig7':
+        breaks = [event.time for event in whole if event.kind == EventKind.BREAKAWAY]
+        assert breaks[5] == pytest.approx(1.81893, abs=5e-6)   # the first that was missed
+
+
+@pytest.mark.parametrize(('times', 'values', 'wanted'), [
+    ((0.0, 1.0), (1.0, 1.0), None), ((0.0, 1.0), (1.0, -1.0), 0.5), ((0.0, 1.0), (0.0, -1.0), 0.0),
+    ((0.0, 1.0), (0.0, 1.0), None)])
+def test_a_straight_guard_falls_where_it_says(times: tuple[float, float], values: tuple[float, float],
+                                              wanted: float | None) -> None:
+    found = root_of(lambda t: values[0] + (values[1] - values[0]) * t, *times)
+    assert found == (wanted if wanted is None else pytest.approx(wanted, abs=1e-15))
+
+
+@pytest.mark.parametrize('depth', [1e-3, 1e-6, 1e-9, 1e-12])
+@pytest.mark.parametrize('place', [0.003, 0.11, 0.4999, 0.7312, 0.9981])
+def test_a_guard_that_comes_and_goes_is_found(place: float, depth: float) -> None:
+    """A parabola that is below 0 for 6e-6 to 0.2 of the step, at any place of it."""
+    assert root_of(lambda t: 3.0 * (t - place) ** 2 + depth, 0.0, 1.0) is None
+    start = max(place - math.sqrt(depth / 3.0), 0.0)
+    found = root_of(lambda t: 3.0 * (t - place) ** 2 - depth, 0.0, 1.0)
+    if start > 0.0:
+        assert found == pytest.approx(start, abs=1e-9)
+
+
+def root_of(guard: Callable[[float], float], begin: float, end: float) -> float | None:
+    samples = [guard(begin + (end - begin) * float(share)) for share in SAMPLED_AT]
+    return first_root(guard, begin, end, samples, 1e-15)

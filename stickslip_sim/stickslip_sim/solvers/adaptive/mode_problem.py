@@ -3,25 +3,49 @@
 """The motion of one mode as an initial value problem, with its guards, written as in docs/model.md.
 
 Everything counts from the state: t its time, y the slider's travel since.  The unknowns are (y, ẏ); the drive's travel
-has a closed form.  A guard is positive until its event, where it falls through zero.  One that is below zero by
-rounding at once is lifted to zero: it fires if it falls, and never if it rises.
+has a closed form, and so has the deflection of a contact that yields.  A guard is positive until its event, where it
+falls through zero.  One that is below zero by rounding at once is lifted to zero: it fires if it falls, and never if it
+rises.
 """
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
-from ...axis.codes import ACCELERATE, ACCELERATING, ARREST, BREAKAWAY, COAST, COASTING, DECELERATE, KNOT, STICK
-from ...axis.forces import holds_by_drive, is_rigid_stick
-from ...axis.friction_segments import breakpoint_speed, friction_line, segment_above, segment_end
+from ...axis.codes import (
+    ACCELERATE,
+    ACCELERATING,
+    ARREST,
+    BREAKAWAY,
+    COAST,
+    COASTING,
+    DECELERATE,
+    KNOT,
+    STICK,
+    YIELDING,
+)
+from ...axis.forces import ROUNDING, holds_by_drive, is_rigid_stick
+from ...axis.friction_segments import breakpoint_speed, friction_line, kinetic_at_rest, segment_above, segment_end
 from ...axis.layout import Parameters
 from ...axis.state_record import State
 from ...axis.static_limits import static_limit
 from ...core.input_profile import InputProfile
+from ...friction.static import CONSTANT
 from ...linear.waves import TURN, phase_at
 
 _STEPS_PER_PERIOD = 8.0
-_ABOVE = 5e-324   # without a normal force a guard may stay exactly at 0, through which it does not fall
+_STEPS_PER_AGE = 4.0   # of the time since mu_s began to grow, and of its time constant
+
+
+_Value = Callable[[float, Sequence[float]], float]   # of the time and (y, ẏ)
+
+
+class Guard(NamedTuple):
+    """What ends a mode where its value falls below 0."""
+
+    kind: float      # of the event
+    value: _Value
+    rounding: _Value   # of the value
 
 
 class SmoothLaw(Protocol):
@@ -92,6 +116,24 @@ class ModeLoad:
         return self._now + self._rate * t + sum(amplitude * math.sin(omega * t + phase)
                                                 for omega, phase, amplitude in self._sinusoids)
 
+    def rate(self, t: float) -> float:
+        """Return N′, N/s."""
+        return self._rate + sum(omega * amplitude * math.cos(omega * t + phase)
+                                for omega, phase, amplitude in self._sinusoids)
+
+    def followed(self, begin: float, lag: float, t: float) -> float:
+        """Return at t what follows N with a time constant of `lag` s from `begin` N on."""
+        if lag == 0.0:
+            return self.at(t)
+        return self._behind(lag, t) + (begin - self._behind(lag, 0.0)) * math.exp(-t / lag)
+
+    def _behind(self, lag: float, t: float) -> float:
+        settled = self._now + self._rate * (t - lag)
+        for omega, phase, amplitude in self._sinusoids:
+            turn, late = omega * t + phase, omega * lag
+            settled += amplitude * (math.sin(turn) - late * math.cos(turn)) / (1.0 + late * late)
+        return settled
+
 
 class ModeMotion:
     """One mode from a state on.
@@ -111,12 +153,29 @@ class ModeMotion:
         self._excess, self._residual, self._segment = s.excess, s.residual, int(s.segment)
         self._stands, self._by_drive = is_rigid_stick(p, s), holds_by_drive(p)
         self._line = friction_line(p, self._segment, 0.0)
+        self._at_rest = kinetic_at_rest(p, s.direction)
+
+    def longest_step(self, t: float) -> float:
+        """Return the longest step from t on over which no guard changes faster than its samples show, s."""
+        fastest = max(self.inputs.fastest, self.load.fastest)
+        longest = 2.0 * math.pi / fastest / _STEPS_PER_PERIOD if fastest > 0.0 else math.inf
+        if self._mode != STICK or self._p.static_law == CONSTANT:
+            return longest
+        age, tau = self._rest + t - self._p.static_delay, self._p.static_tau
+        if self._p.sided != 0.0:
+            tau = min(tau, self._p.backward_tau)
+        return min(longest, -age if age < -1e-9 * tau else (max(age, 0.0) + tau) / _STEPS_PER_AGE)
+
+    def deflection(self, t: float) -> float:
+        """Return δ of a contact that yields, which follows N mu_k(0)/c_c."""
+        share = self._direction * self._at_rest / self._contact[0]
+        if share == 0.0:
+            return self._deflection * math.exp(-t / self._lag) if self._lag > 0.0 else 0.0
+        return share * self.load.followed(self._deflection / share, self._lag, t)
 
     @property
-    def longest_step(self) -> float:
-        """The longest step that does not pass over a sinusoid, s."""
-        fastest = max(self.inputs.fastest, self.load.fastest)
-        return 2.0 * math.pi / fastest / _STEPS_PER_PERIOD if fastest > 0.0 else math.inf
+    def _lag(self) -> float:
+        return self._contact[1] / self._contact[0]
 
     def rates(self, t: float, state: Sequence[float]) -> tuple[float, float]:
         """Return ẏ and ÿ."""
@@ -127,6 +186,8 @@ class ModeMotion:
             return self._u, 0.0
         if self._mode == STICK:
             return u, (self._applied(t, y, u) - self._contact_force(y, u)) / self._mass
+        if self._mode == YIELDING:
+            return u, (self._applied(t, y, u) - self._direction * self.load.at(t) * self._at_rest) / self._mass
         residual = self._residual_of(t, y, u) - (self._band(t, u) if self._mode == ACCELERATING else 0.0)
         return u, self._direction * residual / self._mass
 
@@ -141,23 +202,41 @@ class ModeMotion:
         pressed = (self.load.at(t) - self.load.at(0.0)) * self._coefficient(self._direction * self._u)
         return self._residual + self._direction * moved - pressed
 
-    def guards(self) -> list[tuple[float, Callable[..., float]]]:
-        """Return the kind of each event that can end the mode, with its guard, as `solve_ivp` wants them."""
-        found: list[tuple[float, Callable[..., float]]]
+    def guards(self) -> list[Guard]:
+        """Return what can end the mode."""
         if self._mode == STICK:
-            found = [(BREAKAWAY, self._hold)]
+            found = [self._force(BREAKAWAY, self._below_limit), self._force(BREAKAWAY, self._above_limit)]
+        elif self._mode == YIELDING:
+            sliding = (self._force(ARREST, self._sliding) if self._contact[1] > 0.0
+                       else Guard(ARREST, self._sliding_undamped, self._speed_rounding))   # not lifted: it may jump
+            found = [sliding, self._speed(BREAKAWAY, self._backwards)]
         elif self._mode == COASTING:
-            found = [(ACCELERATE, self._below_upper), (DECELERATE, self.coasting_residual)]
+            found = [self._force(ACCELERATE, self._below_upper), self._force(DECELERATE, self.coasting_residual)]
         elif self._mode == ACCELERATING:
-            found = [(COAST, self._pull)]
+            found = [self._force(COAST, self._pull)]
             if self._law is None and segment_end(self._p, self._segment) < math.inf:
-                found.append((KNOT, self._below_breakpoint))
+                found.append(self._speed(KNOT, self._below_breakpoint))
         else:
-            found = [(COAST, self._brake)]
             is_last = self._law is not None or breakpoint_speed(self._p, self._segment) == 0.0
-            found.append((ARREST if is_last else KNOT, self._above_breakpoint))
-        stays = _ABOVE if self.load.at(0.0) == 0.0 else 0.0
-        return [(kind, _falling(guard, (0.0, self._u), stays)) for kind, guard in found]
+            found = [self._force(COAST, self._brake), self._speed(ARREST if is_last else KNOT, self._above_breakpoint)]
+        return found
+
+    def _force(self, kind: float, value: _Value) -> Guard:
+        return Guard(kind, _lifted(value, self._u), self._force_rounding)
+
+    def _speed(self, kind: float, value: _Value) -> Guard:
+        return Guard(kind, _lifted(value, self._u), self._speed_rounding)
+
+    def _force_rounding(self, t: float, state: Sequence[float]) -> float:
+        y, u = state
+        v, f = self.inputs.at(t)
+        paths = abs(self._spring) + abs(self.inputs.travel(t)) + abs(y)
+        sizes = self._stiffness * paths + self._damping * (abs(v) + abs(u)) + abs(f)
+        sizes += self.load.at(t) * (abs(self._line[0]) + abs(self._line[1] * u) + self._p.static_limit)
+        return ROUNDING * (sizes + self._contact[0] * (abs(self._deflection) + abs(y)) + self._contact[1] * abs(u))
+
+    def _speed_rounding(self, _: float, state: Sequence[float]) -> float:
+        return ROUNDING * (abs(self._u) + abs(state[1]))
 
     def _applied(self, t: float, y: float, u: float) -> float:
         v, f = self.inputs.at(t)
@@ -184,9 +263,26 @@ class ModeMotion:
             _, _, psi, _ = friction_line(self._p, segment_above(self._p, self._direction, speed), speed)
         return self.load.at(t) * self._excess * psi
 
-    def _hold(self, t: float, state: Sequence[float]) -> float:
-        force = self._applied(t, *state) if self._by_drive else self._contact_force(*state)
-        return self.load.at(t) * static_limit(self._p, self._rest + t, force) - abs(force)
+    def _held(self, t: float, state: Sequence[float]) -> float:
+        return self._applied(t, *state) if self._by_drive else self._contact_force(*state)
+
+    def _below_limit(self, t: float, state: Sequence[float]) -> float:
+        return self.load.at(t) * static_limit(self._p, self._rest + t, 1.0) - self._held(t, state)
+
+    def _above_limit(self, t: float, state: Sequence[float]) -> float:
+        return self.load.at(t) * static_limit(self._p, self._rest + t, -1.0) + self._held(t, state)
+
+    def _sliding(self, t: float, state: Sequence[float]) -> float:
+        """Return the speed of the interface times h_c, N."""
+        held = self._contact[0] * self.deflection(t) + self._contact[1] * state[1]
+        return self._direction * held - self.load.at(t) * self._at_rest
+
+    def _sliding_undamped(self, t: float, state: Sequence[float]) -> float:
+        """Return the speed of the interface times c_c, N/s."""
+        return self._direction * self._contact[0] * state[1] - self.load.rate(t) * self._at_rest
+
+    def _backwards(self, _: float, state: Sequence[float]) -> float:
+        return -self._direction * state[1]
 
     def _below_upper(self, t: float, state: Sequence[float]) -> float:
         return self._band(t, self._u) - self.coasting_residual(t, state)
@@ -204,14 +300,7 @@ class ModeMotion:
         return self._direction * state[1] - (breakpoint_speed(self._p, self._segment) if self._law is None else 0.0)
 
 
-def _falling(guard: Callable[..., float], start: tuple[float, float], stays: float) -> Callable[..., float]:
-    """Return a guard that ends a mode where it falls through 0; `stays` is its value where it is 0 after the start."""
-    lift = min(guard(0.0, start), 0.0)
-
-    def lifted(t: float, state: Sequence[float]) -> float:
-        value = guard(t, state) - lift
-        return value if value != 0.0 or t == 0.0 else stays
-
-    lifted.terminal = True    # type: ignore[attr-defined]
-    lifted.direction = -1.0   # type: ignore[attr-defined]
-    return lifted
+def _lifted(guard: _Value, u: float) -> _Value:
+    """Return a guard that is 0 at the start, where it is below that by rounding."""
+    lift = min(guard(0.0, (0.0, u)), 0.0)
+    return guard if lift == 0.0 else lambda t, state: guard(t, state) - lift

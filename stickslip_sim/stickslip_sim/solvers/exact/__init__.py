@@ -4,6 +4,7 @@
 
 from ...axis.records import RECORDS
 from ...core.hot_path import UNIT, entry
+from ...core.input_profile import InputProfile
 from .. import PieceWalk, SolverOfFunctions
 from . import engine, many_axes, soundness
 
@@ -14,8 +15,15 @@ sample, energy, is_sound = entry(engine.sample), entry(engine.energy), entry(sou
 walk = None if UNIT is None else PieceWalk(UNIT.Pieces, UNIT.walk, UNIT.sample_pieces)
 run_axes = getattr(RECORDS, 'run_axes', many_axes.run_axes)
 
-SOLVER = SolverOfFunctions('exact', start, advance, set_inputs, set_parameters, set_load, sample, energy, is_sound,
-                          RECORDS, walk=walk)
+
+def _under_load(_: InputProfile) -> SolverOfFunctions:
+    """Return the solver itself: the normal force comes to it as the inputs do."""
+    return SOLVER
+
+
+SOLVER: SolverOfFunctions = SolverOfFunctions(
+    'exact', start, advance, set_inputs, set_parameters, set_load, sample, energy, is_sound, RECORDS,
+    walk=walk, with_normal_force=_under_load)
 
 __all__ = ['SOLVER', 'advance', 'energy', 'is_sound', 'sample', 'set_inputs', 'set_load',
            'set_parameters', 'start']

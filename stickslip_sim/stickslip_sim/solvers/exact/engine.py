@@ -12,13 +12,15 @@ functions change `s` in place and return the number of rows in use; `advance` al
 
 import math
 
-from ...axis.codes import ARREST, BREAKAWAY, COAST, COASTING, KNOT, STICK
+from ...axis.codes import ARREST, BREAKAWAY, COAST, COASTING, KNOT, STICK, YIELDING
 from ...axis.forces import applied_force, drive_force, force_rounding, friction_force
 from ...axis.friction_segments import friction_line, segment_above
 from ...axis.layout import Parameters
 from ...axis.mode_entry import choose_slip
 from ...axis.motion import begin_motion, drive_travel, move_start, spring_after, travel
+from ...axis.normal_force import begin_load, normal_force_at, take_load
 from ...axis.rows import EnergyRow, Events, SampleRow, Sinusoids
+from ...axis.series import series_deflection
 from ...axis.sinusoids import inputs_at, load_sinusoids, same_sinusoids
 from ...axis.state_record import State, clear_state
 from ...axis.transitions import apply_inputs, arrest, cross_breakpoint, leave_coast, release, turn
@@ -27,7 +29,8 @@ from .. import DONE, FULL, NO_PROGRESS, UNSOUND
 from ..sampling import write_sample
 from ..state import is_stuck
 from .account import book_contact, book_parameters, book_works, read_account
-from .search import RENEWAL, STAMP, find_event
+from .search import STAMP, find_event
+from .series_events import RENEWAL
 from .soundness import event_is_sound
 from .works import contact_energy, stored_energy
 
@@ -48,7 +51,8 @@ def start(p: Parameters, s: State, position: float, velocity: float, rest: float
     s.drive = s.spring = stretch
     s.deflection = deflection
     s.inputs.v, s.inputs.v_rate, s.inputs.f, s.inputs.f_rate = v, v_rate, f, f_rate
-    load_sinusoids(s, sinusoids)
+    s.inputs.base_n = p.normal_force
+    _load_inputs(p, s, sinusoids)
     s.mode = STICK
     s.stored_at_start = stored_energy(p, s, 0.0)
     if is_stuck(velocity, deflection):
@@ -68,6 +72,7 @@ def start(p: Parameters, s: State, position: float, velocity: float, rest: float
 def advance(p: Parameters, s: State, second: float, fraction: float, events: Events, row: int) -> tuple[int, int]:
     """Bring the state to a time, which is not before its segment start; return the rows in use and how it ended."""
     same_instant = 0
+    take_load(p, s)
     while True:
         t = (second - s.second) + (fraction - s.fraction)
         reach = t + STAMP
@@ -127,7 +132,7 @@ def set_inputs(p: Parameters, s: State, second: float, fraction: float, v: float
         return row
     _start_at(p, s, second, fraction)
     s.inputs.v, s.inputs.v_rate, s.inputs.f, s.inputs.f_rate = v, v_rate, f, f_rate
-    load_sinusoids(s, sinusoids)
+    _load_inputs(p, s, sinusoids)
     row = _apply(p, s, events, row)
     _begin(p, s)
     return row
@@ -138,6 +143,8 @@ def set_parameters(p: Parameters, new: Parameters, s: State, second: float, frac
                   ) -> int:
     """Let the axis have other parameters from a time on, up to which the state was advanced with the old ones."""
     _start_at(p, s, second, fraction)
+    s.inputs.base_n = new.normal_force
+    begin_load(new, s)
     stored = stored_energy(p, s, 0.0)
     if s.mode == STICK and new.compliant != 0.0:
         force = friction_force(p, s, s.deflection, s.velocity, applied_force(p, s))
@@ -153,16 +160,17 @@ def set_parameters(p: Parameters, new: Parameters, s: State, second: float, frac
 
 
 @compiled
-def set_load(p: Parameters, s: State, second: float, fraction: float, normal_force: float, v: float, v_rate: float,
-             f: float, f_rate: float, sinusoids: Sinusoids, events: Events, row: int) -> int:
+def set_load(p: Parameters, s: State, second: float, fraction: float, normal_force: float, normal_rate: float, v: float,
+             v_rate: float, f: float, f_rate: float, sinusoids: Sinusoids, events: Events, row: int) -> int:
     """Let the normal force and the inputs be others from a time on, up to which the state was advanced; both at once.
 
     Position, velocity, rest time and the deflection of the contact stay: the limit and the friction lines move.
     """
     _start_at(p, s, second, fraction)
-    p.normal_force = normal_force
+    p.normal_force = s.inputs.base_n = normal_force
+    p.normal_rate = normal_rate
     s.inputs.v, s.inputs.v_rate, s.inputs.f, s.inputs.f_rate = v, v_rate, f, f_rate
-    load_sinusoids(s, sinusoids)
+    _load_inputs(p, s, sinusoids)
     row = _apply(p, s, events, row)
     _begin(p, s)
     return row
@@ -179,15 +187,26 @@ def sample(p: Parameters, s: State, second: float, fraction: float, out: SampleR
     if s.sinusoid_count != 0.0:
         v, force = inputs_at(s, second, fraction, t)
     of_drive = drive_force(p, spring_after(p, s, t, drive, y, u, a), v, u)
+    p.normal_force, _ = normal_force_at(p, s, t)
     friction = friction_force(p, s, s.deflection + y, u, of_drive + force)
     write_sample(p, s, second, fraction, t, y, u, a, drive, v, of_drive, force, friction, out)
+    if s.mode == YIELDING:
+        out.deflection, _ = series_deflection(s, t)
+    take_load(p, s)
 
 
 @compiled
 def energy(p: Parameters, s: State, second: float, fraction: float, out: EnergyRow) -> None:
     """Fill a row with the energies up to a time before the next event (`energy.EnergyBalance`)."""
     t = (second - s.second) + (fraction - s.fraction)
+    take_load(p, s)
     read_account(p, s, t, out)
+
+
+@inlined
+def _load_inputs(p: Parameters, s: State, sinusoids: Sinusoids) -> None:
+    load_sinusoids(s, sinusoids)
+    begin_load(p, s)
 
 
 @inlined

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The first event of any mode under sines.
+"""The first event of any mode under sines, and of stick and coasting under a normal force that varies.
 
 Every guard says that a signal f (see `signals`) stays between a floor and a top: ∓N mu_s(t⁻) in stick, each with the
 mu_s of its direction, 0 and the band while coasting, 0 and nothing in a slip.  The search marches in safe steps, and no
@@ -29,10 +29,11 @@ bit.
 import math
 
 from ...axis.codes import ACCELERATE, ACCELERATING, ARREST, BREAKAWAY, COAST, COASTING, DECELERATE, KNOT, STICK
-from ...axis.forces import force_rounding
+from ...axis.forces import ROUNDING, force_rounding
 from ...axis.friction_segments import breakpoint_speed, friction_line, segment_end
 from ...axis.layout import Parameters
 from ...axis.motion import oscillator_of
+from ...axis.normal_force import load_bounds
 from ...axis.state_record import State
 from ...axis.static_limits import lower_limit
 from ...core.hot_path import compiled, inlined
@@ -54,12 +55,12 @@ def forced_event(p: Parameters, s: State, due: float) -> None:
     osc = oscillator_of(s)
     signal = signal_of(p, s, osc)
     slips = s.mode != STICK and s.mode != COASTING
-    gap = _speed_gap(p, s) if slips else math.inf
+    gap = speed_gap(p, s) if slips else math.inf
     rounding = _rounding(p, s, slips)
     last = finite_horizon(osc, math.inf) if slips else math.inf
     s.next.time = math.inf
     if gap <= 0.0:
-        _set_event(s, 0.0, _passed_kind(p, s))
+        _set_event(s, 0.0, passed_kind(p, s))
         return
     t = before = s.next.progress
     value_before = 0.0
@@ -67,7 +68,7 @@ def forced_event(p: Parameters, s: State, due: float) -> None:
         s.iterations += 1.0
         now = read_signal(p, s, osc, signal, t)
         if now.gained >= gap:
-            _set_event(s, _root(p, s, osc, signal, 0.0, gap, t, before, t), _passed_kind(p, s))
+            _set_event(s, _root(p, s, osc, signal, 0.0, gap, t, before, t), passed_kind(p, s))
             return
         limits = guard_limits(p, s, t)
         if _holds_nothing(s, limits):
@@ -83,7 +84,7 @@ def forced_event(p: Parameters, s: State, due: float) -> None:
                 continue
         guard = guard_at(p, now, limits, rounding, signal.fastest)
         high = _root_at_last(p, s, guard.value, guard.fall, guard.swing, guard.noise, t)
-        if high <= t + now.reach and high < math.inf:
+        if high <= t + min(now.reach, limits.reach) and high < math.inf:
             low = before if guard.value <= 0.0 else t
             hovered = guard.value <= 0.0 and value_before <= 0.0
             root = before if hovered else _root(p, s, osc, signal, guard.side, 0.0, low, low, high)
@@ -126,7 +127,7 @@ def _set_event(s: State, t: float, kind: float) -> None:
 
 
 @compiled
-def _speed_gap(p: Parameters, s: State) -> float:
+def speed_gap(p: Parameters, s: State) -> float:
     """Return how much speed is left to the next breakpoint, or to standstill."""
     speed, segment = abs(s.velocity), int(s.segment)
     if s.mode != ACCELERATING:
@@ -135,7 +136,8 @@ def _speed_gap(p: Parameters, s: State) -> float:
 
 
 @compiled
-def _passed_kind(p: Parameters, s: State) -> float:
+def passed_kind(p: Parameters, s: State) -> float:
+    """Return the event at which that speed is lost or gained."""
     return KNOT if s.mode == ACCELERATING or breakpoint_speed(p, int(s.segment)) > 0.0 else ARREST
 
 
@@ -143,7 +145,10 @@ def _passed_kind(p: Parameters, s: State) -> float:
 def _rounding(p: Parameters, s: State, slips: bool) -> float:
     """Return the size of rounding of the signal at the segment start, N or m/s²."""
     if not slips:
-        return force_rounding(p, s, lower_limit(p, s.rest) if s.mode == STICK else 0.0)
+        limit = lower_limit(p, s.rest) if s.mode == STICK else 0.0
+        if s.is_loaded == 0.0:
+            return force_rounding(p, s, limit)
+        return force_rounding(p, s, 0.0) + ROUNDING * load_bounds(p, s, 0.0, 0.0).most * limit
     coefficient, _, _, _ = friction_line(p, int(s.segment), abs(s.velocity))
     return force_rounding(p, s, coefficient) / p.mass
 
@@ -219,6 +224,6 @@ def _conclude(p: Parameters, s: State, osc: Oscillator, signal: GuardSignal, sli
         return
     gained = read_signal(p, s, osc, signal, root).gained
     if gained >= gap:
-        _set_event(s, _root(p, s, osc, signal, 0.0, gap, root, min(low, root), root), _passed_kind(p, s))
+        _set_event(s, _root(p, s, osc, signal, 0.0, gap, root, min(low, root), root), passed_kind(p, s))
     else:
         _set_event(s, root, COAST)

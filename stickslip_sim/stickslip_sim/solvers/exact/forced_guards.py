@@ -10,8 +10,12 @@ from typing import NamedTuple
 
 from ...axis.codes import COASTING, STICK
 from ...axis.forces import band_of
+from ...axis.friction_segments import friction_line
 from ...axis.layout import Parameters
+from ...axis.normal_force import LoadBounds, load_bounds, normal_force_at
+from ...axis.sinusoids import fastest_sinusoid
 from ...axis.state_record import State
+from ...axis.static_limits import static_limit, static_numbers
 from ...core.hot_path import compiled, inlined
 from ...linear.polynomials import safe_step
 from .signal_readings import Reading
@@ -26,6 +30,7 @@ class GuardLimits(NamedTuple):
     bow: float          # bound on −top″ and floor″
     floor: float
     floor_rate: float
+    reach: float        # s, how long the bound holds
 
 
 class Guard(NamedTuple):
@@ -43,19 +48,69 @@ class Guard(NamedTuple):
 @compiled
 def guard_limits(p: Parameters, s: State, t: float) -> GuardLimits:
     """Return the limits of the signal at t."""
+    return steady_limits(p, s, t) if s.is_loaded == 0.0 else _loaded_limits(p, s, t)
+
+
+@compiled
+def steady_limits(p: Parameters, s: State, t: float) -> GuardLimits:
+    """Return the limits at t under the normal force of the parameters."""
     if s.mode == STICK:
         normal = p.normal_force
         if normal == 0.0:
-            return GuardLimits(0.0, 0.0, 0.0, 0.0, 0.0)
+            return GuardLimits(0.0, 0.0, 0.0, 0.0, 0.0, math.inf)
         limit, growth, curvature = law(p, s.rest + t, 1.0)
         back, back_growth, bow = limit, growth, curvature
         if p.sided != 0.0:
             back, back_growth, bow = law(p, s.rest + t, -1.0)
             bow = max(curvature, bow)
-        return GuardLimits(normal * limit, normal * growth, normal * bow, -normal * back, -normal * back_growth)
+        return GuardLimits(normal * limit, normal * growth, normal * bow, -normal * back, -normal * back_growth,
+                           math.inf)
     if s.mode == COASTING:
-        return GuardLimits(band_of(p, s), 0.0, 0.0, 0.0, 0.0)
-    return GuardLimits(math.inf, 0.0, 0.0, 0.0, 0.0)
+        return GuardLimits(band_of(p, s), 0.0, 0.0, 0.0, 0.0, math.inf)
+    return GuardLimits(math.inf, 0.0, 0.0, 0.0, 0.0, math.inf)
+
+
+@compiled
+def _loaded_limits(p: Parameters, s: State, t: float) -> GuardLimits:
+    """Return the limits at t under a normal force that varies: (N mu)″ = N″ mu + 2 N′ mu′ + N mu″, mu concave."""
+    normal, rate = normal_force_at(p, s, t)
+    window = _window(p, s)
+    of = load_bounds(p, s, t, window)
+    if s.mode == COASTING:
+        band = _band_share(p, s)
+        return GuardLimits(normal * band, rate * band, of.bend * band, 0.0, 0.0, math.inf)
+    limit, growth, bow = _stick_limit(p, s, t, of, window, 1.0)
+    back, back_growth = limit, growth
+    if p.sided != 0.0:
+        back, back_growth, back_bow = _stick_limit(p, s, t, of, window, -1.0)
+        bow = max(bow, back_bow)
+    return GuardLimits(normal * limit, rate * limit + normal * growth, bow, -normal * back,
+                       -(rate * back + normal * back_growth), window)
+
+
+@inlined
+def _window(p: Parameters, s: State) -> float:
+    """Return how long the bounds on a normal force that varies hold, s: a time in which it, or mu_s, changes."""
+    fastest = fastest_sinusoid(s)
+    return 2.0 / fastest if fastest > 0.0 else static_numbers(p, 1.0).tau
+
+
+@inlined
+def _stick_limit(p: Parameters, s: State, t: float, of: LoadBounds, window: float, side: float
+                 ) -> tuple[float, float, float]:
+    """Return mu_s at t, its rate, and a bound on the second rate of N mu_s over the window."""
+    limit, growth, curvature = law(p, s.rest + t, side)
+    if growth == 0.0:
+        return limit, growth, of.bend * limit
+    later = static_limit(p, s.rest + t + window, side)
+    return limit, growth, of.bend * later + 2.0 * of.slope * growth + of.most * curvature
+
+
+@inlined
+def _band_share(p: Parameters, s: State) -> float:
+    """Return the width of the coasting band over the normal force."""
+    _, _, psi, _ = friction_line(p, int(s.segment), abs(s.velocity))
+    return s.excess * psi
 
 
 @inlined
@@ -69,7 +124,8 @@ def guard_at(p: Parameters, now: Reading, limits: GuardLimits, rounding: float, 
     noise = max(now.noise + rounding, swing * (1e-15 / fastest) ** 2)
     side, value, fall, step = _nearer(up, up_rate, down, down_rate, swing, noise)
     exact = _exact_step(up, up_rate, down, down_rate, swing)
-    return Guard(side, value, fall, swing, noise, min(step, now.reach), min(exact, now.reach))
+    reach = min(now.reach, limits.reach)
+    return Guard(side, value, fall, swing, noise, min(step, reach), min(exact, reach))
 
 
 @compiled

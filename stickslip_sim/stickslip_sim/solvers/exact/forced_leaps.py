@@ -9,11 +9,12 @@ import math
 
 from ...axis.codes import STICK
 from ...axis.layout import Parameters
+from ...axis.normal_force import load_bounds
 from ...axis.state_record import State
 from ...core.hot_path import compiled
 from ...friction.static import CONSTANT
 from ...linear.polynomials import first_crossing
-from .forced_guards import GuardLimits
+from .forced_guards import GuardLimits, steady_limits
 from .signal_readings import Reading
 from .signals import GuardSignal
 from .static_guards import concave_root, is_concave
@@ -26,8 +27,26 @@ def leap_of(p: Parameters, s: State, signal: GuardSignal, now: Reading, limits: 
           horizon: float) -> float:
     """Return how long the envelope keeps off both limits for certain: 0 without room, infinity up to the horizon.
 
-    Where it does so for good, the search is over: SEARCHED is infinite.
+    Where it does so for good, the search is over: SEARCHED is infinite.  Under a normal force that varies the limits
+    are those of the least; where that has a rate, of the least over a window, in which alone a leap ends.
     """
+    if s.is_loaded == 0.0:
+        return _steady_leap(p, s, signal, now, limits, t, noise, horizon)
+    normal = p.normal_force
+    within = horizon
+    if p.normal_rate != 0.0:   # half of the time in which it would double, or vanish
+        within = 0.5 * abs((s.inputs.base_n + p.normal_rate * t) / p.normal_rate)
+    p.normal_force = load_bounds(p, s, t, within).least
+    leap = _steady_leap(p, s, signal, now, steady_limits(p, s, t), t, noise, within)
+    p.normal_force = normal
+    if p.normal_rate == 0.0:
+        return leap
+    return min(leap, within)
+
+
+@compiled
+def _steady_leap(p: Parameters, s: State, signal: GuardSignal, now: Reading, limits: GuardLimits, t: float,
+                 noise: float, horizon: float) -> float:
     rate, second_rate, mean, swing = signal.rate, signal.second, signal.mean, signal.amplitude
     top, floor, size, decay = limits.top, limits.floor, now.size, now.decay
     mean += (rate + 0.5 * second_rate * t) * t

@@ -5,10 +5,12 @@
 import math
 from typing import NamedTuple
 
-from ...axis.codes import STICK
-from ...axis.friction_segments import slip_friction
+from ...axis.codes import STICK, YIELDING
+from ...axis.friction_segments import kinetic_at_rest, slip_friction
 from ...axis.layout import Parameters
 from ...axis.motion import drive_travel, travel
+from ...axis.normal_force import normal_force_at
+from ...axis.series import series_deflection
 from ...axis.sinusoids import inputs_at
 from ...axis.state_record import State
 from ...core.hot_path import compiled
@@ -55,13 +57,21 @@ def panels(p: Parameters, s: State, t: float, rate: float) -> Works:
 @compiled
 def _powers(p: Parameters, s: State, t: float) -> Works:
     y, u, _ = travel(p, s, t)
-    v, force = inputs_at(s, s.second, s.fraction + t, t)
+    v, force = s.inputs.v + s.inputs.v_rate * t, s.inputs.f + s.inputs.f_rate * t
+    if s.sinusoid_count != 0.0:
+        v, force = inputs_at(s, s.second, s.fraction + t, t)
     ahead = p.feed_share * v - u
     drive_force = p.stiffness * (s.spring + (drive_travel(s, t) - y)) + p.feed_share * p.damping * ahead
     friction, contact = 0.0, 0.0
     if s.mode == STICK:
         contact = p.contact_damping * u * u
     else:
-        steady, slope = slip_friction(p, s)
-        friction = p.normal_force * (s.direction * steady + slope * u) * u
+        normal, _ = normal_force_at(p, s, t)
+        if s.mode == YIELDING:
+            _, rate = series_deflection(s, t)
+            friction = s.direction * normal * kinetic_at_rest(p, s.direction) * (u - rate)
+            contact = p.contact_damping * rate * rate
+        else:
+            steady, slope = slip_friction(p, s)
+            friction = normal * (s.direction * steady + slope * u) * u
     return Works(drive_force * v, force * u, friction, p.damping * ahead * ahead, contact)

@@ -11,7 +11,8 @@ floating point; `soundness` holds each event of a run to it.
 * Stick: `static_guards` for a rigid contact, `compliant_stick` for a compliant one.  The force of a contact that has
   rung for long may change by more than rounding within the last bit of the time since the segment start.  Then the
   segment is renewed a few such bits before the root, without an event, and what is left is searched from there.
-* Any mode under sines: `forced`.
+* Any mode under sines: `forced`; under a normal force that varies, too, but for a slip.
+* A slip under a normal force that varies, and a contact that yields: `series_events`.
 """
 
 import math
@@ -21,6 +22,7 @@ from ...axis.forces import band_of, force_rate
 from ...axis.friction_segments import breakpoint_speed, segment_end
 from ...axis.layout import Parameters
 from ...axis.motion import oscillator_of, tick_integrals, travel_at
+from ...axis.series import moves_by_series
 from ...axis.state_record import State
 from ...core.hot_path import inlined
 from ...linear.polynomials import first_crossing
@@ -29,10 +31,10 @@ from ...linear.roots import first_passage
 from ...linear.zeros import finite_horizon, half_period
 from .compliant_stick import compliant_stick
 from .forced import forced_event
+from .series_events import RENEWAL, series_event
 from .static_guards import TICK, delay_left, rigid_stick
 
 STAMP = 2.0 ** -51       # s, more than the time of an event is rounded by
-RENEWAL = -1.0           # in place of an `types.EventKind`: a new segment start, and no event
 _LONG_RING = 1e10        # (ω t)² of a contact that has rung for long
 _DIED_OUT = 40.0         # γ t of one that rings no more
 _LEAD = 8.0 * EPSILON    # of the time of a root: more than it is off by
@@ -62,7 +64,10 @@ def find_event(p: Parameters, s: State, due: float) -> None:
 
 @inlined
 def _find_event(p: Parameters, s: State, due: float) -> None:
-    if s.sinusoid_count != 0.0:
+    if moves_by_series(s):
+        series_event(p, s)
+        return
+    if s.sinusoid_count != 0.0 or s.is_loaded != 0.0:
         forced_event(p, s, due)
         return
     mode = s.mode

@@ -42,7 +42,7 @@ def read_signal(p: Parameters, s: State, osc: Oscillator, signal: GuardSignal, t
 @compiled
 def _read_force(p: Parameters, s: State, signal: GuardSignal, t: float) -> Reading:
     sense, start, rate, second = signal.sense, signal.start, signal.rate, signal.second
-    force, force_rate, size = sinusoid_force(p, s, t)
+    force, force_rate, size = sinusoid_force(p, s, signal.share, t)
     ramp = (rate + 0.5 * second * t) * t
     return Reading(value=start + ramp + sense * force, rate=rate + second * t + sense * force_rate,
                    curvature=signal.curvature, reach=math.inf, size=0.0, decay=0.0,

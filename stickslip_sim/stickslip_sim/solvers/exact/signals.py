@@ -18,6 +18,7 @@ from typing import NamedTuple
 from ...axis.codes import ACCELERATING, COASTING, STICK
 from ...axis.forces import applied_force, feed_damping
 from ...axis.layout import Parameters
+from ...axis.normal_force import load_share
 from ...axis.state_record import State
 from ...core.hot_path import compiled, inlined
 from ...linear.oscillator import Oscillator
@@ -49,6 +50,7 @@ class GuardSignal(NamedTuple):
     curvature: float   # bound of the steady part of f″
     resonant: float    # forcing of the rest
     fastest: float     # rad/s, the highest angular frequency
+    share: float       # that the normal force takes of what is watched, as `load_share` has it
 
 
 @compiled
@@ -82,11 +84,14 @@ def _force_signal(p: Parameters, s: State) -> GuardSignal:
         curvature += size * w
         fastest = max(fastest, w)
     feed = feed_damping(p)
-    rate = sense * (p.stiffness * (s.inputs.base_v - s.velocity) + feed * s.inputs.v_rate + s.inputs.f_rate)
+    share = load_share(p, s)
+    rate = sense * (p.stiffness * (s.inputs.base_v - s.velocity) + feed * s.inputs.v_rate + s.inputs.f_rate
+                    - share * p.normal_rate)
     second = sense * p.stiffness * s.inputs.v_rate
     return GuardSignal(sense=sense, start=start, rate=rate, second=second, y0=0.0, free_u=0.0,
                        mean=start + sense * mean, amplitude=swing, free=0.0, free_rate=0.0, z=0.0, z_rate=0.0,
-                       curvature=abs(second) + curvature, resonant=0.0, fastest=fastest)
+                       curvature=abs(second) + curvature, resonant=0.0,
+                       fastest=fastest if fastest > 0.0 else math.inf, share=share)
 
 
 @compiled
@@ -115,7 +120,8 @@ def _contact_signal(p: Parameters, s: State, osc: Oscillator) -> GuardSignal:
     z_rate += stiffness * a1 + damping * a2
     return GuardSignal(sense=1.0, start=start, rate=rate, second=second, y0=y0, free_u=u - y1, mean=mean,
                        amplitude=swing, free=free, free_rate=free_rate, z=z, z_rate=z_rate,
-                       curvature=abs(second) + curvature, resonant=resonant, fastest=fastest)
+                       curvature=abs(second) + curvature, resonant=resonant,
+                       fastest=fastest if fastest > 0.0 else math.sqrt(omega2), share=0.0)
 
 
 @compiled
@@ -125,7 +131,7 @@ def _slip_signal(p: Parameters, s: State, osc: Oscillator) -> GuardSignal:
     _, _, _, curvature, z, z_rate, resonant, fastest, _ = _steady(p, s, osc, 0.0, -1.0, 0.0)
     return GuardSignal(sense=sense, start=0.0, rate=0.0, second=0.0, y0=0.0, free_u=0.0, mean=0.0, amplitude=math.inf,
                        free=0.0, free_rate=0.0, z=z + a2, z_rate=z_rate + a3, curvature=curvature, resonant=resonant,
-                       fastest=fastest)
+                       fastest=fastest, share=0.0)
 
 
 @inlined

@@ -10,11 +10,12 @@ What is allowed is far above rounding, and far below what a figure would show.
 
 import math
 
-from ...axis.codes import ACCELERATE, ACCELERATING, COAST, COASTING, STICK
+from ...axis.codes import ACCELERATE, ACCELERATING, COAST, COASTING, STICK, YIELDING
 from ...axis.forces import band_of, contact_force, drive_force, holds_by_drive
 from ...axis.friction_segments import breakpoint_speed, friction_line, segment_end
 from ...axis.layout import Parameters
 from ...axis.motion import drive_travel, spring_after, travel
+from ...axis.normal_force import normal_force_at, take_load
 from ...axis.sinusoids import inputs_at
 from ...axis.state_record import State
 from ...axis.static_limits import limit_backwards, static_at_once, static_limit
@@ -36,7 +37,7 @@ def event_is_sound(p: Parameters, s: State, begin: float) -> bool:
         end = band_of(p, s) if s.next.kind == ACCELERATE else 0.0
         sound = _coasts(p, s, 0.0, s.spring, s.inputs.v, s.inputs.f, end, end)
     else:
-        sound = _slips(p, s, s.velocity, begin, s.next.kind != COAST)
+        sound = s.mode == YIELDING or _slips(p, s, s.velocity, begin, s.next.kind != COAST)
     return sound and _balances(p, s, 0.0, s.spring, s.inputs.v, s.velocity, begin, s.inputs.f)
 
 
@@ -44,7 +45,9 @@ def event_is_sound(p: Parameters, s: State, begin: float) -> bool:
 def is_sound(p: Parameters, s: State, second: float, fraction: float) -> bool:
     """Whether the state at a time between the segment start and the next event is within its mode, and in balance."""
     t = (second - s.second) + (fraction - s.fraction)
+    take_load(p, s)
     y, u, a = travel(p, s, t)
+    p.normal_force, _ = normal_force_at(p, s, t)
     v, force = s.inputs.v + s.inputs.v_rate * t, s.inputs.f + s.inputs.f_rate * t
     if s.sinusoid_count != 0.0:
         v, force = inputs_at(s, second, fraction, t)
@@ -54,7 +57,8 @@ def is_sound(p: Parameters, s: State, second: float, fraction: float) -> bool:
     elif s.mode == COASTING:
         sound = _coasts(p, s, t, spring, v, force, 0.0, band_of(p, s))
     else:
-        sound = _slips(p, s, u, s.velocity, False)
+        sound = s.mode == YIELDING or _slips(p, s, u, s.velocity, False)
+    take_load(p, s)
     return sound and _balances(p, s, t, spring, v, u, s.velocity, force)
 
 

@@ -12,15 +12,16 @@ slips under a fast drive, and of a contact so weak that it holds little.  `sinus
 
 from typing import NamedTuple
 
-from ...axis.codes import COASTING, STICK
+from ...axis.codes import COASTING, STICK, YIELDING
 from ...axis.forces import feed_damping, ground_damping, is_rigid_stick
 from ...axis.friction_segments import slip_friction
 from ...axis.layout import Parameters
 from ...axis.motion import drive_travel, oscillator_of, travel
+from ...axis.series import moves_by_series, series_deflection
 from ...axis.state_record import State
 from ...core.hot_path import compiled, inlined
 from ...linear.moments import moments
-from .panels import Works
+from .panels import Works, panels
 from .sinusoid_works import moving_works, still_works
 
 _FEW = 0.05   # of the drive's path: what is left of it with more than one digit less is integrated by itself
@@ -41,6 +42,8 @@ class MotionIntegrals(NamedTuple):
 @inlined
 def works(p: Parameters, s: State, t: float) -> Works:
     """Return the works from the segment start up to t."""
+    if moves_by_series(s):
+        return panels(p, s, t, 1.0 / s.series_end)
     if s.sinusoid_count != 0.0:
         if s.mode == COASTING or is_rigid_stick(p, s):
             return still_works(p, s, t)
@@ -145,13 +148,16 @@ def stored_energy(p: Parameters, s: State, t: float) -> float:
     else:
         y, u, _ = travel(p, s, t)
         spring = s.spring + (drive_travel(s, t) - y)
+    if s.mode == YIELDING and t != 0.0:
+        deflection, _ = series_deflection(s, t)
+        y = deflection - s.deflection
     return 0.5 * (p.mass * u * u + p.stiffness * spring * spring) + contact_energy(p, s, y)
 
 
 @compiled
 def contact_energy(p: Parameters, s: State, y: float) -> float:
-    """Return c_c δ²/2 after a travel of y from the segment start, J; 0 in slip and in a rigid contact."""
-    if s.mode != STICK or p.compliant == 0.0:
+    """Return c_c δ²/2 after δ has changed by y from the segment start, J; 0 in slip and in a rigid contact."""
+    if (s.mode != STICK and s.mode != YIELDING) or p.compliant == 0.0:
         return 0.0
     deflection = s.deflection + y
     return 0.5 * p.contact_stiffness * deflection * deflection

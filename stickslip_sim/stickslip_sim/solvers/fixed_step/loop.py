@@ -8,19 +8,20 @@ between two points is a step of its own from the last one, which changes nothing
 often it is asked for.
 """
 
-from ...axis.codes import ACCELERATE, ACCELERATING, COAST, COASTING, DECELERATE, DECELERATING, STICK
+from ...axis.codes import ACCELERATE, ACCELERATING, COAST, COASTING, DECELERATE, DECELERATING, STICK, YIELDING
 from ...axis.forces import applied_force, drive_force, force_rounding, stick_force
 from ...axis.friction_segments import first_segment, friction_line
 from ...axis.layout import Parameters
+from ...axis.motion import yielded_deflection
 from ...axis.rows import Events, SampleRow, Sinusoids
 from ...axis.state_record import State
 from ...axis.static_limits import static_at_once, static_limit
-from ...axis.transitions import arrest, release, write_event
+from ...axis.transitions import apply_inputs, arrest, release, write_event
 from ...core.hot_path import compiled
 from .. import DONE, FULL, OUT_OF_RANGE
 from ..inputs import given_inputs_at, hold_inputs, inputs_vary, refresh_inputs, same_inputs
 from ..sampling import write_sample
-from ..state import begin_state, change_contact
+from ..state import begin_state, change_contact, held_force
 from .steps import friction_at, segment_near, step
 
 _BAND = 0.5   # of a step of the deceleration by N mu_s(0): stops are noted, on the average, when they happen
@@ -82,14 +83,16 @@ def set_parameters(p: Parameters, new: Parameters, s: State, second: float, frac
                   ) -> int:
     """Let the axis have other parameters from a time on, up to which the state was advanced with the old ones."""
     _catch_up(p, s, second, fraction)
-    change_contact(new, s, friction_at(p, s, applied_force(p, s), s.velocity, s.deflection))
+    change_contact(new, s, held_force(p, s))
     s.segment = float(first_segment(new, s.direction))
+    if s.mode == YIELDING:
+        return row + 1 if apply_inputs(new, s, events, row) else row
     return _look(new, s, events, row)
 
 
 @compiled
-def set_load(p: Parameters, s: State, second: float, fraction: float, normal_force: float, v: float, v_rate: float,
-             f: float, f_rate: float, sinusoids: Sinusoids, events: Events, row: int) -> int:
+def set_load(p: Parameters, s: State, second: float, fraction: float, normal_force: float, _normal_rate: float,
+             v: float, v_rate: float, f: float, f_rate: float, sinusoids: Sinusoids, events: Events, row: int) -> int:
     """Let the normal force and the inputs be others at once from a time on, up to which the state was advanced."""
     _catch_up(p, s, second, fraction)
     p.normal_force = normal_force
@@ -121,6 +124,8 @@ def _move(p: Parameters, s: State, second: float, fraction: float, h: float) -> 
     if s.mode == STICK:
         s.rest += h
         s.deflection += y
+    elif s.mode == YIELDING:
+        s.deflection = yielded_deflection(p, s, h)
     s.position += y
     s.drive += drive
     s.spring += drive - y
@@ -143,6 +148,8 @@ def _look(p: Parameters, s: State, events: Events, row: int) -> int:
     """Make the transition that is due at the state, if any; return the rows in use."""
     if s.mode == STICK:
         return _look_at_stick(p, s, events, row)
+    if s.mode == YIELDING:
+        return _look_at_yielding(p, s, events, row)
     residual, band, tolerance = _residual(p, s)
     if _has_stopped(p, s, residual):
         arrest(p, s, events, row)
@@ -170,6 +177,14 @@ def _look_at_stick(p: Parameters, s: State, events: Events, row: int) -> int:
     s.acceleration = (applied - friction_at(p, s, applied, s.velocity, s.deflection)) / p.mass
     release(p, s, events, row)
     return row + 1
+
+
+@compiled
+def _look_at_yielding(p: Parameters, s: State, events: Events, row: int) -> int:
+    if s.direction * s.velocity > 0.0:
+        release(p, s, events, row)
+        return row + 1
+    return row + 1 if apply_inputs(p, s, events, row) else row
 
 
 @compiled

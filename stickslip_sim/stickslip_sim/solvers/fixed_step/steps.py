@@ -10,8 +10,8 @@ step the first segment of the table is continued.
 
 import math
 
-from ...axis.codes import STICK
-from ...axis.forces import contact_force, drive_force, is_rigid_stick
+from ...axis.codes import STICK, YIELDING
+from ...axis.forces import contact_force, drive_force, is_rigid_stick, yielding_force
 from ...axis.friction_segments import breakpoint_speed, friction_line, segment_end
 from ...axis.layout import Parameters
 from ...axis.state_record import State
@@ -36,6 +36,8 @@ def friction_at(p: Parameters, s: State, applied: float, u: float, deflection: f
     """Return the friction force at velocity u under `applied` = F_d + F_e, N."""
     if s.mode == STICK:
         return applied if is_rigid_stick(p, s) else contact_force(p, deflection, u)
+    if s.mode == YIELDING:
+        return yielding_force(p, s)
     speed = s.direction * u
     coefficient, _, psi, _ = friction_line(p, segment_near(p, int(s.segment), speed), speed)
     lower = p.normal_force * coefficient
