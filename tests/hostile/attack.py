@@ -11,7 +11,7 @@ from stickslip_sim.core.errors import InputError, SolverError, UnsoundError
 
 from .case import Case, Find, LastBits, Run, Undecided, run
 from .generators import GENERATORS, PLAUSIBLE
-from .judges import batch, bounds, guards, images, parts, reference, touch
+from .judges import batch, bounds, brute, guards, images, parts, reference, smooth_load, touch
 
 PER_ROUND = 10               # scenes of each generator
 REFERENCE_SHARE = 0.02       # of the scenes; one takes a second
@@ -69,7 +69,7 @@ def one_round(seed: str, tally: Tally, names: Sequence[str], count: int = PER_RO
                 tally.refused[name] += 1
                 tally.refusals[name] = str(error)
     found = unsound
-    for (name, tag, case, done), wrong in zip(made, guards.judge([done for *_, done in made])):
+    for (name, tag, case, done), wrong in zip(made, _guards([done for *_, done in made])):
         tally.events[name] += done.size
         tally.judged['guards'] += 1
         texts = [('guards', wrong[0])] if wrong else []
@@ -86,8 +86,14 @@ def judge_again(case: Case, tag: str, reference_too: bool = True) -> list[tuple[
         done = run(case.parts)
     except UnsoundError as error:
         return [('itself', str(error))]
-    return [('guards', text) for text in guards.judge([done])[0]] + list(
+    return [('guards', text) for text in _guards([done])[0]] + list(
         _others(done, tag, float(reference_too), Tally(), ''))
+
+
+def _guards(runs: Sequence[Run]) -> list[list[str]]:
+    """Return for each run what is wrong with its guards; under a load that varies smoothly each is judged by itself."""
+    linear = iter(guards.judge([run for run in runs if not smooth_load.is_for(run)]))
+    return [smooth_load.judge(run) if smooth_load.is_for(run) else next(linear) for run in runs]
 
 
 def _others(done: Run, tag: str, share: float, tally: Tally, name: str) -> Iterator[tuple[str, str]]:
@@ -96,6 +102,8 @@ def _others(done: Run, tag: str, share: float, tally: Tally, name: str) -> Itera
         'bounds': lambda: bounds.judge(done), 'images': lambda: images.judge(done, rng),
         'parts': lambda: parts.judge(done, rng), 'batch': lambda: batch.judge(done),
         'touch': lambda: touch.judge(done)}
+    if done.parts.load is not None:
+        judges['brute'] = lambda: brute.judge(done)
     if random.Random(tag + '/reference').random() < share:
         judges['reference'] = lambda: reference.judge(done)
     for judge, work in judges.items():

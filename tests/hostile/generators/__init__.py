@@ -6,7 +6,7 @@ import random
 from collections.abc import Callable, Mapping
 
 from ..case import Case
-from . import closures, degenerate, inputs, loads, machines, ranges, sides, smooth
+from . import closures, degenerate, inputs, loads, machines, ranges, sides, smooth, smooth_loads
 
 Generator = Callable[[random.Random], Case]
 
@@ -17,7 +17,8 @@ GENERATORS: Mapping[str, Generator] = {generator.__name__: generator for generat
     degenerate.ties, inputs.grazing_sine, inputs.grazing_ramp, inputs.peak_at_breakpoint, inputs.steady_at_breakpoint,
     inputs.step_at_event, inputs.resonance, inputs.sines, smooth.smooth,
     ranges.static_laws, ranges.late, ranges.whole_range, ranges.excesses, ranges.odd_sines, ranges.periodic,
-    loads.loads, loads.load_onto_force, sides.two_directions, sides.odd_directions, sides.mid_cycle,
+    loads.loads, loads.load_onto_force, smooth_loads.paper_loads, smooth_loads.smooth_loads,
+    sides.two_directions, sides.odd_directions, sides.mid_cycle,
     closures.closures, closures.odd_closures, closures.delays)}
 PLAUSIBLE = frozenset({'two_breakpoints', 'fig4_sweep', 'any_machine', 'smooth', 'sines', 'two_directions',
-                       'closures'})
+                       'closures', 'paper_loads'})

@@ -31,7 +31,7 @@ def judge(run: Run, rng: random.Random) -> None:
     _compare(f'length unit times {k:g}', _length_unit(parts, k), (
         e._replace(position=k * e.position, velocity=k * e.velocity, drive_position=k * e.drive_position,
                    drive_force=k * e.drive_force, friction_force=k * e.friction_force) for e in events))
-    sinusoids = [w.frequency for w in (*parts.drive.sinusoids, *parts.force.sinusoids)]
+    sinusoids = [w.frequency for profile in parts.inputs for w in profile.sinusoids]
     fast = [t for t in _TIMES if all(math.ldexp(w, -t) < FREQUENCIES[1] for w in sinusoids)]
     if fast:
         _time_unit(parts, events, math.ldexp(1.0, rng.choice(fast)))

@@ -68,8 +68,11 @@ def force_before(parts: Parts, begin: Instant, end: Instant, has_jumped: bool) -
 
 
 def axis_at(parts: Parts, at: Instant) -> Axis:
-    """Return the axis with the normal force that holds from an instant on."""
-    return parts.axis_under(_piece(parts.load, at).value) if parts.load else parts.axis
+    """Return the axis with the normal force that holds at an instant, and from then on where it does not vary."""
+    if parts.load is None:
+        return parts.axis
+    waves = sum((Long(wave.amplitude) * _phase(wave, at)[0] for wave in parts.load.sinusoids), Long(0))
+    return parts.axis_under(float(_ramp(_piece(parts.load, at), at).value + waves))
 
 
 def rounding_of(profile: InputProfile, time: float) -> Any:

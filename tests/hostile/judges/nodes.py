@@ -44,11 +44,13 @@ def nodes(run: Run, tables: Tables) -> Iterator[Node]:
     jumps = {Instant(0.0, 0.0)}
     for border in borders(parts):     # the end, too: an input may jump there
         jumps.add(instant(border))
-    excess = Long(0), Long(0)
+    excess, mode = (Long(0), Long(0)), Mode.STICK
     stretches = [(run.at_start, run.start), *run.stretches]
     for events, sample in stretches:
         for event in events:
-            excess = _excess(event, excess, tables)
+            # a contact that yielded leaves no excess
+            excess = (Long(0), Long(0)) if mode == Mode.YIELDING else _excess(event, excess, tables)
+            mode = event.mode
             yield _node_of_event(event, *excess, event.instant in jumps, parts)
         yield _node_of_sample(sample, *excess)
 
@@ -72,7 +74,9 @@ def _node_of_event(event: Event, excess: Any, excess_noise: Any, jumped: bool, p
     axis = axis_at(parts, event.instant)
     contact, kinetic = axis.contact, axis.friction.along(event.direction).kinetic
     deflection = 0.0
-    if isinstance(contact, CompliantContact) and event.mode == Mode.STICK and not contact.undeflected:
+    if isinstance(contact, CompliantContact) and (event.kind == EventKind.YIELD or event.velocity):
+        deflection = (event.friction_force - contact.damping * event.velocity) / contact.stiffness
+    elif isinstance(contact, CompliantContact) and event.mode == Mode.STICK and not contact.undeflected:
         deflection = event.direction * axis.normal_force * kinetic.coefficients[0] / contact.stiffness
     return Node(event.instant, event, event.mode, event.direction, event.position, event.velocity, event.drive_force,
                 deflection, 0.0, excess, excess_noise, jumped)

@@ -125,10 +125,10 @@ def _slides_steadily(parts: Parts, events: Sequence[Event], wanted: Sequence[Eve
 def _stops_softly(events: Sequence[Event], wanted: Sequence[Event], parts: Parts) -> bool:
     """Whether what is first off comes to rest with the forces in balance: there the speed has a double root.
 
-    With the force R that is left and its rate R′ = c v + h v̇ + Ḟ_e the speed is (R t + R′ t²/2)/m beside the event.  If
-    the speed is off by δ and R² <= 2 m δ |R′|, its root is off by 2 τ at most, τ = √(2 m δ/|R′|), or is none: doubles
-    do not say whether the slider turns, stops or goes on.  δ is four roundings of the fastest speed, and what the
-    spring gives to a swing: its stretch is the difference of two ways, and R known no better than they are.
+    With the force R that is left and its rate R′ = c v + h v̇ + Ḟ_e ∓ Ṅ mu_k the speed is (R t + R′ t²/2)/m beside
+    the event.  If it is off by δ and R² <= 2 m δ |R′|, its root is off by 2 τ at most, τ = √(2 m δ/|R′|), or is none:
+    doubles do not say whether the slider turns, stops or goes on.  δ is four roundings of the fastest speed, and what
+    the spring gives to a swing: its stretch is the difference of two ways, and R known no better than they are.
     """
     k, axis = _first_off(events, wanted, parts.duration), parts.axis
     if k >= len(events):
@@ -139,7 +139,9 @@ def _stops_softly(events: Sequence[Event], wanted: Sequence[Event], parts: Parts
     if spring > 0.0:
         unknown += spring / math.sqrt(axis.drive_stiffness * axis.mass)
     left = abs(event.drive_force + parts.force.value_at(event.time) - event.friction_force)
+    pressed = _rate_at(parts.load, event.time) if parts.load else 0.0
     rate = abs(axis.drive_stiffness * parts.drive.value_at(event.time) + _rate_at(parts.force, event.time)
+               - event.direction * pressed * axis.friction.along(event.direction).kinetic.coefficients[0]
                + axis.feed_share * axis.drive_damping * _rate_at(parts.drive, event.time))
     room = 2.0 * axis.mass * unknown
     if max(abs(event.velocity), abs(wanted[k].velocity) if k < len(wanted) else 0.0) > unknown:

@@ -1,0 +1,116 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The judges of a normal force that varies smoothly: they agree with each other, and each of them can fail."""
+
+import math
+import random
+
+import pytest
+
+from stickslip_sim.axis import InitialState
+from stickslip_sim.core.energy import EnergyBalance
+from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant
+from stickslip_sim.core.types import Event, EventKind, Mode, Sample
+from stickslip_sim.reference import ReferenceRun, simulate
+from tests.hostile.case import Case, Find, Parts, Run, Undecided, instant
+from tests.hostile.generators import GENERATORS
+from tests.hostile.judges import brute, smooth_load
+from tests.support.axes import COMPLIANT, RIGID, Contact, paper_axis
+
+pytest.importorskip('mpmath')
+
+ADAPTIVE = {'solver.name': 'adaptive'}
+
+
+def sine(amplitude: float, frequency: float) -> InputProfile:
+    return InputProfile((0.0,), (0.0,), (0.0,), math.inf, (Sinusoid(amplitude, frequency, 0.0),))
+
+
+def parts_of(contact: Contact, load: InputProfile, duration: float) -> Parts:
+    return Parts(paper_axis(contact), InitialState(), constant(0.002), constant(0.0), duration, load)
+
+
+def followed(parts: Parts) -> ReferenceRun:
+    return simulate(parts.axis, parts.initial, parts.drive, parts.force, parts.duration, load=parts.load)
+
+
+def as_run(parts: Parts) -> Run:
+    """Return the reference's run as the engine would give it; the inputs have one piece each."""
+    done = followed(parts)
+    start, end = (Sample(*instant(time), state.mode, 1, float(state.position), float(state.velocity), 0.0,
+                         float(state.drive_position), 0.0, float(state.drive_force), 0.0, float(state.friction_force),
+                         0.0, 0.0, parts.initial.rest_time)
+                  for time, state in zip((0.0, parts.duration), done.exact.state_at([0.0, parts.duration])))
+    return Run(parts, [], start, [(done.events, end)], EnergyBalance(*[0.0] * len(EnergyBalance._fields)),
+               len(done.events))
+
+
+YIELDING = parts_of(COMPLIANT, sine(343.2, 25.0), 1.35)
+RIGID_RUN = parts_of(RIGID, sine(1000.0, 7.0), 1.2)
+
+
+@pytest.fixture(scope='module', params=[RIGID_RUN, YIELDING], ids=['rigid', 'yielding'])
+def good(request: pytest.FixtureRequest) -> Run:
+    return as_run(request.param)
+
+
+@pytest.mark.parametrize(('name', 'seeds'), [('paper_loads', range(12)), ('smooth_loads', range(1, 10))])
+def test_brute_force_and_reference_agree(name: str, seeds: range) -> None:
+    compared = 0
+    for seed in seeds:
+        case = GENERATORS[name](random.Random(f'agree/{seed}'))
+        parts = Case(case.values | ADAPTIVE, case.duration).parts
+        try:
+            events = brute.brute_force(parts)
+        except Undecided:
+            continue
+        if len(events) > 16:
+            parts = parts._replace(duration=0.5 * (events[14].time + events[15].time))
+        compared += brute.compare(parts, followed(parts).events)
+    assert compared > 70
+
+
+def test_no_break_away_of_the_trial_is_missed_by_brute_force() -> None:
+    events = brute.brute_force(parts_of(RIGID, sine(1000.0, 7.0), 8.0))
+    assert (len(events), [event.kind for event in events].count(EventKind.BREAKAWAY)) == (137, 31)
+
+
+def test_a_good_run_passes(good: Run) -> None:
+    assert len(good.events) > 8
+    assert smooth_load.judge(good) == []
+    assert brute.compare(good.parts, good.events) >= len(good.events) - 1
+
+
+def test_a_run_with_a_contact_that_yields_is_among_them() -> None:
+    assert Mode.YIELDING in {event.mode for event in as_run(YIELDING).events}
+
+
+def changed(good: Run, events: list[Event]) -> Run:
+    return good._replace(stretches=[(events, good.stretches[0][1])])
+
+
+def test_a_missed_event_is_seen(good: Run) -> None:
+    for k in range(len(good.events)):
+        events = [event for i, event in enumerate(good.events) if i != k]
+        assert smooth_load.judge(changed(good, events)), good.events[k]
+
+
+def test_an_event_at_another_time_is_seen(good: Run) -> None:
+    for k, event in enumerate(good.events):
+        events = [*good.events[:k], event._replace(fraction=event.fraction + 1e-10), *good.events[k + 1:]]
+        assert smooth_load.judge(changed(good, events)), event
+
+
+def test_another_force_is_seen(good: Run) -> None:
+    for k, event in enumerate(good.events):
+        events = [*good.events[:k], event._replace(drive_force=event.drive_force * (1.0 + 1e-8)), *good.events[k + 1:]]
+        assert smooth_load.judge(changed(good, events)), event
+
+
+def test_brute_force_sees_a_missed_break_away(good: Run) -> None:
+    leaps = [k for k, event in enumerate(good.events) if event.kind == EventKind.BREAKAWAY]
+    with pytest.raises(Find, match='BREAKAWAY'):
+        brute.compare(good.parts, good.events[:leaps[-1]])
+    late = good.events[leaps[0]]
+    with pytest.raises(Find, match='moved by'):
+        brute.compare(good.parts, [late._replace(fraction=late.fraction + 1e-7), *good.events[leaps[0] + 1:]])
