@@ -68,7 +68,8 @@ def arrest(p: Parameters, s: State, events: Events, row: int) -> None:
 
     Or end yielding where it no longer slides: stick, with velocity and deflection as they are.
     """
-    if s.mode == YIELDING:
+    if s.mode == YIELDING:   # with the force N mu_k(0), by no rounding more or less: it may be the limit
+        s.deflection = (yielding_force(p, s) - p.contact_damping * s.velocity) / p.contact_stiffness
         _hold_again(p, s, events, row)
         return
     s.velocity = 0.0
