@@ -102,7 +102,7 @@ def test_nobody_answers(folder: Path, capsys: Capture) -> None:
 
 
 def test_two_of_one_name(folder: Path, tmp_path: Path, capsys: Capture) -> None:
-    """Each would do it, and one of the answers be reported.  One that was killed is in the graph for a while and is none.
+    """Each would do it, and one of the answers be reported.  A killed one is in the graph for a while.
 
     A call may have heard of one node only when it is made: then the other does not hear of it.
     """
