@@ -13,7 +13,7 @@ from ..core.input_profile import InputProfile
 from ..core.types import Event, Instant, Mode
 from ..friction import KineticTable, StaticLaw, StaticLawKind
 from ..simulation.simulator import Simulator
-from ..simulation.solved_axis import MAX_EVENTS_PER_ADVANCE
+from ..simulation.solved_axis import MAX_EVENTS_AT_ONCE
 from ..solvers import Solver
 from .outcome import Measurement, Setup, Tally, require
 from .shared_axes import (
@@ -115,7 +115,7 @@ def _crowded_tick(simulator: Simulator, crowds: list[int], tick: float) -> float
         events = simulator.advance(instant(tick))
         crowds.append(len(events))
     except SolverError as error:
-        crowds.append(MAX_EVENTS_PER_ADVANCE)
+        crowds.append(MAX_EVENTS_AT_ONCE)
         require('events' in str(error) and 't =' in str(error), f'the refusal does not say what happened: {error}')
         require(0.0 <= simulator.time.seconds <= tick, 'the time is not one within the tick')
     require(time.perf_counter() - begin < _PATIENCE, 'it takes too long')

@@ -26,7 +26,21 @@ SolverOf = Callable[[Axis], Solver]
 _KINDS, _MODES = tuple(EventKind), tuple(Mode)
 _MOVES = slice(4, 12)            # of a sample; the rest may be infinite
 _ROWS = 64                       # of the event table; it is emptied as often as it fills
-MAX_EVENTS_PER_ADVANCE = 100_000
+MAX_EVENTS_AT_ONCE = 100_000
+_AT_ONCE = 0.01                  # s, in which so many events are more than any axis has
+
+
+class _Crowd:
+    """The events of a call since its time last went on, and the time of the first."""
+
+    def __init__(self, time: Instant) -> None:
+        self.since, self.count = time, 0
+
+    def take(self, time: Instant, count: int) -> None:
+        """Take events up to a time."""
+        if (time.second - self.since.second) + (time.fraction - self.since.fraction) > _AT_ONCE:
+            self.since, self.count = time, 0
+        self.count += count
 
 
 class SolvedAxis:
@@ -101,48 +115,45 @@ class SolvedAxis:
     def advance(self, to: Instant, events: list[Event] | None) -> None:
         """Bring the state to a time under the inputs that were entered."""
         second, fraction = to
-        taken = 0
+        crowd = _Crowd(self.time)
         while True:
             rows, end = self._solver.advance(self._parameters, self._state, second, fraction, self._table, 0)
             if rows and events is not None:
                 events.extend(self._events(rows))
-            taken += rows if events is not None else 0
             if end == DONE:
                 self.time = to
                 return
-            self._check_end(end, taken)
+            self._check_end(end, rows, crowd)
 
     def enter_pieces(self, time: float, events: list[Event]) -> None:
         """Go on through the pieces of the inputs that begin up to a time, s."""
-        inputs, taken = self._inputs, 0
+        inputs, crowd = self._inputs, _Crowd(self.time)
         drive, force = inputs.pieces(self._walk.pieces_of)
         while inputs.until <= time:
             until, rows, end = self._walk.run(self._parameters, self._state, drive, force, inputs.until, time,
                                               self._sinusoids, self._table, 0)
             events.extend(self._events(rows))
-            taken = rows if until > inputs.until else taken + rows
             inputs.go_on(until)
             if end != DONE:
-                self._check_end(end, taken)
+                self._check_end(end, rows, crowd)
 
     def take_samples(self, at: Instants, out: NDArray[np.float64], events: list[Event] | None) -> None:
         """Bring the state to one time after the other, through the pieces of the inputs; fill a row at each."""
-        inputs, reached, taken = self._inputs, 0, 0
+        inputs, reached, crowd = self._inputs, 0, _Crowd(self.time)
         drive, force = inputs.pieces(self._walk.pieces_of)
         while reached < len(out):
-            before = reached, inputs.until
+            before = reached
             reached, until, rows, end = self._walk.sample(
                 self._parameters, self._state, drive, force, inputs.until, *at, reached, len(out), self._sinusoids,
                 self._table, out)
             if events is not None:
                 events.extend(self._events(rows))
             inputs.go_on(until)
-            self._check_samples(out[before[0]:reached])
-            if reached > before[0]:
+            self._check_samples(out[before:reached])
+            if reached > before:
                 self.time = Instant(float(at.seconds[reached - 1]), float(at.fractions[reached - 1]))
-            taken = rows if before != (reached, until) else taken + rows
             if end != DONE:
-                self._check_end(end, taken)
+                self._check_end(end, rows, crowd)
 
     def sample(self) -> Sample:
         """Return the state at the present time; raises SolverError when it is not finite."""
@@ -190,7 +201,7 @@ class SolvedAxis:
             second, fraction, kind, mode, direction, *rest = self._table.row(i)
             yield Event(second, fraction, _KINDS[int(kind)], _MODES[int(mode)], int(direction), *rest)
 
-    def _check_end(self, end: int, taken: int) -> None:
+    def _check_end(self, end: int, rows: int, crowd: _Crowd) -> None:
         """Let a solver go on whose table of events was full; raise SolverError where it gave up."""
         self.time = max(self.time, Instant(float(self._state.second), float(self._state.fraction)))
         if end == OUT_OF_RANGE:
@@ -198,8 +209,9 @@ class SolvedAxis:
                               f'{self._solver.advice}')
         if end == UNSOUND:
             raise self._unsound()
-        if end != FULL or taken > MAX_EVENTS_PER_ADVANCE:
-            raise SolverError(f'{taken} events up to t = {self.time.seconds!r} s and time hardly goes on; '
+        crowd.take(self.time, rows)
+        if end != FULL or crowd.count > MAX_EVENTS_AT_ONCE:
+            raise SolverError(f'{crowd.count} events up to t = {self.time.seconds!r} s and time hardly goes on; '
                               'friction or inputs are too extreme for this axis: check the scene')
 
     def _check_samples(self, rows: NDArray[np.float64]) -> None:
