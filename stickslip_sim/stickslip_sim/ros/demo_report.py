@@ -26,10 +26,10 @@ def report(folder: Path) -> list[str]:
     run.plot(folder / _PICTURE)
     return [f'bag      {folder} ({sum(run.bag.counts.values())} messages)', f'picture  {folder / _PICTURE}',
             *cycle_lines(run.summary), *timing_lines(run.bag.columns('/timing')),
-            *(verdict_lines(timing) if (timing := timing_of(run)) and run.is_complete else [])]
+            *(real_time_lines(timing) if (timing := timing_of(run)) and run.is_complete else [])]
 
 
-def verdict_lines(timing: Timing) -> list[str]:
+def real_time_lines(timing: Timing) -> list[str]:
     """Return whether the run kept real time, and what that means where it did not."""
     late = ['the motion is right, the timing was late, as the machine had other work; where that matters,',
             'lock-step is the way (-p time.mode:=lockstep, docs/hil.md): time waits for steps and controller']
