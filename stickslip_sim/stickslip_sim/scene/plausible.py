@@ -65,7 +65,7 @@ def check_plausible(values: Mapping[str, object], meant: Collection[str], where:
                 check_number(name, value, limit, where)
 
 
-def check_number(name: str, value: float, limit: Plausible, where: Meant) -> None:
+def check_number(name: str, value: float, limit: Plausible, where: Meant = OF_TOOL) -> None:
     """Raise InputError on a number beyond a limit: it is asked back."""
     if abs(value) > limit.most:
         read = f'{value:g} {limit.unit}'.rstrip()
