@@ -79,7 +79,10 @@ def _contacts(draw: DrawFn, mass: float, omega: float) -> RigidContact | Complia
 @st.composite
 def _frictions(draw: DrawFn, speed: float, omega: float) -> Friction:
     at_rest = draw(st.floats(0.01, 0.5))
-    speeds = sorted({0.0, *(speed * draw(_powers(-2, 2)) for _ in range(draw(st.integers(0, 4))))})
+    speeds = [0.0]
+    for each in sorted(speed * draw(_powers(-2, 2)) for _ in range(draw(st.integers(0, 4)))):
+        if each - speeds[-1] > 1e-7 * each:    # nearer ones are refused
+            speeds.append(each)
     kinetic = KineticTable(tuple(speeds), (at_rest, *(at_rest * draw(st.floats(0.05, 1.0)) for _ in speeds[1:])),
                            draw(st.sampled_from((0.0, 0.01 / speed))))
     initial = at_rest * draw(st.sampled_from((1.0, 1.0, 1.2)))

@@ -132,6 +132,8 @@ def test_yaml_that_ros_refuses_or_passes_over(text: str, hint: str) -> None:
     ('    friction: {kinetic: {velocities: 0.0}}\n', 'friction.kinetic.velocities', 'a list'),
     ('    friction: {kinetic: {velocities: [0.0, 0.0], coefficients: [0.0, 0.0]}}\n', 'friction.kinetic.velocities',
      'increasing'),
+    ('    friction: {kinetic: {velocities: [0.0, 0.5, 0.500000001], coefficients: [0.2, 0.1, 0.0]}}\n',
+     'friction.kinetic.velocities', 'at least 5e-09 m/s apart, 1e-08 of the speed; they are 1e-09 m/s apart'),
     ('    friction: {kinetic: {coefficients: [0.1]}}\n', 'friction.kinetic.coefficients[0]', 'static.initial'),
     ('    friction: {static: {law: logarithmic, initial: 0.1, limit: 0.2, time_constant: 1.0}}\n', 'initial.rest_time',
      'finite'),

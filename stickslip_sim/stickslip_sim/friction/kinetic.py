@@ -17,6 +17,7 @@ from ..core.errors import InputError
 from .smooth import SmoothExcess, SmoothKinetic
 
 MAX_BREAKPOINTS = 1000   # a table is walked at every break-away, within a step
+_APART = 1e-8   # of a speed; on a jump between nearer ones friction is lost in the rounding of the speed
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,3 +141,6 @@ def _check_breakpoints(name: str, velocities: Sequence[float], other: str, value
         if not before < after < math.inf:
             raise InputError(f'{name}.velocities', list(velocities), 'finite and strictly increasing, in m/s',
                              f'{after!r} follows {before!r}; sort the breakpoints and drop double ones')
+        if after - before < _APART * after:
+            raise InputError(f'{name}.velocities', [before, after], f'at least {_APART * after:.3g} m/s apart, '
+                             f'{_APART:g} of the speed', f'they are {after - before:.3g} m/s apart; drop one of them')
