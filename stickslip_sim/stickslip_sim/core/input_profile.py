@@ -16,6 +16,7 @@ from .errors import InputError
 
 MAX_SINUSOIDS = 100
 FREQUENCIES = 1e-9, 1e6   # Hz
+_APART = 1e-11            # s; a rise in less is lost in the rounding of the time
 
 
 class Piece(NamedTuple):
@@ -177,9 +178,14 @@ def steps(name: str, times: Sequence[float], values: Sequence[float], period: fl
 def table(name: str, times: Sequence[float], values: Sequence[float], period: float = math.inf) -> InputProfile:
     """Return a profile that is linear between (times[i], values[i]) and holds the last value.
 
-    With a period it is linear from the last value back to the first.  Raises InputError like `steps`.
+    With a period it is linear from the last value back to the first.  Raises InputError like `steps`, and on times
+    nearer than 1e-11 s.
     """
     check_times(name, times, values, period)
+    for before, after in pairwise([*times, period]):
+        if after - before < _APART:
+            raise InputError(f'{name}.times', [before, after], f'at least {_APART:g} s apart in a table',
+                             f'they are {after - before:.3g} s apart; drop one, or use course: steps for a jump')
     rates = [(b - a) / (t1 - t0) for (t0, t1), (a, b) in zip(pairwise(times), pairwise(values), strict=True)]
     rates.append((values[0] - values[-1]) / (period - times[-1]) if period < math.inf else 0.0)
     return InputProfile(tuple(times), tuple(values), tuple(rates), period)

@@ -59,7 +59,7 @@ contradict a choice, with one line.  The shipped files in `stickslip_sim/sticksl
   times and values of the scene: its hash, the bag and the receipt hold them, and `verify` needs the file no more.  Up
   to 200,000 rows; 25,000 are read in 0.1 s and simulated in 0.01 s.
 * **Tables.**  The points of a table are its breakpoints; it is linear between them.  Breakpoints of friction are at
-  least 1e-8 of their speed apart.
+  least 1e-8 of their speed apart, those over time 1e-11 s.
 * **Backwards.**  Real axes differ forwards and backwards.  The sections `backward` of friction have the numbers of
   motion along -x, and of a force that pulls that way: `friction: {static: {initial: 0.12, backward: {initial: 0.1}}}`.
   Each that is left out is as forwards.  The choices (`law`, `acceleration_dependence`) and `tolerance` are for both.
