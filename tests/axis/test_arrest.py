@@ -7,11 +7,12 @@ from dataclasses import replace
 import pytest
 
 from stickslip_sim.axis.codes import ACCELERATING, ARREST, DECELERATING, REVERSE, STICK
+from stickslip_sim.axis.forces import applied_force
 from stickslip_sim.axis.layout import Parameters
 from stickslip_sim.axis.rows import EventRow, Events
 from stickslip_sim.axis.state_record import State
 from stickslip_sim.axis.transitions import arrest
-from tests.support.plain_axes import COMPLIANT, CONVENTIONAL, FRICTION, SIDED, STATIC, parameters, slip
+from tests.support.plain_axes import COMPLIANT, CONVENTIONAL, FRICTION, SIDED, STATIC, parameters, slip, state
 
 both_ways = pytest.mark.parametrize('direction', [1.0, -1.0])
 HIGHER = replace(FRICTION, static=replace(STATIC, initial=0.375))      # above mu_k(0) = 0.25
@@ -84,6 +85,15 @@ def test_a_compliant_contact_holds_any_force_at_first(direction: float) -> None:
     s = slip(p, DECELERATING, 0.0, direction=direction, push=-30.0)
     assert arrested(p, s).kind == REVERSE
     assert (s.direction, s.acceleration) == (-direction, -direction * (30.0 - 16.0) / 2.0)
+
+
+@pytest.mark.parametrize('force', [2.0 ** -47, -2.0 ** -47, 0.0])
+def test_a_contact_that_holds_nothing_is_at_rest_under_no_force_but_rounding(force: float) -> None:
+    """Ended by the drive, it would break away and rest again at one instant for ever."""
+    p = parameters(contact=replace(COMPLIANT, ends_by_drive=True), normal_force=0.0)
+    s = state(mode=DECELERATING, direction=1.0, spring=0.0625, f=force - 0.0625 * p.stiffness)
+    assert applied_force(p, s) == force
+    assert (arrested(p, s).kind, s.mode, s.acceleration) == (ARREST, STICK, 0.0)
 
 
 def test_what_rounding_left_of_the_speed_is_gone() -> None:

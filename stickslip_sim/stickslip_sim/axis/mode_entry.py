@@ -21,6 +21,7 @@ from .friction_segments import (
 )
 from .layout import Parameters
 from .state_record import State
+from .static_limits import holds_nothing
 
 _TIE = 1e-15   # of the friction force: a closed-form acceleration smaller than that is a tie
 
@@ -103,7 +104,10 @@ def break_away(p: Parameters, s: State, direction: float, limit: float, margin: 
 
 @inlined
 def rest(p: Parameters, s: State) -> None:
-    """Begin to stick at standstill."""
+    """Begin to stick at standstill.
+
+    A contact that holds nothing and ends by the drive force ends by no force within rounding of 0: it does not move.
+    """
     s.mode = STICK
     s.rest = 0.0
     s.velocity = 0.0
@@ -112,7 +116,9 @@ def rest(p: Parameters, s: State) -> None:
     if p.compliant != 0.0:
         friction = s.direction * p.normal_force * kinetic_at_rest(p, s.direction) * p.arrest_share
         s.deflection = friction / p.contact_stiffness
-        s.acceleration = (applied_force(p, s) - friction) / p.mass
+        residual = applied_force(p, s) - friction
+        if p.ends_by_drive == 0.0 or not holds_nothing(p) or abs(residual) > force_rounding(p, s, 0.0):
+            s.acceleration = residual / p.mass
     s.direction = 0.0
 
 

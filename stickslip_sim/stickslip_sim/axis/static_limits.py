@@ -51,3 +51,9 @@ def lower_limit(p: Parameters, rest: float) -> float:
 def static_at_once(p: Parameters, side: float) -> float:
     """Return mu_s at rest time 0 against a force of this sign."""
     return p.backward_initial if side < 0.0 else p.static_initial
+
+
+@inlined
+def holds_nothing(p: Parameters) -> bool:
+    """Whether the static limit is 0 at any rest time: no normal force, or no static friction."""
+    return p.normal_force * max(p.static_limit, p.backward_limit) == 0.0

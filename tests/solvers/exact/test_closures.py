@@ -224,3 +224,22 @@ def test_the_rest_of_a_contact_has_no_direction() -> None:
     other = replace(friction.backward, static=replace(friction.backward.static, delay=0.0))
     with pytest.raises(InputError, match=r'friction\.static\.backward\.delay = 0\.0 is refused: must be 0\.1 s'):
         replace(friction, backward=other)
+
+
+def test_a_lifted_slider_comes_to_rest_before_a_standing_drive() -> None:
+    """N = 0: it rings down to rounding of the force that its spring holds, and stays there."""
+    rng = random.Random(5)
+    for _ in range(60):
+        mass, stiffness = 10.0 ** rng.uniform(-1.0, 3.5), 10.0 ** rng.uniform(3.0, 7.0)
+        damping = 2.0 * rng.uniform(0.2, 0.99) * math.sqrt(mass * stiffness)
+        contact = CompliantContact(10.0 ** rng.uniform(-1.0, 2.0) * stiffness, rng.uniform(0.0, damping),
+                                   ends_by_drive=True)
+        axis = replace(paper_axis(contact), mass=mass, drive_stiffness=stiffness, drive_damping=damping,
+                       normal_force=0.0)
+        pull = rng.choice((-1.0, 1.0)) * rng.uniform(1.0, 500.0)
+        simulator = Simulator(axis, START, constant(0.0), constant(pull), accounting=True)
+        simulator.advance(instant(400.0 * mass / damping + 1.0))
+        simulator.require_sound()
+        sample = simulator.sample()
+        assert sample.position == pytest.approx(pull / stiffness, rel=1e-12)
+        assert abs(sample.velocity) < 1e-12 * abs(pull) / damping

@@ -28,7 +28,7 @@ from ...axis.forces import force_rounding
 from ...axis.layout import Parameters
 from ...axis.motion import oscillator_of
 from ...axis.state_record import State
-from ...axis.static_limits import limit_backwards, static_at_once, static_limit
+from ...axis.static_limits import holds_nothing, limit_backwards, static_at_once, static_limit
 from ...core.hot_path import compiled, inlined
 from ...linear.oscillator import Oscillator, amplitude, bound
 from ...linear.polynomials import first_crossing, safe_step
@@ -58,7 +58,7 @@ def compliant_stick(p: Parameters, s: State, horizon: float) -> float:
     osc = oscillator_of(s)
     if horizon < TICK and p.ends_by_drive == 0.0 and _keeps_off(p, s, osc, horizon):
         return math.inf
-    if p.normal_force * max(p.static_limit, p.backward_limit) == 0.0:
+    if holds_nothing(p):
         return 0.0 if moves(s) else math.inf
     if p.sided != 0.0 and gives_way(p, s, osc):
         return 0.0
