@@ -3,11 +3,13 @@
 """Figures that limits are set for: against closed forms and the events of the exact engine."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from stickslip_sim.core.types import EventKind
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.runs import simulate
 from stickslip_sim.scene import scene_from_values
@@ -91,6 +93,13 @@ class TestStickSlip:
     def test_following_error_grows_with_the_feed_in_stick(self) -> None:
         value = measured('following_error: {max: 1.0, window: {end: 0.5}}', simulated('paper_fig7', 1.0))
         assert value == pytest.approx(0.002 * 0.5, rel=1e-12)
+
+    def test_a_contact_that_yielded_and_holds_again_is_no_new_stick(self) -> None:
+        load = {'normal_load.course': 'sine', 'normal_load.amplitude': 343.0, 'normal_load.frequency': 25.0}
+        found = simulate(load_scene('paper_fig8', load), 4.0, 0.001)
+        held = [before.kind for before, event in pairwise(found.events) if event.kind == EventKind.STICK]
+        assert 0 < held.count(EventKind.YIELD) < len(held)
+        assert measured('sticks: {max: 99}', found) == len(held) - held.count(EventKind.YIELD)
 
     def test_sticks_within_the_window(self) -> None:
         found = simulated('paper_fig7', 1.4)

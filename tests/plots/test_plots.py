@@ -183,6 +183,16 @@ def test_the_shares_of_the_modes_are_those_of_the_time() -> None:
     assert shares[Mode.COASTING].tolist() == [0.0, 0.0, 0.0]
 
 
+@pytest.mark.parametrize('duration', [1.5, 60.0])   # lanes, and shares of the time
+def test_a_contact_that_yields_has_a_lane(duration: float, tmp_path: Path) -> None:
+    load = {'normal_load.course': 'sine', 'normal_load.amplitude': 1000.0, 'normal_load.frequency': 25.0}
+    for name, changes in (('yields', load), ('holds', {})):
+        run = simulate(load_scene('paper_fig8', changes), duration, 0.01)
+        plot_run(drawn(run), whole(run), tmp_path / f'{name}.svg')
+    texts = [(tmp_path / f'{name}.svg').read_text().lower() for name in ('yields', 'holds')]
+    assert ['yielding' in text for text in texts] == [True, False]
+
+
 def test_what_has_settled_is_no_mountain(tmp_path: Path) -> None:
     """Sliding that has settled is a line, not the rounding of its last digits."""
     run = simulate(load_scene('fast_feed'), 10.0, 0.001)

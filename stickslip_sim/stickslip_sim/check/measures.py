@@ -152,11 +152,14 @@ class SettlingTime(LimitMeasure):
 
 
 class Sticks(LimitMeasure):
-    """How often the slider came to stick."""
+    """How often the slider came to rest; a contact that yielded and holds again is no new stick."""
 
     def figure(self) -> MeasuredFigure:
         """Count them."""
-        return MeasuredFigure(sum(event.kind == EventKind.STICK for event in self.span.events))
+        events = self.span.events
+        before = [self.span.mode, *(event.mode for event in events)]
+        return MeasuredFigure(sum(event.kind == EventKind.STICK and mode != Mode.YIELDING
+                                  for mode, event in zip(before, events)))
 
 
 class LongestStick(LimitMeasure):

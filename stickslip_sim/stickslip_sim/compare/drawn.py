@@ -103,13 +103,16 @@ def complete_slips(events: Sequence[Event]) -> list[tuple[Event, Event]]:
 
 
 def complete_sticks(events: Sequence[Event]) -> list[tuple[Event, Event]]:
-    """Return where each stick begins and ends that is complete: standstill and the break-away from there."""
+    """Return where each stick begins and ends that is complete: standstill, or the end of a yield, and the break-away.
+
+    A stick that ends as its contact yields is none.
+    """
     found: list[tuple[Event, Event]] = []
     begin: Event | None = None
     for event in events:
         if event.kind == EventKind.BREAKAWAY and begins_slip(event) and begin is not None:
             found.append((begin, event))
             begin = None
-        elif event.kind == EventKind.STICK:
-            begin = event
+        elif event.kind in (EventKind.STICK, EventKind.YIELD):
+            begin = event if event.kind == EventKind.STICK else None
     return found

@@ -37,6 +37,8 @@ def _finding(run: Run, found_gaps: Sequence[list[_Gap]]) -> Finding:
     """Return what comes of the gaps between the branches."""
     if run.scene.axis.friction.excess is None:
         return not_applicable('without acceleration dependence friction has one value at each velocity')
+    if run.scene.normal_load is not None:
+        return not_applicable('the normal force varies, and friction with it')
     gaps = list(chain(*found_gaps))
     if not gaps:
         return not_applicable('no complete slip with a break-away above kinetic friction')

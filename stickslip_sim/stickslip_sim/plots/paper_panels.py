@@ -34,7 +34,7 @@ from .style import (
 KILO = 1e-3   # N to kN
 _EARLIER = '#b0b0b0'
 _DASHES = {Mode.STICK: (0, (1.0, 1.2)), Mode.ACCELERATING: 'solid', Mode.COASTING: (0, (5.0, 1.5)),
-           Mode.DECELERATING: (0, (6.0, 1.5, 1.0, 1.5))}
+           Mode.DECELERATING: (0, (6.0, 1.5, 1.0, 1.5)), Mode.YIELDING: (0, (2.0, 1.5))}
 _DRIVE_DASHES: Any = (0, (4.0, 1.6))
 _MODE_NAMES = [mode.name.lower() for mode in Mode]
 _ABOVE: dict[str, Any] = {'loc': 'lower right', 'bbox_to_anchor': (1.0, 0.99), 'ncols': 2, 'borderaxespad': 0.0}

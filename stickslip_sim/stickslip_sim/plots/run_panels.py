@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from ..core.arrays import Numbers
+from ..core.types import Mode
 from ..rig.marks import Mark
 from .drawn_run import DrawnRun, TimeWindow, mode_shares
 from .style import BLACK, BLUE, GREEN, GREY, MILLI, MODE_COLOURS, ORANGE, PURPLE, RED, thinned
@@ -96,11 +97,12 @@ class WindowPanels:
         first = max(int(np.searchsorted(starts, self._window.begin, side='right')) - 1, 0)
         last = int(np.searchsorted(starts, self._window.end))
         ends = np.append(starts[1:], max(self._window.end, float(starts[-1])))[first:last]
-        for lane, (mode, colour) in enumerate(MODE_COLOURS.items()):
+        lanes = self._colours
+        for lane, (mode, colour) in enumerate(lanes.items()):
             bars = [(begin, end - begin) for begin, end, which in zip(starts[first:last].tolist(), ends.tolist(),
                                                                      modes[first:last].tolist()) if which == mode]
             panel.broken_barh(bars, (lane - 0.4, 0.8), facecolors=colour, edgecolors=colour, linewidth=0.3, snap=False)
-        _lanes(panel, [mode.name for mode in MODE_COLOURS])
+        _lanes(panel, [mode.name for mode in lanes])
 
     def marks(self, panel: Axes) -> None:
         """Draw one lane for each kind of fault and refusal."""
@@ -113,12 +115,19 @@ class WindowPanels:
             panel.plot(instants, [lane] * len(instants), '|', color=colour, markersize=9, markeredgewidth=1.2)
         _lanes(panel, [_counted(label, marks) for label, marks in lanes.items()])
 
+    @property
+    def _colours(self) -> dict[Mode, str]:
+        """The lanes of the modes and their colours; YIELDING has one in a run that yields."""
+        yields = Mode.YIELDING in self._run.modes[1]
+        return {mode: colour for mode, colour in MODE_COLOURS.items() if yields or mode != Mode.YIELDING}
+
     def _mode_shares(self, panel: Axes) -> None:
         edges = self._edges
         shares = mode_shares(self._run.modes, edges)
         middles = 0.5 * (edges[1:] + edges[:-1])
-        panel.stackplot(middles, [100.0 * shares[mode] for mode in MODE_COLOURS], colors=list(MODE_COLOURS.values()),
-                        labels=[mode.name.lower() for mode in MODE_COLOURS], step='mid')
+        lanes = self._colours
+        panel.stackplot(middles, [100.0 * shares[mode] for mode in lanes], colors=list(lanes.values()),
+                        labels=[mode.name.lower() for mode in lanes], step='mid')
         panel.set(ylabel='time / %', ylim=(0.0, 100.0))
 
     def _curve(self, panel: Axes, values: Numbers, label: str, colour: str, width: float) -> None:

@@ -19,7 +19,8 @@ from ..core.types import Mode
 BLACK, ORANGE, SKY, GREEN = '#222222', '#E69F00', '#56B4E9', '#009E73'
 BLUE, RED, PURPLE = '#0072B2', '#D55E00', '#CC79A7'
 GREY = '#666666'
-MODE_COLOURS = {Mode.STICK: SKY, Mode.ACCELERATING: ORANGE, Mode.COASTING: GREEN, Mode.DECELERATING: PURPLE}
+MODE_COLOURS = {Mode.STICK: SKY, Mode.ACCELERATING: ORANGE, Mode.COASTING: GREEN, Mode.DECELERATING: PURPLE,
+                Mode.YIELDING: BLUE}
 MILLI = 1e3          # m to mm
 _UNDATED: dict[str, dict[str, Any]] = {'svg': {'Date': None}, 'pdf': {'CreationDate': None}}
 _SAVED: dict[str, Any] = {   # the same picture is the same file, its text text, and no other layout is made
