@@ -8,6 +8,7 @@ from itertools import pairwise
 import pytest
 
 from stickslip_sim.axis import InitialState
+from stickslip_sim.cli.format import summary_lines
 from stickslip_sim.core.input_profile import table
 from stickslip_sim.core.types import Event, EventKind, Mode
 from stickslip_sim.inputs import load_scene
@@ -146,6 +147,39 @@ def test_a_break_away_that_does_not_move_belongs_to_the_stick() -> None:
               _event(4.0, EventKind.BREAKAWAY, Mode.ACCELERATING, 1, 0.5, 0.0)]
     [cycle] = cycle_figures(events)
     assert (cycle.slip_time, cycle.stick_time) == (1.0, 2.0)
+
+
+def test_a_contact_that_yields_belongs_to_the_time_after_the_slip_and_is_no_stick() -> None:
+    events = [_event(1.0, EventKind.BREAKAWAY, Mode.ACCELERATING, 1, 0.0, 0.0),
+              _event(2.0, EventKind.STICK, Mode.STICK, 1, 1.0, 0.0),
+              _event(3.0, EventKind.YIELD, Mode.YIELDING, 1, 0.75, -0.5),
+              _event(3.5, EventKind.STICK, Mode.STICK, 1, 0.5, -0.25),
+              _event(4.0, EventKind.YIELD, Mode.YIELDING, 1, 0.5, -0.5),
+              _event(4.5, EventKind.BREAKAWAY, Mode.ACCELERATING, 1, 0.5, 0.0)]
+    [cycle] = cycle_figures(events)
+    assert (cycle.slip_time, cycle.stick_time, cycle.slip_travel, cycle.jump) == (1.0, 2.5, 1.0, 0.5)
+    figures = summary(events, 5.0)
+    assert (figures.stick_share, figures.events[EventKind.YIELD]) == ((1.0 + 1.0 + 0.5) / 5.0, 2)
+    assert summary(events[1:3], 5.0).motion == 'single slip'   # nothing slides on while a contact yields
+
+
+@pytest.mark.parametrize('scene', ['paper_fig7', 'paper_fig8'])
+def test_cycles_that_only_touch_rest_are_counted_apart(scene: str) -> None:
+    """Without friction and damping v (1 − cos ω t) is 0 once a period, and no force is left there."""
+    free = simulate_events(load_scene(scene, {'axis.normal_force': 0.0, 'axis.drive_damping': 0.0}), 10.0)
+    assert 0 < free.summary.touches <= free.summary.cycles
+    note = free.receipt['results']['note']
+    assert note.startswith(f'{free.summary.touches} of {free.summary.cycles} cycles only touch rest')
+    assert f'{"note":22} {note}' in summary_lines(free.summary)
+    real = simulate_events(load_scene(scene), 10.0)
+    assert (real.summary.touches, 'note' in real.receipt['results']) == (0, False)
+    assert not any('touch' in line for line in summary_lines(real.summary))
+
+
+def test_a_turn_under_a_force_touches_nothing() -> None:
+    pull = {'force.course': 'sine', 'force.amplitude': 3000.0, 'force.frequency': 1.0, 'axis.normal_force': 100.0}
+    figures = simulate_events(load_scene('paper_fig7', pull), 10.0).summary
+    assert (figures.events[EventKind.REVERSE] > 10, figures.touches) == (True, 0)
 
 
 def test_times_late_in_a_run_keep_their_digits() -> None:

@@ -3,7 +3,7 @@
 """Figures of a run as text for people."""
 
 from ..core.types import EventKind
-from ..runs.wording import CYCLE_FIGURES, quantity
+from ..runs.wording import CYCLE_FIGURES, quantity, touch_note
 from ..simulation.cycles import Cycle, Summary
 from .count_words import counted
 
@@ -12,7 +12,9 @@ def summary_lines(figures: Summary) -> list[str]:
     """Return a short table: the events by kind, the kind of motion, the cycle figures."""
     counts = ', '.join(f'{n} {kind.name.lower()}' for kind, n in figures.events.items()
                        if n and kind != EventKind.KNOT)
-    return [f'{"events":22} {counts or "none"}', f'{"motion":22} {_motion(figures)}', *_cycle_lines(figures)]
+    note = touch_note(figures)
+    return [f'{"events":22} {counts or "none"}', f'{"motion":22} {_motion(figures)}',
+            *([f'{"note":22} {note}'] if note else []), *_cycle_lines(figures)]
 
 
 def beside_lines(recorded: Summary, other: Summary) -> list[str]:

@@ -17,6 +17,7 @@ from ..core.types import Mode, Sample
 from ..core.version import __version__
 from ..scene import Scene
 from ..simulation.cycles import Summary
+from .wording import touch_note
 
 
 class CostMeter:
@@ -41,6 +42,7 @@ def receipt_of(scene: Scene, duration: float, sample_period: float | None, figur
     `results` and `energy` (J; None when the solver keeps no account) are the same on every machine; `versions` and
     `cost` are not.  An infinite number is the text 'inf'.
     """
+    note = touch_note(figures)
     receipt = {
         'scene': scene.name,
         'scene_hash': scene.hash,
@@ -50,7 +52,8 @@ def receipt_of(scene: Scene, duration: float, sample_period: float | None, figur
         'sample_period': sample_period,
         **profiles_from_files(scene),
         'versions': versions(),
-        'results': {**figures._asdict(), 'root_iterations': root_iterations, 'final_state': final},
+        'results': {**figures._asdict(), **({'note': note} if note else {}), 'root_iterations': root_iterations,
+                    'final_state': final},
         'energy': energy and {**energy._asdict(), 'residual': energy.residual,
                               'relative_residual': energy.relative_residual},
         'cost': {'cpu_time_s': cpu_time, 'cpu_time_per_simulated_second': cpu_time / duration,

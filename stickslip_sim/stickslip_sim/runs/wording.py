@@ -38,8 +38,18 @@ def quantities(values: Sequence[float], unit: str, digits: int = 5) -> list[str]
 def headline(figures: Summary) -> str:
     """Return the figures of the last cycle in one line, or what happened instead."""
     cycle = figures.last
+    if figures.touches:
+        return f'{figures.touches} of {figures.cycles} cycles only touch rest: their figures mean nothing'
     if cycle is None:
         return f'{figures.motion}; {100.0 * figures.stick_share:.3g} % of the time in stick'
     shown = (f'{name} {quantity(getattr(cycle, field), unit, 4)}' for name, field, unit in CYCLE_FIGURES[:_IN_A_LINE]
              if not math.isnan(getattr(cycle, field)))   # not measured
     return ('' if figures.settled else 'last cycle: ') + ' · '.join(shown)
+
+
+def touch_note(figures: Summary) -> str:
+    """Say that the counts of a run mean nothing where cycles only touch rest; nothing of another run."""
+    if not figures.touches:
+        return ''
+    return (f'{figures.touches} of {figures.cycles} cycles only touch rest: rounding chooses whether a stick, a turn or '
+            'nothing is listed there; the motion is right, the counts and means of sticks and cycles mean nothing')

@@ -12,12 +12,13 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from ..core.types import Event, EventKind, Mode
-from ..solvers.exact.many_axes import SETTLED
+from ..solvers.exact.many_axes import LEAST_STICK, SETTLED
 
 AVERAGED = 10    # cycles at the end of the run that the means are taken over
 _LOOKED_AT = 20        # speeds of a slip, at the latest transitions and those before: some swings
 _SAME_SWING = 0.999    # of the speeds before: what swings less calms down
 _CALM = 1e-4           # of the highest speed: what swings less is smooth
+_NO_SLIP = Mode.STICK, Mode.YIELDING
 
 
 SWINGS_ON = 'sliding that swings on'   # a limit cycle without stick
@@ -33,7 +34,7 @@ class Cycle(NamedTuple):
     direction: int                 # of the slip
     rest_time: float               # s, before the break-away
     slip_time: float               # s
-    stick_time: float              # s
+    stick_time: float              # s, from standstill to the next break-away; a contact may yield in between
     period: float                  # s
     slip_travel: float             # m, from break-away to standstill
     jump: float                    # m, from break-away to break-away; differs by the give of a compliant contact
@@ -63,6 +64,7 @@ class Summary(NamedTuple):
     last: Cycle | None
     mean: Cycle | None           # over the last `averaged` cycles
     averaged: int
+    touches: int                 # cycles that only touch rest: see `_touches`
 
 
 def cycle_figures(events: Sequence[Event]) -> list[Cycle]:
@@ -105,7 +107,7 @@ class EventTally:
         self._stick = 0.0, 0.0                   # s: the time in stick before it, and what that number cannot hold
         self._counts = [0] * len(EventKind)
         self._finder = _CycleFinder()
-        self._cycle_count = 0
+        self._cycle_count = self._touches = 0
         self._latest_cycles: deque[Cycle] = deque(maxlen=AVERAGED)
         self._speeds: deque[float] = deque(maxlen=2 * _LOOKED_AT)   # m/s, of the slip at hand, at its transitions
 
@@ -116,13 +118,14 @@ class EventTally:
         self._counts[event.kind] += 1
         if event.mode != self._mode:
             self._enter(event.mode, min(max(self.latest_time, self._since), self._end))
-        if event.mode == Mode.STICK:
+        if event.mode in _NO_SLIP:
             self._speeds.clear()
         elif event.kind != EventKind.KNOT:
             self._speeds.append(event.velocity)
         cycle = self._finder.take(event)
         if cycle is not None:
             self._cycle_count += 1
+            self._touches += _touches(cycle, event, self._latest_cycles)
             self._latest_cycles.append(cycle)
 
     def summary(self, duration: float) -> Summary:
@@ -137,7 +140,8 @@ class EventTally:
             stick_share=math.fsum((*self._stick, under_way)) / duration,
             last=cycles[-1] if cycles else None,
             mean=_mean(cycles) if cycles else None,
-            averaged=len(cycles))
+            averaged=len(cycles),
+            touches=self._touches)
 
     def _enter(self, mode: Mode, time: float) -> None:
         if self._mode == Mode.STICK:
@@ -150,7 +154,7 @@ class EventTally:
     def _motion(self) -> str:
         if self._cycle_count:
             return 'stick-slip'
-        if self._mode != Mode.STICK:
+        if self._mode not in _NO_SLIP:
             return SWINGS_ON if self._swings_on else 'smooth sliding'
         return 'single slip' if self._has_moved else 'at rest'
 
@@ -218,6 +222,16 @@ def _cycle(slip: _Slip, following: Event) -> Cycle:
         break_away_drive_force=first.drive_force,
         arrest_drive_force=last.drive_force,
         static_coefficient=first.static_coefficient)
+
+
+def _touches(cycle: Cycle, following: Event, before: Sequence[Cycle]) -> bool:
+    """Whether a cycle only touches rest: it slips on the same way at once, or is a turn for no time.
+
+    That is so where no force is left at standstill, as without friction and damping.  Rounding chooses what is listed.
+    """
+    if following.direction == cycle.direction:
+        return cycle.stick_time <= LEAST_STICK * cycle.period
+    return bool(before) and cycle.period <= LEAST_STICK * before[-1].period
 
 
 def _elapsed(begin: Event, end: Event) -> float:
