@@ -9,9 +9,9 @@ speed does to a slip that ends with almost no deceleration: its time is a double
 
 Other solvers are compared with the exact one on the same scene, and its own estimate is added.  A repeat with half the
 step or a tenth of the tolerances says nothing: an event is noticed up to a step late, so that two runs may be late
-alike; and where the calls bound the steps, both tolerances take the same ones.  Under a normal force that varies
-smoothly there is no exact one: the adaptive solver is compared with itself at a thousandth of its tolerances, in steps
-that are bounded, too.
+alike; and where the calls bound the steps, both tolerances take the same ones.  With Kato's law under a normal force
+that varies smoothly there is no exact one: the adaptive solver is compared with itself at a thousandth of its
+tolerances, in steps that are bounded, too.
 """
 
 import dataclasses
@@ -25,6 +25,7 @@ from ..core.types import Event, EventKind
 from ..friction import KineticTable, kinetic_table
 from ..scene import Scene, SolverSettings
 from ..solvers.adaptive import MIN_RTOL
+from ..solvers.normal_load import exact_follows
 from .event_shifts import MOMENT, Shift, lasting, shift_between
 from .perturbation import perturbed
 from .simulated import SimulatedRun, simulate, simulate_events
@@ -56,8 +57,7 @@ def error_estimate(run: SimulatedRun) -> ErrorEstimate:
     """Return the estimate for a run; it costs three more runs, or four to six of the exact solver."""
     if run.scene.solver.name == 'exact':
         return _of_rounding(run)
-    load = run.scene.normal_load
-    return _of_steps(run) if load is None or load.is_stepwise else _of_tolerances(run)
+    return _of_steps(run) if exact_follows(run.scene.axis, run.scene.normal_force) else _of_tolerances(run)
 
 
 def _of_rounding(run: SimulatedRun) -> ErrorEstimate:

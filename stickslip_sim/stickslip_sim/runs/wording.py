@@ -51,5 +51,5 @@ def touch_note(figures: Summary) -> str:
     """Say that the counts of a run mean nothing where cycles only touch rest; nothing of another run."""
     if not figures.touches:
         return ''
-    return (f'{figures.touches} of {figures.cycles} cycles only touch rest: rounding chooses whether a stick, a turn or '
-            'nothing is listed there; the motion is right, the counts and means of sticks and cycles mean nothing')
+    return (f'{figures.touches} of {figures.cycles} cycles only touch rest: rounding chooses whether a stick, a turn '
+            'or nothing is listed there; the motion is right, the counts and means of sticks and cycles mean nothing')

@@ -26,8 +26,13 @@ def under_load(solver: Solver, axis: Axis, normal_force: InputProfile) -> Solver
             raise InputError('normal_load', 'a load that varies smoothly',
                              f'constant or steps with solver.name: {solver.name}',
                              'use normal_load.course: steps, or solver.name: exact')
-        if solver.name == 'exact' and any(side.static.kind == StaticLawKind.KATO for side in axis.friction.sides):
+        if solver.name == 'exact' and not exact_follows(axis, normal_force):
             raise InputError('friction.static.law', 'kato', 'another law under a normal load that varies smoothly',
                              'its growth is singular at rest time 0 (docs/model.md): use law: exponential, '
                              'normal_load.course: steps, or solver.name: adaptive')
     return solver if solver.with_normal_force is None else solver.with_normal_force(normal_force)
+
+
+def exact_follows(axis: Axis, normal_force: InputProfile) -> bool:
+    """Whether the exact solver takes an axis under a normal force: one that varies smoothly not with Kato's law."""
+    return normal_force.is_stepwise or all(side.static.kind != StaticLawKind.KATO for side in axis.friction.sides)
