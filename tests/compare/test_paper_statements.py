@@ -130,8 +130,8 @@ class TestTwoValues:
         assert figures['accelerating_force'] == pytest.approx(upper * NORMAL, rel=1e-6)
 
     def test_under_a_load_that_varies_both_are_of_other_times(self) -> None:
-        run = densely('paper_fig8', 2.0, normal_load__course='sine', normal_load__amplitude=1000.0,
-                      normal_load__frequency=25.0)
+        load = {'normal_load.course': 'sine', 'normal_load.amplitude': 1000.0, 'normal_load.frequency': 25.0}
+        run = densely('paper_fig8', 2.0, **load)
         assert findings(run)[TWO_VALUES].outcome == NOT_APPLICABLE
 
     def test_one_value_is_reported(self) -> None:

@@ -17,9 +17,9 @@ class EnergyBalance(NamedTuple):
 
     drive_work: float           # ∫ F_d v dt, done by the drive at its end of spring and damper
     external_work: float        # ∫ F_e ẋ dt, done by the external force on the slider
-    friction_loss: float        # ∫ F_f ẋ dt over the slips
+    friction_loss: float        # ∫ F_f ẋ dt over the slips, ∫ F_f z′ dt over the yields
     drive_damper_loss: float    # ∫ h (v − ẋ)² dt
-    contact_damper_loss: float  # ∫ h_c ẋ² dt over the sticks in a compliant contact
+    contact_damper_loss: float  # ∫ h_c δ′² dt over the sticks (δ′ = ẋ) and yields of a compliant contact
     contact_exchange: float     # c_c δ²/2 that appears at arrests, less what vanishes at break-aways
     parameter_exchange: float   # change of the stored energy at a change of parameters
     stored: float               # m ẋ²/2 + c (s − x)²/2 + c_c δ²/2 now

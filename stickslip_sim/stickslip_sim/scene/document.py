@@ -38,8 +38,8 @@ contradict a choice, with one line.  The shipped files in `stickslip_sim/sticksl
 * **`--set a.b=value`** of the tool changes one value of the file.  If it changes a choice, the values that the file
   gives for the old choice are dropped: `--set contact.model=rigid` needs no more.
 * **Input profiles.**  `drive.course` and `force.course` choose the input profile: velocity or force over time.
-  `normal_load.course` adds a load to the normal force (docs/model.md); one that varies smoothly is for
-  `solver.name: adaptive` alone.
+  `normal_load.course` adds a load to the normal force (docs/model.md); `solver.name: fixed_step` takes constant or
+  steps alone, and Kato's law under one that varies smoothly is for `adaptive`.
 * **Position of the drive.**  `drive: {course: position, times: [0.0, 1.0, 3.0], positions: [0.0, 0.002, 0.002]}`
   prescribes s, where the drive end of the spring is.  Its velocity is the derivative, exactly: s is linear between the
   breakpoints, so that the velocity jumps there; with `slopes`, the velocities just after each of them, it is quadratic.
