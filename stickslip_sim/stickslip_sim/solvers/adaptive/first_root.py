@@ -32,7 +32,8 @@ def first_root(guard: Callable[[float], float], begin: float, end: float, sample
     if not coefficients[0] - np.abs(coefficients[1:]).sum() < -rounding:
         return None
     seen = [(begin + (end - begin) * float(share), value) for share, value in zip(SAMPLED_AT, samples)]
-    turns = chebyshev.chebroots(np.trim_zeros(chebyshev.chebder(coefficients), 'b'))
+    slope = np.trim_zeros(chebyshev.chebder(coefficients), 'b')
+    turns = chebyshev.chebroots(slope) if len(slope) else slope
     for turn in turns[np.isreal(turns)].real:
         if -1.0 < turn < 1.0:
             time = begin + (end - begin) * 0.5 * (1.0 + float(turn))
