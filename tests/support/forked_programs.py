@@ -28,7 +28,7 @@ from tests.support.waiting import DEADLINE
 pytest.importorskip('rclpy')
 
 _FORKS = multiprocessing.get_context('forkserver')
-_FORKS.set_forkserver_preload(['pytest', __name__, 'tests.support.preloaded'])
+_FORKS.set_forkserver_preload(['tests.support.exit_of_forks', 'pytest', __name__, 'tests.support.preloaded'])
 
 
 @cache
