@@ -26,7 +26,7 @@ run: build  ## run the node on the paper's scene, drive it, record it, show what
 	@$(HERE) python3 -m stickslip_sim.ros.demo
 
 test: tools  ## all tests, PROCESSES=4 at once, each in a ROS domain of its own
-	@OPENBLAS_NUM_THREADS=1 $(HERE) python3 -m pytest tests --dist loadfile --no-loadscope-reorder --tx '$(PROCESSES)*popen//python=$(HERE) --own-domain python3'
+	@OPENBLAS_NUM_THREADS=1 $(HERE) python3 -m pytest tests --dist loadfile --no-loadscope-reorder --max-worker-restart 9 --tx '$(PROCESSES)*popen//python=$(HERE) --own-domain python3'
 
 check: tools  ## style, types, architecture, dead code, spelling, words and links
 	@$(TOOLS)/ruff check .

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The tool `stickslip`: in this process, and in one of its own."""
 
+import ctypes
 import os
 import signal
 import subprocess
@@ -12,12 +13,15 @@ import pytest
 
 from stickslip_sim.cli.main import run
 
+_PARENT_DEATH_SIGNAL = 1    # PR_SET_PDEATHSIG of linux/prctl.h
+
 Capture = pytest.CaptureFixture[str]
 
 
 def restore_interrupt() -> None:
-    """Undo, in a new process, what a shell does to background jobs: Ctrl-C is heard again."""
+    """Undo, in a new process, what a shell does to background jobs: Ctrl-C is heard again.  It ends with its parent."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
+    ctypes.CDLL(None).prctl(_PARENT_DEATH_SIGNAL, signal.SIGKILL)
 
 
 def answered(capsys: Capture, *arguments: str | Path) -> tuple[int, str, str]:
