@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The process around a node, from its arguments to the exit code."""
 
+import faulthandler
 import gc
 import sys
 from collections.abc import Callable, Sequence
@@ -12,6 +13,7 @@ if TYPE_CHECKING:
     from .stop_signals import Signals
 
 _POLL = 0.1                # s: how soon a signal is acted on
+_END = 10.0               # s that the middleware may take to end; then the process does, with the stacks of its threads
 SWITCH_INTERVAL = 5e-5    # s that another thread may keep the interpreter from a step loop (the default is 5 ms)
 
 
@@ -59,6 +61,8 @@ def spin(node: Any, signals: 'Signals', is_over: Callable[[], bool] = lambda: Fa
             look()
     finally:
         node.end()
+        # with exit code 1, also where the middleware keeps the interpreter: one of Fast DDS that waits for a lock, say
+        faulthandler.dump_traceback_later(_END, exit=True, file=2)
         executor.shutdown()      # lets go of what still arrives; removing the node would do so with the next spin only
         node.destroy_node()
 
