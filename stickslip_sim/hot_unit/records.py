@@ -32,7 +32,7 @@ def record_words(package: Path) -> dict[str, Any]:
         'SEGMENT_SIZE': len(layout.SEGMENT_FIELDS),
         'STATE_FIELDS': '\n    '.join(f'cdef {field}' for field in state),
         'STATE_SIZE': len(state_record.STATE_PLACES),
-        'SERIES_ROWS': state_record.ORDERS + 1,
+        'SERIES_ROWS': state_record.HIGHEST_ORDER + 1,
         'SINUSOID_SIZE': len(fields.names_of(state_record.SinusoidRecord)),
         'GIVEN_SINUSOID_SIZE': len(rows.GIVEN_SINUSOID_FIELDS),
         'EVENT_VALUES': _of('e', fields.names_of(rows.EventRow)),

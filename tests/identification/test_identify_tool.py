@@ -132,7 +132,8 @@ WRONG: Mapping[str, tuple[object, Mapping[str, tuple[float, float]], tuple[str, 
 def test_bad_input_gets_one_line_and_writes_nothing(case: str, tmp_path: Path, start: Path, capsys: Capture) -> None:
     measured, free, words = WRONG[case]
     assert callable(measured)
-    run = imported(tmp_path, measured(), capsys, *(('--stick-velocity', '1e-4') if case == 'no motion' else ()))
+    run = imported(tmp_path, measured(), capsys, *{
+        'no motion': ('--stick-velocity', '1e-4'), 'another unit': ('--meant', 'position')}.get(case, ()))
     before = set(tmp_path.iterdir())
     said = refused(capsys, 'identify', run, '--scene', start, '--free', free_file(tmp_path / 'free.yaml', free),
                    '--out', tmp_path / 'found')

@@ -9,7 +9,7 @@ import pytest
 from rosbags.rosbag2 import StoragePlugin, Writer
 
 from stickslip_sim.core.errors import RecordingError
-from stickslip_sim.core.types import EventKind
+from stickslip_sim.core.types import EventKind, Mode
 from stickslip_sim.recording import (
     RECORDED,
     BagWriter,
@@ -41,7 +41,7 @@ def test_transitions_come_back_as_they_were(tmp_path: Path) -> None:
             assert getattr(event, name) == getattr(expected, name), name
 
 
-@pytest.mark.parametrize('changes', [{'kind': len(EventKind)}, {'mode': 4}])
+@pytest.mark.parametrize('changes', [{'kind': len(EventKind)}, {'mode': len(Mode)}])
 def test_transitions_of_unknown_kinds(changes: dict[str, int], tmp_path: Path) -> None:
     with pytest.raises(RecordingError, match='unknown kinds; recorded by another version'):
         _ = open_bag(with_events(tmp_path / 'run', '/', **changes)).events

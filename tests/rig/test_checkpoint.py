@@ -83,7 +83,7 @@ def test_the_order_of_faults_and_parameters_between_two_steps_does_not_matter() 
 
 
 @pytest.mark.parametrize(('place', 'value'), [
-    ('state', [0.0] * 7), ('state', 'none'), ('mode', 4.0), ('mode', 0.5), ('segment', -1.0), ('segment', 1e300),
+    ('state', [0.0] * 7), ('state', 'none'), ('mode', 5.0), ('mode', 0.5), ('segment', -1.0), ('segment', 1e300),
     ('sinusoid_count', 3.0), ('until', 'soon'), ('time', [1.0]), ('waiting', [[1.0]]),
 ])
 def test_a_state_that_no_solver_may_see(place: str, value: Any) -> None:

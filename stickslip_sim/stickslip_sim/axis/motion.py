@@ -26,9 +26,9 @@ from .codes import ACCELERATING, COASTING, STICK, YIELDING
 from .forces import feed_damping, friction_force, is_rigid_stick, yielding_force
 from .friction_segments import friction_line
 from .layout import Parameters
-from .normal_force import begin_load, load_share
-from .series import begin_series, moves_by_series, series_deflection, series_travel
 from .sinusoids import begin_sinusoids, move_sinusoids, sinusoid_drive_travel, sinusoid_travel
+from .slip_series import begin_series, moves_by_series, series_deflection, series_travel
+from .smooth_load import begin_load, load_share
 from .state_record import State
 
 _SIXTH = 1.0 / 6.0

@@ -14,7 +14,7 @@ from typing import Annotated
 
 from .fields import RowOf, filled, numbers_in, places_of, record_fields, zeros
 
-ORDERS = 24   # of the series of a segment under a normal force that varies
+HIGHEST_ORDER = 24   # of the series of a segment under a normal force that varies
 
 
 @dataclass(slots=True)
@@ -143,7 +143,7 @@ class SinusoidRecord:
 
 @dataclass(slots=True)
 class SeriesOrder:
-    """The terms of one order of the power series in τ = t/H of a segment that lasts H (`axis.series`)."""
+    """The terms of one order of the power series in τ = t/H of a segment that lasts H (`axis.slip_series`)."""
 
     u: float            # m/s, of the velocity
     deflection: float   # m, of a contact that yields
@@ -190,14 +190,14 @@ class State:
     given_sinusoids: float    # how many, of a solver that steps
     is_loaded: float          # 1 where the normal force varies smoothly from the segment start on
     series_end: float         # s, H of the series below
-    series_error: float       # m/s, bound on what their velocity is off by within H, see `axis.series`
+    series_error: float       # m/s, bound on what their velocity is off by within H, see `axis.slip_series`
     # of the axis
     inputs: InputsRecord
     oscillator: OscillatorRecord   # of the mode
     # of the exact engine
     next: NextEvent
     cache: Cache
-    series: Annotated[list[SeriesOrder], RowOf(ORDERS + 1, SeriesOrder)]   # from the segment start on
+    series: Annotated[list[SeriesOrder], RowOf(HIGHEST_ORDER + 1, SeriesOrder)]   # from the segment start on
     # of the account of energy, up to the segment start
     sums: EnergySums
     lost: EnergySums               # what rounding lost of each sum
@@ -210,7 +210,7 @@ class State:
     def __init__(self, sinusoids: int = 0) -> None:
         clear_state(self)
         self.sinusoids = [filled(SinusoidRecord, zeros()) for _ in range(sinusoids)]
-        self.scratch = [filled(SeriesScratch, zeros()) for _ in range(ORDERS + 1)]
+        self.scratch = [filled(SeriesScratch, zeros()) for _ in range(HIGHEST_ORDER + 1)]
 
     def numbers(self) -> list[float]:
         """Return all numbers, from which `take` goes on to the last bit."""

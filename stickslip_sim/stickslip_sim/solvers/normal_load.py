@@ -3,7 +3,8 @@
 """Solvers under a normal force that varies with time.
 
 Between its jumps a normal force that is constant leaves every mode a linear equation with constant coefficients.  One
-that varies smoothly makes those of a slip vary, where mu_k has a slope: its motion is a power series (`axis.series`).
+that varies smoothly makes those of a slip vary, where mu_k has a slope: its motion is a power series
+(`axis.slip_series`).
 """
 
 from ..axis import Axis

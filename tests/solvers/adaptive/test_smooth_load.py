@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 
 import pytest
+from stickslip_sim.solvers.adaptive.first_root import SAMPLED_AT, first_root
 
 from stickslip_sim.axis import Axis, Friction, InitialState, RigidContact
 from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant, table
@@ -16,7 +17,6 @@ from stickslip_sim.runs import simulate, simulate_events
 from stickslip_sim.runs.error_estimate import error_estimate
 from stickslip_sim.simulation.simulator import Simulator
 from stickslip_sim.solvers import adaptive
-from stickslip_sim.solvers.adaptive.first_root import SAMPLED_AT, first_root
 from tests.support.axes import instant
 
 SWAY = InputProfile((0.0,), (0.0,), (0.0,), math.inf, (Sinusoid(6.0, 1.5, 0.4),))

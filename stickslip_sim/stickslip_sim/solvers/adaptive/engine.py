@@ -33,8 +33,8 @@ from .. import DONE, FULL, NO_PROGRESS, OUT_OF_RANGE
 from ..inputs import hold_inputs, refresh_inputs, same_inputs
 from ..sampling import write_sample
 from ..state import begin_state, change_contact, held_force
-from .first_root import SAMPLED_AT, first_root
-from .mode_problem import Guard, ModeLoad, ModeMotion, SmoothLaw
+from .first_fall import SAMPLED_AT, first_fall
+from .mode_problem import ModeGuard, ModeLoad, ModeMotion, SmoothLaw
 from .smooth_friction import choose_sub_mode, correct_excess, find_segment, slip_friction_force
 
 _SAME_INSTANT = 64   # events without progress in time; a sound model needs three
@@ -254,11 +254,11 @@ class Engine:
             p.normal_force = self.normal_force.value_at(time)
 
 
-def _value_on(guard: Guard, dense: Any, time: float) -> float:
+def _value_on(guard: ModeGuard, dense: Any, time: float) -> float:
     return guard.value(time, dense(time))
 
 
-def _event_within(dense: Any, guards: list[Guard]) -> _Reached | None:
+def _event_within(dense: Any, guards: list[ModeGuard]) -> _Reached | None:
     """Return the first event within a step of the integration, if there is one."""
     begin, end = float(dense.t_old), float(dense.t)
     times = [begin + (end - begin) * float(share) for share in SAMPLED_AT]
@@ -267,7 +267,7 @@ def _event_within(dense: Any, guards: list[Guard]) -> _Reached | None:
     for guard in guards:
         samples = [guard.value(time, state) for time, state in zip(times, states)]
         rounding = max(guard.rounding(begin, states[0]), guard.rounding(end, states[-1]))
-        root = first_root(partial(_value_on, guard, dense), begin, end, samples, rounding)
+        root = first_fall(partial(_value_on, guard, dense), begin, end, samples, rounding)
         if root is not None and (first is None or root < first.time):
             y, u = map(float, dense(root))
             first = _Reached(root, y, u, guard.kind)

@@ -40,7 +40,7 @@ _STEPS_PER_AGE = 4.0   # of the time since mu_s began to grow, and of its time c
 _Value = Callable[[float, Sequence[float]], float]   # of the time and (y, ẏ)
 
 
-class Guard(NamedTuple):
+class ModeGuard(NamedTuple):
     """What ends a mode where its value falls below 0."""
 
     kind: float      # of the event
@@ -202,13 +202,13 @@ class ModeMotion:
         pressed = (self.load.at(t) - self.load.at(0.0)) * self._coefficient(self._direction * self._u)
         return self._residual + self._direction * moved - pressed
 
-    def guards(self) -> list[Guard]:
+    def guards(self) -> list[ModeGuard]:
         """Return what can end the mode."""
         if self._mode == STICK:
             found = [self._force(BREAKAWAY, self._below_limit), self._force(BREAKAWAY, self._above_limit)]
         elif self._mode == YIELDING:
             sliding = (self._force(ARREST, self._sliding) if self._contact[1] > 0.0
-                       else Guard(ARREST, self._sliding_undamped, self._speed_rounding))   # not lifted: it may jump
+                       else ModeGuard(ARREST, self._sliding_undamped, self._speed_rounding))   # not lifted: it may jump
             found = [sliding, self._speed(BREAKAWAY, self._backwards)]
         elif self._mode == COASTING:
             found = [self._force(ACCELERATE, self._below_upper), self._force(DECELERATE, self.coasting_residual)]
@@ -221,11 +221,11 @@ class ModeMotion:
             found = [self._force(COAST, self._brake), self._speed(ARREST if is_last else KNOT, self._above_breakpoint)]
         return found
 
-    def _force(self, kind: float, value: _Value) -> Guard:
-        return Guard(kind, _lifted(value, self._u), self._force_rounding)
+    def _force(self, kind: float, value: _Value) -> ModeGuard:
+        return ModeGuard(kind, _lifted(value, self._u), self._force_rounding)
 
-    def _speed(self, kind: float, value: _Value) -> Guard:
-        return Guard(kind, _lifted(value, self._u), self._speed_rounding)
+    def _speed(self, kind: float, value: _Value) -> ModeGuard:
+        return ModeGuard(kind, _lifted(value, self._u), self._speed_rounding)
 
     def _force_rounding(self, t: float, state: Sequence[float]) -> float:
         y, u = state

@@ -18,10 +18,10 @@ from ...axis.friction_segments import friction_line, segment_above
 from ...axis.layout import Parameters
 from ...axis.mode_entry import choose_slip
 from ...axis.motion import begin_motion, drive_travel, move_start, spring_after, travel
-from ...axis.normal_force import begin_load, normal_force_at, take_load
 from ...axis.rows import EnergyRow, Events, SampleRow, Sinusoids
-from ...axis.series import series_deflection
 from ...axis.sinusoids import inputs_at, load_sinusoids, same_sinusoids
+from ...axis.slip_series import series_deflection
+from ...axis.smooth_load import begin_load, normal_force_at, take_load
 from ...axis.state_record import State, clear_state
 from ...axis.transitions import apply_inputs, arrest, cross_breakpoint, leave_coast, release, turn
 from ...core.hot_path import compiled, inlined

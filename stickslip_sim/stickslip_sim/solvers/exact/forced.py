@@ -33,7 +33,7 @@ from ...axis.forces import ROUNDING, force_rounding
 from ...axis.friction_segments import breakpoint_speed, friction_line, segment_end
 from ...axis.layout import Parameters
 from ...axis.motion import oscillator_of
-from ...axis.normal_force import load_bounds
+from ...axis.smooth_load import load_bounds
 from ...axis.state_record import State
 from ...axis.static_limits import lower_limit
 from ...core.hot_path import compiled, inlined

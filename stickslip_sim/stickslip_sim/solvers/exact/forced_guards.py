@@ -12,8 +12,8 @@ from ...axis.codes import COASTING, STICK
 from ...axis.forces import band_of
 from ...axis.friction_segments import friction_line
 from ...axis.layout import Parameters
-from ...axis.normal_force import LoadBounds, load_bounds, normal_force_at
 from ...axis.sinusoids import fastest_sinusoid
+from ...axis.smooth_load import LoadBounds, load_bounds, normal_force_at
 from ...axis.state_record import State
 from ...axis.static_limits import static_limit, static_numbers
 from ...core.hot_path import compiled, inlined

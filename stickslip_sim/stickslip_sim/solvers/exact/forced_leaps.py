@@ -9,7 +9,7 @@ import math
 
 from ...axis.codes import STICK
 from ...axis.layout import Parameters
-from ...axis.normal_force import load_bounds
+from ...axis.smooth_load import load_bounds
 from ...axis.state_record import State
 from ...core.hot_path import compiled
 from ...friction.static import CONSTANT

@@ -9,9 +9,9 @@ from ...axis.codes import STICK, YIELDING
 from ...axis.friction_segments import kinetic_at_rest, slip_friction
 from ...axis.layout import Parameters
 from ...axis.motion import drive_travel, travel
-from ...axis.normal_force import normal_force_at
-from ...axis.series import series_deflection
 from ...axis.sinusoids import inputs_at
+from ...axis.slip_series import series_deflection
+from ...axis.smooth_load import normal_force_at
 from ...axis.state_record import State
 from ...core.hot_path import compiled
 

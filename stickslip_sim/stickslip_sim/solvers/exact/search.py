@@ -22,7 +22,7 @@ from ...axis.forces import band_of, force_rate
 from ...axis.friction_segments import breakpoint_speed, segment_end
 from ...axis.layout import Parameters
 from ...axis.motion import oscillator_of, tick_integrals, travel_at
-from ...axis.series import moves_by_series
+from ...axis.slip_series import moves_by_series
 from ...axis.state_record import State
 from ...core.hot_path import inlined
 from ...linear.polynomials import first_crossing

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The first event of a motion that is a power series (`axis.series`): a slip under a normal force that varies, a yield.
+"""The first event of a motion that is a power series (`axis.slip_series`): of a slip under N(t), or a yield.
 
 A guard is a polynomial in τ, positive until its event, and the true one differs from it by less than δ: the bound of
 the series, and rounding.  Its first root is certain by its coefficients in Bernstein's form on an interval, between the
@@ -25,7 +25,7 @@ from ...axis.codes import ACCELERATING, ARREST, BREAKAWAY, COAST, YIELDING
 from ...axis.forces import force_rounding
 from ...axis.friction_segments import kinetic_at_rest
 from ...axis.layout import Parameters
-from ...axis.state_record import ORDERS, State
+from ...axis.state_record import HIGHEST_ORDER, State
 from ...core.hot_path import compiled, inlined
 from ...linear.root_steps import EPSILON, ITERATIONS
 from .forced import passed_kind, speed_gap
@@ -47,9 +47,9 @@ def series_event(p: Parameters, s: State) -> None:
     if gap <= 0.0:
         _set_event(s, 0.0, passed_kind(p, s))
         return
-    for k in range(ORDERS):
+    for k in range(HIGHEST_ORDER):
         s.scratch[k].guard = sense * (k + 1.0) * s.series[k + 1].u
-    root = _first_root(s, ORDERS - 1)
+    root = _first_root(s, HIGHEST_ORDER - 1)
     until = min(root, 1.0)
     if _gained(s, sense, until) >= gap:
         _set_event(s, _passing(s, sense, gap, until), passed_kind(p, s))
@@ -61,16 +61,16 @@ def series_event(p: Parameters, s: State) -> None:
 def _yielding(p: Parameters, s: State) -> None:
     """Set the end of a yield: stick where its interface stands still, slip where the slider moves along the force."""
     direction, share = s.direction, 1.0 / s.series_end
-    for k in range(ORDERS + 1):
+    for k in range(HIGHEST_ORDER + 1):
         s.scratch[k].guard = -direction * s.series[k].u
-    slips = _first_root(s, ORDERS)
-    for k in range(ORDERS):
+    slips = _first_root(s, HIGHEST_ORDER)
+    for k in range(HIGHEST_ORDER):
         s.scratch[k].guard = direction * (s.series[k].u - (k + 1.0) * s.series[k + 1].deflection * share)
     if p.contact_damping > 0.0:   # it begins on the limit: a tie, which the next term decides
         tie = force_rounding(p, s, kinetic_at_rest(p, direction)) / p.contact_damping
         if abs(s.scratch[0].guard) <= tie:
             s.scratch[0].guard = 0.0
-    sticks = _first_root(s, ORDERS - 1)
+    sticks = _first_root(s, HIGHEST_ORDER - 1)
     if min(slips, sticks) > 1.0:
         _set_event(s, 1.0, RENEWAL)
     elif sticks <= slips:
@@ -89,8 +89,8 @@ def _set_event(s: State, at: float, kind: float) -> None:
 def _gained(s: State, sense: float, at: float) -> float:
     """Return what the speed has gained up to τ = `at`."""
     total = 0.0
-    for i in range(ORDERS):
-        total = (total + s.series[ORDERS - i].u) * at
+    for i in range(HIGHEST_ORDER):
+        total = (total + s.series[HIGHEST_ORDER - i].u) * at
     return sense * total
 
 
@@ -106,7 +106,7 @@ def _passing(s: State, sense: float, gap: float, until: float) -> float:
         else:
             high = at
         slope, power = 0.0, 1.0
-        for k in range(ORDERS):
+        for k in range(HIGHEST_ORDER):
             slope += s.scratch[k].guard * power
             power *= at
         guess = at + value / slope if slope > 0.0 else math.inf

@@ -18,7 +18,7 @@ from typing import NamedTuple
 from ...axis.codes import ACCELERATING, COASTING, STICK
 from ...axis.forces import applied_force, feed_damping
 from ...axis.layout import Parameters
-from ...axis.normal_force import load_share
+from ...axis.smooth_load import load_share
 from ...axis.state_record import State
 from ...core.hot_path import compiled, inlined
 from ...linear.oscillator import Oscillator

@@ -15,8 +15,8 @@ from ...axis.forces import band_of, contact_force, drive_force, holds_by_drive
 from ...axis.friction_segments import breakpoint_speed, friction_line, segment_end
 from ...axis.layout import Parameters
 from ...axis.motion import drive_travel, spring_after, travel
-from ...axis.normal_force import normal_force_at, take_load
 from ...axis.sinusoids import inputs_at
+from ...axis.smooth_load import normal_force_at, take_load
 from ...axis.state_record import State
 from ...axis.static_limits import limit_backwards, static_at_once, static_limit
 from ...core.hot_path import compiled, inlined

@@ -17,7 +17,7 @@ from ...axis.forces import feed_damping, ground_damping, is_rigid_stick
 from ...axis.friction_segments import slip_friction
 from ...axis.layout import Parameters
 from ...axis.motion import drive_travel, oscillator_of, travel
-from ...axis.series import moves_by_series, series_deflection
+from ...axis.slip_series import moves_by_series, series_deflection
 from ...axis.state_record import State
 from ...core.hot_path import compiled, inlined
 from ...linear.moments import moments

@@ -28,9 +28,9 @@ from .codes import COASTING, STICK, YIELDING
 from .forces import feed_damping
 from .friction_segments import kinetic_at_rest, slip_friction
 from .layout import Parameters
-from .normal_force import load_bounds
 from .sinusoids import fastest_sinusoid
-from .state_record import ORDERS, State
+from .smooth_load import load_bounds
+from .state_record import HIGHEST_ORDER, State
 
 _EPSILON = 2.220446049250313e-16
 _THETA = 1.6         # radians of a segment: 0.75 (ε K!)^(1/K)
@@ -90,7 +90,7 @@ def _first_end(p: Parameters, s: State, slope: float) -> tuple[float, float]:
 def _known_terms(p: Parameters, s: State, steady: float, end: float) -> tuple[float, float, float]:
     """Set v, N and the forces that do not depend on the motion, by orders; return the forces' size and the tails."""
     feed, pressed = feed_damping(p), -s.direction * steady
-    for k in range(ORDERS + 1):
+    for k in range(HIGHEST_ORDER + 1):
         s.scratch[k].v, s.scratch[k].push, s.scratch[k].n, s.scratch[k].tail = 0.0, 0.0, 0.0, 0.0
     v, f = (s.inputs.base_v, s.inputs.base_f) if s.sinusoid_count != 0.0 else (s.inputs.v, s.inputs.f)
     normal = s.inputs.base_n if s.is_loaded != 0.0 else p.normal_force
@@ -106,20 +106,20 @@ def _known_terms(p: Parameters, s: State, steady: float, end: float) -> tuple[fl
         v, n = s.sinusoids[i].v, s.sinusoids[i].n
         push = feed * v + s.sinusoids[i].f + pressed * n
         value, slope, factor = s.sinusoids[i].sine, s.sinusoids[i].cosine, 1.0
-        for k in range(ORDERS + 1):
+        for k in range(HIGHEST_ORDER + 1):
             s.scratch[k].v += v * value * factor
             s.scratch[k].n += n * value * factor
             s.scratch[k].push += push * value * factor
             s.scratch[k].tail += abs(n) * factor
             value, slope = slope, -value
-            if k == ORDERS:   # and all orders that follow
+            if k == HIGHEST_ORDER:   # and all orders that follow
                 s.scratch[k].tail += abs(n) * factor
                 tail_push += 2.0 * abs(push) * factor
                 tail_v += 2.0 * abs(v) * factor
             factor *= TURN * s.sinusoids[i].frequency * end / (k + 1.0)
         size += _GROWN * (feed * abs(v) + abs(s.sinusoids[i].f) + steady * abs(n))
-    for k in range(ORDERS):
-        s.scratch[ORDERS - 1 - k].tail += s.scratch[ORDERS - k].tail
+    for k in range(HIGHEST_ORDER):
+        s.scratch[HIGHEST_ORDER - 1 - k].tail += s.scratch[HIGHEST_ORDER - k].tail
     return size, tail_push, tail_v
 
 
@@ -131,7 +131,7 @@ def _recurrence(p: Parameters, s: State, slope: float, end: float) -> tuple[floa
     """
     stretch, rounding = s.spring, 0.0
     s.series[0].u = s.velocity
-    for k in range(ORDERS):
+    for k in range(HIGHEST_ORDER):
         u = s.series[k].u
         drag, size = 0.0, 0.0
         if slope != 0.0:
@@ -155,18 +155,18 @@ def _recurrence(p: Parameters, s: State, slope: float, end: float) -> tuple[floa
 def _remainder(p: Parameters, s: State, slope: float, end: float, stretch: float, tail_push: float, tail_v: float
                ) -> float:
     """Return d_t: what the orders left out would add within H, m/s."""
-    last = abs(s.series[ORDERS].u)
+    last = abs(s.series[HIGHEST_ORDER].u)
     force = p.stiffness * abs(stretch) + p.damping * last + tail_push
     if slope != 0.0:
-        for k in range(ORDERS + 1):
-            force += abs(slope * s.series[k].u) * s.scratch[ORDERS - k].tail
+        for k in range(HIGHEST_ORDER + 1):
+            force += abs(slope * s.series[k].u) * s.scratch[HIGHEST_ORDER - k].tail
     return end / p.mass * force + math.sqrt(p.stiffness / p.mass) * end * (last + tail_v)
 
 
 @compiled
 def _velocity_scale(s: State) -> float:
     total = 0.0
-    for k in range(ORDERS + 1):
+    for k in range(HIGHEST_ORDER + 1):
         total += abs(s.series[k].u)
     return total
 
@@ -175,11 +175,11 @@ def _velocity_scale(s: State) -> float:
 def _shorten(s: State) -> float:
     """Shorten the segment of the series; return the factor of the last order."""
     fade = 1.0
-    for k in range(ORDERS + 1):
+    for k in range(HIGHEST_ORDER + 1):
         s.series[k].u *= fade
         s.scratch[k].n *= fade
         s.scratch[k].tail *= fade
-        if k < ORDERS:
+        if k < HIGHEST_ORDER:
             fade *= _SHORTER
     return fade
 
@@ -189,16 +189,17 @@ def _yield_deflection(p: Parameters, s: State, steady: float, end: float) -> Non
     """Set the series of the deflection of a contact that yields, and add its bound to that of the velocity."""
     pressed, stiffness, damping = s.direction * steady, p.contact_stiffness, p.contact_damping
     if damping == 0.0:
-        for k in range(ORDERS + 1):
+        for k in range(HIGHEST_ORDER + 1):
             s.series[k].deflection = pressed * s.scratch[k].n / stiffness
         return
     s.series[0].deflection = s.deflection
     rounding = 0.0
-    for k in range(ORDERS):
+    for k in range(HIGHEST_ORDER):
         force, share = pressed * s.scratch[k].n, end / (k + 1.0) / damping
         s.series[k + 1].deflection = share * (force - stiffness * s.series[k].deflection)
         rounding += (k + 4.0) * _EPSILON * share * (abs(force) + stiffness * abs(s.series[k].deflection))
-    cut = end / damping * (stiffness * abs(s.series[ORDERS].deflection) + abs(pressed) * s.scratch[ORDERS].tail)
+    last, tail = s.series[HIGHEST_ORDER].deflection, s.scratch[HIGHEST_ORDER].tail
+    cut = end / damping * (stiffness * abs(last) + abs(pressed) * tail)
     s.series_error += (cut + rounding) * (stiffness / damping + 1.0 / end)
 
 
@@ -207,8 +208,8 @@ def series_travel(s: State, t: float) -> tuple[float, float, float]:
     """Return the slider's travel, velocity and acceleration at t after the segment start."""
     at = t / s.series_end
     y, u, slope = 0.0, 0.0, 0.0
-    for i in range(ORDERS + 1):
-        k = ORDERS - i
+    for i in range(HIGHEST_ORDER + 1):
+        k = HIGHEST_ORDER - i
         slope = slope * at + u
         u = u * at + s.series[k].u
         y = y * at + s.series[k].u / (k + 1.0)
@@ -220,7 +221,7 @@ def series_deflection(s: State, t: float) -> tuple[float, float]:
     """Return the deflection of a contact that yields, and its rate, at t after the segment start."""
     at = t / s.series_end
     value, slope = 0.0, 0.0
-    for i in range(ORDERS + 1):
+    for i in range(HIGHEST_ORDER + 1):
         slope = slope * at + value
-        value = value * at + s.series[ORDERS - i].deflection
+        value = value * at + s.series[HIGHEST_ORDER - i].deflection
     return value, slope / s.series_end

@@ -20,7 +20,7 @@ _NARROW = 4.0 * 2.220446049250313e-16   # s and relative, as in solve_ivp
 SAMPLED_AT = 0.5 * (1.0 + _POINTS)      # of the step
 
 
-def first_root(guard: Callable[[float], float], begin: float, end: float, samples: list[float], rounding: float
+def first_fall(guard: Callable[[float], float], begin: float, end: float, samples: list[float], rounding: float
                ) -> float | None:
     """Return when a guard falls below 0 by more than its rounding; None where it does not.
 

@@ -3,7 +3,7 @@
 """A normal force that varies smoothly: N(t) = base + rate t + Σ A sin(2π f t + phase).
 
 Its sinusoids stand among those of the inputs (`sinusoids`), its rate among the parameters.  The normal force of the
-parameters is that at the segment start; `inputs.base_n` is what is left of it without the sinusoids.
+parameters is that at the segment start; `base_n` of the inputs is what is left of it without the sinusoids.
 """
 
 import math

@@ -13,10 +13,10 @@ from stickslip_sim.axis.codes import ACCELERATING, DECELERATING, YIELDING
 from stickslip_sim.axis.friction_segments import kinetic_at_rest, slip_friction
 from stickslip_sim.axis.layout import Parameters
 from stickslip_sim.axis.motion import begin_motion, drive_travel
-from stickslip_sim.axis.normal_force import begin_load, normal_force_at
 from stickslip_sim.axis.rows import Sinusoids
-from stickslip_sim.axis.series import series_deflection, series_travel
 from stickslip_sim.axis.sinusoids import load_sinusoids
+from stickslip_sim.axis.slip_series import series_deflection, series_travel
+from stickslip_sim.axis.smooth_load import begin_load, normal_force_at
 from stickslip_sim.axis.state_record import State
 from stickslip_sim.friction import KineticTable
 from tests.support.plain_axes import COMPLIANT, STATIC, parameters
