@@ -36,7 +36,7 @@ _EPSILON = 2.220446049250313e-16
 _THETA = 1.6         # radians of a segment: 0.75 (ε K!)^(1/K)
 _ANY = 1.0           # s, of a segment in which nothing swings, whose series end by themselves
 _SHORTER = 0.75      # a segment whose remainder is too large is shortened by this factor
-_SHORTENINGS = 60
+_SHORTENINGS = 200
 _GROWN = 6.0         # more than exp(_THETA)
 
 
@@ -54,18 +54,16 @@ def begin_series(p: Parameters, s: State) -> None:
     if s.mode != YIELDING:
         steady, slope = slip_friction(p, s)
     end, damping = _first_end(p, s, slope)
-    size, tail_push, tail_v = _known_terms(p, s, steady, end)
-    rounding, stretch = _recurrence(p, s, slope, end)
-    rounding += 4.0 * _EPSILON * end / p.mass * size
     natural = math.sqrt(p.stiffness / p.mass)
-    cut = _remainder(p, s, slope, end, stretch, tail_push, tail_v)
+    cut, rounding = 0.0, 0.0
     for _ in range(_SHORTENINGS):
+        size, tail_push, tail_v = _known_terms(p, s, steady, end)
+        rounding, stretch = _recurrence(p, s, slope, end)
+        rounding += 4.0 * _EPSILON * end / p.mass * size
+        cut = _remainder(p, s, slope, end, stretch, tail_push, tail_v)
         if cut <= 4.0 * _EPSILON * _velocity_scale(s):
             break
         end *= _SHORTER
-        fade = _shorten(s)
-        stretch, tail_push, tail_v = stretch * fade, tail_push * fade, tail_v * fade
-        cut = _remainder(p, s, slope, end, stretch, tail_push, tail_v)
     growth = max(0.0, -(p.damping + slope * load_bounds(p, s, 0.0, end).most) / p.mass)
     s.series_end = end
     s.series_error = (cut + rounding) * (1.0 + (natural + 2.0 * damping) * end * math.exp(growth * end))
@@ -77,8 +75,9 @@ def begin_series(p: Parameters, s: State) -> None:
 def _first_end(p: Parameters, s: State, slope: float) -> tuple[float, float]:
     """Return H before it is shortened, s, and (h + |b| N)/2m."""
     natural, swing = math.sqrt(p.stiffness / p.mass), fastest_sinusoid(s)
-    damping = 0.5 * (p.damping + abs(slope) * load_bounds(p, s, 0.0, 0.0).most) / p.mass
-    pace = max(natural, swing) + 0.4 * min(natural, swing) + damping
+    load = load_bounds(p, s, 0.0, 0.0)
+    damping = 0.5 * (p.damping + abs(slope) * load.most) / p.mass
+    pace = max(natural, swing) + 0.4 * min(natural, swing) + damping + math.sqrt(abs(slope) * load.slope / p.mass)
     if s.mode == YIELDING and p.contact_damping > 0.0:
         pace = max(pace, p.contact_stiffness / p.contact_damping)
     if pace > 0.0:
@@ -169,19 +168,6 @@ def _velocity_scale(s: State) -> float:
     for k in range(HIGHEST_ORDER + 1):
         total += abs(s.series[k].u)
     return total
-
-
-@compiled
-def _shorten(s: State) -> float:
-    """Shorten the segment of the series; return the factor of the last order."""
-    fade = 1.0
-    for k in range(HIGHEST_ORDER + 1):
-        s.series[k].u *= fade
-        s.scratch[k].n *= fade
-        s.scratch[k].tail *= fade
-        if k < HIGHEST_ORDER:
-            fade *= _SHORTER
-    return fade
 
 
 @compiled

@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable
 
 import pytest
-from stickslip_sim.solvers.adaptive.first_root import SAMPLED_AT, first_root
 
 from stickslip_sim.axis import Axis, Friction, InitialState, RigidContact
 from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant, table
@@ -17,6 +16,7 @@ from stickslip_sim.runs import simulate, simulate_events
 from stickslip_sim.runs.error_estimate import error_estimate
 from stickslip_sim.simulation.simulator import Simulator
 from stickslip_sim.solvers import adaptive
+from stickslip_sim.solvers.adaptive.first_fall import SAMPLED_AT, first_fall
 from tests.support.axes import instant
 
 SWAY = InputProfile((0.0,), (0.0,), (0.0,), math.inf, (Sinusoid(6.0, 1.5, 0.4),))
@@ -119,4 +119,4 @@ def test_a_guard_that_comes_and_goes_is_found(place: float, depth: float) -> Non
 
 def root_of(guard: Callable[[float], float], begin: float, end: float) -> float | None:
     samples = [guard(begin + (end - begin) * float(share)) for share in SAMPLED_AT]
-    return first_root(guard, begin, end, samples, 1e-15)
+    return first_fall(guard, begin, end, samples, 1e-15)

@@ -63,7 +63,7 @@ def forced_event(p: Parameters, s: State, due: float) -> None:
         _set_event(s, 0.0, passed_kind(p, s))
         return
     t = before = s.next.progress
-    value_before = 0.0
+    value_before, rose = 0.0, False
     for _ in range(_STEPS):
         s.iterations += 1.0
         now = read_signal(p, s, osc, signal, t)
@@ -80,19 +80,22 @@ def forced_event(p: Parameters, s: State, due: float) -> None:
                 return
             if leap > 0.0:
                 t += leap
-                before, value_before = t, 0.0
+                before, value_before, rose = t, 0.0, False
                 continue
         guard = guard_at(p, now, limits, rounding, signal.fastest)
         high = _root_at_last(p, s, guard.value, guard.fall, guard.swing, guard.noise, t)
         if high <= t + min(now.reach, limits.reach) and high < math.inf:
             low = before if guard.value <= 0.0 else t
             hovered = guard.value <= 0.0 and value_before <= 0.0
-            root = before if hovered else _root(p, s, osc, signal, guard.side, 0.0, low, low, high)
+            if hovered and not rose:
+                root = before
+            else:
+                root = _root(p, s, osc, signal, guard.side, 0.0, high if hovered else low, low, high)
             _conclude(p, s, osc, signal, slips, guard.side, gap, low, root)
             return
         if _is_searched(s, t, t if slips else t + guard.exact, due, last):
             return
-        before, value_before = t, guard.value
+        before, value_before, rose = t, guard.value, guard.fall > 0.0
         t += max(guard.step, 4.0 * EPSILON * t)
     s.next.time = GAVE_UP
 
