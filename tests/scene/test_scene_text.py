@@ -4,6 +4,7 @@
 
 import math
 from dataclasses import replace
+from itertools import pairwise
 
 import pytest
 from hypothesis import given, settings
@@ -24,7 +25,7 @@ signed = st.floats(-1e6, 1e6).filter(lambda x: x == 0.0 or abs(x) > 1e-300)
 words = st.text(st.characters(categories=['L', 'N', 'P', 'S', 'Zs']), max_size=40).filter(str.isprintable)
 breakpoints = st.lists(st.floats(1e-9, 1e6), max_size=4, unique_by=lambda speed: round(1e6 * math.log(speed))).map(
     lambda speeds: [0.0, *sorted(speeds)]).filter(   # nearer ones are refused
-        lambda speeds: all(after - before > 1e-7 * after for before, after in zip(speeds, speeds[1:])))
+        lambda speeds: all(after - before > 1e-7 * after for before, after in pairwise(speeds)))
 
 
 @st.composite
