@@ -43,10 +43,10 @@ extremes: tools  ## what breaks other simulators, measured beside its mark (minu
 bench: build  ## measure every solver beside its peers, and the loop of the node; writes docs/ (25 minutes)
 	@ros2_ws/bootstrap --bench
 	@$(HERE) python3 -m stickslip_sim bench --out runs/bench
-	@$(HERE) --own-domain python3 benchmarks/tick.py --json runs/bench/bench.json
+	@$(HERE) --own-domain --shared-memory python3 benchmarks/tick.py --json runs/bench/bench.json
 	@$(HERE) python3 -m benchmarks.accuracy runs/bench
-	@$(HERE) --own-domain python3 benchmarks/loop.py
-	@$(HERE) --own-domain python3 -m benchmarks.budget
+	@$(HERE) --own-domain --shared-memory python3 benchmarks/loop.py
+	@$(HERE) --own-domain --shared-memory python3 -m benchmarks.budget
 	@$(HERE) python3 -m benchmarks.paper
 	@$(HERE) python3 -m benchmarks.controllers
 
@@ -54,10 +54,10 @@ identify: build  ## what stickslip identify finds on 100 axes whose truth is kno
 	@OPENBLAS_NUM_THREADS=1 $(HERE) python3 -m benchmarks.identify
 
 hil: build  ## the node with a controller beside it: against a bare rclpy node, and the highest rate; writes docs/
-	@$(HERE) --own-domain python3 -m benchmarks.hil
+	@$(HERE) --own-domain --shared-memory python3 -m benchmarks.hil
 
 soak: build  ## the node, recording, with a controller beside it for MINUTES=10; writes docs/, fails when a limit is missed
-	@$(HERE) --own-domain python3 -m benchmarks.soak --minutes $(MINUTES)
+	@$(HERE) --own-domain --shared-memory python3 -m benchmarks.soak --minutes $(MINUTES)
 
 fuzz: tools  ## made-up files and runs for MINUTES=10; fails when one is not read or refused in one line, or runs wrong
 	@$(HERE) python3 -m tests.fuzz --minutes $(MINUTES)
@@ -73,7 +73,7 @@ docs: tools  ## the pages in docs/ as a site in runs/docs/
 
 clean:  ## remove everything that was set up, built or cached in this tree
 	rm -rf ros2_ws/{.venv,build,install,log} runs .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
-	rm -rf stickslip_sim/build stickslip_sim/stickslip_sim/_hot.* stickslip_sim/stickslip_sim/_text.*
+	rm -rf stickslip_sim/build stickslip_sim/stickslip_sim/_hot.* stickslip_sim/stickslip_sim/_{text,standstill}.*
 	find . -name __pycache__ -prune -exec rm -rf {} +
 
 .PHONY: tools

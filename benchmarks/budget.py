@@ -28,6 +28,7 @@ from rclpy.signals import SignalHandlerOptions
 from stickslip_sim.ros.node.feed_axis import FeedAxis
 from stickslip_sim.ros.node.parameters import FileParameters
 from stickslip_sim.ros.process.program import SWITCH_INTERVAL, spin
+from stickslip_sim.ros.process.standstill import Standstill
 from stickslip_sim.ros.process.stop_signals import Signals
 
 from .hil.process import SCENE
@@ -117,6 +118,7 @@ def measure(options: argparse.Namespace, folder: Path) -> Ring:
                      f'scene:={SCENE}', '-p', 'record.enabled:=true', '-p', f'record.folder:={folder}', '-p',
                      f'thread_priority:={options.priority}'], signal_handler_options=SignalHandlerOptions.NO)
     signals, ring = Signals(), Ring()
+    signals.standstill = Standstill('budget')
     node = FeedAxis(FileParameters('', {}, {}), lambda: signals.stop)
     instrument(node, ring)
     controller = subprocess.Popen([sys.executable, '-m', 'benchmarks.hil.controller', '--pid', str(os.getpid()),

@@ -24,16 +24,19 @@ FLAGS = ['-O3', '-g0', '-ffp-contract=off', '-fno-math-errno', '-fno-trapping-ma
          '--param', 'inline-unit-growth=200', '--param', 'large-function-growth=1000']
 
 
-_TEXT = 'text.pyx'   # needs a compiler of C++ that knows std::to_chars of floats; without one Python writes the numbers
+# What the package also runs without.  `text` needs a compiler of C++ that knows std::to_chars of floats; else Python
+# writes the numbers.
+_OTHERS = {'_text': 'text.pyx', '_standstill': 'standstill.pyx'}
 
 
 def extensions() -> list[Extension]:
-    """Return the extension modules, written when they are built: the unit, and text; none on STICKSLIP_COMPILED=0."""
+    """Return the extension modules, written when they are built; none on STICKSLIP_COMPILED=0."""
     if os.environ.get(SWITCH) == '0':
         return []
     return [Extension(f'{PACKAGE}._hot', [], extra_compile_args=FLAGS),
             Extension(f'{PACKAGE}._text', [], extra_compile_args=['-O2', '-g0', '-std=c++17'], language='c++',
-                      optional=True)]
+                      optional=True),
+            Extension(f'{PACKAGE}._standstill', [], extra_compile_args=['-O2', '-g0'], optional=True)]
 
 
 class BuildUnit(build_ext):  # type: ignore[misc]
@@ -43,8 +46,9 @@ class BuildUnit(build_ext):  # type: ignore[misc]
         """Write the unit and build it; raises SetupError, one line that says what to install or to change."""
         _require_cython()
         _require_compiler(self.compiler.compiler_so[0])
-        source = Path(self.build_temp) / f'{ext.name.rpartition(".")[2]}.pyx'
-        text = _text_of(ext)
+        name = ext.name.rpartition('.')[2]
+        source = Path(self.build_temp) / f'{name}.pyx'
+        text = _text_of(name)
         if not source.is_file() or source.read_text(encoding='utf-8') != text:
             source.parent.mkdir(parents=True, exist_ok=True)
             source.write_text(text, encoding='utf-8')
@@ -52,10 +56,10 @@ class BuildUnit(build_ext):  # type: ignore[misc]
         super().build_extension(ext)
 
 
-def _text_of(ext: Extension) -> str:
+def _text_of(name: str) -> str:
     """Return the text of an extension in Cython; raises SetupError."""
-    if ext.optional:
-        return (Path(__file__).parent / _TEXT).read_text(encoding='utf-8')
+    if name in _OTHERS:
+        return (Path(__file__).parent / _OTHERS[name]).read_text(encoding='utf-8')
     try:
         return write_unit(Path(__file__).resolve().parents[1] / PACKAGE)
     except UnitError as error:

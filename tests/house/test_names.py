@@ -32,6 +32,9 @@ SAME_NAMES: Mapping[str, Names] = {
         'State': ('axis/state_record.py', 'reference/flow.py'),
         'StaticLaw': ('friction/static.py', 'reference/statics.py'),
     },
+    'what type checkers take for true, where `typing` is not to be imported': {
+        'TYPE_CHECKING': ('__init__.py', 'ros/process/stop_signals.py'),
+    },
     'the same thing, written again for the rivals of the race, which Numba compiles': {
         'ACCELERATING': ('axis/codes.py', 'bench/peers/automaton.py'),
         'ARREST': ('axis/codes.py', 'bench/peers/resets.py'),

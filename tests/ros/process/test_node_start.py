@@ -65,6 +65,7 @@ class TestRefusedStart:
     ])
     def test_environment(self, monkeypatch: pytest.MonkeyPatch, name: str, value: str, reported: str) -> None:
         program = executable('sim_node')
+        monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')    # that has peers
         monkeypatch.setenv(name, value)
         code, errors = run(program)
         assert (code, len(errors.splitlines())) == (2, 1), errors

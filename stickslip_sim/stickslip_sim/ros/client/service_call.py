@@ -5,7 +5,7 @@
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from typing import Any
 
 import rclpy
@@ -24,6 +24,7 @@ from stickslip_msgs.srv import InjectFault, Step
 
 from ...core.errors import InputError, StickslipError
 from ..process.environment import refusing, variables
+from ..process.standstill import Standstill
 
 _SET = 'set_parameters_atomically'
 _TYPES = {'record': SetBool, 'set_paused': SetBool, 'reset': Trigger, 'clear_faults': Trigger, 'step': Step,
@@ -137,13 +138,15 @@ def _counted_answers(client: Client) -> Counter[int]:
 def _session() -> Iterator[_Session]:
     """Make a session in a ROS of its own, which hears no signals; raises InputError when ROS cannot start."""
     context = Context()
-    set_logger_level('rcl', LoggingSeverity.FATAL)    # it would say half of what is refused in a line of its own
-    with refusing('ROS environment', variables()):
-        rclpy.init(args=[], context=context, signal_handler_options=SignalHandlerOptions.NO)
-        session = _Session(context)
-    set_logger_level('rcl', LoggingSeverity.UNSET)
-    try:
-        yield session
-    finally:
-        session.close()
-        context.try_shutdown()
+    with closing(Standstill('stickslip call')) as standstill:
+        set_logger_level('rcl', LoggingSeverity.FATAL)    # it would say half of what is refused in a line of its own
+        with refusing('ROS environment', variables()):
+            rclpy.init(args=[], context=context, signal_handler_options=SignalHandlerOptions.NO)
+            session = _Session(context)
+        set_logger_level('rcl', LoggingSeverity.UNSET)
+        standstill.is_up()
+        try:
+            yield session
+        finally:
+            session.close()
+            context.try_shutdown()

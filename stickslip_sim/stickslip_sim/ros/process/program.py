@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The process around a node, from its arguments to the exit code."""
 
-import faulthandler
 import gc
 import sys
 from collections.abc import Callable, Sequence
@@ -13,7 +12,6 @@ if TYPE_CHECKING:
     from .stop_signals import Signals
 
 _POLL = 0.1                # s: how soon a signal is acted on
-_END = 10.0               # s that the middleware may take to end; then the process does, with the stacks of its threads
 SWITCH_INTERVAL = 5e-5    # s that another thread may keep the interpreter from a step loop (the default is 5 ms)
 
 
@@ -30,8 +28,10 @@ def live(args: Sequence[str], signals: 'Signals', program: Program) -> int:
     """Bring a node up and down; return the exit code.  ROS is imported in here, where errors are met."""
     from ...core.errors import StickslipError, internal_error
     from .environment import check_environment
+    from .standstill import Standstill
 
     sys.setswitchinterval(SWITCH_INTERVAL)
+    signals.standstill = Standstill(program.name)
     gc.disable()     # up to `spin`: what a start makes stays, and looking through it time and again is a tenth of it
     try:
         check_environment()
@@ -44,6 +44,7 @@ def live(args: Sequence[str], signals: 'Signals', program: Program) -> int:
     finally:
         gc.enable()
         signals.ignore()
+        signals.standstill.close()
 
 
 def spin(node: Any, signals: 'Signals', is_over: Callable[[], bool] = lambda: False,
@@ -54,6 +55,7 @@ def spin(node: Any, signals: 'Signals', is_over: Callable[[], bool] = lambda: Fa
     gc.enable()
     try:
         signals.is_starting = False
+        signals.standstill.is_up()
         if not signals.stop:
             node.begin()
         while not signals.stop and not is_over():
@@ -61,8 +63,7 @@ def spin(node: Any, signals: 'Signals', is_over: Callable[[], bool] = lambda: Fa
             look()
     finally:
         node.end()
-        # with exit code 1, also where the middleware keeps the interpreter: one of Fast DDS that waits for a lock, say
-        faulthandler.dump_traceback_later(_END, exit=True, file=2)
+        signals.standstill.last()
         executor.shutdown()      # lets go of what still arrives; removing the node would do so with the next spin only
         node.destroy_node()
 

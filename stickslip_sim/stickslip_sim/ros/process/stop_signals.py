@@ -5,9 +5,18 @@
 import os
 import signal
 
+TYPE_CHECKING = False    # as in the package: `typing` is not imported before it is needed
+if TYPE_CHECKING:
+    from .standstill import Standstill
+
 
 class Signals:
-    """Takes SIGINT and SIGTERM: they cut the start short, and end the run at the next look at `stop`."""
+    """Takes SIGINT and SIGTERM: they cut the start short, and end the run at the next look at `stop`.
+
+    Where no handler of a signal can run any more, `standstill` ends the process.
+    """
+
+    standstill: 'Standstill'
 
     def __init__(self) -> None:
         self.stop = False

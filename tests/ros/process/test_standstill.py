@@ -1,0 +1,180 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""A process that stands still in the middleware ends; where Fast DDS uses no shared memory, it does not."""
+
+import ctypes
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from stickslip_sim.core.errors import RecordingWarning
+from stickslip_sim.recording import open_bag
+from tests.support.tool import restore_interrupt, tool
+from tests.support.waiting import wait_for
+
+from tests.support.node_processes import NodeProcess, recording_into, running  # isort: skip  # skips without ROS
+from tests.support.ros_nodes import client  # isort: skip
+
+pytestmark = pytest.mark.ros
+
+MEMORY = Path('/dev/shm')
+PREFIX = 'fastrtps' if os.environ.get('ROS_DISTRO') == 'jazzy' else 'fastdds'
+PARTICIPANTS = 10
+LISTENER = """
+import rclpy
+from stickslip_msgs.msg import SliderState
+rclpy.init()
+node = rclpy.create_node('listener')
+node.create_subscription(SliderState, 'slider_state', lambda state: None, 10)
+rclpy.spin(node)
+"""
+
+
+def never_destroyed(*_: object) -> None:
+    ctypes.PyDLL(None).pause()    # like a lock of Fast DDS: it keeps the interpreter
+
+
+def impatient() -> None:
+    """For `prepare`."""
+    from stickslip_sim.ros.process import standstill
+
+    restore_interrupt()
+    standstill.GRACE = 1.0
+
+
+def with_a_middleware_that_does_not_end() -> None:
+    """For `prepare`."""
+    from rclpy.node import Node
+
+    impatient()
+    Node.destroy_node = never_destroyed
+
+
+def with_nothing_compiled_that_ends_it() -> None:
+    """For `prepare`."""
+    with_a_middleware_that_does_not_end()
+    sys.modules['stickslip_sim._standstill'] = None    # type: ignore[assignment]
+
+
+@pytest.fixture
+def shared_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let programs use it, as ROS 2 does by itself."""
+    monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
+    for name in ('FASTRTPS', 'FASTDDS'):
+        monkeypatch.delenv(f'{name}_DEFAULT_PROFILES_FILE', raising=False)
+
+
+def ports() -> dict[int, Path]:
+    """Return the files in which programs of this domain hear in shared memory, by the number of the program."""
+    base = 7411 + 250 * int(os.environ['ROS_DOMAIN_ID'])
+    return {number: MEMORY / f'{PREFIX}_port{base + 2 * number}' for number in range(PARTICIPANTS)}
+
+
+@pytest.fixture
+def half_made() -> Iterator[Callable[[Path], None]]:
+    """What makes a port as a program leaves it that is killed when it has made the file and nothing in it."""
+    made: list[Path] = []
+
+    def make(port: Path) -> None:
+        made.append(port)
+        Path(f'{port}_el').unlink(missing_ok=True)    # a lock of one that is gone: Fast DDS would make the port anew
+        new = port.with_name(f'new_{port.name}')
+        new.touch()
+        new.rename(port)
+
+    yield make
+    for port in made:
+        for path in (port, Path(f'{port}_el'), port.with_name(f'sem.{port.name}_mutex')):
+            path.unlink(missing_ok=True)
+
+
+def open_ports(process: NodeProcess) -> set[Path]:
+    """Return those of this domain that a program hears in, or writes into."""
+    maps = Path(f'/proc/{process.pid}/maps').read_text()
+    return {port for port in ports().values() if f'{port}\n' in maps}
+
+
+@pytest.mark.usefixtures('shared_memory')
+class TestWithSharedMemory:
+    def test_a_start_ends_with_what_to_remove(self, half_made: Callable[[Path], None]) -> None:
+        for port in ports().values():
+            half_made(port)
+        with running(prepare=impatient) as process:
+            code, errors = process.wait()
+        line, stacks = errors.split('\n', 1)
+        assert code == 2
+        assert line.startswith('sim_node: ROS does not come up: a call has not come back for 1 s; ')
+        assert f'rm {ports()[0]} ' in f'{line} '
+        assert 'feed_axis.py' in stacks
+
+    def test_so_does_a_call(self, half_made: Callable[[Path], None]) -> None:
+        for port in ports().values():
+            half_made(port)
+        done = tool('call', 'pause')
+        assert done.returncode == 2
+        assert done.stderr.startswith('stickslip call: ROS does not come up: ')
+
+    def test_a_publish_to_a_program_that_was_killed_ends_the_node_and_keeps_the_bag(
+            self, half_made: Callable[[Path], None], tmp_path: Path) -> None:
+        bag = tmp_path / 'run'
+        with running(*recording_into(bag), prepare=impatient) as node:
+            own = wait_for(lambda: open_ports(node), 'the node')
+            peer = subprocess.Popen([sys.executable, '-c', LISTENER], preexec_fn=restore_interrupt)
+            theirs = wait_for(lambda: open_ports(node) - own, 'states for the listener')
+            time.sleep(1.0)    # of the run, of which the bag has all but the last second
+            peer.kill()
+            peer.wait()
+            for port in theirs:
+                half_made(port)
+            code, errors = node.wait()
+        assert code == 1
+        assert errors.count('sim_node: stands still: a call has not come back for 1 s; ') == 1
+        assert 'publish' in errors
+        with pytest.warns(RecordingWarning, match='has no end'):
+            assert len(open_bag(bag).columns('slider_state')['position']) > 100
+
+
+def test_without_shared_memory_a_half_made_port_is_nothing(half_made: Callable[[Path], None]) -> None:
+    """As `make run` and `make test` have it."""
+    for port in ports().values():
+        half_made(port)
+    with running(prepare=impatient) as process, client() as axis:
+        axis.connect()
+        maps = Path(f'/proc/{process.pid}/maps').read_text()
+        code, errors = process.end()
+    assert code == 0, errors
+    assert f'{MEMORY}/fast' not in maps
+
+
+def test_time_in_which_a_node_is_stopped_does_not_count() -> None:
+    with running(prepare=impatient) as process, client() as axis:
+        axis.connect()
+        process.send(signal.SIGSTOP)
+        time.sleep(2.5)
+        process.send(signal.SIGCONT)
+        axis.next('slider_state')
+        time.sleep(1.5)
+        code, errors = process.end()
+    assert code == 0, errors
+
+
+@pytest.mark.parametrize(('prepare', 'reported'), [
+    (with_a_middleware_that_does_not_end, 'sim_node: stands still: '),
+    (with_nothing_compiled_that_ends_it, 'Timeout (0:00:01)!'),
+], ids=['compiled', 'plain'])
+def test_a_node_ends_whose_middleware_does_not(prepare: Callable[[], None], reported: str, tmp_path: Path) -> None:
+    bag = tmp_path / 'run'
+    with running(*recording_into(bag), prepare=prepare) as process:
+        with client() as axis:
+            axis.connect()
+        code, errors = process.end()
+    assert code == 1
+    assert reported in errors
+    assert 'in never_destroyed' in errors
+    assert open_bag(bag).is_complete
