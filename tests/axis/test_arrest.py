@@ -6,12 +6,14 @@ from dataclasses import replace
 
 import pytest
 
+from stickslip_sim.axis import RigidContact
 from stickslip_sim.axis.codes import ACCELERATING, ARREST, DECELERATING, REVERSE, STICK
 from stickslip_sim.axis.forces import applied_force
 from stickslip_sim.axis.layout import Parameters
 from stickslip_sim.axis.rows import EventRow, Events
 from stickslip_sim.axis.state_record import State
-from stickslip_sim.axis.transitions import arrest
+from stickslip_sim.axis.transitions import apply_inputs, arrest
+from tests.support.axes import Contact
 from tests.support.plain_axes import COMPLIANT, CONVENTIONAL, FRICTION, SIDED, STATIC, parameters, slip, state
 
 both_ways = pytest.mark.parametrize('direction', [1.0, -1.0])
@@ -94,6 +96,30 @@ def test_a_contact_that_holds_nothing_is_at_rest_under_no_force_but_rounding(for
     s = state(mode=DECELERATING, direction=1.0, spring=0.0625, f=force - 0.0625 * p.stiffness)
     assert applied_force(p, s) == force
     assert (arrested(p, s).kind, s.mode, s.acceleration) == (ARREST, STICK, 0.0)
+
+
+@pytest.mark.parametrize('contact', [RigidContact(), COMPLIANT, replace(COMPLIANT, ends_by_drive=True)],
+                         ids=['rigid', 'contact_force', 'drive_force'])
+@both_ways
+def test_a_free_swing_dies_out_in_the_rounding_of_its_largest_force(contact: Contact, direction: float) -> None:
+    """Nothing holds the slider: 8 N turned it, so that it rests at 8 N · 2⁻⁴⁹, and is turned by more."""
+    p = parameters(contact=contact, normal_force=0.0)
+    for force, rests in ((8.0, False), (2.0 ** -45, False), (2.0 ** -46, True), (0.0, True)):
+        s = slip(p, DECELERATING, 0.0, direction=direction, push=-force, swing=8.0 if force < 8.0 else 0.0)
+        row = arrested(p, s)
+        turned = s.acceleration == -direction * force / 2.0 and force > 0.0
+        assert turned is not rests
+        assert (row.kind == ARREST or not rests, s.swing) == (True, 8.0)
+        if rests:   # and stays so under inputs that are no others
+            assert (s.mode, apply_inputs(p, s, Events(1), 0), s.acceleration) == (STICK, False, 0.0)
+
+
+@pytest.mark.parametrize('contact', [RigidContact(), COMPLIANT, replace(COMPLIANT, ends_by_drive=True)])
+def test_a_swing_is_forgotten_where_something_holds(contact: Contact) -> None:
+    p = parameters(contact=contact)
+    s = slip(p, DECELERATING, 0.0, push=-4.0, swing=8.0)
+    arrested(p, s)
+    assert s.swing == 0.0
 
 
 def test_what_rounding_left_of_the_speed_is_gone() -> None:

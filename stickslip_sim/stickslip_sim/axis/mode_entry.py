@@ -106,7 +106,7 @@ def break_away(p: Parameters, s: State, direction: float, limit: float, margin: 
 def rest(p: Parameters, s: State) -> None:
     """Begin to stick at standstill.
 
-    A contact that holds nothing and ends by the drive force ends by no force within rounding of 0: it does not move.
+    A contact that holds nothing does not move under a force within rounding of 0 (`unbalanced`).
     """
     s.mode = STICK
     s.rest = 0.0
@@ -116,10 +116,31 @@ def rest(p: Parameters, s: State) -> None:
     if p.compliant != 0.0:
         friction = s.direction * p.normal_force * kinetic_at_rest(p, s.direction) * p.arrest_share
         s.deflection = friction / p.contact_stiffness
-        residual = applied_force(p, s) - friction
-        if p.ends_by_drive == 0.0 or not holds_nothing(p) or abs(residual) > force_rounding(p, s, 0.0):
-            s.acceleration = residual / p.mass
+        s.acceleration = unbalanced(p, s, friction) / p.mass
     s.direction = 0.0
+
+
+@inlined
+def unbalanced(p: Parameters, s: State, held: float) -> float:
+    """Return F_d + F_e − F_c in compliant stick, which is 0 where nothing is held and it is no more than rounding."""
+    residual = applied_force(p, s) - held
+    if not holds_nothing(p) or s.velocity != 0.0:
+        return residual
+    rounding = limit_rounding(p, s, 0.0) if p.ends_by_drive != 0.0 else ROUNDING * s.swing
+    return 0.0 if abs(residual) <= rounding else residual
+
+
+@inlined
+def note_swing(p: Parameters, s: State) -> None:
+    """Keep, at a standstill, the largest force on a slider that nothing holds: of its rounding the swing dies out."""
+    s.swing = max(s.swing, abs(applied_force(p, s))) if holds_nothing(p) else 0.0
+
+
+@inlined
+def limit_rounding(p: Parameters, s: State, limit: float) -> float:
+    """Return the rounding of a force beside N mu_s = N `limit`: where nothing is held, that of the swing, too."""
+    rounding = force_rounding(p, s, limit)
+    return max(rounding, ROUNDING * s.swing) if holds_nothing(p) else rounding
 
 
 @inlined

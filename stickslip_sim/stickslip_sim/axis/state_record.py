@@ -191,6 +191,7 @@ class State:
     is_loaded: float          # 1 where the normal force varies smoothly from the segment start on
     series_end: float         # s, H of the series below
     series_error: float       # m/s, bound on what their velocity is off by within H, see `axis.slip_series`
+    swing: float              # N, the largest force at a standstill since N mu_s was last more than 0
     # of the axis
     inputs: InputsRecord
     oscillator: OscillatorRecord   # of the mode

@@ -37,7 +37,18 @@ from .forces import (
 )
 from .friction_segments import breakpoint_speed, friction_line, kinetic_at_rest, segment_above
 from .layout import Parameters
-from .mode_entry import begin_yielding, break_away, choose_slip, enter_branch, keeps_yielding, rest, yields
+from .mode_entry import (
+    begin_yielding,
+    break_away,
+    choose_slip,
+    enter_branch,
+    keeps_yielding,
+    limit_rounding,
+    note_swing,
+    rest,
+    unbalanced,
+    yields,
+)
 from .rows import Events
 from .state_record import State
 from .static_limits import static_at_once, static_limit
@@ -73,12 +84,13 @@ def arrest(p: Parameters, s: State, events: Events, row: int) -> None:
         _hold_again(p, s, events, row)
         return
     s.velocity = 0.0
+    note_swing(p, s)
     friction = s.direction * p.normal_force * kinetic_at_rest(p, s.direction)
     force = applied_force(p, s)
     direction = 1.0 if force > 0.0 else -1.0
     limit = static_at_once(p, direction)
     margin = abs(force) - p.normal_force * limit
-    if holds_by_drive(p) and margin > force_rounding(p, s, limit):
+    if holds_by_drive(p) and margin > limit_rounding(p, s, limit):
         write_event(p, s, events, row, REVERSE, direction, friction, limit)
         break_away(p, s, direction, limit, margin)
     else:
@@ -244,11 +256,11 @@ def apply_inputs(p: Parameters, s: State, events: Events, row: int) -> bool:
 def _press_stick(p: Parameters, s: State, events: Events, row: int) -> bool:
     force = stick_force(p, s)
     if p.compliant != 0.0:
-        s.acceleration = (applied_force(p, s) - contact_force(p, s.deflection, s.velocity)) / p.mass
+        s.acceleration = unbalanced(p, s, contact_force(p, s.deflection, s.velocity)) / p.mass
     if abs(force) <= p.normal_force * static_at_once(p, force):
         return False
     limit = static_limit(p, s.rest, force)
-    if abs(force) - p.normal_force * limit <= force_rounding(p, s, limit):
+    if abs(force) - p.normal_force * limit <= limit_rounding(p, s, limit):
         return False
     release(p, s, events, row)
     return True

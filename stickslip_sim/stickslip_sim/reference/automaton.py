@@ -21,6 +21,7 @@ from .search import HOLDS, LIMIT, SPEED_DOWN, SPEED_UP, SURPLUS_UP, TURNS, Step,
 
 GUARD_DIGITS = 12
 UNSEEN_COAST = mpf(10) ** -15  # |R - B| against N mu_b after a compliant break-away
+DIED_OUT = mpf(2) ** -49  # of the largest force that turned a slider which nothing holds: at less it rests
 _MOST_EVENTS = 200_000
 _ZERO = mpf(0)
 
@@ -41,6 +42,7 @@ class _Automaton:
         self.t = mpf(0)
         self.state = State(axis.stretch, axis.velocity, axis.deflection, axis.position, *self._signals())
         self.mode: Mode = Stick(self.t, axis.rest_time)
+        self.swing = mpf(0)
         self.flow: Flow
 
     def run(self) -> Run:
@@ -90,6 +92,8 @@ class _Automaton:
                 self._change_phase(phase)
         elif isinstance(self.mode, Yield) and not self.axis.contact_damping:
             self._follow_limit(self.mode)
+        elif isinstance(self.mode, Stick) and self.mode.still:
+            self.mode = replace(self.mode, still=self._died_out())
         self.flow = self.physics.flow(self.mode)
 
     # ---- transitions --------------------------------------------------------------------------
@@ -236,15 +240,23 @@ class _Automaton:
         back = self.physics.side(-sigma)
         static = back.static.value(mpf(0))
         friction = sigma * self.state.normal.value * self.physics.side(sigma).at_rest
-        if self.axis.by_drive and self._pulled_back(sigma, static):
+        still = self._died_out()
+        self.swing = max(self.swing, abs(self.physics.net_force(self.state))) if self.physics.holds_nothing(
+            self.state) else mpf(0)
+        if self.axis.by_drive and not still and self._pulled_back(sigma, static):
             self._enter_slip(-sigma, back.excess_at(static, mpf(0)))
             self._emit('reverse', -sigma, friction)
             return
         if self.axis.contact == 'compliant':
             deflection = mpf(0) if self.axis.undeflected else friction / self.axis.contact_stiffness
             self.state = self.state._replace(deflection=deflection)
-        self.mode = Stick(self.t, mpf(0))
+        self.mode = Stick(self.t, mpf(0), still)
         self._emit('stick', sigma, friction)
+
+    def _died_out(self) -> bool:
+        """Return whether nothing holds the slider, and the force is rounding of the largest that ever turned it."""
+        force = abs(self.physics.net_force(self.state))
+        return self.physics.holds_nothing(self.state) and bool(force <= DIED_OUT * self.swing)
 
     def _pulled_back(self, sigma: int, static: mpf) -> bool:
         excess = -sigma * self.physics.net_force(self.state) - self.state.normal.value * static

@@ -15,10 +15,11 @@ ACCELERATE, COAST, DECELERATE = 'accelerate', 'coast', 'decelerate'
 
 @dataclass(frozen=True)
 class Stick:
-    """Rest since an instant, entered with an age of the contact (0 after a slip)."""
+    """Rest since an instant, entered with an age of the contact (0 after a slip); ``still``: a swing that died out."""
 
     since: mpf
     age: mpf
+    still: bool = False
 
     def rest_time(self, t: mpf) -> mpf:
         """Return the age of the contact at an instant."""

@@ -106,6 +106,10 @@ class Physics:
         """Return the rounding that the velocity may have gathered."""
         return self.force_rounding(state) * self.time_scale(state) / self.axis.mass
 
+    def holds_nothing(self, state: State) -> bool:
+        """Return whether N mu_s is 0 at any rest time."""
+        return not any(state.normal.value * max(side.static.initial, side.static.limit) for side in self.sides)
+
     # ---- friction -------------------------------------------------------------------------------
 
     def side(self, direction: int) -> Side:

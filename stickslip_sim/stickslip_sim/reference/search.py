@@ -127,6 +127,8 @@ def stick_step(physics: Physics, stick: Stick, flow: Flow, state: State, t: mpf,
     laws = [side.static for side in physics.sides]
     lowest, span = [to_decimal(law.value(age)) for law in laws], min(law.span(age) for law in laws)
     if not any(normal):
+        if stick.still and not state.drive.value and state.drive.is_constant and state.force.is_constant:
+            return Step(h, Place(*state[:4]), None)
         return _out(state, flow, series, h, _unheld(physics, state, force))
     scale, time = physics.force_scale(state), _time_scale(flow, state, h)
     rounding = physics.force_rounding(state) if physics.axis.by_drive else summed_rounding(scale)

@@ -17,6 +17,7 @@ enum { LEVELS = 5, SMALLEST = 24, SEARCHES = 120, AT_ONE_INSTANT = 40, MOST_STEP
 static const R PI = 3.14159265358979323846264338327950288L;
 static const R NOTHING = 1e-15L;    /* of a scale: as good as zero */
 static const R GRAZE = 1e-9L;       /* of a scale: too near to a graze to be sure */
+static const R FADED = 1e-12L;      /* of a swing that nothing holds: soon it is said to have died out */
 
 typedef struct {
     int pieces, sinusoids;
@@ -53,6 +54,7 @@ typedef struct {
     int doubtful;
     Row *rows;
     int count, most;
+    R swing;                           /* the largest force that turned the slider since something held it */
 } Axis;
 
 static R input(const Profile *f, int piece, R t) {
@@ -266,6 +268,13 @@ static void arrest(Axis *a) {
     int back = -a->direction;
     R normal = normal_at(a, a->t), holds = normal * static_coefficient(side_of(a, back), 0);
     a->y.u = 0;
+    if (normal == 0) {
+        R force = fabsl(net_force(a, a->t, &a->y));
+        if (force < FADED * a->swing) a->doubtful = 1;
+        a->swing = fmaxl(a->swing, force);
+    } else {
+        a->swing = 0;
+    }
     if (a->p->by_drive) {
         R beyond = back * net_force(a, a->t, &a->y) - holds;
         if (fabsl(beyond) < GRAZE * force_scale(a, a->t, &a->y)) a->doubtful = 1;

@@ -17,7 +17,7 @@ from stickslip_sim.compare.statement import StatementOutcome
 from stickslip_sim.compare.statements import findings_on
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant, steps
-from stickslip_sim.core.types import Event, EventKind
+from stickslip_sim.core.types import Event, EventKind, Mode
 from stickslip_sim.extremes.shared_axes import random_profiles, with_static
 from stickslip_sim.friction import StaticLawKind
 from stickslip_sim.inputs import load_scene
@@ -243,3 +243,40 @@ def test_a_lifted_slider_comes_to_rest_before_a_standing_drive() -> None:
         sample = simulator.sample()
         assert sample.position == pytest.approx(pull / stiffness, rel=1e-12)
         assert abs(sample.velocity) < 1e-12 * abs(pull) / damping
+
+
+CLOSURES: list[Contact] = [RIGID, COMPLIANT, replace(COMPLIANT, damping=0.0),
+                           replace(COMPLIANT, ends_by_drive=True, undeflected=True)]
+
+
+def lifted(contact: Contact, damping: float) -> Axis:
+    return replace(paper_axis(contact), drive_damping=damping, normal_force=0.0)
+
+
+@pytest.mark.parametrize('contact', CLOSURES, ids=['rigid', 'contact_force', 'undamped', 'drive_force'])
+@pytest.mark.parametrize('start', [InitialState(stretch=1e-3), InitialState(velocity=0.1),
+                                   InitialState(velocity=-0.1, stretch=1e-3, position=0.3)])
+@pytest.mark.parametrize('damping', [500.0, 4000.0, 24000.0])
+def test_a_free_swing_dies_out(damping: float, start: InitialState, contact: Contact) -> None:
+    """It ends at 2⁻⁴⁹ of the largest force that turned it, and not at 1e-320 N, where it contradicted itself."""
+    simulator = Simulator(lifted(contact, damping), start, constant(0.0), constant(0.0), accounting=True)
+    events = simulator.advance(instant(4000.0))
+    simulator.require_sound()
+    turns = [event for event in events if event.kind in (EventKind.STICK, EventKind.REVERSE)]
+    assert (turns[-1].mode, simulator.sample().mode, simulator.sample().velocity) == (Mode.STICK, Mode.STICK, 0.0)
+    largest = max(abs(event.drive_force) for event in turns)
+    assert abs(turns[-1].drive_force) <= largest * 2.0 ** -49
+    assert all(abs(event.drive_force) > largest * 2.0 ** -49 for event in turns[:-1])
+    simulator.command_force(1.0)
+    assert simulator.advance(instant(4001.0))   # a new force moves it
+
+
+@pytest.mark.parametrize('contact', CLOSURES, ids=['rigid', 'contact_force', 'undamped', 'drive_force'])
+def test_a_free_swing_dies_out_as_in_the_reference(contact: Contact) -> None:
+    axis, start = lifted(contact, 8000.0), InitialState(stretch=1e-3)
+    seen = run_events(axis, 0.0, 8.0, initial=start)
+    right = simulate_reference(axis, start, constant(0.0), constant(0.0), 8.0, digits=30).events
+    assert [(event.kind, event.mode, event.direction) for event in seen] == [
+        (event.kind, event.mode, event.direction) for event in right]
+    assert seen[-1].kind == EventKind.STICK
+    assert [event.time for event in seen] == pytest.approx([event.time for event in right], abs=1e-12)

@@ -69,7 +69,7 @@ def _holds(p: Parameters, s: State, t: float, spring: float, deflection: float, 
     held = drive_force(p, spring, v, u) + force
     limit = static_limit(p, rest, 1.0)
     top, bottom = p.normal_force * limit, p.normal_force * limit_backwards(p, rest, limit)
-    slack = ALLOWED * _forces(p, spring, v, u, force, max(top, bottom))
+    slack = ALLOWED * _forces(p, spring, v, u, force, max(top, bottom)) + _ROUNDING * s.swing
     if not holds_by_drive(p):   # what a stiff one does within the rounding of the time
         held = contact_force(p, deflection, u)
         slack += _TIME * t * (p.contact_stiffness * abs(u) + p.contact_damping * abs(a))

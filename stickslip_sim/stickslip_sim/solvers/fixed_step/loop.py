@@ -12,6 +12,7 @@ from ...axis.codes import ACCELERATE, ACCELERATING, COAST, COASTING, DECELERATE,
 from ...axis.forces import applied_force, drive_force, force_rounding, stick_force
 from ...axis.friction_segments import first_segment, friction_line
 from ...axis.layout import Parameters
+from ...axis.mode_entry import limit_rounding
 from ...axis.motion import yielded_deflection
 from ...axis.rows import Events, SampleRow, Sinusoids
 from ...axis.state_record import State
@@ -172,7 +173,7 @@ def _look_at_stick(p: Parameters, s: State, events: Events, row: int) -> int:
     force = stick_force(p, s)
     limit = static_limit(p, s.rest, force)
     margin = abs(force) - p.normal_force * limit
-    if margin <= 0.0 or margin <= force_rounding(p, s, limit):
+    if margin <= 0.0 or margin <= limit_rounding(p, s, limit):
         return row
     s.acceleration = (applied - friction_at(p, s, applied, s.velocity, s.deflection)) / p.mass
     release(p, s, events, row)
