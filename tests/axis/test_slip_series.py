@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from stickslip_sim.axis import Friction
+from stickslip_sim.axis import Friction, slip_series
 from stickslip_sim.axis.codes import ACCELERATING, DECELERATING, YIELDING
 from stickslip_sim.axis.friction_segments import kinetic_at_rest, slip_friction
 from stickslip_sim.axis.layout import Parameters
@@ -115,6 +115,36 @@ def test_the_error_of_a_series_is_below_its_bound(seed: int, mode: float) -> Non
     forces = p.stiffness * abs(s.spring) + p.damping * (abs(s.inputs.v) + scale) + abs(s.inputs.f) + p.normal_force
     size = scale + s.series_end / p.mass * (forces + 60.0) + abs(s.deflection) * 64.0
     assert s.series_error < 400.0 * EPSILON * size
+
+
+def shares_of_the_bound(mode: float) -> tuple[list[float], list[float]]:
+    """Return what the velocity, and the deflection, are off by at the ends of ten segments, of the bound.
+
+    The polynomials are evaluated without rounding.
+    """
+    found = []
+    for seed in range(10):
+        p, s = made_up(seed, mode)
+        with mpmath.workdps(34):
+            _, u, delta = Flow(p, s).after(s.series_end)
+            found.append((float(abs(sum(mpf(one.u) for one in s.series) - u) / s.series_error),
+                          float(abs(sum(mpf(one.deflection) for one in s.series) - delta)
+                                / (s.series_error * s.series_end))))
+    velocities, deflections = zip(*found)
+    return list(velocities), list(deflections)
+
+
+@pytest.mark.parametrize('mode', [DECELERATING, ACCELERATING, YIELDING])
+@pytest.mark.parametrize('theta', [slip_series._THETA, 5.0], ids=['rounding', 'truncation'])
+def test_a_thousandth_of_the_bound_would_be_none(theta: float, mode: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each part is needed: rounding in segments as they are, the orders left out in ones that are too long."""
+    monkeypatch.setattr(slip_series, '_THETA', theta)
+    if theta == 5.0:   # none is shortened
+        monkeypatch.setattr(slip_series, '_velocity_scale', lambda _: math.inf)
+    velocities, deflections = shares_of_the_bound(mode)
+    assert 1e-3 < max(velocities) <= 1.0
+    if mode == YIELDING:
+        assert 1e-4 < max(deflections) <= 1.0
 
 
 def test_the_normal_force_is_the_sum_of_its_parts() -> None:

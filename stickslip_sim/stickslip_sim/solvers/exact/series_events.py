@@ -9,7 +9,7 @@ least and the largest of which it stays:
 1. All above −δ: the guard falls nowhere below −δ in the interval.
 2. The last below −δ, and one change of sign (or none): exactly one root (Descartes' rule), found by Newton's step
    inside a bracket.
-3. Else the interval is halved, the left half first.
+3. Else the interval is halved, the left half first.  What follows on an interval that is clear is twice as long.
 
 A guard that begins at exactly 0, as the acceleration of a break-away does, is divided by τ.  In a slip the acceleration
 alone needs this: up to its root the speed is monotone, so that its value there shows whether a breakpoint, or
@@ -141,7 +141,7 @@ def _first_root(s: State, degree: int) -> float:
         if least > -slack:
             if high == 1.0:
                 return math.inf
-            low, high = high, min(2.0 * high - low, 1.0)
+            low, high = high, min(high + 2.0 * (high - low), 1.0)
         elif last < -slack and changes <= 1:
             return _root(s, first, degree, low, high)
         else:
