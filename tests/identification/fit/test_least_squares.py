@@ -8,7 +8,7 @@ from scipy.optimize import lsq_linear
 
 from stickslip_sim.core.arrays import Numbers
 from stickslip_sim.identification.fit.bounded_step import bounded_step
-from stickslip_sim.identification.fit.least_squares import minimise
+from stickslip_sim.identification.fit.least_squares import Solution, minimise
 from stickslip_sim.identification.fit.region import Region, region_of
 from stickslip_sim.identification.given.free_parameters import FreeParameter
 
@@ -59,6 +59,29 @@ def test_a_fit_leaves_a_border_beyond_which_a_number_does_nothing() -> None:
                          tolerance=1e-9)
         assert np.exp(found.point) == pytest.approx([0.11, 0.13, 0.19], rel=1e-6), start
         assert found.is_settled
+
+
+def test_a_search_ends_where_it_crawls_far_from_noise() -> None:
+    """A long valley leads to the best point, along which a step gains less than a thousandth of a large misfit."""
+    sums: list[float] = []
+
+    def found(misfit: float, far: float) -> tuple[Solution, int]:
+        def residuals(point: Numbers) -> Numbers:
+            x, y = point
+            sums.append(0.0)
+            return np.array([misfit, 300.0 * (y - x * x), 3.0 * (1.0 - x)])
+
+        sums.clear()
+        region = Region(np.full(2, -3.0), np.full(2, 3.0))
+        return minimise(residuals, np.array([-1.2, 1.0]), region, most=60, tolerance=1e-9, far=far), len(sums)
+
+    (near, of_near), (same, of_same) = found(10.0, np.inf), found(10.0, 1e5)
+    assert near.point == pytest.approx([1.0, 1.0], abs=1e-4)
+    assert (same.point.tolist(), of_same) == (near.point.tolist(), of_near)
+    (whole, of_whole), (soon, of_soon) = found(1e3, np.inf), found(1e3, 1e5)
+    assert soon.is_settled
+    assert soon.cost == pytest.approx(whole.cost, rel=1e-4)
+    assert of_soon < 0.1 * of_whole
 
 
 def test_slopes_at_a_corner_of_the_order_are_those_of_each_number() -> None:

@@ -26,6 +26,7 @@ STEP = 1e-6            # of a logarithm, or of a range: rounding is 1e-10 of it,
 _DAMPING = 1e-3        # of the first step, relative to the diagonal
 _LEAST_DAMPING, _MOST_DAMPING = 1e-12, 1e12
 _UNDAMPED, _SETTLED = 1e-6, 100.0   # a damping, and times what the last step may gain
+_CRAWLS = 1e-3         # of a sum that is far from noise: steps that gain less lead nowhere
 _SHARES = 1.0, 0.3, 0.1, 0.03   # of a step without damping that are tried, where it promises more
 _PROBE = 0.1           # of a step: there its second derivative is taken
 _MOST_TURN = 0.75      # of the length of a step
@@ -80,11 +81,13 @@ def steps_over_jumps(residuals: Residuals, point: Numbers, region: Region, step:
 
 
 def minimise(residuals: Residuals, point: Numbers, region: Region, *, most: int, tolerance: float,
-             share: float = 1e-9, robust: float = np.inf, step: _Step = STEP, steepest: float = np.inf) -> Solution:
+             share: float = 1e-9, far: float = np.inf, robust: float = np.inf, step: _Step = STEP,
+             steepest: float = np.inf) -> Solution:
     """Return where the sum of squares is least, from a point on, after at most so many steps.
 
-    It ends where the next step would gain less than `tolerance`, or that `share` of the sum; it is settled if a step
-    without damping would not gain much more, or does not, as on a plateau of what the data do not determine.
+    It ends where the next step would gain less than `tolerance`, or that `share` of the sum, of a sum beyond `far` a
+    larger one; it is settled if a step without damping would not gain much more, or does not, as on a plateau of what
+    the data do not determine.
     Residuals are all NaN where the parameters contradict each other; those beyond `robust` count by their size, not
     their square.  A derivative beyond `steepest` is that of a jump, and is left out.
     """
@@ -99,7 +102,7 @@ def minimise(residuals: Residuals, point: Numbers, region: Region, *, most: int,
         weights = _weights(here, robust)
         weighted = slopes if weights is None else slopes * weights[:, None]
         information, gradient = weighted.T @ slopes, weighted.T @ here
-        least = max(tolerance, share * cost)
+        least = max(tolerance, (share if cost <= far else max(share, _CRAWLS)) * cost)
         while True:
             move = bounded_step(information, gradient, damping, point, region)
             gain = _gain(information, gradient, move)

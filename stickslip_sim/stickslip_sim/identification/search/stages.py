@@ -83,13 +83,16 @@ def _nearer(problem: FitProblem, start: Numbers) -> Numbers:
 
 
 def _of_whole(problem: FitProblem, start: Numbers) -> Solution:
-    residuals, steps = partial(problem.of_stretches, stretches=problem.stretches()), problem.steps
-    found = minimise(residuals, start, problem.region, most=_MOST_STEPS, tolerance=1e-3, step=steps)
+    whole = problem.stretches()
+    residuals, steps = partial(problem.of_stretches, stretches=whole), problem.steps
+    search = partial(minimise, residuals, region=problem.region, most=_MOST_STEPS, tolerance=1e-3,
+                     far=_NEAR * len(whole.rows) * len(whole.targets))
+    found = search(start, step=steps)
     while problem.model.is_pushed:
         before, steps = steps, steps_over_jumps(residuals, found.point, problem.region, steps)
         if np.array_equal(steps, before):
             break
-        found = minimise(residuals, found.point, problem.region, most=_MOST_STEPS, tolerance=1e-3, step=steps)
+        found = search(found.point, step=steps)
     return found
 
 
@@ -115,7 +118,7 @@ def _polished(problem: FitProblem, found: Solution) -> Solution:
             found = again
         if gained < (_GAIN if square <= LOST else _FAR * found.cost):
             found = found._replace(is_settled=is_settled or found.is_settled)
-            if not has_table or square < _GOOD:
+            if not has_table or not _GOOD <= square <= _NEAR:
                 break
     return found
 

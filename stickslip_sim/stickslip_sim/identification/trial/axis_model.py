@@ -166,11 +166,13 @@ class AxisModel:
             return None
         return rows
 
-    def events(self, dynamics: Dynamics, begin: float, initial: InitialState, duration: float) -> list[Event] | None:
-        """Return the events from a state at `begin` on, in times since then; None where the solver gives up."""
+    def motion(self, dynamics: Dynamics, begin: float, initial: InitialState, duration: float
+               ) -> 'TrialMotion | None':
+        """Return the motion from a state at `begin` (s) on, for a duration, s; None where the solver gives up."""
         second = math.floor(duration)
         try:
-            return self._simulator(dynamics, begin, initial, duration).advance(Instant(second, duration - second))
+            simulator = self._simulator(dynamics, begin, initial, duration)
+            return TrialMotion(self, simulator, simulator.advance(Instant(second, duration - second)))
         except StickslipError:
             return None
 
@@ -200,3 +202,21 @@ class AxisModel:
         if key not in self._profiles:
             self._profiles[key] = float(travelled(drive, np.array([time]))[0])
         return float(self._profiles[key])
+
+
+class TrialMotion:
+    """A motion from a known state on: its `events`, and samples, both at times since then."""
+
+    def __init__(self, model: AxisModel, simulator: Simulator, events: Sequence[Event]) -> None:
+        self._model, self._simulator, self.events = model, simulator, events
+
+    def samples(self, at: Instants) -> Numbers | None:
+        """Return rows of samples at times up to its end; None where the solver gives up."""
+        self._model.runs += 1
+        rows = np.empty((len(at.seconds), len(Sample._fields)))
+        try:
+            self._simulator.reset()
+            self._simulator.take_samples(at, rows, with_events=False)
+        except StickslipError:
+            return None
+        return rows

@@ -87,15 +87,15 @@ def simulated_slip(model: AxisModel, dynamics: Dynamics, values: Numbers, measur
     length = measured.motion.end - measured.rest_begin
     least = _PART * abs(measured.slip.way)
     for longer in _LONGER:
-        events = model.events(dynamics, measured.rest_begin, initial, longer * length)
-        if events is None:
+        motion = model.motion(dynamics, measured.rest_begin, initial, longer * length)
+        if motion is None:
             return None
-        ends = _ends(events, least)
+        ends = _ends(motion.events, least)
         if ends is not None and (longer == _LONGER[-1] or abs(ends[1].position - ends[0].position) >= least):
             rest = measured.motion.begin - measured.rest_begin
             at_rest = [min(share * rest, ends[0].time) for share in _AT_REST]
             times = np.append(at_rest, ends[0].time + _POINTS * (ends[1].time - ends[0].time))
-            rows = model.samples(dynamics, measured.rest_begin, initial, instants_of(times))
+            rows = motion.samples(instants_of(times))
             return None if rows is None else _measured(_slip(*ends, rows, measured.still), model, values)
     return None
 
@@ -183,9 +183,9 @@ def shown_break_away(model: AxisModel, dynamics: Dynamics, values: Numbers, meas
     """
     initial = dynamics.initial if measured.before is None else model.state_after(measured.before, dynamics, values)
     length = measured.motion.end - measured.rest_begin
-    events = model.events(dynamics, measured.rest_begin, initial, _LONGER[-1] * length)
-    ends = None if events is None else _ends(events, _PART * abs(measured.slip.way))
-    if ends is None:
+    motion = model.motion(dynamics, measured.rest_begin, initial, _LONGER[-1] * length)
+    ends = None if motion is None else _ends(motion.events, _PART * abs(measured.slip.way))
+    if motion is None or ends is None:
         return float('nan'), float('nan')
     period = float(track.times[1] - track.times[0])
     times = np.arange(int(ends[1].time / period) + track.smoothing + 2).astype(np.float64) * period
