@@ -25,6 +25,6 @@ def test_the_blocks_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys:
     assert printed[1].splitlines()[0] == 'stick-slip'
     assert printed[1].splitlines()[1].startswith('BREAKAWAY 0.7625675504')
     assert 'axis.mass = -1.0 is refused' in printed[-1]
-    assert {path.name for path in tmp_path.iterdir()} == {'run.png', 'eight', 'eight.png'}
-    for picture in ('run.png', 'eight.png'):
+    assert {path.name for path in tmp_path.iterdir()} == {'run.png', 'runs'}
+    for picture in ('run.png', 'runs/four.png'):
         assert (tmp_path / picture).read_bytes().startswith(b'\x89PNG')
