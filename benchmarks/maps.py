@@ -67,7 +67,7 @@ CRITICAL = (
     'critical stribeck --of drive.velocity',
 )
 UNCERTAIN = ('uncertainty paper_fig7 --with examples/friction.yaml --set drive.velocity=0.025 --samples 512'
-             ' --out runs/maps/uncertainty --plot runs/maps/uncertainty.png')
+             ' --out runs/maps/uncertainty --plot runs/uncertainty.png')
 SETTING = Setting(1e-8, 'tolerance')
 MACHINES, CORES = (1, 4, 16), 16   # of a cluster, and of each machine
 MILLION, CHUNKS = 1_000_000, 500   # points, and the pieces that are handed out

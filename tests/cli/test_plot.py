@@ -87,12 +87,6 @@ def test_a_run_that_was_commanded_late_is_shown_from_its_first_command_on(hour: 
 
 
 class TestRefusals:
-    def test_folders_that_are_not_there(self, tmp_path: Path, capsys: Capture) -> None:
-        line = refused(capsys, 'plot', 'paper_fig7', '--duration', '1', '--out', tmp_path / 'new' / 'er' / 'a.png')
-        assert f"must be in a folder, or in a new one within one; {tmp_path / 'new'} is none" in line
-        assert not list(tmp_path.iterdir())
-        assert answered(capsys, 'plot', 'paper_fig7', '--duration', '1', '--out', tmp_path / 'new' / 'a.png')[0] == 0
-
     def test_a_first_command_that_there_is_none_of(self, fig8_bag: Path, tmp_path: Path, capsys: Capture) -> None:
         line = refused(capsys, 'plot', fig8_bag, '--window', 'first_command:+1', '--out', tmp_path / 'a.png')
         assert 'must be A:B in a run without commands' in line

@@ -69,7 +69,7 @@ def test_a_critical_value_is_what_the_page_says(page: str, capsys: Capture) -> N
 def test_the_uncertainty_is_what_the_page_says(page: str, tmp_path: Path, capsys: Capture) -> None:
     """All but its last line, which names the folder."""
     assert shown(UNCERTAIN) in page
-    elsewhere = UNCERTAIN.replace('runs/maps', str(tmp_path))
+    elsewhere = UNCERTAIN.replace('runs/maps', str(tmp_path)).replace('runs', str(tmp_path))
     assert run(shlex.split(elsewhere)) == 0
     assert (tmp_path / 'uncertainty.png').read_bytes().startswith(b'\x89PNG')
     for line in capsys.readouterr().out.splitlines()[:-1]:

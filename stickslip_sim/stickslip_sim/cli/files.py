@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The files of results: checked before the work begins, and written whole or not at all.
 
-The folders that they are to be in are made.
+A new folder of results is made with those around it.  A file makes one folder at most: below two that are missing
+stands a path that is misspelt.
 """
 
 import os
@@ -22,7 +23,10 @@ STDOUT = '-'
 
 
 def check_file(option: str, path: str) -> None:
-    """Raise InputError unless a file can be written there; an existing one may be replaced, but no other argument."""
+    """Raise InputError unless a file can be written there; an existing one may be replaced, but no other argument.
+
+    Its folder may be missing, but not the one around that.
+    """
     place = _real(path)
     for name, other in _files_of_the_command(option):
         if _real(other) == place:
@@ -30,6 +34,7 @@ def check_file(option: str, path: str) -> None:
     if place.is_dir():
         raise InputError(option, path, 'a file', 'this is a folder: add a file name')
     _check_folder(option, path, place.parent)
+    _check_near(option, path, place.parent)
     if place.exists() and not os.access(place, os.W_OK):
         raise InputError(option, path, 'a file that can be written', 'change its permissions or choose another name')
 
@@ -38,14 +43,6 @@ def check_picture(option: str, path: str) -> None:
     """Raise InputError unless a picture can be written there."""
     check_picture_name(option, path)
     check_file(option, path)
-
-
-def check_near(option: str, path: str) -> None:
-    """Raise InputError unless a file would be in a folder that is there, or in a new one within such a one."""
-    folder = _real(path).parent
-    if nearest_existing(folder) not in (folder, folder.parent):
-        raise InputError(option, path, f'in a folder, or in a new one within one; {folder.parent} is none',
-                         'make it, or look at the path')
 
 
 def check_new_folder(option: str, path: str) -> None:
@@ -162,3 +159,10 @@ def _check_folder(option: str, path: str, folder: Path) -> None:
         raise InputError(option, path, f'in a folder; {there} is none', 'choose another place')
     if not os.access(there, os.W_OK | os.X_OK):
         raise InputError(option, path, 'in a folder that can be written', 'choose another place')
+
+
+def _check_near(option: str, path: str, folder: Path) -> None:
+    """Raise InputError unless the folder of a file is there, or is a new one within one that is."""
+    if nearest_existing(folder) not in (folder, folder.parent):
+        raise InputError(option, path, f'in a folder, or in a new one within one; {folder.parent} is none',
+                         'make it, or look at the path')

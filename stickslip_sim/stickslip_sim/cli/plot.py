@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from . import completion
-from .files import check_near, check_picture, say_written, whole
+from .files import check_picture, say_written, whole
 from .run_or_scene import file_stem, is_recorded, recorded_run
 from .scene_changes import SceneChanges, scene_changes
 
@@ -34,7 +34,6 @@ def plot(source: str, window: str | None, out: str | None, duration: float | Non
     """
     if out is not None:
         check_picture('--out', out)
-        check_near('--out', out)
     begin, end = (None, None) if window is None else _times(window)
     run = _run(source, duration, changes)
     shown = None if end is None else _window(run, str(window), begin, end)
