@@ -200,6 +200,8 @@ def test_what_is_refused(rigid: stickslip.Run, tmp_path: Path) -> None:
     cases: list[tuple[str, Refused]] = [
         ('axis.mass = 350.0 is refused: must be in its range',
          lambda: identify(RIGID, {'axis.mass': between(100.0, 200.0)})),
+        ("parameters = 'list' is refused: must be the path of a file, or names with their distributions",
+         lambda: identify(RIGID, ['axis.mass'])),    # type: ignore[arg-type]
         ("free parameter = 'friction.static.exponent' is refused: must be one that the laws of the scene have",
          lambda: identify(RIGID, {'friction.static.exponent': between(0.5, 2.0)})),
         ("free parameter = 'friction.kinetic.velocities\\[0\\]' is refused",

@@ -77,3 +77,5 @@ def test_refused() -> None:
         sweep(SCENE)
     with pytest.raises(InputError, match='distribution'):
         uncertainty(SCENE, {'axis.mass': 'about 300'})
+    with pytest.raises(InputError, match="parameters = 'list' is refused: must be the path of a file, or names with"):
+        uncertainty(SCENE, ['axis.mass'])    # type: ignore[arg-type]

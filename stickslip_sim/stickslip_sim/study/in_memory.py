@@ -78,7 +78,7 @@ def uncertainty(scene: SceneOrName, known: str | Path | Mapping[str, object], sa
     if isinstance(known, Mapping):
         found = uncertain_of({'parameters': known, 'seed': seed})
     else:
-        found = load_uncertain(str(known))
+        found = load_uncertain(known)
     sample = Saltelli(found.distributions, samples, found.seed, found.correlations)
     return uncertainty_of(sample, _columns(Study(scene.values, sample, duration), progress))
 

@@ -10,6 +10,7 @@ correlations:
 friction.static.limit: {axis.normal_force: -0.9}
 """
 
+import os
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import NamedTuple
@@ -41,10 +42,13 @@ class Uncertain(NamedTuple):
     correlations: Correlations | None = None
 
 
-def load_uncertain(path: str, find: ParameterOf = parameter_of, most: int = MOST_VARIATIONS) -> Uncertain:
+def load_uncertain(path: str | os.PathLike[str], find: ParameterOf = parameter_of, most: int = MOST_VARIATIONS) -> Uncertain:
     """Return the content of a file, as `uncertain_of` does; raises InputError, whose text names the file."""
+    if not isinstance(path, str | os.PathLike):   # from Python, as a list of names
+        raise InputError('parameters', type(path).__name__, 'the path of a file, or names with their distributions',
+                         "for example {'axis.mass': {'distribution': 'uniform', 'low': 300.0, 'high': 400.0}}")
     text = read_text(Path(path), 'file of distributions')
-    with named(path):
+    with named(os.fspath(path)):
         return uncertain_of(read_yaml(text), find, most)
 
 

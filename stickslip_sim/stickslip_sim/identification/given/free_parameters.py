@@ -67,7 +67,7 @@ def free_parameters(scene: Scene, free: str | Path | Mapping[str, object]) -> tu
     if isinstance(free, Mapping):
         found = uncertain_of(free if 'parameters' in free else {'parameters': free}, _parameter, _MOST)
     else:
-        found = load_uncertain(str(free), _parameter, _MOST)
+        found = load_uncertain(free, _parameter, _MOST)
     if found.correlations is not None:
         raise InputError('correlations', 'given', 'left out here: how parameters go together is what is sought',
                          'drop the section')
