@@ -56,7 +56,7 @@ setup(
     maintainer_email='stickslip@example.org',
     license='Apache-2.0',
     packages=find_packages(include=[NAME, f'{NAME}.*']),
-    package_data={NAME: ['py.typed', 'scenes/*.yaml', 'recording/stickslip_msgs/*.msg']},
+    package_data={NAME: ['py.typed', 'scenes/*.yaml', 'recording/stickslip_msgs/*.msg', 'ros/client/*.xml']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         (SHARE, ['package.xml']),

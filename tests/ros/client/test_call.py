@@ -17,6 +17,7 @@ from tests.support.waiting import wait_for  # isort: skip
 pytestmark = pytest.mark.ros
 
 AXIS = '/cell/feed_axis'
+NO_PROFILES = {'FASTRTPS_DEFAULT_PROFILES_FILE': '', 'FASTDDS_DEFAULT_PROFILES_FILE': ''}    # as users start the tool
 
 
 @pytest.fixture(scope='module')
@@ -112,6 +113,8 @@ def test_two_of_one_name(folder: Path, tmp_path: Path, capsys: Capture) -> None:
     with running('-r', '__ns:=/cell', folder=tmp_path):
         assert wait_for(lambda: 'two nodes' in (line := refusal()) and line, 'both').startswith(
             f"stickslip: --node = '{AXIS}' is refused: must be the name of one node; two nodes named {AXIS} answer")
+        afresh = [tool('call', 'step', '--node', AXIS, **NO_PROFILES).stderr for _ in range(8)]
+        assert sum('two nodes' in line for line in afresh) >= 6    # 2 to 3 where the second was greeted once
     assert 'refused while time runs by itself' in refusal()    # it was killed
 
 

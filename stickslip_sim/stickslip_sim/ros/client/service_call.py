@@ -2,10 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """One call of a service of a running node: find the node, be known to it, ask once."""
 
+import os
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import closing, contextmanager
+from pathlib import Path
 from typing import Any
 
 import rclpy
@@ -30,6 +32,10 @@ _SET = 'set_parameters_atomically'
 _TYPES = {'record': SetBool, 'set_paused': SetBool, 'reset': Trigger, 'clear_faults': Trigger, 'step': Step,
           'inject_fault': InjectFault, 'restart': Trigger, 'play_next': Trigger, _SET: SetParametersAtomically}
 _GREETING = 1.0    # s until a node is greeted again
+_COMPANY = 0.2     # s for a second node of the name to be heard of after the first: most come within 0.1 s
+_AGAIN = 0.25      # s until both are greeted again
+_PROFILES = dict.fromkeys(('FASTRTPS_DEFAULT_PROFILES_FILE', 'FASTDDS_DEFAULT_PROFILES_FILE'),    # the first on Jazzy
+                          str(Path(__file__).with_name('fastdds_call.xml')))
 _POLL = 0.05       # s
 
 
@@ -89,7 +95,7 @@ class _Session:
         while time.monotonic() < end:
             greeting = greeter.call_async(GetParameters.Request())
             if self.spin_until(greeting.done, min(_GREETING, end - time.monotonic())):
-                return self._check_single(name, answers)
+                return self._check_single(name, greeter, answers)
         raise StickslipError(f'{name} is there, but does not answer within {patience:g} s; --timeout waits longer')
 
     def spin_until(self, condition: Callable[[], bool], patience: float) -> bool:
@@ -104,12 +110,19 @@ class _Session:
         self._executor.shutdown()
         self._node.destroy_node()
 
-    def _check_single(self, name: str, answers: Counter[int]) -> None:
-        """Raise InputError when a second node answers to what one has answered to."""
-        is_in_graph = self._node.count_services(f'{name}/get_parameters') > 1
-        if is_in_graph and self.spin_until(lambda: max(answers.values()) > 1, _GREETING):
-            raise InputError('--node', name, 'the name of one node',
-                             f'two nodes named {name} answer: end one, or give it a namespace (-r __ns:=/cell)')
+    def _check_single(self, name: str, greeter: Client, answers: Counter[int]) -> None:
+        """Raise InputError when a second node answers to what one has answered to.
+
+        It may be heard of later than the first, and has not heard the greeting of that then: both are greeted again.
+        """
+        if not self.spin_until(lambda: self._node.count_services(f'{name}/get_parameters') > 1, _COMPANY):
+            return
+        end = time.monotonic() + _GREETING
+        while time.monotonic() < end:
+            if self.spin_until(lambda: max(answers.values()) > 1, _AGAIN):
+                raise InputError('--node', name, 'the name of one node',
+                                 f'two nodes named {name} answer: end one, or give it a namespace (-r __ns:=/cell)')
+            greeter.call_async(GetParameters.Request())
 
     def _missing(self, name: str, service: str, patience: float) -> str:
         """Return that nobody offers a service, and who else does."""
@@ -135,12 +148,28 @@ def _counted_answers(client: Client) -> Counter[int]:
 
 
 @contextmanager
+def _announced_often() -> Iterator[None]:
+    """Let Fast DDS announce a participant that is made ten times a second, where the user has no profiles for it.
+
+    A second node of one name was heard of seconds after the first, and so not asked.
+    """
+    if not any(map(os.environ.get, _PROFILES)):
+        os.environ.update(_PROFILES)
+    try:
+        yield
+    finally:
+        for name in _PROFILES:
+            if os.environ.get(name) == _PROFILES[name]:
+                del os.environ[name]
+
+
+@contextmanager
 def _session() -> Iterator[_Session]:
     """Make a session in a ROS of its own, which hears no signals; raises InputError when ROS cannot start."""
     context = Context()
     with closing(Standstill('stickslip call')) as standstill:
         set_logger_level('rcl', LoggingSeverity.FATAL)    # it would say half of what is refused in a line of its own
-        with refusing('ROS environment', variables()):
+        with refusing('ROS environment', variables()), _announced_often():
             rclpy.init(args=[], context=context, signal_handler_options=SignalHandlerOptions.NO)
             session = _Session(context)
         set_logger_level('rcl', LoggingSeverity.UNSET)
