@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from rclpy.signals import SignalHandlerOptions
 
 from stickslip_sim.ros.node.feed_axis import FeedAxis
-from stickslip_sim.ros.node.parameters import FileParameters
+from stickslip_sim.ros.process.given_parameters import GivenParameters
 from stickslip_sim.ros.process.program import SWITCH_INTERVAL, spin
 from stickslip_sim.ros.process.standstill import Standstill
 from stickslip_sim.ros.process.stop_signals import Signals
@@ -114,12 +114,12 @@ def instrument(node: Any, ring: Ring) -> None:
 def measure(options: argparse.Namespace, folder: Path) -> Ring:
     """Run the node beside a controller; return what its steps spent."""
     sys.setswitchinterval(SWITCH_INTERVAL)
-    rclpy.init(args=['--ros-args', '--log-level', 'error', '-p', f'time.rate:={options.rate}', '-p',
-                     f'scene:={SCENE}', '-p', 'record.enabled:=true', '-p', f'record.folder:={folder}', '-p',
-                     f'thread_priority:={options.priority}'], signal_handler_options=SignalHandlerOptions.NO)
+    args = ['--ros-args', '--log-level', 'error', '-p', f'time.rate:={options.rate}', '-p', f'scene:={SCENE}', '-p',
+            'record.enabled:=true', '-p', f'record.folder:={folder}', '-p', f'thread_priority:={options.priority}']
+    rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
     signals, ring = Signals(), Ring()
     signals.standstill = Standstill('budget')
-    node = FeedAxis(FileParameters('', {}, {}), lambda: signals.stop)
+    node = FeedAxis(GivenParameters.read(args), lambda: signals.stop)
     instrument(node, ring)
     controller = subprocess.Popen([sys.executable, '-m', 'benchmarks.hil.controller', '--pid', str(os.getpid()),
                                    '--seconds', str(options.seconds), '--stride',

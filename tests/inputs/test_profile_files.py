@@ -217,14 +217,18 @@ def test_the_scene_of_a_simulation_runs_as_one_with_the_numbers_in_it(tmp_path: 
 
 def test_a_node_takes_the_profile_beside_its_parameter_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip('rclpy')
-    from stickslip_sim.ros.node.parameters import FileParameters, scene_at_start
+    from stickslip_sim.ros.node.parameters import scene_at_start
+    from stickslip_sim.ros.process.given_parameters import GivenParameters
+
+    def at_start(*words: object) -> Scene:
+        return scene_at_start(GivenParameters.read(['--ros-args', *map(str, words)]).of('/feed_axis'))
 
     scene = scene_of(tmp_path, NAMED, 't,v\n0,0.0\n0.5,0.01\n')
-    files = FileParameters.read([str(tmp_path / 'scene.yaml')])
-    assert scene_at_start(files.values, files) == scene
+    in_a_file = '--params-file', tmp_path / 'scene.yaml'
+    assert at_start(*in_a_file) == scene
     (tmp_path / 'here').mkdir()
     (tmp_path / 'here/other.csv').write_text('time,velocity\n0,0.3\n')
     monkeypatch.chdir(tmp_path / 'here')
-    given = {'scene': str(tmp_path / 'scene.yaml'), 'drive.file': 'other.csv'}
-    assert points(scene_at_start(given, FileParameters.read([]))) == ((0.0,), (0.3,))
-    assert points(scene_at_start({**files.values, 'drive.file': 'other.csv'}, files)) == ((0.0,), (0.3,))
+    other = '-p', 'drive.file:=other.csv'
+    assert points(at_start('-p', f'scene:={tmp_path}/scene.yaml', *other)) == ((0.0,), (0.3,))
+    assert points(at_start(*in_a_file, *other)) == ((0.0,), (0.3,))

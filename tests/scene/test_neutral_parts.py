@@ -9,6 +9,7 @@ import pytest
 from stickslip_sim.core.types import EventKind
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.runs import SimulatedRun, simulate
+from stickslip_sim.scene import changed
 
 DURATION, PERIOD = 3.0, 0.01   # s
 CONSTANT = {'friction.static.law': 'constant', 'friction.static.initial': 0.2}
@@ -43,7 +44,7 @@ def test_a_neutral_value_is_as_good_as_none(name: str, neutral: dict[str, object
 
 
 def test_dampers_of_nothing_are_none(tmp_path: Path) -> None:
-    given = load_scene('paper_fig8', {'contact.damping': 0.0})
+    given = changed(load_scene('paper_fig8'), {'contact.damping': 0.0, 'scene': 'mine'})
     path = tmp_path / 'scene.yaml'
     path.write_text('\n'.join(line for line in given.text.splitlines() if 'damping: 0.0' not in line))
     left_out = load_scene(str(path))

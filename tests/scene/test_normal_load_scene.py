@@ -19,6 +19,7 @@ from stickslip_sim.runs.normal_force import LOAD_COLUMN
 from stickslip_sim.scene import Scene, parse_scene
 from stickslip_sim.study.critical import critical_of, default_range
 from stickslip_sim.study.points import works_in_batches
+from tests.support.scene_files import write
 from tests.support.tool import answered
 
 STEPS = {'normal_load.course': 'steps', 'normal_load.times': [0.0, 0.5, 0.75], 'normal_load.forces': [0.0, 500.0, -1e3]}
@@ -88,9 +89,8 @@ def test_studies_of_constant_inputs_refuse_it() -> None:
 
 def test_its_points_may_come_from_a_file(tmp_path: Path) -> None:
     (tmp_path / 'clamp.csv').write_text('t,kN\n0,0.0\n2,0.5\n')
-    (tmp_path / 'scene.yaml').write_text('/**:\n  ros__parameters:\n    normal_load: {course: steps, file: clamp.csv,'
-                                         ' file_time: t, file_column: kN, file_unit: kN}\n')
-    scene = load_scene(str(tmp_path / 'scene.yaml'))
+    scene = load_scene(write(tmp_path, '    normal_load: {course: steps, file: clamp.csv, file_time: t,'
+                                       ' file_column: kN, file_unit: kN}\n'))
     assert scene.normal_load is not None
     assert scene.normal_load.value_at(2.0) == 500.0
     profiles = simulate(scene, 0.1).receipt['profiles']

@@ -61,7 +61,7 @@ def test_every_verb_asks(verb: tuple[str, ...], tmp_path: Path, capsys: Capture,
 
 def test_a_file_is_named_and_what_is_meant_runs(tmp_path: Path, capsys: Capture) -> None:
     scene = tmp_path / 'fast.yaml'
-    scene.write_text('/**: {ros__parameters: {drive: {velocity: 5.0}}}\n')
+    scene.write_text('/**: {ros__parameters: {scene: fast, drive: {velocity: 5.0}}}\n')
     assert f'{scene}: drive.velocity = 5.0 is refused' in refused(capsys, 'simulate', scene, '--duration', '0.1')
     assert answered(capsys, 'simulate', scene, '--duration', '0.1', '--meant', 'drive.velocity')[0] == 0
 

@@ -78,16 +78,16 @@ def test_values_as_a_node_has_them_make_the_same_scene() -> None:
 @pytest.mark.parametrize('head', ['feed_axis:\n  ros__parameters:\n', '/feed_axis:\n  ros__parameters:\n',
                                   '/hall/feed_axis:\n  ros__parameters:\n', '/**/feed_axis:\n  ros__parameters:\n'])
 def test_sections_for_the_node(head: str, tmp_path: pathlib.Path) -> None:
-    assert load_scene(write(tmp_path, '    axis.mass: 1.0\n', head)).axis.mass == 1.0
+    assert load_scene(write(tmp_path, '    scene: light\n    axis.mass: 1.0\n', head)).axis.mass == 1.0
 
 
 def test_a_namespace_may_be_nested(tmp_path: pathlib.Path) -> None:
-    text = 'hall:\n  feed_axis:\n    ros__parameters: {axis: {mass: 1.0}}\n'
+    text = 'hall:\n  feed_axis:\n    ros__parameters: {scene: light, axis: {mass: 1.0}}\n'
     assert load_scene(write(tmp_path, '', text)).axis.mass == 1.0
 
 
 def test_sections_are_merged_unless_they_repeat_a_parameter(tmp_path: pathlib.Path) -> None:
-    text = '/**: {ros__parameters: {axis: {mass: 2.0}}}\nfeed_axis: {ros__parameters: {seed: 3}}\n'
+    text = '/**: {ros__parameters: {scene: light, axis: {mass: 2.0}}}\nfeed_axis: {ros__parameters: {seed: 3}}\n'
     scene = load_scene(write(tmp_path, '', text))
     assert (scene.axis.mass, scene.seed) == (2.0, 3)
     text = '/**: {ros__parameters: {seed: 4}}\nfeed_axis: {ros__parameters: {seed: 3}}\n'

@@ -5,6 +5,7 @@
 import math
 from dataclasses import replace
 from itertools import pairwise
+from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
@@ -13,7 +14,7 @@ from hypothesis import strategies as st
 from stickslip_sim.config.ros_yaml import plain_value, read_yaml
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.inputs import load_scene
-from stickslip_sim.scene import scene_from_values, scene_names
+from stickslip_sim.scene import changed, scene_from_values, scene_names
 from stickslip_sim.scene.load import parse_scene, scene_of_parameters
 from stickslip_sim.scene.schema import BY_NAME, PARAMETERS
 from stickslip_sim.scene.sections import parameters_of
@@ -64,15 +65,21 @@ def test_what_param_dump_writes_is_the_same_scene(name: str) -> None:
     scene = load_scene(name)
     values = {entry.name: scene.values.get(entry.name, 'null') for entry in PARAMETERS}
     assert 'null' in values.values()
-    again = scene_of_parameters(values, {})
+    again = scene_of_parameters(values)
     assert again == replace(scene, summary=again.summary)
 
 
 def test_null_is_as_if_left_out() -> None:
-    text = '/**:\n  ros__parameters: {scene: paper_fig8, contact: {model: null}, axis: {mas%s: null}}\n'
-    assert parse_scene(text % 's').values == load_scene('paper_fig8').values
+    text = '/**:\n  ros__parameters: {scene: mine, contact: {model: null}, axis: {mas%s: null}}\n'
+    assert parse_scene(text % 's').values == scene_from_values({'scene': 'mine'}).values
     with pytest.raises(InputError, match=r"axis\.mas = 'null' is refused"):
         parse_scene(text % '')
+
+
+def test_null_takes_a_part_of_a_shipped_scene_away(tmp_path: Path) -> None:
+    path = tmp_path / 'scene.yaml'
+    path.write_text('/**:\n  ros__parameters: {scene: paper_fig8, contact: {damping: null}, axis: {mass: 300.0}}\n')
+    assert load_scene(path) == changed(load_scene('paper_fig8'), {'contact.damping': None, 'axis.mass': 300.0})
 
 
 def test_doubles_in_the_text_have_a_dot_for_every_yaml_reader() -> None:

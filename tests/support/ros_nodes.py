@@ -226,7 +226,7 @@ class Client:
     def status(self, name: str, is_it: Callable[[dict[str, str]], bool] = lambda _: True) -> Any:
         """Return the next status of /diagnostics by that name and its values that fulfil a condition."""
         def find(message: Any) -> Any:
-            return next(status for status in message.status if status.name == name)
+            return next(status for status in message.status if status.name.endswith(f'/feed_axis: {name}'))
 
         def pairs(status: Any) -> dict[str, str]:
             return {pair.key: pair.value for pair in status.values}

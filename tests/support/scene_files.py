@@ -10,10 +10,13 @@ import pytest
 from stickslip_sim.core.errors import InputError
 
 HEAD = '/**:\n  ros__parameters:\n'
+NAME = '    scene: unnamed\n'
 
 
-def write(folder: pathlib.Path, body: str, head: str = HEAD) -> str:
-    """Write a scene file; return its path."""
+def write(folder: pathlib.Path, body: str, head: str | None = None) -> str:
+    """Write a scene file, with the name that a scene without one bears unless it has a head; return its path."""
+    if head is None:
+        head = HEAD + ('' if 'scene:' in body else NAME)
     path = folder / 'scene.yaml'
     path.write_text(head + body, encoding='utf-8')
     return str(path)

@@ -10,8 +10,10 @@ from pathlib import Path
 from ..core.errors import InputError
 from ..scene import Scene
 from ..scene.build import build_scene
-from ..scene.load import merged_parameters, named, read_scene
+from ..scene.load import named, named_scene, read_scene
 from ..scene.profile_schema import PROFILES
+from ..scene.sections import of_a_scene
+from ..scene.values import NULL, overridden, stated
 from .profile_file import prepared, sections_with_file, with_profiles
 
 SceneOrName = Scene | str | os.PathLike[str]
@@ -45,7 +47,16 @@ def scene_with_profiles(values: Mapping[str, object], overrides: Mapping[str, ob
 
     Raises InputError and RecordingError.
     """
-    base, changes = prepared(values, overrides)
-    places = {**folders, **dict.fromkeys(sections_with_file(changes), Path())}
-    read, sources = with_profiles(merged_parameters(base, changes), places)
+    values, overrides = of_a_scene(values), stated(overrides)
+    if not values:
+        raise InputError('parameters', None, 'of a scene', 'see the shipped scenes')
+    base = named_scene(values, overrides.get('scene'))
+    kept = {name: value for name, value in base.items() if values.get(name) != NULL}
+    merged = _changed(_changed(kept, values), overrides)
+    places = {**folders, **dict.fromkeys(sections_with_file(overrides), Path())}
+    read, sources = with_profiles(merged, places)
     return replace(build_scene(read, summary), sources=sources)
+
+
+def _changed(base: Mapping[str, object], changes: Mapping[str, object]) -> dict[str, object]:
+    return overridden(*prepared(base, changes))

@@ -19,12 +19,18 @@ A scene is a ROS 2 parameter file: sections below `/**:` (or `feed_axis:`) and `
 with `--params-file`, the tool by its path.  Both refuse unknown names, wrong types and ranges, and values that
 contradict a choice, with one line.  The shipped files in `stickslip_sim/stickslip_sim/scenes/` are the models to copy.
 
-* **Defaults.**  A parameter that is left out takes the default.  Only the axis has the paper's values there; everything
-  else that is left out is not modelled: no friction, a rigid contact, a drive that stands still, no force.  (A node
-  without a file runs the scene `paper_fig8`.)  Every number has bounds, far beyond any machine, within which nothing
-  overflows.
-* **`scene`** is a name for people.  Only a file that has nothing of an axis (but `scene`, `time`, `command`, `record`,
-  `seed`) and bears the name of a shipped scene means that scene, with the other parameters of the file.
+* **`scene`** names the scene.  The name of a shipped scene takes that scene, and the file changes it: `scene:
+  positioning` with `axis: {normal_force: 2500.0}` is `positioning` with another normal force, the same in a file, in
+  the `parameters` of a launch file, and with `-p` or `--set`.  Any other name is yours, for a file that gives the whole
+  scene.  A file without `scene` must give both laws of friction, `friction.static` and `friction.kinetic`.
+* **Defaults.**  In a whole scene a parameter that is left out takes the default.  Only the axis has the paper's values
+  there; everything else that is left out is not modelled: no friction, a rigid contact, a drive that stands still, no
+  force.  (A node without a file runs `paper_fig8`.)  Every number has bounds, far beyond any machine, within which
+  nothing overflows.
+* **One file for several nodes.**  The node takes the sections that fit its full name, `/x/feed_axis`, as every ROS node
+  does: `*` stands for one word of a name, `**` for any number of them.  The more specific section holds over the more
+  general one, of two alike the later one, and `-p` over all.  Sections of other nodes are passed over.  The tool takes
+  files for one axis only.
 * **"with"** says for which choice a parameter has a meaning.  Given with another choice it is refused; without a
   default (*needed*) it must be given.
 * **Numbers.**  Write numbers with a dot, `350.0` or `6.0e5`.  A whole number is taken for a double, but inside a list

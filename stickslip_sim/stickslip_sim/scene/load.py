@@ -14,11 +14,13 @@ from ..core.did_you_mean import paths_beside, suggestion
 from ..core.errors import InputError, not_utf8
 from .build import build_scene
 from .model import Scene
-from .sections import describes_an_axis, of_a_scene, parameters_of
+from .sections import of_a_scene, parameters_of
 from .values import overridden, stated
 
 _SHIPPED = pathlib.Path(__file__).parent.parent / 'scenes'
-_ENDINGS = ('.yaml', '.yml')
+ENDINGS = ('.yaml', '.yml')
+_NEEDED = ('friction.static', 'friction.kinetic')   # of a scene without a name
+DEFAULT_SCENE = 'paper_fig8'
 
 
 class SceneFile(NamedTuple):
@@ -42,38 +44,32 @@ def read_scene(name_or_path: str) -> SceneFile:
     return SceneFile(values, _first_comment(text), path.parent)
 
 
-def parse_scene(text: str, overrides: Mapping[str, object] | None = None) -> Scene:
-    """Return the scene that the text of a file describes, with other values by dotted name; raises InputError."""
-    return scene_of_parameters(parameters_of(read_yaml(text)), overrides or {}, _first_comment(text))
+def parse_scene(text: str) -> Scene:
+    """Return the scene whose own text this is, `Scene.text`, with all of its values; raises InputError."""
+    return scene_of_parameters(parameters_of(read_yaml(text)), _first_comment(text))
 
 
-def read_parameters(path: str) -> dict[str, object]:
-    """Return the unchecked parameters of a file by dotted name; raises InputError, whose text begins with the file."""
-    with named(path):
-        return parameters_of(read_yaml(read_text(pathlib.Path(path))))
+def scene_of_parameters(values: Mapping[str, object], summary: str = '') -> Scene:
+    """Return the scene of parameters that are all of its values; raises InputError."""
+    return build_scene(stated(of_a_scene(values)), summary)
 
 
-def scene_of_parameters(values: Mapping[str, object], overrides: Mapping[str, object], summary: str = '') -> Scene:
-    """Return the scene of the parameters of a file, with other values, as `merged_parameters`; raises InputError."""
-    return build_scene(merged_parameters(values, overrides), summary)
+def named_scene(values: Mapping[str, object], name: object = None) -> dict[str, object]:
+    """Return the values that the parameters of a file change: those of the shipped scene that they name, or none.
 
-
-def merged_parameters(values: Mapping[str, object], overrides: Mapping[str, object]) -> dict[str, object]:
-    """Return the parameters of a file with other values; raises InputError.
-
-    A file that says nothing of an axis but bears the name of a shipped scene means that one, with what it says: so a
-    launch file names one.  Any other name is for people, and what is left out is not modelled.
+    `name` takes the place of their `scene`.  Under a name of one's own they are a whole scene: what they leave out is
+    not modelled.  Raises InputError on parameters without a name that leave out the friction.
     """
-    values, overrides = stated(of_a_scene(values)), stated(overrides)
-    if not values:
-        raise InputError('parameters', None, 'of a scene', 'see the shipped scenes')
-    name = values.get('scene')
-    if not describes_an_axis(values) and isinstance(name, str):
-        if name in scene_names():
-            values = overridden(_shipped_parameters(read_text(_find(name))), values)
-        elif name.endswith(_ENDINGS):
-            raise InputError('scene', name, 'a name in a file', 'give the file of that scene itself')
-    return overridden(values, overrides)
+    name = name or values.get('scene')
+    if name in scene_names():
+        return _shipped_parameters(read_text(_find(str(name))))
+    if isinstance(name, str) and name.endswith(ENDINGS):
+        raise InputError('scene', name, 'a name in a file', 'give the file of that scene itself')
+    left_out = [part for part in _NEEDED if not any(key.startswith(part) for key in values)]
+    if name is None and left_out:
+        raise InputError('scene', None, f'given in a file without {left_out[0]}',
+                         f'name the shipped scene that it changes, as in scene: {DEFAULT_SCENE}, or give it its own')
+    return {}
 
 
 def scene_from_values(values: Mapping[str, object], name: str = 'unnamed') -> Scene:
@@ -122,11 +118,11 @@ def _find(name: str) -> pathlib.Path:
     if name in scene_names():
         return _SHIPPED / f'{name}.yaml'
     path = pathlib.Path(name)
-    if name.endswith(_ENDINGS) or os.sep in name or path.is_file():
+    if name.endswith(ENDINGS) or os.sep in name or path.is_file():
         return path
     names = scene_names()
     raise InputError('scene', name, 'a file or one of ' + ', '.join(names),
-                     suggestion(name, [*names, *paths_beside(path, _ENDINGS)], 'check the name'))
+                     suggestion(name, [*names, *paths_beside(path, ENDINGS)], 'check the name'))
 
 
 def read_text(path: pathlib.Path, what: str = 'scene') -> str:
@@ -139,7 +135,7 @@ def read_text(path: pathlib.Path, what: str = 'scene') -> str:
         raise InputError(what, path.name, 'text in UTF-8', not_utf8(error, what)) from None
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-        beside = [place.rpartition(os.sep)[2] for place in paths_beside(path, [path.suffix or _ENDINGS[0]])]
+        beside = [place.rpartition(os.sep)[2] for place in paths_beside(path, [path.suffix or ENDINGS[0]])]
         raise InputError(what, path.name, 'a readable file', f'{reason}; ' + (
             'check path and permissions' if path.exists() else
             suggestion(path.name, beside, 'check path and permissions'))) from None

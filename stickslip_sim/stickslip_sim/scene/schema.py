@@ -28,7 +28,8 @@ _OWN_CLOCK = When('time.mode', _MODES[1:])
 _STOPS = When('command.on_timeout', _REACTIONS[1:])
 
 PARAMETERS: tuple[Parameter, ...] = (
-    Parameter('scene', 'string', 'unnamed', '', 'name of the scene, for people'),
+    Parameter('scene', 'string', 'unnamed', '', 'name of the scene; that of a shipped one takes that scene, and what'
+              ' else is given changes it'),
 
     number('axis.mass', 350.0, 'kg', "slider m; default: the paper's", within=ranges.MASS,
            live=True),

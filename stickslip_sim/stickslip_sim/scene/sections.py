@@ -1,31 +1,54 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The parameters of the axis in a ROS 2 parameter file: node sections in, parameters by dotted name out."""
+"""The sections of nodes in a ROS 2 parameter file, and which of their parameters are those of a scene."""
 
-from collections.abc import Iterator, Mapping
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 from ..core.errors import InputError
 
 NODE = 'feed_axis'
 _ALL_NODES = ('/**', '/*', '/**/' + NODE)
 _PARAMETERS = 'ros__parameters'
-_NOT_OF_THE_AXIS = ('scene', 'record.', 'time.', 'clock.', 'command.', 'encoder.', 'faults.', 'joint_interface.',
-                    'timing.', 'seed')
+_WILDCARDS = {'*': r'/\w+', '**': r'(/\w+)*'}   # one word of a name, or any number of them
 _OF_THE_NODE = ('thread_priority', 'lock_memory', 'cpu_affinity', 'require_real_time', 'meant')
 _OF_ROS = ('use_sim_time', 'start_type_description_service', 'qos_overrides.')   # any node has them
 
 
+class Section(NamedTuple):
+    """The parameters of a file for the nodes whose full names fit a pattern, such as `/x/feed_axis` or `/**`."""
+
+    pattern: str
+    parameters: Sequence[tuple[str, object]]   # by dotted name
+
+    def fits(self, node: str) -> bool:
+        """Return whether a node has these parameters, by its full name."""
+        names = ''.join(_WILDCARDS.get(word, '/' + re.escape(word)) for word in self._words)
+        return re.fullmatch(names, node) is not None
+
+    @property
+    def specificity(self) -> tuple[int, int]:
+        """What is larger for a pattern that fits fewer nodes."""
+        return sum(word not in _WILDCARDS for word in self._words), -self._words.count('**')
+
+    @property
+    def _words(self) -> list[str]:
+        return self.pattern.strip('/').split('/')
+
+
 def parameters_of(document: object) -> dict[str, object]:
-    """Return the parameters for the node of the axis by dotted name.
+    """Return the parameters for the node of the axis by dotted name, from a file that is for one axis only.
 
     Sections that match (`/**`, `/feed_axis`, in any namespace) are merged, and none may repeat what another gives, so
     that their order does not matter.  Raises InputError on anything else in the file.
     """
     values: dict[str, object] = {}
-    for node, section in _nodes(document, ''):
-        if node not in _ALL_NODES and not node.endswith(f'/{NODE}'):
-            raise InputError('node', node, f'/** or {NODE}', 'a scene file holds the parameters of one axis only')
-        for name, value in _flat(section, ''):
+    for section in sections_of(document):
+        if section.pattern not in _ALL_NODES and not section.pattern.endswith(f'/{NODE}'):
+            raise InputError('node', section.pattern, f'/** or {NODE}',
+                             'a scene file holds the parameters of one axis only')
+        for name, value in section.parameters:
             if name in values:
                 raise InputError(name, value, 'given once', 'it stands in this file twice; drop one')
             values[name] = value
@@ -44,22 +67,21 @@ def of_a_scene(values: Mapping[str, object]) -> dict[str, object]:
     return {name: value for name, value in without_those_of_ros(values).items() if name not in _OF_THE_NODE}
 
 
-def describes_an_axis(values: Mapping[str, object]) -> bool:
-    """Return whether parameters say anything of the axis, its motion or its solver, and so are a whole scene."""
-    return any(not name.startswith(_NOT_OF_THE_AXIS) for name in values)
+def sections_of(document: object) -> list[Section]:
+    """Return the sections of a parameter file, for all nodes; raises InputError on anything else in it."""
+    return [*_sections(document, '')]
 
 
-def _nodes(tree: object, path: str) -> Iterator[tuple[str, Mapping[str, object]]]:
-    """Yield the path of each node with its parameters."""
+def _sections(tree: object, path: str) -> Iterator[Section]:
     if not isinstance(tree, Mapping):
         raise InputError(path or 'file', tree, f'a section /**: with {_PARAMETERS}: in it', 'see the shipped scenes')
     for key, inner in tree.items():
         if key != _PARAMETERS:
-            yield from _nodes(inner, _joined(path, key))
+            yield from _sections(inner, _joined(path, key))
         elif not path or not isinstance(inner, Mapping):
             raise InputError(key, inner, 'a mapping inside /**:', f'write /**: and below it {_PARAMETERS}:')
         else:
-            yield path, inner
+            yield Section(path, [*_flat(inner, '')])
 
 
 def _joined(path: str, key: str) -> str:

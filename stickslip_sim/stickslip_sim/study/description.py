@@ -8,11 +8,9 @@ from dataclasses import asdict
 from importlib import metadata
 from typing import Any
 
-from ..config.ros_yaml import read_yaml
 from ..core.errors import InputError
 from ..runs.receipt import versions
-from ..scene.load import scene_of_parameters
-from ..scene.sections import parameters_of
+from ..scene.load import parse_scene
 from .distribution import Distribution
 from .sample import EvenGrid, Saltelli, Sampling, Sobol
 from .study import Study
@@ -43,7 +41,7 @@ def versions_of_a_study() -> dict[str, str]:
 def study_of(found: Mapping[str, Any]) -> Study:
     """Return the study that a description is of; raises InputError."""
     try:
-        scene = scene_of_parameters(parameters_of(read_yaml(found['scene_text'])), {})
+        scene = parse_scene(found['scene_text'])
         study = Study(scene.values, _sample_of(found), found['duration'])
         described = description(study)
         if all(json.dumps(found[name]) == json.dumps(described[name]) for name in _OF_THE_SAMPLE):

@@ -24,7 +24,7 @@ ON = (*SLOW, '-p', 'joint_interface.enabled:=true')
 def trouble(axis: Client, text: str) -> Any:
     """Return the next status `neighbours` that has a text."""
     def find(message: Any) -> Any:
-        return next(status for status in message.status if status.name == 'neighbours')
+        return next(status for status in message.status if status.name.endswith(': neighbours'))
     return find(axis.next('/diagnostics', lambda message: text in find(message).message))
 
 

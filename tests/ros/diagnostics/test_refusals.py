@@ -88,7 +88,7 @@ def test_the_drive_says_why_it_takes_none_after_a_time_out(tmp_path: Path) -> No
 def diagnosed(axis: Client) -> list[str]:
     """Return what /diagnostics said of the commands, second after second."""
     return [status.message for message in axis.heard['/diagnostics'] for status in message.status
-            if status.name == 'command']
+            if status.name == '/feed_axis: command']
 
 
 def recorded(folder: Path) -> list[Any]:

@@ -195,7 +195,7 @@ class TestTopics:
     def test_diagnostics(self, axis: Client) -> None:
         message = axis.next('/diagnostics')
         assert [status.name for status in message.status] == [
-            'step loop', 'command', 'solver', 'recorder', 'neighbours']
+            f'/feed_axis: {name}' for name in ('step loop', 'command', 'solver', 'recorder', 'neighbours')]
         assert {status.hardware_id for status in message.status} == {'/feed_axis'}
         status, values = axis.status('solver')
         assert (status.level, values['solver']) == (b'\0', 'exact')

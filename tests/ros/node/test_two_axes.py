@@ -49,7 +49,7 @@ def status_of(axis: Axis, name: str) -> Any:
     own = f'{axis.client.node.get_namespace()}/feed_axis'
 
     def found(message: Any) -> list[Any]:
-        return [status for status in message.status if status.name == name and status.hardware_id == own]
+        return [status for status in message.status if status.name == f'{own}: {name}']
 
     status, = found(axis.client.next('/diagnostics', lambda message: bool(found(message))))
     return status

@@ -39,7 +39,7 @@ class TestRefusedStart:
         assert all(words in errors for words in reported), errors
 
     @pytest.mark.parametrize('text', [
-        '', '# nothing\n', 'other:\n  ros__parameters:\n    scene: mine\n', '/**:\n  ros__parameters:\n',
+        '', '# nothing\n', '/**:\n  ros__parameters:\n', '/**:\n  ros__parameters:\n    seed: 3\n',
         '/**:\n  ros__parameters:\n    scene: a\n---\n/**:\n  ros__parameters:\n    scene: b\n',
         '/**:\n  ros__parameters:\n    scene: mine.yaml\n', '/**:\n  ros__parameters:\n    axis: {mass: 0.0}\n',
     ])
@@ -49,13 +49,6 @@ class TestRefusedStart:
         with pytest.raises(InputError) as of_the_tool:
             load_scene(str(file))
         assert start('--params-file', str(file)) == (2, f'sim_node: {of_the_tool.value}\n')
-
-    def test_a_file_for_a_node_elsewhere(self, tmp_path: Path) -> None:
-        file = tmp_path / 'scene.yaml'
-        file.write_text('/press/feed_axis:\n  ros__parameters:\n    axis: {mass: 1.0}\n')
-        code, errors = start('--params-file', str(file))
-        assert (code, len(errors.splitlines())) == (2, 1), errors
-        assert 'axis.mass = 1.0 is refused: must be in a section of /feed_axis' in errors
 
     @pytest.mark.parametrize(('name', 'value', 'reported'), [
         ('ROS_DOMAIN_ID', '9999', '0 to 232'), ('ROS_DOMAIN_ID', '-1', '0 to 232'), ('ROS_DOMAIN_ID', 'x', '0 to 232'),
@@ -133,6 +126,7 @@ class TestFiles:
         (['scene: mine'], [], 'mine', 350.0),
         (['scene: paper_fig7'], ['-p', 'axis.mass:=300.0'], 'paper_fig7', 300.0),
         (['record: {enabled: false}'], ['-p', 'scene:=positioning'], 'positioning', 350.0),
+        (['{scene: paper_fig7, axis: {mass: 200.0}}', 'seed: 5'], ['-p', 'scene:=positioning'], 'positioning', 200.0),
         (['{scene: mine, axis: {mass: 200.0}, contact: {stiffness: null}}', 'seed: 5'],
          ['-p', 'scene:=yours'], 'yours', 200.0),
         (['use_sim_time: false'], [], 'paper_fig8', 350.0),
@@ -160,13 +154,16 @@ class TestFiles:
             assert axis.latest('slider_state').drive_velocity == 5.0
             assert_clean(*process.end())
 
-    def test_one_without_an_axis_is_warned_of(self, tmp_path: Path) -> None:
-        file = tmp_path / 'scene.yaml'
-        file.write_text('/**:\n  ros__parameters:\n    scene: mine\n')
-        with running('--params-file', str(file)) as process, client() as axis:
+    def test_one_without_friction_and_one_for_other_nodes_are_warned_of(self, tmp_path: Path) -> None:
+        mine, other = tmp_path / 'mine.yaml', tmp_path / 'other.yaml'
+        mine.write_text('/**:\n  ros__parameters:\n    scene: postioning\n')
+        other.write_text('/press/feed_axis:\n  ros__parameters:\n    axis: {mass: 1.0}\n')
+        with running('--params-file', str(mine), '--params-file', str(other)) as process, client() as axis:
             axis.connect()
             code, errors = process.end()
-        assert (code, 'nothing of an axis' in errors) == (0, True)
+        assert (code, 'the scene postioning leaves out the friction' in errors) == (0, True)
+        assert f'{other} has no section for /feed_axis' in errors
+        assert f'{mine} has no section' not in errors
 
 
 def test_nothing_is_imported_before_signals_are_taken() -> None:

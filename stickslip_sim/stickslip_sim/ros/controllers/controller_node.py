@@ -23,6 +23,7 @@ from ...rig import Measured
 from ..node.endpoints import publisher, subscription
 from ..node.joints import DRIVE, SLIDER
 from ..node.listed_parameters import ListedNode
+from ..process.given_parameters import GivenParameters
 from ..services.answers import answer
 from .controller_parameters import COMMON, COMPENSATION, following, model_of
 
@@ -33,8 +34,8 @@ _STOPS, _STOP_PAUSE = 5, 0.02    # s between them
 class ControllerNode(ListedNode):
     """Follows its moves with the drive of the bench; raises InputError when its parameters are wrong."""
 
-    def __init__(self, name: str, compensates: bool) -> None:
-        super().__init__(name, (*COMMON, *(COMPENSATION if compensates else ())))
+    def __init__(self, name: str, compensates: bool, given: GivenParameters) -> None:
+        super().__init__(name, (*COMMON, *(COMPENSATION if compensates else ())), given)
         self._model = model_of(self.values)     # once: what its file says later is for the next start
         self._following = following(self.values, self._model)
         self._progress: MoveProgress | None = None

@@ -4,10 +4,10 @@
 
 from typing import TYPE_CHECKING
 
-from ..process.params_files import check_params_files
 from ..process.program import Program, spin
 
 if TYPE_CHECKING:
+    from ..process.given_parameters import GivenParameters
     from ..process.stop_signals import Signals
 
 _USAGE = """\
@@ -25,9 +25,9 @@ _WHAT = {
 def controller_program(name: str, compensates: bool) -> Program:
     """Return the program of that name."""
 
-    def run(_: None, signals: 'Signals') -> None:
+    def run(given: 'GivenParameters', signals: 'Signals') -> None:
         from .controller_node import ControllerNode
 
-        spin(ControllerNode(name, compensates), signals)
+        spin(ControllerNode(name, compensates, given), signals)
 
-    return Program(name, _USAGE.format(name, _WHAT[compensates]), check_params_files, run)
+    return Program(name, _USAGE.format(name, _WHAT[compensates]), run)

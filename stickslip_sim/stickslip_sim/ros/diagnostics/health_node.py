@@ -14,6 +14,7 @@ from ...recording.topics import DIAGNOSTICS
 from ...scene.sections import NODE
 from ..node.endpoints import subscription
 from ..node.listed_parameters import ListedNode
+from ..process.given_parameters import GivenParameters
 
 _PATIENCE = Parameter('patience', 'double', 8.0, 's', 'to wait for the axis; finding it may take 3 s', 1.0, 3600.0)
 
@@ -21,8 +22,8 @@ _PATIENCE = Parameter('patience', 'double', 8.0, 's', 'to wait for the axis; fin
 class Listener(ListedNode):
     """Hears the statuses of one axis; raises InputError when its parameters are wrong."""
 
-    def __init__(self) -> None:
-        super().__init__('health', [_PATIENCE])
+    def __init__(self, given: GivenParameters) -> None:
+        super().__init__('health', [_PATIENCE], given)
         self.patience = cast(float, self.values[_PATIENCE.name])
         self.axis = f'{self.get_namespace().rstrip("/")}/{NODE}'
         self.statuses: list[DiagnosticStatus] = []
@@ -53,8 +54,9 @@ class Listener(ListedNode):
 
 def health_of(axis: str, statuses: Sequence[DiagnosticStatus]) -> str:
     """Return how an axis is in one line, by the worst of its statuses; raises StickslipError when it is not well."""
-    worst = max(status.level for status in statuses)
-    report = '; '.join(f'{status.name}: {status.message}' for status in statuses if status.level == worst)
+    worst, own = max(status.level for status in statuses), f'{axis}: '
+    report = '; '.join(f'{status.name.removeprefix(own)}: {status.message}' for status in statuses
+                       if status.level == worst)
     if worst >= DiagnosticStatus.ERROR:
         raise StickslipError(f'{axis} is not well: {report}')
     return f'{axis} is well{"" if worst == DiagnosticStatus.OK else ", with warnings"}: {report}'

@@ -5,10 +5,10 @@
 import sys
 from typing import TYPE_CHECKING
 
-from ..process.params_files import check_params_files
 from ..process.program import Program, spin
 
 if TYPE_CHECKING:
+    from ..process.given_parameters import GivenParameters
     from ..process.stop_signals import Signals
 
 _USAGE = """\
@@ -19,12 +19,12 @@ there are warnings; 1: there is an error, or it says nothing.
 """
 
 
-def _run(_: None, signals: 'Signals') -> None:
+def _run(given: 'GivenParameters', signals: 'Signals') -> None:
     from .health_node import Listener
 
-    listener = Listener()
+    listener = Listener(given)
     spin(listener, signals, lambda: listener.is_over)
     sys.stdout.write(listener.verdict() + '\n')
 
 
-PROGRAM = Program('health', _USAGE, check_params_files, _run)
+PROGRAM = Program('health', _USAGE, _run)

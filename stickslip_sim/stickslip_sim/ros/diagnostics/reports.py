@@ -82,12 +82,12 @@ def timing_message(second: Second, loop: StepLoop, period: float, valid: bool, s
     return message
 
 
-def diagnostics(stamp_ns: int, hardware_id: str, statuses: Sequence[DiagnosticStatus]) -> DiagnosticArray:
-    """Return the message that carries the statuses."""
+def diagnostics(stamp_ns: int, node: str, statuses: Sequence[DiagnosticStatus]) -> DiagnosticArray:
+    """Return the message that carries the statuses of a node; an aggregator tells nodes apart by the names of these."""
     message = DiagnosticArray(status=list(statuses))
     set_stamp(message.header.stamp, stamp_ns)
     for status in message.status:
-        status.hardware_id = hardware_id
+        status.hardware_id, status.name = node, f'{node}: {status.name}'
     return message
 
 

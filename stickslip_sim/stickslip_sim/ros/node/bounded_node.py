@@ -5,8 +5,14 @@
 from collections.abc import Callable
 from typing import Any
 
+from rclpy.exceptions import ParameterException
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 
+from ..process.environment import refusing, variables
+from ..process.given_parameters import GivenParameters
+
+SIM_TIME = 'use_sim_time'
 MOST_PARAMETERS = 1000   # that one request may set or ask for: a second or two
 _LISTS = ('parameters', 'names', 'prefixes')
 
@@ -14,7 +20,20 @@ _Answer = Callable[[Any, Any], Any]
 
 
 class BoundedNode(Node):  # type: ignore[misc]
-    """A node with bounded requests, also of the services for parameters, which rclpy makes."""
+    """A node with bounded requests, also of the services for parameters, which rclpy makes.
+
+    `given` are its parameters on the command line.  Raises InputError when ROS refuses name, parameters or environment.
+    """
+
+    def __init__(self, name: str, given: GivenParameters) -> None:
+        with refusing('ROS parameters or environment', variables(), ParameterException):
+            super().__init__(name)
+        self.given = given.of(self.get_fully_qualified_name())
+        for path in self.given.passed_over:
+            self.get_logger().warning(f'{path} has no section for {self.get_fully_qualified_name()}')
+        sim_time = self.given.values.get(SIM_TIME)
+        if sim_time not in (None, self.get_parameter(SIM_TIME).value):    # rclpy chose another section
+            super().set_parameters_atomically([Parameter(SIM_TIME, value=sim_time)])
 
     def create_service(self, srv_type: Any, srv_name: str, callback: _Answer, **options: Any) -> Any:
         """Offer a service; a request with too long a list gets the answer without results, and a warning in the log."""

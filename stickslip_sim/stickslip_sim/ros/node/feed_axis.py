@@ -23,6 +23,7 @@ from ...scene.sections import NODE
 from ..diagnostics.periodic_report import PeriodicReport
 from ..diagnostics.rig_events import RigEvents
 from ..diagnostics.run_receipt import run_receipt
+from ..process.given_parameters import GivenParameters
 from ..services.fault_services import FaultServices
 from ..services.record_service import RecordService
 from ..services.standard_services import offer_standard_services
@@ -32,7 +33,7 @@ from .clock import ClockOut
 from .deferred_log import DeferredLog
 from .endpoints import publisher
 from .joints import JointStates
-from .parameters import FileParameters, SceneNode
+from .parameters import SceneNode
 from .publishers import Publishers
 from .scheduling_parameters import scheduling_of
 from .subscribers import Subscribers
@@ -49,8 +50,8 @@ class FeedAxis(SceneNode):
 
     _hidden: Sequence[Any] = ()
 
-    def __init__(self, files: FileParameters, is_stopping: Callable[[], bool]) -> None:
-        super().__init__(NODE, files)
+    def __init__(self, given: GivenParameters, is_stopping: Callable[[], bool]) -> None:
+        super().__init__(NODE, given)
         scene = self.scene
         if scene.solver.name == 'adaptive':
             raise InputError('solver.name', 'adaptive', 'exact or fixed_step in the node',
@@ -68,7 +69,7 @@ class FeedAxis(SceneNode):
         self._hidden = self._subscribers.hidden
         self.loop = StepLoop(scene.make_rig(), self._step_clock, self._slots, sinks, Watchdog(scene.command.timeout),
                              by_request=scene.time.mode == 'lockstep', hear=self._subscribers.hear,
-                             scheduling=scheduling_of(self, scene.time))
+                             scheduling=scheduling_of(self, self.given.values, scene.time))
         self._cost = CostMeter()
         self._open_endpoints(is_stopping)
 

@@ -6,14 +6,13 @@ import difflib
 from collections.abc import Mapping, Sequence
 
 from rcl_interfaces.msg import SetParametersResult
-from rclpy.exceptions import ParameterException
 from rclpy.parameter import Parameter
 
 from ...config.parameter import Parameter as Entry
 from ...core.errors import InputError
 from ...scene.sections import without_those_of_ros
 from ...scene.values import NULL
-from ..process.environment import refusing, variables
+from ..process.given_parameters import GivenParameters
 from .bounded_node import BoundedNode
 from .parameter_requests import changes_of
 from .parameters import declare
@@ -25,12 +24,10 @@ class ListedNode(BoundedNode):
     Raises InputError when those given at the start are wrong.
     """
 
-    def __init__(self, name: str, entries: Sequence[Entry]) -> None:
-        with refusing('ROS parameters or environment', variables(), ParameterException):
-            super().__init__(name)
+    def __init__(self, name: str, entries: Sequence[Entry], given: GivenParameters) -> None:
+        super().__init__(name, given)
         self._entries = {entry.name: entry for entry in entries}
-        given = {name: parameter.value for name, parameter in self._parameter_overrides.items()}
-        self.values = values_at_start(self._entries, without_those_of_ros(given))
+        self.values = values_at_start(self._entries, without_those_of_ros(self.given.values))
         declare(self, entries, self.values)
 
     def values_changed(self) -> None:

@@ -5,11 +5,8 @@
 import math
 from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
-from pathlib import Path
-from typing import NamedTuple
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor, SetParametersResult
-from rclpy.exceptions import ParameterException
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
@@ -17,47 +14,23 @@ from ...config.parameter import Parameter as Entry
 from ...core.errors import InputError
 from ...inputs.profile_file import sections_with_file
 from ...inputs.scene_files import load_scene, scene_with_profiles
-from ...scene.load import named, read_parameters, scene_from_values, scene_names
+from ...recording.topics import CLOCK
+from ...scene.load import DEFAULT_SCENE, ENDINGS, named, scene_from_values, scene_names
 from ...scene.model import Scene
 from ...scene.plausible import OF_NODE, check_plausible
 from ...scene.schema import BY_NAME, PARAMETERS
-from ...scene.sections import describes_an_axis, of_a_scene
-from ...scene.values import stated
-from ..process.environment import refusing, variables
-from .bounded_node import BoundedNode
+from ...scene.sections import of_a_scene
+from ..process.given_parameters import GivenParameters, NodeParameters
+from .bounded_node import SIM_TIME, BoundedNode
 from .clock import check_sim_time
 from .parameter_requests import changes_of
 
-_SIM_TIME = 'use_sim_time'
-DEFAULT_SCENE = 'paper_fig8'
 _MEANT = Entry('meant', 'string_array', None, '', 'parameters of the scene whose values are meant, however unusual',
                live=True)
 _TYPES = {
     'double': Parameter.Type.DOUBLE, 'double_array': Parameter.Type.DOUBLE_ARRAY, 'string': Parameter.Type.STRING,
     'bool': Parameter.Type.BOOL, 'integer': Parameter.Type.INTEGER, 'string_array': Parameter.Type.STRING_ARRAY,
 }
-
-
-class FileParameters(NamedTuple):
-    """What parameter files give of a scene, by dotted name; `source` names the files, and is empty without any.
-
-    `folders`, by section of the scene, are those of the files that name a profile in a file.
-    """
-
-    source: str
-    values: Mapping[str, object]
-    folders: Mapping[str, Path]
-
-    @classmethod
-    def read(cls, paths: Sequence[str]) -> 'FileParameters':
-        """Return what files give, read as the tool does; a later one wins.  Raises InputError."""
-        values: dict[str, object] = {}
-        folders: dict[str, Path] = {}
-        for path in paths:
-            given = of_a_scene(read_parameters(path))
-            values |= given
-            folders |= dict.fromkeys(sections_with_file(given), Path(path).parent)
-        return cls(' + '.join(paths), stated(values), folders)
 
 
 class SceneNode(BoundedNode):
@@ -68,28 +41,19 @@ class SceneNode(BoundedNode):
 
     scene: Scene
 
-    def __init__(self, name: str, files: FileParameters) -> None:
-        with refusing('ROS parameters or environment', variables(), ParameterException):
-            super().__init__(name)
-        # rclpy has no public way to see what was given but never declared
-        given = {name: parameter.value for name, parameter in self._parameter_overrides.items()}
-        declare(self, [_MEANT], {'meant': _MEANT.checked(given['meant'])} if 'meant' in given else {})
-        given = of_a_scene(given)
-        with named(files.source) if files.source else nullcontext():
-            self._check_addressed(files, given)
-            self.scene = scene_at_start(given, files)
+    def __init__(self, name: str, given: GivenParameters) -> None:
+        super().__init__(name, given)
+        meant = self.given.values.get(_MEANT.name)
+        declare(self, [_MEANT], {} if meant is None else {_MEANT.name: _MEANT.checked(meant)})
+        with named(self.given.source) if self.given.source else nullcontext():
+            self.scene = scene_at_start(self.given)
             check_plausible(self.scene.values, self._meant(), OF_NODE)
-        if files.values and not describes_an_axis(given) and self.scene.name not in scene_names():
-            self.get_logger().warning('the parameters say nothing of an axis: it stands still, without friction')
+        name, given_names = self.scene.name, self.given.values
+        if name == given_names.get('scene') and name not in scene_names() and not any(
+                each.startswith('friction.') for each in given_names):
+            self.get_logger().warning(f'the scene {name} leaves out the friction: the axis has none')
         declare(self, PARAMETERS, self.scene.values)
-        self._warn(check_sim_time(self.scene.time, self.get_parameter(_SIM_TIME).value))
-
-    def _check_addressed(self, files: FileParameters, given: Mapping[str, object]) -> None:
-        """Raise InputError when a section of the files is for a node by another name, which ROS passes over."""
-        for name, value in files.values.items():
-            if name not in given:
-                raise InputError(name, value, f'in a section of {self.get_fully_qualified_name()}',
-                                 'name the section /**, or as this node')
+        self._warn(check_sim_time(self.scene.time, self.get_parameter(SIM_TIME).value))
 
     def check_change(self, scene: Scene) -> None:
         """Raise InputError on a scene that this node cannot change to; for the heir."""
@@ -114,8 +78,8 @@ class SceneNode(BoundedNode):
             scene = scene_from_values({**self.scene.values, **ours}) if ours else self.scene
             check_plausible({name: scene.values.get(name) for name in ours}, self._meant(wanted), OF_NODE)
             self.check_change(scene)
-            warnings = [check_sim_time(scene.time, parameter.value) for parameter in wanted
-                        if parameter.name == _SIM_TIME]
+            warnings = [check_sim_time(scene.time, parameter.value, self.count_publishers(CLOCK.name) > 0)
+                        for parameter in wanted if parameter.name == SIM_TIME]
         except InputError as error:
             return SetParametersResult(successful=False, reason=str(error))
         if not wanted:
@@ -138,18 +102,14 @@ class SceneNode(BoundedNode):
             self.get_logger().warning(text)
 
 
-def scene_at_start(given: Mapping[str, object], files: FileParameters) -> Scene:
-    """Return the scene of the parameters given at the start, of which some are in files; raises InputError.
-
-    Files that describe an axis are a whole scene, as for the tool; `scene` is just its name.  Otherwise `scene` is a
-    shipped one or a file, and what else is given changes it.
-    """
-    in_files = files.values
-    changes = {name: value for name, value in given.items() if name not in in_files or value != in_files[name]}
-    if in_files and (describes_an_axis(in_files) or 'scene' not in changes):
-        return scene_with_profiles(in_files, changes, files.folders)
-    rest = {name: value for name, value in given.items() if name != 'scene'}
-    return load_scene(str(given.get('scene', DEFAULT_SCENE)), rest)
+def scene_at_start(given: NodeParameters) -> Scene:
+    """Return the scene of the parameters given at the start, read as the tool reads a scene file; raises InputError."""
+    in_files, single = of_a_scene(given.in_files), of_a_scene(given.single)
+    name = str(single.get('scene', '' if in_files else DEFAULT_SCENE))
+    if in_files and not name.endswith(ENDINGS):
+        folders = {section: given.folders[f'{section}.file'] for section in sections_with_file(in_files)}
+        return scene_with_profiles(in_files, single, folders)
+    return load_scene(name, {key: value for key, value in {**in_files, **single}.items() if key != 'scene'})
 
 
 def declare(node: Node, entries: Sequence[Entry], values: Mapping[str, object]) -> None:

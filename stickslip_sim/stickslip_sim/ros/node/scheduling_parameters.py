@@ -25,9 +25,8 @@ _CORES = 'cpu_affinity'
 _ANY_CORE = -1
 
 
-def scheduling_of(node: Node, time: TimeSettings) -> Scheduling:
-    """Declare the parameters; return what they want.  Raises InputError."""
-    given = {name: parameter.value for name, parameter in node._parameter_overrides.items()}
+def scheduling_of(node: Node, given: Mapping[str, object], time: TimeSettings) -> Scheduling:
+    """Declare the parameters, of which some are given; return what they want.  Raises InputError."""
     values: dict[str, Any] = {entry.name: entry.checked(given.get(entry.name, entry.default)) for entry in _ENTRIES}
     cores = cores_of(given.get(_CORES, _ANY_CORE))
     declare(node, _ENTRIES, values)

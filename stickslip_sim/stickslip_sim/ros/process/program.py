@@ -9,6 +9,7 @@ from itertools import takewhile
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
+    from .given_parameters import GivenParameters
     from .stop_signals import Signals
 
 _POLL = 0.1                # s: how soon a signal is acted on
@@ -16,12 +17,11 @@ SWITCH_INTERVAL = 5e-5    # s that another thread may keep the interpreter from 
 
 
 class Program(NamedTuple):
-    """An executable: `read` looks at the arguments before ROS does, `run` runs its node with what that returned."""
+    """An executable; `run` runs its node with the parameters of the command line."""
 
     name: str
     usage: str
-    read: Callable[[Sequence[str]], Any]
-    run: Callable[[Any, 'Signals'], None]
+    run: Callable[['GivenParameters', 'Signals'], None]
 
 
 def live(args: Sequence[str], signals: 'Signals', program: Program) -> int:
@@ -82,7 +82,9 @@ def _with_ros(args: Sequence[str], signals: 'Signals', program: Program) -> None
     import rclpy
     from rclpy.executors import ExternalShutdownException
 
-    given = program.read(args)
+    from .given_parameters import GivenParameters
+
+    given = GivenParameters.read(args)    # before ROS, whose parser takes minutes for some files
     try:
         _init_ros(args)
         if _wants_help(args, program):

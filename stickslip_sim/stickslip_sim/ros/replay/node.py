@@ -16,6 +16,7 @@ from ...recording.topics import CLOCK
 from ..node.conversion import set_stamp
 from ..node.endpoints import publisher
 from ..node.listed_parameters import ListedNode
+from ..process.given_parameters import GivenParameters
 from .commands import Commands
 from .player import Player, Script
 from .player_services import Services
@@ -31,8 +32,8 @@ _PATIENCE = 5.0    # s; what did not fit into shared memory is sent again after 
 class Replay(ListedNode):
     """Plays a recording; raises InputError or RecordingError when parameters or recording are refused."""
 
-    def __init__(self) -> None:
-        super().__init__(NAME, REPLAY_PARAMETERS)
+    def __init__(self, given: GivenParameters) -> None:
+        super().__init__(NAME, REPLAY_PARAMETERS, given)
         settings = self._settings = Settings.of(self.values)
         self._recording = Recording(settings.bag)
         self._span = span_of(self._recording, settings)

@@ -4,10 +4,10 @@
 
 from typing import TYPE_CHECKING
 
-from ..process.params_files import check_params_files
 from ..process.program import Program, spin
 
 if TYPE_CHECKING:
+    from ..process.given_parameters import GivenParameters
     from ..process.stop_signals import Signals
 
 _USAGE = """\
@@ -19,13 +19,13 @@ playback_duration, clock, delay, start_paused, topics.
 """
 
 
-def _run(_: None, signals: 'Signals') -> None:
+def _run(given: 'GivenParameters', signals: 'Signals') -> None:
     from .node import Replay
 
-    node = Replay()
+    node = Replay(given)
     spin(node, signals, lambda: node.player.is_over)
     if node.player.crash is not None:
         raise node.player.crash
 
 
-PROGRAM = Program('replay_node', _USAGE, check_params_files, _run)
+PROGRAM = Program('replay_node', _USAGE, _run)
