@@ -92,3 +92,22 @@ class TestPacer:
         pacer, begin = make(clock, rate=1.0), clock.time
         assert not pacer.wait(1)
         assert clock.time - begin <= 50 * MS
+
+
+def test_the_delay_is_that_of_pauses_and_of_time_given_up(clock: FakeClock) -> None:
+    pacer = make(clock)
+    run(pacer, range(100))
+    assert pacer.delay == 0
+    clock.time += 200 * MS
+    run(pacer, range(100, 400))
+    assert pacer.delay == 0    # it was caught up
+    clock.time += 3000 * MS
+    run(pacer, range(400, 500))
+    assert 2900 * MS < pacer.delay < 3000 * MS
+    given_up = pacer.delay
+    clock.time += 5000 * MS    # a pause
+    pacer.restart(500)
+    run(pacer, range(500, 600))
+    assert pacer.delay - given_up == 5000 * MS - MS
+    pacer.restart(0)
+    assert pacer.delay == 0

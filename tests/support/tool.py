@@ -19,8 +19,9 @@ Capture = pytest.CaptureFixture[str]
 
 
 def restore_interrupt() -> None:
-    """Undo, in a new process, what a shell does to background jobs: Ctrl-C is heard again.  It ends with its parent."""
+    """Undo, in a new process, what a shell or nohup does to signals: it hears them.  It ends with its parent."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
     ctypes.CDLL(None).prctl(_PARENT_DEATH_SIGNAL, signal.SIGKILL)
 
 

@@ -44,10 +44,18 @@ def wake_precisely() -> None:
 
 
 class StepClock(Clock, Protocol):
-    """What releases the steps of the step loop, on the steady clock; durations in ns."""
+    """What releases the steps of the step loop, on the steady clock; durations in ns.
+
+    `delay` is by how much steps are due later than they would be without the pauses since step 0, and without the wall
+    time given up.
+    """
 
     period: int
     counters: 'PacingCounters'
+
+    @property
+    def delay(self) -> int:
+        """Return it."""
 
     def restart(self, step: int, lead: int = 0) -> None:
         """Let a step be due in `lead` ns, and those after it follow."""
@@ -94,14 +102,21 @@ class Pacer:
         self._backlog = max(_MAX_BACKLOG, 2 * self.period)
         self._clock: Clock = clock or SteadyClock()
         self.now, self.sleep = self._clock.now, self._clock.sleep
-        self._origin = self._latest = self._watched = 0
+        self._begin = self._origin = self._latest = self._watched = 0
         self._waited = False
         self.restart(0)
+
+    @property
+    def delay(self) -> int:
+        """By how much steps are due later than they were at step 0, ns."""
+        return self._origin - self._begin
 
     def restart(self, step: int, lead: int = 0) -> None:
         """Let a step be due in `lead` ns, and those after it follow."""
         self._latest = self.now() + lead
         self._origin = self._latest - step * self._numerator // self._denominator
+        if step == 0:
+            self._begin = self._origin
 
     def due(self, step: int) -> int:
         """Return when a step is due, ns on the steady clock."""
@@ -141,6 +156,8 @@ class Pacer:
 
 class Unpaced:
     """Lets each step be due at once, for time that goes as fast as it can or as it is asked to."""
+
+    delay = 0
 
     def __init__(self, grid: Grid) -> None:
         self.period = round(NANOSECONDS / grid.rate)

@@ -37,6 +37,11 @@ class TimeSettings:
         return self.mode != 'realtime'
 
     @property
+    def is_wall_time(self) -> bool:
+        """Whether simulation time goes as the time of the ROS graph does."""
+        return self.mode == 'realtime' and self.factor == 1.0
+
+    @property
     def is_paced(self) -> bool:
         """Whether a step waits until it is due."""
         return self.mode != 'lockstep' and self.factor != math.inf

@@ -3,21 +3,29 @@
 """Who else is on the topics of a node, and whose clock it follows."""
 
 import time
-from typing import Any
+from itertools import count
+from types import SimpleNamespace
+from typing import Any, cast
 
 import pytest
+from builtin_interfaces.msg import Time
+from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 
+from stickslip_sim.core.errors import InputError
+from stickslip_sim.core.time_grid import NANOSECONDS
 from stickslip_sim.recording import topics
 from stickslip_sim.ros.diagnostics.graph_monitor import PublisherWatch
+from stickslip_sim.ros.node.clock import ClockIn
 from tests.support.node_processes import running
 from tests.support.ros2_control_client import THRESHOLD, Rule, always, hardware_interface, near_is_silent
-from tests.support.ros_nodes import Client, client
+from tests.support.ros_nodes import Client, client, nanoseconds
 from tests.support.waiting import wait_for
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
 SLOW = ('-p', 'time.rate:=200.0')    # who is there does not depend on it
+MILLISECOND = NANOSECONDS // 1000
 ON = (*SLOW, '-p', 'joint_interface.enabled:=true')
 
 
@@ -134,12 +142,38 @@ class TestClock:
             assert axis.set_parameters(use_sim_time=False).successful
             process.end()
 
-    def test_that_of_another_is_warned_of(self) -> None:
+    def test_that_of_another_is_warned_of_and_refused_where_nobody_has_one(self) -> None:
         with running() as process, client() as axis:
             axis.connect()
-            assert axis.set_parameters(use_sim_time=True).successful
+            answer = axis.set_parameters(use_sim_time=True)
+            assert (answer.successful, 'no node publishes /clock' in answer.reason) == (False, True)
+            axis.node.create_publisher(Clock, '/clock', 1)
+            wait_for(lambda: axis.set_parameters(use_sim_time=True).successful, 'a /clock to follow')
             _, errors = process.end()
         assert errors.count('use_sim_time with time.mode: realtime') == 1
+
+    def test_stamps_start_from_the_first_of_another(self) -> None:
+        with running('-p', 'use_sim_time:=true') as process, client() as axis:
+            out = axis.node.create_publisher(Clock, '/clock', 1)
+            wait_for(out.get_subscription_count, 'the node that waits')
+            assert not axis.heard['slider_state']
+            wait_for(lambda: out.publish(Clock(clock=Time(sec=1000))) or axis.heard['slider_state'], 'its first step')
+            states = axis.heard['slider_state']
+            starts = {nanoseconds(state.header.stamp) - state.step * MILLISECOND for state in states}
+            assert 1000.0 <= min(starts) * 1e-9 < 1001.0
+            _, errors = process.end()
+        assert errors.count('waiting for the first /clock') == 1
+
+    def test_it_does_not_wait_for_ever(self) -> None:
+        """For ten seconds of its own clock; here each look takes four."""
+        looks = count(0, 4 * NANOSECONDS)
+        node = SimpleNamespace(get_clock=lambda: SimpleNamespace(now=lambda: SimpleNamespace(nanoseconds=0)),
+                               get_logger=lambda: SimpleNamespace(info=lambda _: None))
+        clock = ClockIn(cast(Any, node), lambda: next(looks))
+        assert not clock.has_come()
+        assert not clock.has_come()
+        with pytest.raises(InputError, match=r'use_sim_time = True is refused: must be with a /clock within 10 s'):
+            clock.has_come()
 
     def test_of_another_type(self) -> None:
         with running('-p', 'use_sim_time:=3') as process:

@@ -70,7 +70,7 @@ def takes(number: int, pid: int) -> bool:
 
 
 class TestSignals:
-    @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+    @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
     def test_the_bag_is_closed(self, tmp_path: Path, number: int) -> None:
         folder = tmp_path / 'run'
         with running(*recording_into(folder), afresh=True) as process, client() as axis:
@@ -103,7 +103,7 @@ class TestSignals:
         assert b'paper_fig8' in run.attachments['scene.yaml']
 
     @pytest.mark.parametrize('delay', [0.0, 0.3, 0.6])    # s: amid its imports, and after them
-    @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+    @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
     def test_while_it_starts(self, number: int, delay: float) -> None:
         with running(afresh=True) as process:
             wait_for(lambda: takes(signal.SIGTERM, process.pid), 'its handlers')    # Python itself takes but SIGINT

@@ -51,7 +51,7 @@ def test_nothing_is_packed_for_nobody(node: Any, monkeypatch: pytest.MonkeyPatch
         return pack(self, *given)
 
     monkeypatch.setattr(Packer, 'pack', counted)
-    publishers, rig = Publishers(node), make()
+    publishers, rig = Publishers(node, lambda: 0), make()
     publishers.begin_run(0, Mode.STICK)
     publishers.take(rig.make_step())
     assert packed == []

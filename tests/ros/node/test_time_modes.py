@@ -38,6 +38,7 @@ from stickslip_msgs.srv import Step  # noqa: E402
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
 STALL = 0.2          # s
+STANDSTILL = 1.5     # s
 MS = 1_000_000
 RICH: dict[str, Any] = {
     'seed': 77, 'command.acceleration_limit': 0.2, 'joint_interface.enabled': True, 'encoder.resolution': 1e-6,
@@ -230,6 +231,37 @@ class TestClock:
             wait_for(follows, 'the time of the follower')
         finally:
             clocked.remove(follower)
+
+
+class TestStamps:
+    def test_stay_with_the_time_of_the_graph_after_a_pause_and_a_standstill(self) -> None:
+        def is_of_now(state: Any) -> bool:
+            return time.time_ns() - nanoseconds(state.header.stamp) < 1e9 * STANDSTILL / 2
+
+        with running('-p', 'time.rate:=200.0') as process, client() as axis:
+            axis.connect()
+            axis.next('slider_state', is_of_now)
+            assert axis.switch('set_paused', True).success
+            time.sleep(STANDSTILL)
+            assert axis.switch('set_paused', False).success
+            axis.next('slider_state', is_of_now)
+            process.send(signal.SIGSTOP)
+            time.sleep(STANDSTILL)
+            process.send(signal.SIGCONT)
+            axis.next('slider_state', is_of_now)
+            stamps = [nanoseconds(state.header.stamp) for state in axis.heard['slider_state']]
+            assert stamps == sorted(stamps)
+            assert_clean(*process.end())
+
+    def test_are_simulation_time_with_a_factor_and_it_is_said_once(self) -> None:
+        with running('-p', 'time.factor:=4.0') as process, client() as axis:
+            axis.connect()
+            timing = axis.next('timing', lambda timing: timing.step > 8000)
+            state = axis.next('slider_state', lambda state: state.step > timing.step)
+            apart = nanoseconds(state.header.stamp) - nanoseconds(timing.header.stamp)
+            assert abs(apart - (state.step - timing.step) * MS) < 1500 * MS    # 6 s with the time of the graph
+            code, errors = process.end()
+        assert (code, errors.count('stamps are simulation time')) == (0, 1)
 
 
 class TestFreeRun:

@@ -35,6 +35,10 @@ class BoundedNode(Node):  # type: ignore[misc]
         if sim_time not in (None, self.get_parameter(SIM_TIME).value):    # rclpy chose another section
             super().set_parameters_atomically([Parameter(SIM_TIME, value=sim_time)])
 
+    def is_ready(self) -> bool:
+        """Return whether it may begin."""
+        return True
+
     def create_service(self, srv_type: Any, srv_name: str, callback: _Answer, **options: Any) -> Any:
         """Offer a service; a request with too long a list gets the answer without results, and a warning in the log."""
         def answer(request: Any, response: Any) -> Any:

@@ -1,17 +1,21 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""/clock: simulation time as the time of the ROS graph, where no real clock moves it."""
+"""/clock: simulation time as the time of the ROS graph, where no real clock moves it; or the time of another node."""
+
+from collections.abc import Callable
 
 from rclpy.node import Node
 from rosgraph_msgs.msg import Clock
 
 from ...core.errors import InputError
-from ...core.time_grid import Grid
+from ...core.time_grid import NANOSECONDS, Grid
 from ...recording.topics import CLOCK
 from ...rig import StepResult
 from ...scene.model import TimeSettings
 from .conversion import set_stamp
 from .endpoints import publisher
+
+_PATIENCE = 10 * NANOSECONDS
 
 
 class ClockOut:
@@ -35,11 +39,33 @@ class ClockOut:
                 self._next += 1
 
 
-def check_sim_time(time: TimeSettings, wanted: object) -> str:
-    """Return what to warn of with this `use_sim_time`; raises InputError where the node would follow its own clock."""
+class ClockIn:
+    """The /clock of another node with `use_sim_time`; `now` is the steady clock, ns."""
+
+    def __init__(self, node: Node, now: Callable[[], int]) -> None:
+        self._node, self._now = node, now
+        self._last = 0    # moment to wait until
+
+    def has_come(self) -> bool:
+        """Return whether the node has a time; raises InputError after ten seconds without."""
+        if self._node.get_clock().now().nanoseconds > 0:
+            return True
+        if not self._last:
+            self._last = self._now() + _PATIENCE
+            self._node.get_logger().info('use_sim_time: waiting for the first /clock')
+        if self._now() > self._last:
+            raise InputError('use_sim_time', True, f'with a /clock within {_PATIENCE / NANOSECONDS:g} s',
+                             'start what publishes it, or set use_sim_time to false')
+        return False
+
+
+def check_sim_time(time: TimeSettings, wanted: object, has_clock: bool = True) -> str:
+    """Return what to warn of with this `use_sim_time`; raises InputError where there is no clock to follow."""
     if not wanted:
         return ''
     if time.makes_clock:
         raise InputError('use_sim_time', wanted, f'false on this node with time.mode: {time.mode}',
                          'it publishes /clock itself: set use_sim_time on the nodes that should follow')
+    if not has_clock:
+        raise InputError('use_sim_time', wanted, 'false while no node publishes /clock', 'start that node first')
     return 'use_sim_time with time.mode: realtime: stamps start from the /clock of another node, then keep real time'

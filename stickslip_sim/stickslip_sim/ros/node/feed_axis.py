@@ -29,7 +29,7 @@ from ..services.record_service import RecordService
 from ..services.standard_services import offer_standard_services
 from ..services.time_services import TimeServices
 from . import conversion
-from .clock import ClockOut
+from .clock import ClockIn, ClockOut
 from .deferred_log import DeferredLog
 from .endpoints import publisher
 from .joints import JointStates
@@ -59,11 +59,12 @@ class FeedAxis(SceneNode):
         warm_up(scene)
         self._slots = (CommandSlot('velocity', 'm/s', scene.command.max_velocity),
                        CommandSlot('force', 'N', scene.command.max_force))
-        self._outputs = Publishers(self)
-        self.log = DeferredLog(self.get_logger())
-        self._rig_events = RigEvents(self, self._outputs, self.log)
         grid = Grid(scene.time.rate)
         self._step_clock = step_clock(grid, scene.time.mode, scene.time.factor)
+        self._clock_in = ClockIn(self, self._step_clock.now)
+        self._outputs = Publishers(self, self._delay)
+        self.log = DeferredLog(self.get_logger())
+        self._rig_events = RigEvents(self, self._outputs, self.log)
         sinks = self._sinks(grid)
         self._subscribers = Subscribers(self, *self._slots, self._step_clock.now, self.log, scene.rig.measures)
         self._hidden = self._subscribers.hidden
@@ -77,6 +78,10 @@ class FeedAxis(SceneNode):
     def subscriptions(self) -> Iterator[Any]:
         """Those that an executor serves: all but those that the step loop takes from by itself."""
         return (subscription for subscription in super().subscriptions if subscription not in self._hidden)
+
+    def is_ready(self) -> bool:
+        """Return whether stamps have a time to start from; raises InputError when it does not come."""
+        return self._clock_in.has_come()
 
     def begin(self) -> None:
         """Start recording if the scene wants it, and the steps; raises RecordingError when it cannot be recorded."""
@@ -94,6 +99,10 @@ class FeedAxis(SceneNode):
             self._start(self._publish_run_info)
         if self._subscribers.trouble:
             self.get_logger().info(f'commands are heard by callbacks: {self._subscribers.trouble}')
+        if not (self.scene.time.is_wall_time or self.scene.time.makes_clock):
+            self.get_logger().warning(
+                f'time.factor: {self.scene.time.factor:g}: stamps are simulation time from the start on, and drift from'
+                ' the time of other nodes; time.mode: free_run gives them a /clock')
         self.get_logger().info(f'{self.scene.name}: {self.scene.time.rate:g} steps a second, {self.scene.time.mode}')
 
     def end(self) -> None:
@@ -177,7 +186,7 @@ class FeedAxis(SceneNode):
 
     def _publish_run_info(self) -> None:
         message = conversion.run_info_message(messages.run_info(
-            RunFacts.of(self.scene), self._now_ns(), self._outputs.start_ns, self._record_service.recordings.folder))
+            RunFacts.of(self.scene), self._now_ns(), self._outputs.begin_ns, self._record_service.recordings.folder))
         self._run_info_out.publish(message)
         self._outputs.record_message(topics.RUN_INFO, message, self.loop.time_ns, max(self.loop.step, 0))
 
@@ -186,8 +195,12 @@ class FeedAxis(SceneNode):
         return 0 if self.scene.time.makes_clock else self._now_ns() + lead
 
     def _stamp_ns(self) -> int:
-        """Return the time of the graph."""
-        return self._outputs.start_ns + self.loop.time_ns if self.scene.time.makes_clock else self._now_ns()
+        """Return the stamp of what happens now."""
+        return self._now_ns() if self.scene.time.is_wall_time else self._outputs.start_ns + self.loop.time_ns
+
+    def _delay(self) -> int:
+        """Return by how much simulation time has fallen behind the time of the graph, ns, where it goes as fast."""
+        return self._step_clock.delay if self.scene.time.is_wall_time else 0
 
     def _now_ns(self) -> int:
         nanoseconds: int = self.get_clock().now().nanoseconds

@@ -5,6 +5,7 @@
 A message that nobody hears and no bag records is not made.
 """
 
+from collections.abc import Callable
 from typing import Any, Protocol
 
 from rclpy.node import Node
@@ -32,10 +33,13 @@ class Recorder(Protocol):
 
 
 class Publishers:
-    """Publishes what the step loop hands out, stamped `start_ns` (ROS time at simulation time 0) + simulation time."""
+    """Publishes what the step loop hands out, stamped `start_ns` (ROS time at simulation time 0) + simulation time.
 
-    def __init__(self, node: Node) -> None:
-        self.start_ns = 0
+    `delay` returns by how much simulation time has fallen behind ROS time since, ns, so that stamps do not.
+    """
+
+    def __init__(self, node: Node, delay: Callable[[], int]) -> None:
+        self.begin_ns, self._delay = 0, delay
         self.recorder: Recorder | None = None
         self.events = EventTally()    # of the run so far
         self._state = _Port(node, topics.SLIDER_STATE)
@@ -45,9 +49,14 @@ class Publishers:
         self._commands = [(RECORDED.index(topic), flat_layout(topic.type))
                           for topic in (topics.DRIVE_VELOCITY, topics.EXTERNAL_FORCE)]
 
+    @property
+    def start_ns(self) -> int:
+        """The stamp that simulation time 0 would have, had time gone on without a break: `begin_ns` and the delay."""
+        return self.begin_ns + self._delay()
+
     def begin_run(self, start_ns: int, mode: Mode) -> None:
         """Let simulation time 0 be a ROS time, ns, at which the slider is in a mode; forget the events."""
-        self.start_ns = start_ns
+        self.begin_ns = start_ns
         self._time_ns = 0
         self.events = EventTally(mode)
 

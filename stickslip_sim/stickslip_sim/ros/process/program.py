@@ -49,13 +49,15 @@ def live(args: Sequence[str], signals: 'Signals', program: Program) -> int:
 
 def spin(node: Any, signals: 'Signals', is_over: Callable[[], bool] = lambda: False,
          look: Callable[[], None] = lambda: None) -> None:
-    """Let a node begin, hear, and end with a signal or when it is over; `look` is called every now and then."""
+    """Let a node begin once it is ready, hear, and end with a signal or when it is over; `look` is called at times."""
     executor = make_executor()
     executor.add_node(node)
     gc.enable()
     try:
         signals.is_starting = False
         signals.standstill.is_up()
+        while not signals.stop and not node.is_ready():
+            executor.spin_once(timeout_sec=_POLL)
         if not signals.stop:
             node.begin()
         while not signals.stop and not is_over():
