@@ -83,7 +83,7 @@ def timing_message(second: Second, loop: StepLoop, period: float, valid: bool, s
 
 
 def diagnostics(stamp_ns: int, node: str, statuses: Sequence[DiagnosticStatus]) -> DiagnosticArray:
-    """Return the message that carries the statuses of a node; an aggregator tells nodes apart by the names of these."""
+    """Return the message that carries the statuses of a node; an aggregator distinguishes nodes by their names."""
     message = DiagnosticArray(status=list(statuses))
     set_stamp(message.header.stamp, stamp_ns)
     for status in message.status:

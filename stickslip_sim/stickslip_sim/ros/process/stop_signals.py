@@ -15,8 +15,8 @@ _TAKEN = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 class Signals:
     """Takes the signals that end a program: they cut the start short, and end the run at the next look at `stop`.
 
-    SIGHUP, of a terminal that was closed, only where it was not ignored (`nohup`).  Where no handler of a signal can run
-    any more, `standstill` ends the process.
+    SIGHUP, of a terminal that was closed, only where it was not ignored, as under nohup.  Where no handler of a signal
+    can run any more, `standstill` ends the process.
     """
 
     standstill: 'Standstill'
