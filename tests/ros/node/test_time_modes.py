@@ -4,7 +4,10 @@
 
 import itertools
 import math
+import select
 import signal
+import subprocess
+import sys
 import threading
 import time
 from collections.abc import Iterator
@@ -25,7 +28,8 @@ from tests.support.node_processes import NodeProcess, assert_clean, running
 from tests.support.replays import FIELDS, assert_same_states, made_again
 from tests.support.rigs import run
 from tests.support.ros_nodes import Client, client, nanoseconds
-from tests.support.waiting import wait_for
+from tests.support.tool import restore_interrupt
+from tests.support.waiting import DEADLINE, wait_for
 
 rosgraph_msgs = pytest.importorskip('rosgraph_msgs.msg')
 from rclpy.node import Node  # noqa: E402
@@ -231,6 +235,47 @@ class TestClock:
             wait_for(follows, 'the time of the follower')
         finally:
             clocked.remove(follower)
+
+
+LISTENER = """
+import rclpy
+from rclpy.node import Node
+from stickslip_msgs.msg import SliderState
+
+rclpy.init()
+node, steps = Node('listener'), []
+node.create_subscription(SliderState, 'slider_state', lambda state: steps.append(state.step), 10_000)
+while not node.count_publishers('slider_state'):
+    rclpy.spin_once(node, timeout_sec=0.1)
+while not steps:                            # the matching of both takes a moment more
+    rclpy.spin_once(node, timeout_sec=0.1)
+print(steps[-1], flush=True)
+while steps[-1] < steps[0] + 5000:
+    rclpy.spin_once(node, timeout_sec=0.1)
+print(steps == list(range(steps[0], steps[-1] + 1)))
+"""
+
+
+def test_no_state_of_a_long_request_is_lost_for_a_slow_listener() -> None:
+    """The listener stands still while the steps are made."""
+    with running('-p', 'time.mode:=lockstep') as process, client() as axis:
+        axis.connect(is_moving=False)
+        with subprocess.Popen([sys.executable, '-c', LISTENER], stdout=subprocess.PIPE, text=True,
+                              preexec_fn=restore_interrupt) as listener:
+            assert listener.stdout is not None
+            ready, _, _ = select.select([listener.stdout], [], [], 0.0)
+            while not ready:
+                steps(axis, 1)
+                ready, _, _ = select.select([listener.stdout], [], [], 0.05)
+            listener.send_signal(signal.SIGSTOP)
+            try:
+                steps(axis, 5000)
+            finally:
+                listener.send_signal(signal.SIGCONT)
+            first, complete = listener.communicate(timeout=DEADLINE)[0].split()
+            assert int(first) > 0
+            assert complete == 'True'
+        assert_clean(*process.end())
 
 
 class TestStamps:

@@ -50,9 +50,10 @@ def qos(profile: QosProfile) -> QoSProfile:
         durability=DurabilityPolicy[profile.durability.upper()])
 
 
-def publisher(node: Node, topic: Topic) -> Any:
-    """Create the publisher of a topic."""
-    return node.create_publisher(message_type(topic), topic.name, qos(topic.qos))
+def publisher(node: Node, topic: Topic, depth: int = 0) -> Any:
+    """Create the publisher of a topic, which keeps `depth` messages for slow subscribers if that is more than usual."""
+    profile = topic.qos._replace(depth=max(depth, topic.qos.depth))
+    return node.create_publisher(message_type(topic), topic.name, qos(profile))
 
 
 def subscription(node: Node, topic: Topic, callback: Callable[[Any], None]) -> Any:

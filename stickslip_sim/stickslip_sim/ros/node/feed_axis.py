@@ -8,6 +8,8 @@ from typing import Any
 
 from rclpy.parameter import Parameter
 
+from stickslip_msgs.srv import Step
+
 from ...core.errors import InputError, SolverError
 from ...core.time_grid import Grid
 from ...realtime.command_slot import CommandSlot
@@ -62,10 +64,12 @@ class FeedAxis(SceneNode):
         grid = Grid(scene.time.rate)
         self._step_clock = step_clock(grid, scene.time.mode, scene.time.factor)
         self._clock_in = ClockIn(self, self._step_clock.now)
-        self._outputs = Publishers(self, self._delay)
+        # as many states as one request may make: without a clock they come faster than they are heard
+        depth = Step.Request.MAX_STEPS if scene.time.mode == 'lockstep' else 0
+        self._outputs = Publishers(self, self._delay, depth)
         self.log = DeferredLog(self.get_logger())
         self._rig_events = RigEvents(self, self._outputs, self.log)
-        sinks = self._sinks(grid)
+        sinks = self._sinks(grid, depth)
         self._subscribers = Subscribers(self, *self._slots, self._step_clock.now, self.log, scene.rig.measures)
         self._hidden = self._subscribers.hidden
         self.loop = StepLoop(scene.make_rig(), self._step_clock, self._slots, sinks, Watchdog(scene.command.timeout),
@@ -134,10 +138,10 @@ class FeedAxis(SceneNode):
         if not self.loop.at_boundary(apply):
             self.get_logger().error('the step loop is busy: the changed parameters did not take effect')
 
-    def _sinks(self, grid: Grid) -> list[Sink]:
+    def _sinks(self, grid: Grid, depth: int) -> list[Sink]:
         sinks: list[Sink] = [self._rig_events.take, self._outputs.take]
         if self.scene.rig.measures:
-            sinks.append(JointStates(self, self._outputs).take)
+            sinks.append(JointStates(self, self._outputs, depth).take)
         if self.scene.time.makes_clock:
             sinks += [ClockOut(self, grid, self.scene.time.clock_rate).take, self._outputs.keep_pace]
         return sinks

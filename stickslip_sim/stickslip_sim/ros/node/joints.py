@@ -29,8 +29,8 @@ _HEAD, _NUMBERS = '<4siI', '2dI4x2dI4x2d'    # stamp; and at the end three array
 class JointStates:
     """Publishes what the encoders say at the end of a step; nothing when that measurement was lost."""
 
-    def __init__(self, node: Node, publishers: Publishers) -> None:
-        out = publisher(node, JOINT_STATES)
+    def __init__(self, node: Node, publishers: Publishers, depth: int = 0) -> None:
+        out = publisher(node, JOINT_STATES, depth)
         self._publish, self._is_heard = out.publish, out.get_subscription_count
         self._publishers = publishers
         self._pack = JointStatePacker().pack

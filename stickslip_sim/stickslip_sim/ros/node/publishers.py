@@ -35,16 +35,17 @@ class Recorder(Protocol):
 class Publishers:
     """Publishes what the step loop hands out, stamped `start_ns` (ROS time at simulation time 0) + simulation time.
 
+    Each topic keeps `depth` messages for slow subscribers if that is more than usual.
     `delay` returns by how much simulation time has fallen behind ROS time since, ns, so that stamps do not.
     """
 
-    def __init__(self, node: Node, delay: Callable[[], int]) -> None:
+    def __init__(self, node: Node, delay: Callable[[], int], depth: int = 0) -> None:
         self.begin_ns, self._delay = 0, delay
         self.recorder: Recorder | None = None
         self.events = EventTally()    # of the run so far
-        self._state = _Port(node, topics.SLIDER_STATE)
-        self._friction = _Port(node, topics.FRICTION_FORCE)
-        self._event = _Port(node, topics.MODE_EVENT)
+        self._state = _Port(node, topics.SLIDER_STATE, depth)
+        self._friction = _Port(node, topics.FRICTION_FORCE, depth)
+        self._event = _Port(node, topics.MODE_EVENT, depth)
         self._time_ns = 0     # of the latest state
         self._commands = [(RECORDED.index(topic), flat_layout(topic.type))
                           for topic in (topics.DRIVE_VELOCITY, topics.EXTERNAL_FORCE)]
@@ -131,8 +132,8 @@ class Publishers:
 class _Port:
     """A publisher, the packer of its messages and the place of its topic in a bag."""
 
-    def __init__(self, node: Node, topic: Topic) -> None:
+    def __init__(self, node: Node, topic: Topic, depth: int) -> None:
         self.index = RECORDED.index(topic)
         self.pack = Packer(topic).pack
-        out = publisher(node, topic)
+        out = publisher(node, topic, depth)
         self.publish, self.is_heard = out.publish, out.get_subscription_count
