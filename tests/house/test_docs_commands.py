@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The commands of the pages can be given one after the other in a clone, whichever page comes first; git sees none of it."""
+"""The commands of the pages can be given one after the other in a clone, whichever is first; git sees none of it."""
 
 import re
 import shlex
@@ -8,6 +8,7 @@ import subprocess
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import suppress
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -17,7 +18,8 @@ from tests.support.repository import ROOT
 PAGES = [ROOT / 'README.md', *sorted((ROOT / 'docs').glob('*.md'))]
 COMMAND = re.compile(r'(?:stickslip|python3 -m stickslip_sim|python3 -m venv) [^`|#]*')
 FOLDERS = '--out', '--bag'
-FILES = '--out', '--plot', '--csv', '--parquet', '--events', '--samples', '--receipt', '--junit', '--json', '--scene-out'
+FILES = ('--out', '--plot', '--csv', '--parquet', '--events', '--samples', '--receipt', '--junit', '--json',
+         '--scene-out')
 OTHERS = re.compile(r"record\.folder:=(\w\S*)|open\('([^']+)', 'w|create_keystore (\S+)")
 
 
@@ -32,8 +34,8 @@ def commands() -> Iterator[list[str]]:
 
 
 def outputs(words: list[str], options: tuple[str, ...]) -> list[str]:
-    """Return what a command writes by these options; names in capitals and numbers of samples stand for something else."""
-    given = [word for option, word in zip(words, words[1:], strict=False) if option in options]
+    """Return what a command writes by these options, but for names in capitals and numbers of samples."""
+    given = [word for option, word in pairwise(words) if option in options]
     return [word for word in given if re.fullmatch(r'[\w./-]*[a-z][\w./-]*', word) and not Path(word).stem.isupper()]
 
 
@@ -60,7 +62,7 @@ def test_no_two_commands_make_the_same_folder() -> None:
 
 
 def test_what_the_commands_write_is_ignored_by_git() -> None:
-    """Else `git status` of a clone in which a page was followed shows runs and pictures.  Pages are written anew on purpose."""
+    """Else `git status` shows runs and pictures where a page was followed.  Pages are written anew on purpose."""
     if not (ROOT / '.git').exists():
         pytest.skip('not a clone')
     found = {name for name in written() if not name.endswith('.md')}

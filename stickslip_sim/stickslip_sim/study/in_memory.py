@@ -75,10 +75,8 @@ def uncertainty(scene: SceneOrName, known: str | Path | Mapping[str, object], sa
     is a power of two.  Raises InputError.
     """
     scene = scene_of(scene)
-    if isinstance(known, Mapping):
-        found = uncertain_of({'parameters': known, 'seed': seed})
-    else:
-        found = load_uncertain(known)
+    found = (uncertain_of({'parameters': known, 'seed': seed}) if isinstance(known, Mapping)
+             else load_uncertain(known))
     sample = Saltelli(found.distributions, samples, found.seed, found.correlations)
     return uncertainty_of(sample, _columns(Study(scene.values, sample, duration), progress))
 

@@ -42,7 +42,8 @@ class Uncertain(NamedTuple):
     correlations: Correlations | None = None
 
 
-def load_uncertain(path: str | os.PathLike[str], find: ParameterOf = parameter_of, most: int = MOST_VARIATIONS) -> Uncertain:
+def load_uncertain(path: str | os.PathLike[str], find: ParameterOf = parameter_of, most: int = MOST_VARIATIONS
+                   ) -> Uncertain:
     """Return the content of a file, as `uncertain_of` does; raises InputError, whose text names the file."""
     if not isinstance(path, str | os.PathLike):   # from Python, as a list of names
         raise InputError('parameters', type(path).__name__, 'the path of a file, or names with their distributions',
