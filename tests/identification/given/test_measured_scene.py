@@ -33,10 +33,11 @@ def measured(folder: Path, begin: float = 0.0) -> MeasuredRun:
     return run
 
 
-START = stickslip.load_scene('paper_fig7', {**{name: MOTOR.values[name] for name in (
+START_CHANGES = {**{name: MOTOR.values[name] for name in (
     'axis.drive_stiffness', 'axis.drive_damping', 'axis.normal_force', 'friction.static.law',
     'friction.acceleration_dependence', 'friction.kinetic.velocities', 'friction.kinetic.end_slope', 'drive.velocity')},
-    'axis.mass': 120.0, 'friction.static.initial': 0.3, 'friction.kinetic.coefficients': (0.25,)})
+    'axis.mass': 120.0, 'friction.static.initial': 0.3, 'friction.kinetic.coefficients': (0.25,)}
+START = stickslip.load_scene('paper_fig7', START_CHANGES)
 FREE = {'axis.mass': between(50.0, 200.0), 'friction.kinetic.coefficients[0]': between(0.05, 0.4),
         'friction.static.initial': between(0.05, 0.5), 'sensor.external_force.offset': between(-10.0, 10.0)}
 
@@ -64,3 +65,15 @@ def test_a_motor_axis_that_is_measured_from_mid_motion_on(tmp_path: Path) -> Non
     assert any('initial.velocity is free' in note for note in found.notes)
     assert found.values['axis.mass'] == pytest.approx(95.0, rel=0.02)
     assert found.values['friction.kinetic.coefficients[0]'] == pytest.approx(0.2, rel=0.03)
+
+
+def test_numbers_of_sensors_alone(tmp_path: Path) -> None:
+    """The offset of a force where all else is known; no number of the scene is left open."""
+    run = measured(tmp_path / 'run')
+    known = {name: MOTOR.values[name] for name in ('axis.mass', 'friction.static.initial',
+                                                   'friction.kinetic.coefficients')}
+    start = stickslip.load_scene('paper_fig7', {**START_CHANGES, **known})
+    found = stickslip.identify(run, start, {'sensor.external_force.offset': between(-10.0, 10.0)})
+    assert found.values['sensor.external_force.offset'] == pytest.approx(OFFSET, abs=0.1)
+    write_results(run, found, 'start.yaml', tmp_path)
+    assert (tmp_path / 'posterior.yaml').read_text().endswith('parameters:\n')

@@ -132,6 +132,8 @@ def _allowed(name: str, low: float, high: float) -> tuple[float, float]:
 
 
 def _correlation_lines(estimates: Sequence[Estimate], correlation: Numbers) -> Iterator[str]:
+    if len(estimates) < 2:    # none where numbers of sensors alone were free
+        return
     matrix = _definite(estimates, correlation)
     names = [one.name for one in estimates]
     rows = [[(names[j], matrix[i, j]) for j in range(i) if abs(matrix[i, j]) > _WEAKEST] for i in range(len(names))]
