@@ -45,7 +45,7 @@ def impatient() -> None:
     from stickslip_sim.ros.process import standstill
 
     restore_interrupt()
-    standstill.GRACE = 1.0
+    standstill.GRACE = 3.0
 
 
 def with_a_middleware_that_does_not_end() -> None:
@@ -109,7 +109,7 @@ class TestWithSharedMemory:
             code, errors = process.wait()
         line, stacks = errors.split('\n', 1)
         assert code == 2
-        assert line.startswith('sim_node: ROS does not come up: a call has not come back for 1 s; ')
+        assert line.startswith('sim_node: ROS does not come up: a call has not come back for 3 s; ')
         assert f'rm {ports()[0]} ' in f'{line} '
         assert 'feed_axis.py' in stacks
 
@@ -134,7 +134,7 @@ class TestWithSharedMemory:
                 half_made(port)
             code, errors = node.wait()
         assert code == 1
-        assert errors.count('sim_node: stands still: a call has not come back for 1 s; ') == 1
+        assert errors.count('sim_node: stands still: a call has not come back for 3 s; ') == 1
         assert 'publish' in errors
         with pytest.warns(RecordingWarning, match='has no end'):
             assert len(open_bag(bag).columns('slider_state')['position']) > 100
@@ -156,17 +156,17 @@ def test_time_in_which_a_node_is_stopped_does_not_count() -> None:
     with running(prepare=impatient) as process, client() as axis:
         axis.connect()
         process.send(signal.SIGSTOP)
-        time.sleep(2.5)
+        time.sleep(4.5)
         process.send(signal.SIGCONT)
         axis.next('slider_state')
-        time.sleep(1.5)
+        time.sleep(3.5)    # in which it would have ended
         code, errors = process.end()
     assert code == 0, errors
 
 
 @pytest.mark.parametrize(('prepare', 'reported'), [
     (with_a_middleware_that_does_not_end, 'sim_node: stands still: '),
-    (with_nothing_compiled_that_ends_it, 'Timeout (0:00:01)!'),
+    (with_nothing_compiled_that_ends_it, 'Timeout (0:00:03)!'),
 ], ids=['compiled', 'plain'])
 def test_a_node_ends_whose_middleware_does_not(prepare: Callable[[], None], reported: str, tmp_path: Path) -> None:
     bag = tmp_path / 'run'

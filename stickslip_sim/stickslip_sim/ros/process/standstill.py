@@ -11,6 +11,7 @@ import faulthandler
 import importlib
 import signal
 import sys
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 from threading import Event, Thread
@@ -19,6 +20,7 @@ from typing import Any
 GRACE = 10.0   # s; tests of it have less
 _BEAT = 0.5       # s
 _SIGNAL = signal.SIGUSR2    # has the stacks of all threads written
+_STACK = 262_144   # bytes for each of its threads: a node may lock all memory, some MB for each other thread
 _MEMORY = Path('/dev/shm')
 _PORTS = 'fast*_port*[0-9]'
 _MADE = 2         # in the first word of a port's file; less before all of it is there
@@ -39,8 +41,10 @@ class Standstill:
         files = ' '.join(map(str, half_made_ports()))
         self._say('ROS does not come up', files and f'rm {files}', 2)
         faulthandler.register(_SIGNAL, file=2, all_threads=True)
+        size = threading.stack_size(_STACK)
         for name, run in (('alive', self._beat), ('standstill', lambda: self._watch.look(GRACE, _SIGNAL))):
             Thread(target=run, name=name, daemon=True).start()
+        threading.stack_size(size)
 
     def is_up(self) -> None:
         """Take it that the node has come up."""
