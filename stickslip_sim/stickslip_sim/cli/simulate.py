@@ -152,11 +152,13 @@ def _sampled(run: 'SimulatedRun', period: Fraction) -> 'SimulatedRun':
 
 
 def _print_figures(run: 'SimulatedRun') -> None:
-    from ..runs.wording import quantity
+    from ..runs.wording import miss_note, quantity
     from .format import summary_lines
 
-    cost, energy = run.receipt['cost'], run.receipt['energy']
+    cost, energy, note = run.receipt['cost'], run.receipt['energy'], miss_note(run.scene)
     print(f'{run.scene.name}: {run.duration:g} s with the {run.scene.solver.name} solver')
+    if note:
+        print(f'{"note":22} {note}')
     print('\n'.join(summary_lines(run.summary)))
     if energy is not None:
         print(f'{"energy":22} {quantity(energy["drive_work"], "J")} from the drive, '

@@ -17,7 +17,7 @@ from ..core.types import Mode, Sample
 from ..core.version import __version__
 from ..scene import Scene
 from ..simulation.cycles import Summary
-from .wording import touch_note
+from .wording import miss_note, touch_note
 
 
 class CostMeter:
@@ -42,7 +42,7 @@ def receipt_of(scene: Scene, duration: float, sample_period: float | None, figur
     `results` and `energy` (J; None when the solver keeps no account) are the same on every machine; `versions` and
     `cost` are not.  An infinite number is the text 'inf'.
     """
-    note = touch_note(figures)
+    note = '; '.join(filter(None, (touch_note(figures), miss_note(scene))))
     receipt = {
         'scene': scene.name,
         'scene_hash': scene.hash,

@@ -5,6 +5,8 @@
 import math
 from collections.abc import Sequence
 
+from ..friction import StaticLawKind
+from ..scene import Scene
 from ..simulation.cycles import Summary
 
 CYCLE_FIGURES = (
@@ -53,3 +55,13 @@ def touch_note(figures: Summary) -> str:
         return ''
     return (f'{figures.touches} of {figures.cycles} cycles only touch rest: rounding chooses whether a stick, a turn '
             'or nothing is listed there; the motion is right, the counts and means of sticks and cycles mean nothing')
+
+
+def miss_note(scene: Scene) -> str:
+    """Say that the solver may miss events where it may, and what misses none; nothing of another scene."""
+    if scene.solver.name != 'adaptive' or scene.normal_load is None or scene.normal_load.is_stepwise:
+        return ''
+    without = 'solver.name: exact misses none' if scene.axis.friction.static.kind != StaticLawKind.KATO else (
+        'no solver takes Kato\'s law there without')
+    return ('under a normal force that varies smoothly the adaptive solver may miss an event, and its events depend on '
+            f'its tolerances and on the samples; {without}')

@@ -4,6 +4,7 @@
 
 import math
 from collections.abc import Callable
+from typing import Any
 
 import pytest
 
@@ -18,6 +19,7 @@ from stickslip_sim.simulation.simulator import Simulator
 from stickslip_sim.solvers import adaptive
 from stickslip_sim.solvers.adaptive.first_fall import SAMPLED_AT, first_fall
 from tests.support.axes import instant
+from tests.support.tool import Capture, answered
 
 SWAY = InputProfile((0.0,), (0.0,), (0.0,), math.inf, (Sinusoid(6.0, 1.5, 0.4),))
 RISE = table('normal_load', (0.0, 0.4, 1.0), (-8.0, 10.0, 0.0))
@@ -120,3 +122,23 @@ def test_a_guard_that_comes_and_goes_is_found(place: float, depth: float) -> Non
 def root_of(guard: Callable[[float], float], begin: float, end: float) -> float | None:
     samples = [guard(begin + (end - begin) * float(share)) for share in SAMPLED_AT]
     return first_fall(guard, begin, end, samples, 1e-15)
+
+
+SINE = {'normal_load.course': 'sine', 'normal_load.constant': 0.0, 'normal_load.amplitude': 300.0,
+        'normal_load.frequency': 7.0}
+KATO = {'friction.static.law': 'kato', 'friction.static.exponent': 0.6}
+
+
+@pytest.mark.parametrize(('changes', 'says'), [
+    (SINE, 'solver.name: exact misses none'), (SINE | KATO, "no solver takes Kato's law there without"),
+    (SINE | {'solver.name': 'exact'}, ''), ({}, ''),
+    ({'normal_load.course': 'steps', 'normal_load.times': [0.0, 0.1], 'normal_load.forces': [0.0, 50.0]}, '')],
+    ids=['adaptive', 'kato', 'exact', 'constant', 'steps'])
+def test_a_run_says_that_it_may_miss_an_event(changes: dict[str, Any], says: str, capsys: Capture) -> None:
+    """In its receipt, and in the summary of the tool."""
+    values = {'solver.name': 'adaptive'} | changes
+    note = simulate(load_scene('paper_fig7', values), 0.05).receipt['results'].get('note', '')
+    assert (says in note, 'may miss an event' in note) == (True, says != '')
+    settings = [word for name, value in values.items() for word in ('--set', f'{name}={value}')]
+    code, said, _ = answered(capsys, 'simulate', 'paper_fig7', '--duration', '0.05', *settings)
+    assert (code, 'may miss an event' in said) == (0, says != '')
