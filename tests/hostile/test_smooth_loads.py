@@ -4,6 +4,7 @@
 
 import math
 import random
+from collections.abc import Sequence
 
 import pytest
 
@@ -54,8 +55,9 @@ def good(request: pytest.FixtureRequest) -> Run:
     return as_run(request.param)
 
 
-@pytest.mark.parametrize(('name', 'seeds'), [('paper_loads', range(12)), ('smooth_loads', range(1, 10))])
-def test_brute_force_and_reference_agree(name: str, seeds: range) -> None:
+# without 4 and 6 of the smooth loads: contacts that ring for seconds, which take 9 s for 4 events
+@pytest.mark.parametrize(('name', 'seeds'), [('paper_loads', range(12)), ('smooth_loads', (1, 2, 3, 5, 7, 8, 9))])
+def test_brute_force_and_reference_agree(name: str, seeds: Sequence[int]) -> None:
     compared = 0
     for seed in seeds:
         case = GENERATORS[name](random.Random(f'agree/{seed}'))
