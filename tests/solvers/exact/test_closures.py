@@ -245,7 +245,7 @@ def test_a_lifted_slider_comes_to_rest_before_a_standing_drive() -> None:
         assert abs(sample.velocity) < 1e-12 * abs(pull) / damping
 
 
-CLOSURES: list[Contact] = [RIGID, COMPLIANT, replace(COMPLIANT, damping=0.0),
+CONTACTS: list[Contact] = [RIGID, COMPLIANT, replace(COMPLIANT, damping=0.0),
                            replace(COMPLIANT, ends_by_drive=True, undeflected=True)]
 
 
@@ -253,7 +253,7 @@ def lifted(contact: Contact, damping: float) -> Axis:
     return replace(paper_axis(contact), drive_damping=damping, normal_force=0.0)
 
 
-@pytest.mark.parametrize('contact', CLOSURES, ids=['rigid', 'contact_force', 'undamped', 'drive_force'])
+@pytest.mark.parametrize('contact', CONTACTS, ids=['rigid', 'contact_force', 'undamped', 'drive_force'])
 @pytest.mark.parametrize('start', [InitialState(stretch=1e-3), InitialState(velocity=0.1),
                                    InitialState(velocity=-0.1, stretch=1e-3, position=0.3)])
 @pytest.mark.parametrize('damping', [500.0, 4000.0, 24000.0])
@@ -271,7 +271,7 @@ def test_a_free_swing_dies_out(damping: float, start: InitialState, contact: Con
     assert simulator.advance(instant(4001.0))   # a new force moves it
 
 
-@pytest.mark.parametrize('contact', CLOSURES, ids=['rigid', 'contact_force', 'undamped', 'drive_force'])
+@pytest.mark.parametrize('contact', CONTACTS, ids=['rigid', 'contact_force', 'undamped', 'drive_force'])
 def test_a_free_swing_dies_out_as_in_the_reference(contact: Contact) -> None:
     axis, start = lifted(contact, 8000.0), InitialState(stretch=1e-3)
     seen = run_events(axis, 0.0, 8.0, initial=start)
