@@ -42,8 +42,10 @@ class Standstill:
         self._say('ROS does not come up', files and f'rm {files}', 2)
         faulthandler.register(_SIGNAL, file=2, all_threads=True)
         size = threading.stack_size(_STACK)
-        for name, run in (('alive', self._beat), ('standstill', lambda: self._watch.look(GRACE, _SIGNAL))):
-            Thread(target=run, name=name, daemon=True).start()
+        self._threads = [Thread(target=run, name=name, daemon=True) for name, run in (
+            ('alive', self._beat), ('standstill', lambda: self._watch.look(GRACE, _SIGNAL)))]
+        for thread in self._threads:
+            thread.start()
         threading.stack_size(size)
 
     def is_up(self) -> None:
@@ -60,7 +62,10 @@ class Standstill:
     def close(self) -> None:
         """Look no more, unless the process is to end."""
         if self._watch is not None and not self._is_last.is_set():
+            self._is_last.set()
             self._watch.end()
+            for thread in self._threads:    # a thread that comes back to an interpreter that is ending is killed there
+                thread.join()
 
     def _say(self, what: str, remedy: str, code: int) -> None:
         text = (f'{self._name}: {what}: a call has not come back for {GRACE:g} s; {_REMEDY}: '
