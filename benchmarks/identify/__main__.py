@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measure what `stickslip identify` finds on axes whose truth is known, beside others; write the page.
 
-    python3 -m benchmarks.identify [--axes 100] [--rivals 5] [--seed 0] [--out docs/identification_figures.md]
+    python3 -m benchmarks.identify [--axes 100] [--varied 200] [--rivals 5] [--seed 0] [--out PAGE]
 
 What is done is kept in runs/identify/, and a run that was ended goes on from there; `--again` begins anew.
 """
@@ -15,10 +15,11 @@ from pathlib import Path
 from ..loop import machine
 from .axes import SyntheticAxis, axes
 from .foreign import identify_lugre
-from .measuring import OTHERS, USUAL, Sensors
+from .measuring import OTHERS
 from .outcomes import Outcome, load, outcome_of, save
 from .page import page
 from .rivals import METHODS, OURS, RivalOutcome, our_outcomes, rival_outcome
+from .varied import varied_axes
 
 KEPT = Path('runs/identify')
 
@@ -28,22 +29,25 @@ def main() -> None:
     options = parse()
     drawn = axes(options.axes, options.seed)
     outcomes = identify_all(drawn, KEPT / f'seed_{options.seed}.json', options.again)
-    others = {words: identify_all(drawn, KEPT / f'other_{k}_{options.seed}.json', options.again, sensors)
+    others = {words: identify_all([axis._replace(sensors=sensors) for axis in drawn],
+                                  KEPT / f'other_{k}_{options.seed}.json', options.again)
               for k, (words, sensors) in enumerate(OTHERS.items())}
+    varied = identify_all(varied_axes(options.varied, options.seed), KEPT / f'varied_{options.seed}.json',
+                          options.again)
     few = drawn[:options.rivals]
     kept = KEPT / f'rivals_{options.seed}.json'
     rivals = {OURS: our_outcomes(outcomes[:len(few)]), **rivals_on(few, kept, options.again)}
-    text = page(outcomes, others, rivals, identify_lugre(), machine(), options.seed)
+    text = page(outcomes, others, varied, rivals, identify_lugre(), machine(), options.seed)
     options.out.write_text(text, encoding='utf-8')
     print(text)
 
 
-def identify_all(drawn: list[SyntheticAxis], kept: Path, again: bool, sensors: Sensors = USUAL) -> list[Outcome]:
+def identify_all(drawn: list[SyntheticAxis], kept: Path, again: bool) -> list[Outcome]:
     """Return what came of each axis through its sensors, of those in a file what was found before."""
     done = {} if again else {outcome.axis: outcome for outcome in load(kept)}
     for axis in drawn:
         if axis.name not in done:
-            done[axis.name] = outcome_of(axis, sensors)
+            done[axis.name] = outcome_of(axis)
             save(list(done.values()), kept)
         print(line(done[axis.name]), file=sys.stderr)
     return [done[axis.name] for axis in drawn]
@@ -74,13 +78,14 @@ def parse() -> argparse.Namespace:
     """Return the options."""
     parser = argparse.ArgumentParser(prog='python3 -m benchmarks.identify', description=__doc__.splitlines()[0])
     parser.add_argument('--axes', type=int, default=100, help='[%(default)s]')
+    parser.add_argument('--varied', type=int, default=200, help='axes of every kind [%(default)s]')
     parser.add_argument('--rivals', type=int, default=5, help='axes on which the others run [%(default)s]')
     parser.add_argument('--seed', type=int, default=0, help='[%(default)s]')
     parser.add_argument('--again', action='store_true', help='measure all again')
     parser.add_argument('--out', type=Path, default=Path('docs/identification_figures.md'), help='[%(default)s]')
     options = parser.parse_args()
-    if not 1 <= options.axes <= 10_000 or options.rivals < 0 or options.seed < 0:
-        parser.error('give --axes 1 to 10000, and --rivals and --seed of at least 0')
+    if not 1 <= options.axes <= 10_000 or min(options.varied, options.rivals) < 0 or options.seed < 0:
+        parser.error('give --axes 1 to 10000, and --varied, --rivals and --seed of at least 0')
     return options
 
 

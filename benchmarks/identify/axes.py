@@ -15,6 +15,7 @@ from stickslip_sim.scene import Scene, scene_from_values
 from stickslip_sim.study.points import scene_at
 
 from .machines import CONTACTS, DURATION, KINETIC_LAWS, STATIC_LAWS, machine_values
+from .measuring import USUAL, Sensors
 
 FREE = (6, 8)               # parameters, at least and at most
 FARTHEST, NEAREST = 0.4, 0.2   # of a start from the truth, as a share of it
@@ -33,7 +34,7 @@ _MOST_TRIES = 1000
 class SyntheticAxis(NamedTuple):
     """An axis: `truth` is what it is, `start` what its user takes it for, `free` what he is not sure of.
 
-    `seed` is that of its noise.
+    `seed` is that of its noise; it is measured for `duration` (s) through `sensors`.
     """
 
     name: str
@@ -41,6 +42,8 @@ class SyntheticAxis(NamedTuple):
     start: Scene
     free: tuple[str, ...]
     seed: int
+    duration: float = DURATION
+    sensors: Sensors = USUAL
 
     def true_values(self) -> dict[str, float]:
         """Return the true value of each free parameter."""
@@ -72,7 +75,7 @@ def synthetic_axis(rng: Generator, name: str, contact: str, static: str, kinetic
         if sum(event.kind is EventKind.BREAKAWAY for event in events) >= LEAST_SLIPS:
             break
     free = _free_of(rng, truth)
-    return SyntheticAxis(name, truth, _start(rng, truth, free), free, int(rng.integers(2**31)))
+    return SyntheticAxis(name, truth, start_of(rng, truth, free), free, int(rng.integers(2**31)))
 
 
 def value_of(scene: Scene, name: str) -> float:
@@ -82,6 +85,13 @@ def value_of(scene: Scene, name: str) -> float:
     number = value[int(index[:-1])] if bracket and isinstance(value, tuple) else value
     assert isinstance(number, float)
     return number
+
+
+def any_free_of(rng: Generator, truth: Scene, least: int, most: int) -> tuple[str, ...]:
+    """Return the names of `least` to `most` free parameters, any that a scene has."""
+    names = [name for name in (*_ALWAYS, *_SOMETIMES) if _has(truth, name) and value_of(truth, name) != 0.0]
+    count = int(rng.integers(least, most, endpoint=True))
+    return tuple(sorted(rng.permutation(names).tolist()[:count]))
 
 
 def _free_of(rng: Generator, truth: Scene) -> tuple[str, ...]:
@@ -95,7 +105,7 @@ def _has(scene: Scene, name: str) -> bool:
     return name.partition('[')[0] in scene.values
 
 
-def _start(rng: Generator, truth: Scene, free: tuple[str, ...]) -> Scene:
+def start_of(rng: Generator, truth: Scene, free: tuple[str, ...]) -> Scene:
     """Return the scene with each free parameter off by `NEAREST` to `FARTHEST`, up or down, as far as it is one."""
     true = np.array([value_of(truth, name) for name in free])
     for _ in range(_MOST_TRIES):

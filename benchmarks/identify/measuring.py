@@ -10,6 +10,7 @@ import numpy as np
 from numpy.random import Generator
 
 from stickslip_sim.core.arrays import Numbers
+from stickslip_sim.identification.given.readings import drives_directly
 from stickslip_sim.recording import read_run, write_measured
 from stickslip_sim.recording.measured_run import MeasuredRun
 from stickslip_sim.runs import Columns, simulate
@@ -20,13 +21,14 @@ class Sensors(NamedTuple):
     """How an axis is measured: samples a second, resolution of the encoder (m, 0: it does not count), and noise.
 
     `force_noise` is a standard deviation, as a share of the root mean square of the force, `noise` that of the position
-    (m).
+    (m).  Not every axis `has_force`, a sensor of it.
     """
 
     rate: float = 1000.0
     resolution: float = 1e-6
     force_noise: float = 0.01
     noise: float = 0.0
+    has_force: bool = True
 
 
 USUAL = Sensors()
@@ -60,8 +62,11 @@ class Measurement(NamedTuple):
 
 
 def measure(scene: Scene, duration: float, rng: Generator, sensors: Sensors = USUAL) -> Measurement:
-    """Return what sensors show of a scene's motion."""
-    return shown(simulate(scene, duration, 1.0 / sensors.rate).samples, rng, sensors)
+    """Return what sensors show of a scene's motion; without a spring the drive is a motor, whose force is shown."""
+    samples = simulate(scene, duration, 1.0 / sensors.rate).samples
+    if drives_directly(scene):
+        samples = {**samples, 'drive_force': samples['external_force']}
+    return shown(samples, rng, sensors)
 
 
 def shown(samples: Columns, rng: Generator, sensors: Sensors = USUAL) -> Measurement:
@@ -72,6 +77,8 @@ def shown(samples: Columns, rng: Generator, sensors: Sensors = USUAL) -> Measure
     position = samples['position'] + (sensors.noise * rng.standard_normal(len(force)) if sensors.noise else 0.0)
     if sensors.resolution:
         position = np.round(position / sensors.resolution) * sensors.resolution
-    return Measurement(samples['time'], {'position': position, 'drive_force': shown_force},
-                       {'position': float(np.hypot(sensors.resolution / 12.0**0.5, sensors.noise)),
-                        'drive_force': noise})
+    of_position = float(np.hypot(sensors.resolution / 12.0**0.5, sensors.noise))
+    columns, errors = {'position': position}, {'position': of_position}
+    if sensors.has_force:
+        columns['drive_force'], errors['drive_force'] = shown_force, noise
+    return Measurement(samples['time'], columns, errors)

@@ -11,14 +11,14 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from stickslip_sim.identification.identified import Identification
+from stickslip_sim.identification.identified import FOUND, Identification
 from stickslip_sim.identification.identify import identify
 
 from .axes import SyntheticAxis
-from .machines import DURATION
-from .measuring import USUAL, Measurement, Sensors, measure
+from .measuring import Measurement, measure
 
 CLOSE = 0.01   # a share of the true value
+FAR, INTERVALS = 0.03, 5.0   # of the true value, and times the side of an interval: what is off by both is far off
 
 
 @dataclass(frozen=True)
@@ -49,6 +49,12 @@ class ParameterOutcome:
         return self.error <= CLOSE or self.is_covered
 
     @property
+    def is_far(self) -> bool:
+        """Whether it is called found, and is far off."""
+        side = self.value - self.low if self.true < self.value else self.high - self.value
+        return self.kind == FOUND and self.error > FAR and abs(self.value - self.true) > INTERVALS * side
+
+    @property
     def width(self) -> float:
         """Half of its interval, as a share of the truth."""
         return (self.high - self.low) / (2.0 * self.true)
@@ -72,9 +78,9 @@ class Outcome:
         return bool(self.parameters) and all(parameter.is_found for parameter in self.parameters)
 
 
-def measured_axis(axis: SyntheticAxis, sensors: Sensors = USUAL) -> Measurement:
-    """Return what the sensors show of an axis."""
-    return measure(axis.truth, DURATION, np.random.default_rng(axis.seed), sensors)
+def measured_axis(axis: SyntheticAxis) -> Measurement:
+    """Return what its sensors show of an axis."""
+    return measure(axis.truth, axis.duration, np.random.default_rng(axis.seed), axis.sensors)
 
 
 def identified(axis: SyntheticAxis, measured: Measurement) -> Identification:
@@ -84,9 +90,9 @@ def identified(axis: SyntheticAxis, measured: Measurement) -> Identification:
         return identify(run, axis.start, axis.free_file())
 
 
-def outcome_of(axis: SyntheticAxis, sensors: Sensors = USUAL) -> Outcome:
+def outcome_of(axis: SyntheticAxis) -> Outcome:
     """Return what came of an axis; a refusal or a failure is an outcome, too."""
-    measured = measured_axis(axis, sensors)
+    measured = measured_axis(axis)
     begin = time.process_time()
     try:
         found = identified(axis, measured)

@@ -15,6 +15,7 @@ from .foreign import ForeignOutcome
 from .measuring import USUAL
 from .outcomes import CLOSE, Outcome, all_parameters
 from .page_beside import beside, foreign_data, share
+from .page_varied import of_every_kind
 from .rivals import RivalOutcome
 
 FOUND_MARK, TIME_MARK = 95, 10.0   # % of parameters, s
@@ -24,6 +25,7 @@ Entry = TypeVar('Entry')
 
 
 def page(outcomes: Sequence[Outcome], others: Mapping[str, Sequence[Outcome]],
+         varied: Sequence[Outcome],
          rivals: Mapping[str, Sequence[RivalOutcome]], foreign: ForeignOutcome, machine: str, seed: int) -> str:
     """Return the page for what was measured."""
     return '\n'.join([
@@ -45,7 +47,7 @@ def page(outcomes: Sequence[Outcome], others: Mapping[str, Sequence[Outcome]],
         '### Other sensors', '', 'The same axes through an encoder that does not count:', '', *_by_sensors(others), '',
         '### By model', '', *_by_model(outcomes), '',
         '### By parameter', '', *_by_parameter(outcomes), '', *_failures(outcomes),
-        *beside(rivals), *foreign_data(foreign), ''])
+        *of_every_kind(varied), *beside(rivals), *foreign_data(foreign), ''])
 
 
 def _marks(outcomes: Sequence[Outcome]) -> list[str]:

@@ -11,7 +11,9 @@ from benchmarks.identify.axes import FARTHEST, FREE, NEAREST, SyntheticAxis, axe
 from benchmarks.identify.lugre import LuGreAxis
 from benchmarks.identify.measuring import OTHERS, Sensors, measure
 from benchmarks.identify.outcomes import Outcome, ParameterOutcome, load, models_of, outcome_of, save
-from stickslip_sim.identification.identified import FOUND
+from benchmarks.identify.page_varied import of_every_kind
+from benchmarks.identify.varied import FEEDS, SENSORS, kind_of, varied_axes
+from stickslip_sim.identification.identified import FOUND, NOT_IDENTIFIABLE
 from stickslip_sim.inputs.measurement import load_measurement
 from stickslip_sim.runs import simulate
 from stickslip_sim.study.uncertain_file import uncertain_of
@@ -63,9 +65,32 @@ def test_sensors_count_in_steps_and_have_noise(tmp_path: Path, few: list[Synthet
 @pytest.mark.parametrize('words', OTHERS)
 @pytest.mark.parametrize('k', range(0, FEW, 4))
 def test_right_models_are_not_rejected_and_what_is_found_is_near(few: list[SyntheticAxis], k: int, words: str) -> None:
-    outcome = outcome_of(few[k], OTHERS[words])
+    outcome = outcome_of(few[k]._replace(sensors=OTHERS[words]))
     assert outcome.fits
     assert all(each.is_found for each in outcome.parameters if each.kind == FOUND), outcome.parameters
+
+
+def test_axes_of_every_kind_have_each_feed_and_sensor_and_a_truth_in_range() -> None:
+    drawn = varied_axes(2 * len(FEEDS), seed=1)
+    assert [axis.truth.values for axis in varied_axes(2, seed=1)] == [axis.truth.values for axis in drawn[:2]]
+    assert [kind_of(k) for k in range(0, 18, len(FEEDS))] == list(SENSORS)
+    assert not any(axis.sensors.noise for axis in drawn[:len(FEEDS)])
+    assert all(axis.sensors.noise for axis in drawn[len(FEEDS):])
+    for axis in drawn:
+        for free in uncertain_of(axis.free_file()).distributions:
+            assert free.low < value_of(axis.truth, free.name) < free.high
+
+
+def test_the_page_counts_what_is_rejected_and_far_off() -> None:
+    wide, near, far = (ParameterOutcome('axis.mass', 100.0, 80.0, 104.0, 104.0 - side, 104.0 + side, kind)
+                       for side, kind in ((1.0, FOUND), (0.1, NOT_IDENTIFIABLE), (0.1, FOUND)))
+    assert (wide.is_far, near.is_far, far.is_far) == (False, False, True)
+    found = [Outcome('constant 0', ('rigid', 'kato', 'table'), (wide, near), True, 1.5, 700),
+             Outcome('steps 1', ('rigid', 'kato', 'table'), (far,), False, 1.5, 700)]
+    lines = of_every_kind(found)
+    assert '| without noise | 2 | 1 | 67 % | 0 % | 1 | 1.5 s |' in lines
+    assert '* steps 1 (rigid, kato, table): rejected' in lines
+    assert not of_every_kind([])
 
 
 def test_the_foreign_axis_sticks_slips_and_keeps_the_balance_of_forces() -> None:

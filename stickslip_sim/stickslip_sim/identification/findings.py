@@ -13,7 +13,7 @@ from ..scene import Scene, changed
 from .certainty.covariance import QUANTILE, Certainty, certainty_of, combinations_of
 from .certainty.noisy_inputs import changes_by_inputs, covariance_by_inputs, more_by_inputs
 from .certainty.profiles import with_profile_intervals
-from .certainty.residual_tests import correlation_length, inflation_of, misfits_of
+from .certainty.residual_tests import correlation_length, inflation_of, misfits_of_fit
 from .fit.fit_problem import FitProblem
 from .given.free_parameters import FreeParameter
 from .given.measured_scene import with_measured_inputs
@@ -61,11 +61,7 @@ def identification_of(problem: FitProblem, scene: Scene, ends: Sequence[Ended], 
     by_inputs = covariance_by_inputs(problem, best.solution, changes)
     known = of_readings._replace(covariance=of_readings.covariance + by_inputs)
     values = problem.values(point)
-    stretches = problem.stretches(0).parts
-    times = problem.measurement.times + problem.measurement.shift
-    misfits = [misfit for k, channel in enumerate(problem.measurement.channels)
-               for misfit in misfits_of(channel, channel.values - fitted[k],
-                                        problem.white(k, channel.values - fitted[k]), times, stretches, float(more[k]))]
+    misfits = misfits_of_fit(problem, fitted, more)
     estimates = _estimates(problem, values, known, _WHOLE if best.of_slips is None else _SINGLE)
     if best.of_slips is None and not misfits:
         estimates = with_profile_intervals(estimates, problem, best.solution, of_readings, inflation)

@@ -59,6 +59,7 @@ def identify(run: Run | str | os.PathLike[str], start: SceneOrName, free: str | 
     problem = FitProblem(model, parameters, measurement, motions)
     with closing(fits_from(problem, starts_of(problem, seed), workers, keeper)) as fits:
         ends = best_fit(fits, say)
+    model.take_tolerance(ends[0].tolerance)
     identified = identification_of(problem, scene, best_of_slips(problem, along_the_run(problem, ends)), began)
     return with_laws(identified, problem, workers, keeper, say) if laws else identified
 

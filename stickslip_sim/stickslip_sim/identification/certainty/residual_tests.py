@@ -19,6 +19,7 @@ from ...runs.wording import quantity
 from ..fit.fit_problem import FitProblem, MeasuredStretch
 from ..given.readings import Channel
 from ..identified import Misfit
+from .noisy_inputs import changes_by_inputs, more_by_inputs
 
 _TOGETHER = 1.5   # samples: below, the correlation is that of chance
 _CHANCE = 1e-4       # of rejecting a model that is right
@@ -27,6 +28,21 @@ _BY_INPUTS = 1.1     # of a mean square: more by the noise of inputs, whose resi
 _CORRELATED = 0.2    # of the square of the noise: the part of residuals that goes together
 _MATTERS = 1e-5      # of the range of the readings: a smaller misfit is none
 _EXACT = 1e-6        # of that range: no closer does a model know its axis, even where a sensor has no noise
+
+
+def is_rejected(problem: FitProblem, point: Numbers) -> bool:
+    """Return whether a test rejects the fit of the whole run at a point (k,)."""
+    fitted = problem.fitted(point, problem.stretches())
+    return fitted is None or bool(misfits_of_fit(problem, fitted,
+                                                 more_by_inputs(problem, changes_by_inputs(problem, point))))
+
+
+def misfits_of_fit(problem: FitProblem, fitted: Sequence[Numbers], more: Numbers | None = None) -> list[Misfit]:
+    """Return the tests that a fit fails, of what each channel would have measured; `more` (c,) is that of each."""
+    stretches, times = problem.stretches(0).parts, problem.measurement.times + problem.measurement.shift
+    return [misfit for k, channel in enumerate(problem.measurement.channels)
+            for misfit in misfits_of(channel, channel.values - fitted[k], problem.white(k, channel.values - fitted[k]),
+                                     times, stretches, 1.0 if more is None else float(more[k]))]
 
 
 def misfits_of(channel: Channel, residuals: Numbers, white: Numbers, times: Numbers,
@@ -104,7 +120,7 @@ def inflation_of(problem: FitProblem, fitted: Sequence[Numbers]) -> float:
 
     Readings without noise know no number better than the model is one: its tables of smooth laws are no closer.
     """
-    factors = [1.0, min((_EXACT * float(np.ptp(channel.values)) / channel.resolution)**2
+    factors = [1.0, max((_EXACT * float(np.ptp(channel.values)) / channel.resolution)**2
                         for channel in problem.measurement.channels)]
     for k, channel in enumerate(problem.measurement.channels):
         residuals = problem.white(k, channel.values - fitted[k])

@@ -17,7 +17,7 @@ from ...runs import Run
 from ...scene import Scene
 from .channel_units import OUTPUTS
 from .input_readings import HELD, LINE, PLACES, InputReadings
-from .sensor_noise import noise_of, quantum_of, weights_of
+from .sensor_noise import SMALLEST_FORCE, noise_of, quantum_of, weights_of
 
 _FEWEST = 20          # samples
 _LONGEST_GAP = 1.0    # of the time that was measured without it
@@ -120,7 +120,8 @@ def _times(times: Numbers, are_pushed: bool) -> tuple[Numbers, float, float]:
 
 def _channel(name: str, values: Numbers, resolution: float | None) -> Channel:
     quantum = quantum_of(values)
-    noise = noise_of(values, quantum) if resolution is None else resolution
+    least = {'smallest': SMALLEST_FORCE} if OUTPUTS[name] == 'N' else {}
+    noise = noise_of(values, quantum, **least) if resolution is None else resolution
     return Channel(name, OUTPUTS[name], values, noise, quantum, weights_of(values, quantum))
 
 

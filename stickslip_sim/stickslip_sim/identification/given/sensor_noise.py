@@ -14,6 +14,7 @@ _MAD = 1.4826          # standard deviation of a normal distribution over its me
 _THIRD = 20.0**0.5     # of a third difference over that of a reading
 _GRID = 0.02           # of a step: so far from a whole number of steps readings may be
 _SMALLEST = 1e-7       # of the range of the readings: no sensor is taken to be better
+SMALLEST_FORCE = 1e-4  # the same of a force: no model of friction follows it more closely
 
 
 def quantum_of(readings: Numbers) -> float:
@@ -34,9 +35,12 @@ def quantum_of(readings: Numbers) -> float:
     return quantum if is_even and int(small.sum()) > 1 else 0.0
 
 
-def noise_of(readings: Numbers, quantum: float) -> float:
-    """Return the standard deviation of the noise in readings, that of counting in steps `quantum` included."""
-    return max(own_noise_of(readings, quantum), _SMALLEST * float(np.ptp(readings)))
+def noise_of(readings: Numbers, quantum: float, smallest: float = _SMALLEST) -> float:
+    """Return the standard deviation of the noise in readings, that of counting in steps `quantum` included.
+
+    It is at least `smallest`, a share of their range.
+    """
+    return max(own_noise_of(readings, quantum), smallest * float(np.ptp(readings)))
 
 
 def own_noise_of(readings: Numbers, quantum: float) -> float:

@@ -84,12 +84,13 @@ def _fit(problem: FitProblem, start: Numbers) -> _Fitted:
 
 def _arrays(fitted: _Fitted) -> _Arrays:
     end = fitted.end
-    numbers = np.array([end.solution.cost, end.mean_square, float(end.solution.is_settled), float(fitted.runs)])
+    numbers = np.array([end.solution.cost, end.is_off, end.is_lost, end.tolerance or 0.0, end.solution.is_settled,
+                        fitted.runs], dtype=np.float64)
     return {'start': end.start, 'point': end.solution.point, 'information': end.solution.information,
             'numbers': numbers}
 
 
 def _of_arrays(arrays: _Arrays) -> _Fitted:
-    cost, mean_square, is_settled, runs = arrays['numbers'].tolist()
+    cost, is_off, is_lost, tolerance, is_settled, runs = arrays['numbers'].tolist()
     solution = Solution(arrays['point'], cost, arrays['information'], bool(is_settled))
-    return _Fitted(Ended(arrays['start'], solution, mean_square), int(runs))
+    return _Fitted(Ended(arrays['start'], solution, bool(is_off), bool(is_lost), tolerance or None), int(runs))

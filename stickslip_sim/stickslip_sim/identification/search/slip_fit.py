@@ -15,7 +15,7 @@ import numpy as np
 from ...core.arrays import Numbers
 from ..fit.fit_problem import FitProblem
 from ..fit.least_squares import minimise, slopes_of
-from .stages import LOST, Ended, worst_square
+from .stages import Ended
 
 _FEWEST_SLIPS, _MOST_SLIPS = 3, 30
 _POINTS = 2             # to begin from, of those where fits began and ended, and with what the force says directly
@@ -29,7 +29,7 @@ _NEAR = 1e-3            # of a logarithm or of a range: so well a point is sough
 def best_of_slips(problem: FitProblem, ends: Sequence[Ended]) -> list[Ended]:
     """Return the ends, before them the best fit of single slips where no fit of the whole run is near the data."""
     count = len(problem.sharp_slips)
-    if ends[0].mean_square < LOST or count < _FEWEST_SLIPS:
+    if not ends[0].is_lost or count < _FEWEST_SLIPS:
         return [*ends]
     rows = np.unique(np.linspace(0, count - 1, min(count, _MOST_SLIPS)).round().astype(int))
     slips = [problem.sharp_slips[k] for k in rows]
@@ -55,7 +55,8 @@ def best_of_slips(problem: FitProblem, ends: Sequence[Ended]) -> list[Ended]:
     slopes = slopes_of(untied, point, figures, problem.region, _STEP)
     slopes[np.abs(slopes) > _STEEPEST] = 0.0
     best = best._replace(point=point, cost=float(whole @ whole), information=slopes.T @ slopes)
-    return [Ended(ends[0].start, best, worst_square(problem, point), float(figures @ figures) / len(figures)), *ends]
+    of_slips = float(figures @ figures) / len(figures)
+    return [Ended(ends[0].start, best, True, True, ends[0].tolerance, of_slips), *ends]
 
 
 def _nearest(residuals: Callable[[Numbers], Numbers], start: Numbers, problem: FitProblem) -> Numbers:

@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...core.arrays import Numbers
+from ..certainty.residual_tests import is_rejected
 from ..fit.fit_problem import FitProblem, Stretches
 from ..fit.least_squares import STEP, Solution, minimise, steps_over_jumps
 from ..given.motions import MeasuredMotion
@@ -25,37 +26,47 @@ _SAMPLES = 4000         # about so many are enough until the last stage
 _FIRST_SLIPS = 1, 3, 8, 20, 50   # that are fitted as one, before the whole run
 _MOST_STEPS = 60
 _ROUNDS, _GAIN = 4, 0.1 # of further fits at most, and what each must gain
+_FINER = 1 / 16, 1 / 16 # times the tolerance of a table, in turn: a quarter of its steps
 _COARSER = 1.0, 1.0, 1.33, 1.6   # times the tolerance of a table that is held, in rounds
-_NEAR = 1e4             # a mean square up to which a table may bar the way
+_NEAR = 1e4             # a mean square up to which a table may bar the way in any case
 _FAR = 0.5              # of the sum of squares: so much it must gain far from the run
 _OFF, _TIMES_OFF = 4.0, 100.0    # a mean square of a stretch: of 2 % of a slip, and of the median of all
-_GOOD = 1.2             # a mean square up to that, and no other start is tried
-LOST = 100.0            # a mean square from which on the whole run is not followed
+_GOOD = 1.2             # a mean square up to that
+_LOST = 100.0           # a mean square from which on the whole run is not followed
 _TRIED = 40             # values of a parameter over its range
 
 
 class Ended(NamedTuple):
-    """A start, where the fit from it ended, and the mean square of the residuals of the worst channel there.
+    """A start, and where the fit from it ended: one that `is_off` is rejected by a test, one that `is_lost` by far.
 
+    `tolerance` is that of the table of its smooth kinetic law, where it is finer than that of the scene.
     `of_slips` has the mean square of the figures of single slips where these alone were fitted (`best_of_slips`); one
     that `is_along` the run was moved to where the position follows it (`along_the_run`).
     """
 
     start: Numbers
     solution: Solution
-    mean_square: float
+    is_off: bool
+    is_lost: bool
+    tolerance: float | None = None
     of_slips: float | None = None
     is_along: bool = False
-
-    @property
-    def is_off(self) -> bool:
-        """Whether the residuals are larger than the noise."""
-        return self.mean_square >= _GOOD
 
 
 def fit_from(problem: FitProblem, start: Numbers) -> Ended:
     """Return the best fit of the whole run from a point near it."""
-    point = start if problem.is_direct else _nearer(problem, start)   # the filtered residuals lead there from any point
+    if problem.is_direct:   # the filtered residuals lead there from any point
+        return _whole_from(problem, start, start)
+    ended = _whole_from(problem, start, _nearer(problem, start))
+    ahead = _ahead(problem, start) if ended.is_lost else None
+    if ahead is None:
+        return ended
+    return min(ended, _whole_from(problem, start, ahead), key=lambda end: end.solution.cost)
+
+
+def _whole_from(problem: FitProblem, start: Numbers, point: Numbers) -> Ended:
+    """Return the best fit of the whole run near a point, to which a start has led."""
+    problem.model.take_tolerance(None)
     solution = _of_whole(problem, point)
     if (better := _beyond_noise(problem, solution)) is not None:
         solution = _of_whole(problem, better)
@@ -66,8 +77,34 @@ def fit_from(problem: FitProblem, start: Numbers) -> Ended:
         solution = _of_whole(problem, solution.point)
         if abs(solution.cost - before) < _GAIN:
             break
-    solution = _polished(problem, solution)
-    return Ended(start, solution, worst_square(problem, solution.point))
+    return _by_finer_tables(problem, _ended(problem, start, _polished(problem, solution)))
+
+
+def _by_finer_tables(problem: FitProblem, ended: Ended) -> Ended:
+    """Return the fit with finer tables of a smooth law, where a test rejects that with the scene's and they help.
+
+    The noise of a sensor may be smaller than what the table of the scene leaves out of the law.
+    """
+    for finer in _FINER:
+        tolerance = problem.model.tolerance
+        if tolerance is None or not ended.is_off or not _is_near(problem, ended.solution.point):
+            break
+        problem.model.take_tolerance(finer * tolerance)
+        solution = _polished(problem, _of_whole(problem, ended.solution.point))
+        if solution.cost >= ended.solution.cost - _GAIN:
+            break
+        ended = _ended(problem, ended.start, solution)._replace(tolerance=problem.model.tolerance)
+    problem.model.take_tolerance(ended.tolerance)
+    return ended
+
+
+def _ended(problem: FitProblem, start: Numbers, solution: Solution) -> Ended:
+    return Ended(start, solution, is_rejected(problem, solution.point), is_lost(problem, solution.point))
+
+
+def _is_near(problem: FitProblem, point: Numbers) -> bool:
+    """Return whether what is off may be by the table of a smooth law."""
+    return worst_square(problem, point) <= _NEAR or not is_lost(problem, point)
 
 
 def _nearer(problem: FitProblem, start: Numbers) -> Numbers:
@@ -79,6 +116,21 @@ def _nearer(problem: FitProblem, start: Numbers) -> Numbers:
     wrong = _not_followed(problem, point, single)
     for first in (first for first in _FIRST_SLIPS if first < len(problem.motions)):
         point = _fitted_to(problem, point, problem.stretches(first, stride, wrong), np.inf).point
+    return point
+
+
+def _ahead(problem: FitProblem, start: Numbers) -> Numbers | None:
+    """Return such a point by ever more slips from the start of the run on, and nothing else; None where one is lost.
+
+    Where a contact rings on, what was taken for rests is none, and leads away from the best fit.
+    """
+    stride, point = max(1, len(problem.measurement.times) // _SAMPLES), start
+    problem.model.take_tolerance(None)
+    for first in (first for first in _FIRST_SLIPS if first < len(problem.motions)):
+        part = problem.stretches(first, stride, problem.motions)
+        point = _fitted_to(problem, point, part, np.inf).point
+        if is_lost(problem, point, part):
+            return None
     return point
 
 
@@ -104,8 +156,8 @@ def _polished(problem: FitProblem, found: Solution) -> Solution:
     lets the fit by.  Where the breakpoints themselves make a minimum, those of a coarser table do not.
     """
     for coarser in _COARSER:
-        square = worst_square(problem, found.point)
-        if found.is_settled and not _GOOD <= square <= _NEAR:
+        square, lost = worst_square(problem, found.point), is_lost(problem, found.point)
+        if found.is_settled and (square < _GOOD or not _is_near(problem, found.point)):
             break
         has_table = problem.model.hold_table(problem.values(found.point), coarser)
         again = _of_whole(problem, found.point)
@@ -116,7 +168,7 @@ def _polished(problem: FitProblem, found: Solution) -> Solution:
         gained = found.cost - again.cost
         if gained > 0.0:
             found = again
-        if gained < (_GAIN if square <= LOST else _FAR * found.cost):
+        if gained < (_FAR * found.cost if lost else _GAIN):
             found = found._replace(is_settled=is_settled or found.is_settled)
             if not has_table or not _GOOD <= square <= _NEAR:
                 break
@@ -125,10 +177,23 @@ def _polished(problem: FitProblem, found: Solution) -> Solution:
 
 def worst_square(problem: FitProblem, point: Numbers) -> float:
     """Return the mean square of the weighted residuals of the whole run, of the channel where it is the largest."""
+    return float(np.max(_mean_squares(problem, point, problem.stretches())))
+
+
+def is_lost(problem: FitProblem, point: Numbers, part: Stretches | None = None) -> bool:
+    """Return whether a fit does not follow the whole run, or a part: beside the noise, and beside a slip."""
+    limits = [max(_LOST, (problem.roughly(channel) / channel.resolution)**2)
+              for channel in problem.measurement.channels]
+    return bool(np.any(_mean_squares(problem, point, part or problem.stretches()) >= limits))
+
+
+def _mean_squares(problem: FitProblem, point: Numbers, part: Stretches) -> Numbers:
+    """Return the mean square of the weighted residuals of a part of the run, of each channel (c,)."""
     channels = problem.measurement.channels
-    residuals = problem.of_stretches(point, problem.stretches())[:-len(point)].reshape(len(channels), -1)
-    squares = [float(own @ own / channel.weights.sum()) for own, channel in zip(residuals, channels, strict=True)]
-    return max(squares) if np.isfinite(squares).all() else np.inf
+    residuals = problem.of_stretches(point, part)[:-len(point)].reshape(len(channels), -1)
+    squares = np.array([own @ own / channel.weights[part.rows].sum()
+                        for own, channel in zip(residuals, channels, strict=True)])
+    return np.where(np.isfinite(squares), squares, np.inf)
 
 
 def _fitted_to(problem: FitProblem, start: Numbers, part: Stretches, robust: float) -> Solution:
@@ -160,12 +225,12 @@ def _beyond_noise(problem: FitProblem, found: Solution) -> Numbers | None:
 
 
 def best_fit(ends: Iterator[Ended], progress: StageProgress) -> list[Ended]:
-    """Return the ends of the fits that were made, the best first; others are tried only where the first is not good."""
+    """Return the ends of the fits that were made, the best first; others are tried while a test rejects each."""
     ended: list[Ended] = []
     progress('fit', 0.0)
     for k, end in enumerate(ends, 1):
         progress('fit', k / (1 + N_STARTS))
         ended.append(end)
-        if end.mean_square < _GOOD:
+        if not end.is_off:
             break
     return sorted(ended, key=lambda end: end.solution.cost)

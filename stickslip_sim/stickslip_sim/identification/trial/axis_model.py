@@ -28,6 +28,7 @@ from ..given.readings import SensorReadings, drives_directly
 from .friction_tables import Breakpoints, breakpoints_of, put_in_order, with_table
 
 OUTPUT_PLACES = {name: Sample._fields.index(name) for name in OUTPUTS}
+_TOLERANCE = 'friction.kinetic.tolerance'
 _BELOW = 1.0 - 1e-12   # of what the contact holds: rounding must not break it
 
 
@@ -46,6 +47,7 @@ class AxisModel:
         self._keeps_force = not any(one.name.startswith(('force.', 'sensor.external_force.')) for one in parameters)
         self.is_pushed = measurement.force is not None and drives_directly(scene)
         self._held: Breakpoints | None = None
+        self._tolerance: float | None = None
         self.runs = 0
 
     def hold_table(self, values: Numbers | None, coarser: float = 1.0) -> bool:
@@ -57,6 +59,16 @@ class AxisModel:
         if law is not None:
             self._held = None if values is None else breakpoints_of(self._values(values), law.shape, coarser)
         return law is not None
+
+    @property
+    def tolerance(self) -> float | None:
+        """The tolerance of the table of a smooth kinetic law; None without such a law."""
+        own = self.scene.values.get(_TOLERANCE)
+        return self._tolerance or (None if own is None else float(str(own)))
+
+    def take_tolerance(self, tolerance: float | None) -> None:
+        """Take another tolerance of that table than that of the scene; None: that of the scene."""
+        self._tolerance = tolerance
 
     @property
     def has_readings(self) -> bool:
@@ -118,6 +130,8 @@ class AxisModel:
     def _values(self, values: Numbers) -> dict[str, object]:
         """Return the values of the scene, those of the free parameters among them."""
         own = {**self.scene.values, **changes_at(self.scene.values, self._names, values[self._own])}
+        if self._tolerance is not None:
+            own[_TOLERANCE] = self._tolerance
         put_in_order(own)
         return own
 
@@ -150,7 +164,7 @@ class AxisModel:
         stretch = dynamics.initial.stretch + gone - (position - dynamics.initial.position)
         deflection = 0.0
         if isinstance(dynamics.axis.contact, CompliantContact) and not dynamics.axis.contact.undeflected:
-            friction = dynamics.axis.friction
+            friction = dynamics.axis.friction.along(motion.direction)
             normal = dynamics.axis.normal_force + (dynamics.load.value_at(motion.end) if dynamics.load else 0.0)
             held = min(friction.kinetic.coefficients[0], friction.static.initial) * normal
             deflection = _BELOW * motion.direction * held / dynamics.axis.contact.stiffness

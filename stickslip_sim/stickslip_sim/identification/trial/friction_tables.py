@@ -12,6 +12,7 @@ from ...core.errors import InputError
 from ...friction.kinetic import MAX_BREAKPOINTS
 from ...friction.refine import Breakpoint, shape_table
 from ...friction.shapes import Decay, Shape
+from ...scene.friction_schema import backward_name, forward_name
 
 Breakpoints = tuple[Breakpoint, ...]
 
@@ -25,9 +26,18 @@ _FALLEN = 0.01       # as `SmoothKinetic.limit_velocity`
 def with_table(values: dict[str, object], shape: Shape, held: Breakpoints | None = None) -> dict[str, object]:
     """Return values of a scene with the table of its smooth kinetic law, of a shape, in place of that.
 
-    The breakpoints are those `held`, if any are.  An exponent among the values goes before that of the shape.  Raises
-    InputError where the table takes too many breakpoints.
+    The breakpoints are those `held`, if any are.  An exponent among the values goes before that of the shape.  Where
+    friction backwards differs it has a table of its own.  Raises InputError where a table takes too many breakpoints.
     """
+    forwards = {name: value for name, value in values.items() if forward_name(name) == name}
+    changes = {forward_name(name): value for name, value in values.items() if name not in forwards}
+    table = _with_table(forwards, shape, held)
+    back = _with_table(forwards | changes, shape, held) if changes else table
+    return table | {backward_name(name): value for name, value in back.items() if value != table.get(name)}
+
+
+def _with_table(values: dict[str, object], shape: Shape, held: Breakpoints | None) -> dict[str, object]:
+    """Return the same of the values of one direction."""
     initial, limit, scale, viscous = (float(str(values[_LAW + name])) for name in _SMOOTH[:4])
     if _LAW + 'exponent' in values:
         shape = Decay(float(str(values[_LAW + 'exponent'])))
