@@ -138,7 +138,7 @@ def _of_whole(problem: FitProblem, start: Numbers) -> Solution:
     whole = problem.stretches()
     residuals, steps = partial(problem.of_stretches, stretches=whole), problem.steps
     search = partial(minimise, residuals, region=problem.region, most=_MOST_STEPS, tolerance=1e-3,
-                     far=_NEAR * len(whole.rows) * len(whole.targets))
+                     far=max(_NEAR, *_lost_from(problem)) * len(whole.rows) * len(whole.targets))
     found = search(start, step=steps)
     while problem.model.is_pushed:
         before, steps = steps, steps_over_jumps(residuals, found.point, problem.region, steps)
@@ -170,7 +170,7 @@ def _polished(problem: FitProblem, found: Solution) -> Solution:
             found = again
         if gained < (_FAR * found.cost if lost else _GAIN):
             found = found._replace(is_settled=is_settled or found.is_settled)
-            if not has_table or not _GOOD <= square <= _NEAR:
+            if not has_table or square < _GOOD or not _is_near(problem, found.point):
                 break
     return found
 
@@ -182,9 +182,12 @@ def worst_square(problem: FitProblem, point: Numbers) -> float:
 
 def is_lost(problem: FitProblem, point: Numbers, part: Stretches | None = None) -> bool:
     """Return whether a fit does not follow the whole run, or a part: beside the noise, and beside a slip."""
-    limits = [max(_LOST, (problem.roughly(channel) / channel.resolution)**2)
-              for channel in problem.measurement.channels]
-    return bool(np.any(_mean_squares(problem, point, part or problem.stretches()) >= limits))
+    return bool(np.any(_mean_squares(problem, point, part or problem.stretches()) >= _lost_from(problem)))
+
+
+def _lost_from(problem: FitProblem) -> list[float]:
+    """Return the mean square of each channel from which on it is not followed."""
+    return [max(_LOST, (problem.roughly(channel) / channel.resolution)**2) for channel in problem.measurement.channels]
 
 
 def _mean_squares(problem: FitProblem, point: Numbers, part: Stretches) -> Numbers:
