@@ -51,14 +51,15 @@ def test_a_force_without_noise_is_followed_as_closely_as_a_model_can(tmp_path: P
     assert found.estimates[0].value == pytest.approx(truth(axis, 'friction.static.limit'), rel=1e-4)
 
 
-def test_tables_of_a_smooth_law_are_as_fine_as_the_sensor_asks(tmp_path: Path) -> None:
-    """The axis has the law itself; the table of the scene is off by more than this encoder."""
+@pytest.mark.parametrize('tolerance', [1e-3, 1e-4])
+def test_tables_of_a_smooth_law_are_as_fine_as_the_sensor_asks(tmp_path: Path, tolerance: float) -> None:
+    """The axis has the law itself; the table of the scene is off by more than this encoder, if not by what matters."""
     law = with_smooth_law(stickslip.load_scene('paper_fig7', {'drive.velocity': 0.003}))
     run = shown(tmp_path / 'run', changed(law, {'friction.kinetic.tolerance': 1e-7}), 4.0, 500.0, 3e-8)
-    start = changed(law, {'friction.kinetic.limit': 0.07, 'friction.kinetic.tolerance': 1e-3})
+    start = changed(law, {'friction.kinetic.limit': 0.07, 'friction.kinetic.tolerance': tolerance})
     found = stickslip.identify(run, start, {'friction.kinetic.limit': between(0.04, 0.1)})
     assert found.fits, found.misfits
-    assert float(str(found.scene.values['friction.kinetic.tolerance'])) < 1e-4
+    assert float(str(found.scene.values['friction.kinetic.tolerance'])) < 0.1 * tolerance
     assert found.estimates[0].value == pytest.approx(0.06, rel=1e-4)
 
 

@@ -24,7 +24,8 @@ StageProgress = Callable[[str, float], None]
 
 _SAMPLES = 4000         # about so many are enough until the last stage
 _FIRST_SLIPS = 1, 3, 8, 20, 50   # that are fitted as one, before the whole run
-_MOST_STEPS = 60
+_MOST_STEPS, _FEW_STEPS = 60, 3
+_NEARER = 10.0          # of the sum of squares: so much nearer a finer table must be
 _ROUNDS, _GAIN = 4, 0.1 # of further fits at most, and what each must gain
 _FINER = 1 / 16, 1 / 16 # times the tolerance of a table, in turn: a quarter of its steps
 _COARSER = 1.0, 1.0, 1.33, 1.6   # times the tolerance of a table that is held, in rounds
@@ -81,17 +82,19 @@ def _whole_from(problem: FitProblem, start: Numbers, point: Numbers) -> Ended:
 
 
 def _by_finer_tables(problem: FitProblem, ended: Ended) -> Ended:
-    """Return the fit with finer tables of a smooth law, where a test rejects that with the scene's and they help.
+    """Return the fit with finer tables of a smooth law, where they bring it nearer to the run.
 
-    The noise of a sensor may be smaller than what the table of the scene leaves out of the law.
+    The noise of a sensor may be smaller than what the table of the scene leaves out of the law.  Where no test rejects
+    the fit, a few steps show whether the finer table is nearer.
     """
     for finer in _FINER:
-        tolerance = problem.model.tolerance
-        if tolerance is None or not ended.is_off or not _is_near(problem, ended.solution.point):
+        tolerance, most = problem.model.tolerance, ended.solution.cost - _NEARER
+        if tolerance is None or not _is_near(problem, ended.solution.point):
             break
         problem.model.take_tolerance(finer * tolerance)
-        solution = _polished(problem, _of_whole(problem, ended.solution.point))
-        if solution.cost >= ended.solution.cost - _GAIN:
+        first = _of_whole(problem, ended.solution.point, _MOST_STEPS if ended.is_off else _FEW_STEPS)
+        solution = _polished(problem, first) if ended.is_off or first.cost < most else first
+        if not solution.cost < most:
             break
         ended = _ended(problem, ended.start, solution)._replace(tolerance=problem.model.tolerance)
     problem.model.take_tolerance(ended.tolerance)
@@ -134,10 +137,10 @@ def _ahead(problem: FitProblem, start: Numbers) -> Numbers | None:
     return point
 
 
-def _of_whole(problem: FitProblem, start: Numbers) -> Solution:
+def _of_whole(problem: FitProblem, start: Numbers, most: int = _MOST_STEPS) -> Solution:
     whole = problem.stretches()
     residuals, steps = partial(problem.of_stretches, stretches=whole), problem.steps
-    search = partial(minimise, residuals, region=problem.region, most=_MOST_STEPS, tolerance=1e-3,
+    search = partial(minimise, residuals, region=problem.region, most=most, tolerance=1e-3,
                      far=max(_NEAR, *_lost_from(problem)) * len(whole.rows) * len(whole.targets))
     found = search(start, step=steps)
     while problem.model.is_pushed:
