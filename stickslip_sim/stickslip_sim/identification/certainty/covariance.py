@@ -21,6 +21,7 @@ from ..identified import LEVEL, Combination
 QUANTILE = 2.0 * float(gammaincinv(0.5, LEVEL))   # of the rise of the sum of squares at the ends of an interval
 _LOST = 0.3      # of the range of a parameter: a standard deviation so large says nothing
 _PART = 0.1      # of the largest weight: below, a parameter has no part in a combination
+_ROUNDING = 1e-10   # of JᵀJ with a diagonal of 1: what its derivatives, differences, are exact to
 
 
 class Certainty(NamedTuple):
@@ -45,17 +46,24 @@ def certainty_of(information: Numbers, inflation: float, parameters: Sequence[Fr
     """Return what JᵀJ (k, k) of all residuals says; `inflation` is the factor on the covariance."""
     moves = np.diag(information) > 0.0   # not what is held
     scale = np.sqrt(np.where(moves, np.diag(information), 1.0))
-    scales = np.outer(scale, scale)
-    covariance = inflation * np.linalg.pinv(information / scales, hermitian=True) / scales
-    widths = np.array([one.inner(one.high) - one.inner(one.low) for one in parameters])
+    widths = _widths(parameters)
+    sizes, vectors = np.linalg.eigh(information / np.outer(scale, scale))
+    covariance = np.zeros_like(information)
+    for size, way in zip(sizes, (vectors / scale[:, None]).T):
+        if size > _ROUNDING:
+            covariance += inflation / size * np.outer(way, way)
+        elif moves[np.abs(way / widths).argmax()]:    # anywhere in the ranges along it
+            far = way / np.abs(way / widths).max()
+            covariance += np.outer(far, far)
     return Certainty(covariance, moves & (np.sqrt(np.diag(covariance)) < _LOST * widths))
 
 
 def combinations_of(information: Numbers, parameters: Sequence[FreeParameter]) -> tuple[Combination, ...]:
     """Return what JᵀJ (k, k) of the measured channels leaves free."""
-    powers_of_size, turned = np.linalg.eigh(information)
-    sizes, vectors = np.sqrt(np.maximum(powers_of_size, 0.0)), turned.T
-    widths = np.array([one.inner(one.high) - one.inner(one.low) for one in parameters])
+    squares, turned = np.linalg.eigh(information)
+    rounding = _ROUNDING * np.diag(information) @ turned**2
+    sizes, vectors = np.sqrt(np.where(squares > rounding, squares, 0.0)), turned.T
+    widths = _widths(parameters)
     found = []
     for size, vector in zip(sizes, vectors):
         weights = vector / vector[np.abs(vector).argmax()]
@@ -69,6 +77,10 @@ def combinations_of(information: Numbers, parameters: Sequence[FreeParameter]) -
         powers = tuple(_plain(float(weights[k])) for k in rows)
         found.append(Combination(names, powers, spread, _statement(names, powers)))
     return tuple(found)
+
+
+def _widths(parameters: Sequence[FreeParameter]) -> Numbers:
+    return np.array([one.inner(one.high) - one.inner(one.low) for one in parameters])
 
 
 def _plain(weight: float) -> float:
