@@ -63,6 +63,30 @@ def test_tables_of_a_smooth_law_are_as_fine_as_the_sensor_asks(tmp_path: Path, t
     assert found.estimates[0].value == pytest.approx(0.06, rel=1e-4)
 
 
+HEAVY = scene_from_values({
+    'scene': 'heavy', 'axis.mass': 1553.0, 'axis.drive_stiffness': 45.7e6, 'axis.drive_damping': 134.6e3,
+    'axis.normal_force': 22446.6, 'drive.velocity': 7.14e-5, 'friction.static.law': 'exponential',
+    'friction.static.initial': 0.1079, 'friction.static.limit': 0.1914, 'friction.static.time_constant': 0.6529,
+    'friction.kinetic.law': 'stribeck', 'friction.kinetic.initial': 0.08321, 'friction.kinetic.limit': 0.0668,
+    'friction.kinetic.stribeck_velocity': 0.0142, 'friction.kinetic.viscous': 0.43})
+
+
+def test_a_table_whose_error_no_test_sees_moves_no_number(tmp_path: Path) -> None:
+    """That of the scene moved the mass by 17 standard deviations, and the model fitted."""
+    samples = stickslip.simulate(changed(HEAVY, {'friction.kinetic.tolerance': 1e-7}), 6.0, 1e-3).samples
+    random, force = np.random.default_rng(2), samples['drive_force']
+    shape = samples['time'].shape
+    write_measured(tmp_path / 'run', samples['time'], {
+        'position': samples['position'] + 1e-6 * random.standard_normal(shape),
+        'drive_force': force + 0.02 * np.sqrt(np.mean(force**2)) * random.standard_normal(shape)}, {})
+    found = stickslip.identify(stickslip.read_run(tmp_path / 'run'), changed(HEAVY, {
+        'axis.mass': 1390.0, 'friction.kinetic.limit': 0.07373}), {
+            'axis.mass': between(911.0, 2720.0), 'friction.kinetic.limit': between(0.0315, 0.106)})
+    assert found.fits, found.misfits
+    for one in found.estimates:
+        assert abs(np.log(one.value / truth(HEAVY, one.name))) < 4.0 * one.standard_deviation
+
+
 def test_friction_of_each_direction_under_a_smooth_law_and_a_compliant_contact(tmp_path: Path) -> None:
     axis = with_smooth_law(changed(COMPLIANT, THERE_AND_BACK), **{
         'friction.kinetic.backward.initial': 0.09, 'friction.static.backward.initial': 0.1})

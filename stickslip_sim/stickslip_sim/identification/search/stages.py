@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...core.arrays import Numbers
+from ..certainty.covariance import certainty_of
 from ..certainty.residual_tests import is_rejected
 from ..fit.fit_problem import FitProblem, Stretches
 from ..fit.least_squares import STEP, Solution, minimise, steps_over_jumps
@@ -24,10 +25,11 @@ StageProgress = Callable[[str, float], None]
 
 _SAMPLES = 4000         # about so many are enough until the last stage
 _FIRST_SLIPS = 1, 3, 8, 20, 50   # that are fitted as one, before the whole run
-_MOST_STEPS, _FEW_STEPS = 60, 3
-_NEARER = 10.0          # of the sum of squares: so much nearer a finer table must be
+_MOST_STEPS = 60
+_NEARER = 10.0          # of the sum of squares: so much nearer a finer table must be,
+_MOVES = 0.3            # or so far, in standard deviations, move a number
 _ROUNDS, _GAIN = 4, 0.1 # of further fits at most, and what each must gain
-_FINER = 1 / 16, 1 / 16 # times the tolerance of a table, in turn: a quarter of its steps
+_FINER, _FINEST = 1 / 256, 1e-7   # times the tolerance of a table: a sixteenth of its steps; and a tolerance
 _COARSER = 1.0, 1.0, 1.33, 1.6   # times the tolerance of a table that is held, in rounds
 _NEAR = 1e4             # a mean square up to which a table may bar the way in any case
 _FAR = 0.5              # of the sum of squares: so much it must gain far from the run
@@ -78,27 +80,31 @@ def _whole_from(problem: FitProblem, start: Numbers, point: Numbers) -> Ended:
         solution = _of_whole(problem, solution.point)
         if abs(solution.cost - before) < _GAIN:
             break
-    return _by_finer_tables(problem, _ended(problem, start, _polished(problem, solution)))
+    return _by_finer_table(problem, _ended(problem, start, _polished(problem, solution)))
 
 
-def _by_finer_tables(problem: FitProblem, ended: Ended) -> Ended:
-    """Return the fit with finer tables of a smooth law, where they bring it nearer to the run.
+def _by_finer_table(problem: FitProblem, ended: Ended) -> Ended:
+    """Return the fit with a finer table of a smooth law, where it is nearer to the run or moves the numbers.
 
-    The noise of a sensor may be smaller than what the table of the scene leaves out of the law.  Where no test rejects
-    the fit, a few steps show whether the finer table is nearer.
+    The table of the scene may leave more out of the law than a sensor sees, or than an interval is wide.
     """
-    for finer in _FINER:
-        tolerance, most = problem.model.tolerance, ended.solution.cost - _NEARER
-        if tolerance is None or not _is_near(problem, ended.solution.point):
-            break
-        problem.model.take_tolerance(finer * tolerance)
-        first = _of_whole(problem, ended.solution.point, _MOST_STEPS if ended.is_off else _FEW_STEPS)
-        solution = _polished(problem, first) if ended.is_off or first.cost < most else first
-        if not solution.cost < most:
-            break
-        ended = _ended(problem, ended.start, solution)._replace(tolerance=problem.model.tolerance)
-    problem.model.take_tolerance(ended.tolerance)
+    tolerance, before = problem.model.tolerance, ended.solution
+    if tolerance is None or tolerance <= _FINEST or not _is_near(problem, before.point):
+        return ended
+    finer = max(_FINER * tolerance, _FINEST)
+    problem.model.take_tolerance(finer)
+    solution = _polished(problem, _of_whole(problem, before.point))
+    if _makes_a_difference(problem, before, solution):
+        return _ended(problem, ended.start, solution)._replace(tolerance=finer)
+    problem.model.take_tolerance(None)
     return ended
+
+
+def _makes_a_difference(problem: FitProblem, before: Solution, after: Solution) -> bool:
+    """Return whether a fit is nearer to the run than the one before, or as near with other numbers."""
+    deviations = certainty_of(before.information, 1.0, problem.parameters).deviations
+    moves = float(np.max(np.abs(after.point - before.point) / deviations))
+    return after.cost < before.cost - _NEARER or (moves > _MOVES and after.cost < before.cost + _NEARER)
 
 
 def _ended(problem: FitProblem, start: Numbers, solution: Solution) -> Ended:
@@ -137,10 +143,10 @@ def _ahead(problem: FitProblem, start: Numbers) -> Numbers | None:
     return point
 
 
-def _of_whole(problem: FitProblem, start: Numbers, most: int = _MOST_STEPS) -> Solution:
+def _of_whole(problem: FitProblem, start: Numbers) -> Solution:
     whole = problem.stretches()
     residuals, steps = partial(problem.of_stretches, stretches=whole), problem.steps
-    search = partial(minimise, residuals, region=problem.region, most=most, tolerance=1e-3,
+    search = partial(minimise, residuals, region=problem.region, most=_MOST_STEPS, tolerance=1e-3,
                      far=max(_NEAR, *_lost_from(problem)) * len(whole.rows) * len(whole.targets))
     found = search(start, step=steps)
     while problem.model.is_pushed:
