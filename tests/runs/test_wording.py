@@ -17,7 +17,8 @@ def test_kilograms_have_a_prefix_already() -> None:
 
 
 def test_few_digits_are_no_power_of_ten() -> None:
-    assert [quantity(value, 'N s/m', 2) for value in (4.6e-4, 985.0, 0.0312)] == ['460 µN s/m', '980 N s/m', '31 mN s/m']
+    found = [quantity(value, 'N s/m', 2) for value in (4.6e-4, 985.0, 0.0312)]
+    assert found == ['460 µN s/m', '980 N s/m', '31 mN s/m']
 
 
 def test_quantities_have_that_of_the_one_in_the_middle() -> None:
