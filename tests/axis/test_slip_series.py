@@ -135,12 +135,12 @@ def shares_of_the_bound(mode: float) -> tuple[list[float], list[float]]:
 
 
 @pytest.mark.parametrize('mode', [DECELERATING, ACCELERATING, YIELDING])
-@pytest.mark.parametrize('theta', [slip_series._THETA, 5.0], ids=['rounding', 'truncation'])
+@pytest.mark.parametrize('theta', [slip_series.THETA, 5.0], ids=['rounding', 'truncation'])
 def test_a_thousandth_of_the_bound_would_be_none(theta: float, mode: float, monkeypatch: pytest.MonkeyPatch) -> None:
     """Each part is needed: rounding in segments as they are, the orders left out in ones that are too long."""
-    monkeypatch.setattr(slip_series, '_THETA', theta)
+    monkeypatch.setattr(slip_series, 'THETA', theta)
     if theta == 5.0:   # none is shortened
-        monkeypatch.setattr(slip_series, '_velocity_scale', lambda _: math.inf)
+        monkeypatch.setattr(slip_series, 'velocity_scale', lambda _: math.inf)
     velocities, deflections = shares_of_the_bound(mode)
     assert 1e-3 < max(velocities) <= 1.0
     if mode == YIELDING:

@@ -15,10 +15,10 @@ from stickslip_sim.config.ros_yaml import plain_value, read_yaml
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.scene import changed, scene_from_values, scene_names
-from stickslip_sim.scene.load import parse_scene, scene_of_parameters
+from stickslip_sim.scene.load import parse_scene, scene_of_parameters, values_in_file
 from stickslip_sim.scene.schema import BY_NAME, PARAMETERS
 from stickslip_sim.scene.sections import parameters_of
-from stickslip_sim.scene.text import yaml_value
+from stickslip_sim.scene.text import scene_text, yaml_value
 
 masses = st.floats(1e-9, 1e12)
 positive = st.floats(1e-300, 1e15)
@@ -74,6 +74,26 @@ def test_null_is_as_if_left_out() -> None:
     assert parse_scene(text % 's').values == scene_from_values({'scene': 'mine'}).values
     with pytest.raises(InputError, match=r"axis\.mas = 'null' is refused"):
         parse_scene(text % '')
+
+
+@pytest.mark.parametrize('name', scene_names())
+@pytest.mark.parametrize('changes', [
+    {},
+    {'contact.model': 'rigid', 'friction.acceleration_dependence': False},
+    {'friction.kinetic.law': 'table', 'friction.kinetic.velocities': [0.0, 0.02], 'record.folder': None, 'seed': 4,
+     'friction.kinetic.coefficients': [0.05, 0.04], 'force.course': 'constant', 'force.constant': 3.0,
+     'drive.course': 'constant', 'drive.velocity': 0.002},
+])
+def test_a_file_with_the_values_of_a_changed_scene_is_that_scene(name: str, changes: dict[str, object], tmp_path: Path
+                                                                  ) -> None:
+    scene = changed(load_scene(name), changes)
+    path = tmp_path / 'scene.yaml'
+    path.write_text(scene_text(values_in_file(scene)))
+    assert load_scene(path) == scene
+    for left_out in [entry for entry in scene.values if entry.startswith('friction.excess')]:
+        less = changed(scene, {left_out: None})
+        path.write_text(scene_text(values_in_file(less)))
+        assert load_scene(path) == less
 
 
 def test_null_takes_a_part_of_a_shipped_scene_away(tmp_path: Path) -> None:

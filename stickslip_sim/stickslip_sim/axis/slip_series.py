@@ -33,11 +33,11 @@ from .smooth_load import load_bounds
 from .state_record import HIGHEST_ORDER, State
 
 _EPSILON = 2.220446049250313e-16
-_THETA = 1.6         # radians of a segment: 0.75 (ε K!)^(1/K)
+THETA = 1.6         # radians of a segment: 0.75 (ε K!)^(1/K)
 _ANY = 1.0           # s, of a segment in which nothing swings, whose series end by themselves
 _SHORTER = 0.75      # a segment whose remainder is too large is shortened by this factor
 _SHORTENINGS = 200
-_GROWN = 6.0         # more than exp(_THETA)
+_GROWN = 6.0         # more than exp(THETA)
 
 
 @inlined
@@ -61,7 +61,7 @@ def begin_series(p: Parameters, s: State) -> None:
         rounding, stretch = _recurrence(p, s, slope, end)
         rounding += 4.0 * _EPSILON * end / p.mass * size
         cut = _remainder(p, s, slope, end, stretch, tail_push, tail_v)
-        if cut <= 4.0 * _EPSILON * _velocity_scale(s):
+        if cut <= 4.0 * _EPSILON * velocity_scale(s):
             break
         end *= _SHORTER
     growth = max(0.0, -(p.damping + slope * load_bounds(p, s, 0.0, end).most) / p.mass)
@@ -81,7 +81,7 @@ def _first_end(p: Parameters, s: State, slope: float) -> tuple[float, float]:
     if s.mode == YIELDING and p.contact_damping > 0.0:
         pace = max(pace, p.contact_stiffness / p.contact_damping)
     if pace > 0.0:
-        return _THETA / pace, damping
+        return THETA / pace, damping
     return (p.normal_force / abs(p.normal_rate) if p.normal_force * p.normal_rate != 0.0 else _ANY), damping
 
 
@@ -163,7 +163,8 @@ def _remainder(p: Parameters, s: State, slope: float, end: float, stretch: float
 
 
 @compiled
-def _velocity_scale(s: State) -> float:
+def velocity_scale(s: State) -> float:
+    """Return the size of the velocity in a segment, m/s: what rounding is relative to."""
     total = 0.0
     for k in range(HIGHEST_ORDER + 1):
         total += abs(s.series[k].u)

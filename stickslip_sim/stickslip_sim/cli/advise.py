@@ -69,9 +69,11 @@ def _check(out: str | None, scene_out: str | None) -> None:
 def _write_scene(path: str, advice: 'Advice') -> None:
     from ..advise.parts import without_idle_sinusoids
     from ..scene import scene_from_values
+    from ..scene.load import values_in_file
+    from ..scene.text import scene_text
 
     least = advice.least
     scene = scene_from_values(without_idle_sinusoids((least.trial.scene or advice.reference.scene).values))
     without = f' without {", ".join(least.parts)}' if least.parts else ''
     comment = f'# {scene.name}{without}: the least for a relative error of {advice.tolerance:g}.\n'
-    write_text(path, [comment, scene.text])
+    write_text(path, [comment, scene_text(values_in_file(scene))])

@@ -101,6 +101,8 @@ def _write(folder: Path, changes: dict[str, object], recorded: 'Run', other: 'Ru
     from ..plots import plot_beside
     from ..runs.receipt import plain
     from ..runs.reduced import reduced
+    from ..scene.load import values_in_file
+    from ..scene.text import scene_text
 
     scene = other.scene
     changed = ', '.join(f'{name} = {value}' for name, value in changes.items())
@@ -109,4 +111,4 @@ def _write(folder: Path, changes: dict[str, object], recorded: 'Run', other: 'Ru
     figures = {'scene': scene.name, 'changes': changes, 'recorded': recorded.summary, 'what_if': other.summary}
     text = json.dumps(plain(figures), indent=2, allow_nan=False) + '\n'
     (folder / 'what_if.json').write_text(text, encoding='utf-8')
-    (folder / 'scene.yaml').write_text(scene.text, encoding='utf-8')
+    (folder / 'scene.yaml').write_text(scene_text(values_in_file(scene)), encoding='utf-8')

@@ -12,8 +12,9 @@ from ..scene import Scene
 from ..scene.build import build_scene
 from ..scene.load import named, named_scene, read_scene
 from ..scene.profile_schema import PROFILES
+from ..scene.schema import NULL
 from ..scene.sections import of_a_scene
-from ..scene.values import NULL, overridden, stated
+from ..scene.values import overridden, stated
 from .profile_file import prepared, sections_with_file, with_profiles
 
 SceneOrName = Scene | str | os.PathLike[str]

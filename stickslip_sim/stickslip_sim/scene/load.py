@@ -14,6 +14,7 @@ from ..core.did_you_mean import paths_beside, suggestion
 from ..core.errors import InputError, not_utf8
 from .build import build_scene
 from .model import Scene
+from .schema import BY_NAME, NULL
 from .sections import of_a_scene, parameters_of
 from .values import overridden, stated
 
@@ -70,6 +71,13 @@ def named_scene(values: Mapping[str, object], name: object = None) -> dict[str, 
         raise InputError('scene', None, f'given in a file without {left_out[0]}',
                          f'name the shipped scene that it changes, as in scene: {DEFAULT_SCENE}, or give it its own')
     return {}
+
+
+def values_in_file(scene: Scene) -> dict[str, object]:
+    """Return what a file gives to be read as a scene: its values, and `null` for others of the shipped one it names."""
+    others = [name for name in named_scene(scene.values) if name not in scene.values
+              and ((entry := BY_NAME[name]).when is None or entry.when.holds(scene.values))]
+    return {**scene.values, **dict.fromkeys(others, NULL)}
 
 
 def scene_from_values(values: Mapping[str, object], name: str = 'unnamed') -> Scene:

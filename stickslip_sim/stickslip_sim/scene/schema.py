@@ -150,3 +150,4 @@ PARAMETERS: tuple[Parameter, ...] = (
 )
 
 BY_NAME: dict[str, Parameter] = {entry.name: entry for entry in PARAMETERS}
+NULL = 'null'    # in a file: left out

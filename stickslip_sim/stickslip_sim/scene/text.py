@@ -8,7 +8,7 @@ import re
 from collections.abc import Mapping
 
 from ..config.parameter import Parameter, yaml_word
-from .schema import PARAMETERS
+from .schema import NULL, PARAMETERS
 
 _WHOLE = re.compile(r'(?<![.\d])(\d+)(?=e)')   # of a number without a dot
 
@@ -44,7 +44,9 @@ def _indent(depth: int) -> str:
 
 
 def yaml_value(entry: Parameter, value: object) -> str:
-    """Return an effective value as it is written in a scene file."""
+    """Return an effective value as it is written in a scene file, or `null`."""
+    if value == NULL:
+        return NULL
     if isinstance(value, tuple) and entry.type == 'double_array':
         return _doubles(value)
     if isinstance(value, tuple):

@@ -8,9 +8,7 @@ from typing import Any
 
 from ..config.parameter import Parameter, When, yaml_word
 from ..core.errors import InputError
-from .schema import BY_NAME, PARAMETERS
-
-NULL = 'null'
+from .schema import BY_NAME, NULL, PARAMETERS
 
 
 def effective_values(given: Mapping[str, object]) -> dict[str, object]:

@@ -8,8 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ...core.errors import InputError
-from ...scene import Scene, scene_from_values
+from ...scene import Scene, scene_from_values, scene_names
 from ...scene.friction_schema import BACKWARD
+from ...scene.load import values_in_file
 from ...scene.schema import BY_NAME
 from ...scene.text import scene_text
 from ...scene.values import overridden
@@ -92,11 +93,13 @@ def short_text(scene: Scene, remarks: Mapping[str, str] | None = None, files: Ma
                left_out: Collection[str] = ()) -> str:
     """Return a scene as a file without what it leaves at the default, but with its whole axis and friction.
 
+    Under the name of a shipped scene, which the file changes, all is given.
     `remarks` are put behind parameters, by their names, as comments.  Profiles in `files` (by `SECTION.file`) take the
     place of points that are `left_out`.
     """
-    shown = {name: value for name, value in scene.values.items()
-             if name not in left_out and (name.startswith(_ALWAYS) or value != BY_NAME[name].default)}
+    is_shipped = scene.name in scene_names()
+    shown = {name: value for name, value in values_in_file(scene).items()
+             if name not in left_out and (is_shipped or name.startswith(_ALWAYS) or value != BY_NAME[name].default)}
     return scene_text({**shown, **(files or {})}, remarks)
 
 

@@ -10,8 +10,8 @@ from rclpy.parameter import Parameter
 
 from ...config.parameter import Parameter as Entry
 from ...core.errors import InputError
+from ...scene.schema import NULL
 from ...scene.sections import without_those_of_ros
-from ...scene.values import NULL
 from ..process.given_parameters import GivenParameters
 from .bounded_node import BoundedNode
 from .parameter_requests import changes_of
