@@ -34,8 +34,7 @@ _TYPES = {'record': SetBool, 'set_paused': SetBool, 'reset': Trigger, 'clear_fau
 _GREETING = 1.0    # s until a node is greeted again
 _COMPANY = 0.2     # s for a second node of the name to be heard of after the first: most come within 0.1 s
 _AGAIN = 0.25      # s until both are greeted again
-_PROFILES = dict.fromkeys(('FASTRTPS_DEFAULT_PROFILES_FILE', 'FASTDDS_DEFAULT_PROFILES_FILE'),    # the first on Jazzy
-                          str(Path(__file__).with_name('fastdds_call.xml')))
+_PROFILES = 'FASTDDS_DEFAULT_PROFILES_FILE', 'FASTRTPS_DEFAULT_PROFILES_FILE'    # Kilted warns of the second
 _POLL = 0.05       # s
 
 
@@ -153,14 +152,16 @@ def _announced_often() -> Iterator[None]:
 
     A second node of one name was heard of seconds after the first, and so not asked.
     """
-    if not any(map(os.environ.get, _PROFILES)):
-        os.environ.update(_PROFILES)
+    if any(map(os.environ.get, _PROFILES)):
+        yield
+        return
+    names = _PROFILES if os.environ.get('ROS_DISTRO') == 'jazzy' else _PROFILES[:1]
+    os.environ.update(dict.fromkeys(names, str(Path(__file__).with_name('fastdds_call.xml'))))
     try:
         yield
     finally:
-        for name in _PROFILES:
-            if os.environ.get(name) == _PROFILES[name]:
-                del os.environ[name]
+        for name in names:
+            del os.environ[name]
 
 
 @contextmanager
