@@ -15,9 +15,9 @@ from stickslip_msgs.srv import InjectFault  # isort: skip
 
 
 @contextmanager
-def eventful_run(folder: Path) -> Iterator[Client]:
+def eventful_run(folder: Path, *arguments: str) -> Iterator[Client]:
     """Record commands, faults, changed parameters and transitions; let the caller look before the bag is closed."""
-    with running(*recording_into(folder)) as process, client() as axis:
+    with running(*recording_into(folder), *arguments) as process, client() as axis:
         axis.connect()
         for velocity in (0.004, -0.003, 0.002):
             axis.send_velocity(velocity)

@@ -19,7 +19,16 @@ from .yaml_text import to_yaml
 CHUNK_SIZE = 64 * 1024  # a larger chunk takes longer to close than a step may wait
 METADATA = 'stickslip'  # the record that says what simulated the run
 NEXT_FILE = 'stickslip_next'   # at the end of a file that was split: the one in which the bag goes on
+_WALL = 'wall'       # log times in the metadata, where they are not simulation time
 _MEDIA = {'.yaml': 'application/yaml', '.json': 'application/json'}
+
+
+def is_by_wall_clock(metadata: Mapping[str, str]) -> bool:
+    """Return whether the log times of a run are its stamps; its publish times are simulation time then, and not stamps.
+
+    `metadata` is what it says of what simulated it.
+    """
+    return metadata.get('log_time') == _WALL
 
 
 class Split(NamedTuple):
@@ -50,6 +59,7 @@ class BagWriter:
         self._channel_facts = [{'offered_qos_profiles': to_yaml([topic.qos.as_yaml()]),
                                 'topic_type_hash': self._schemas[topic.type].hash} for topic in topics]
         self._attachments, self._metadata = dict(attachments), dict(metadata)
+        self._is_by_wall_clock = is_by_wall_clock(metadata)
         self._split = split
         self._parts: list[BagFile] = []       # the last of them is under way
         self._of_others = 0                # messages in the other files
@@ -73,7 +83,9 @@ class BagWriter:
         return self._of_others + self._mcap.on_disk
 
     def write(self, topic_index: int, data: bytes, log_time_ns: int, publish_time_ns: int, sequence: int) -> None:
-        """Add a message (CDR) to the topic at that place in the list of topics."""
+        """Add a message (CDR), with simulation time and stamp, to the topic at that place in the list of topics."""
+        if self._is_by_wall_clock:
+            log_time_ns, publish_time_ns = publish_time_ns, log_time_ns
         try:
             if self._is_full(log_time_ns):
                 self._go_on()

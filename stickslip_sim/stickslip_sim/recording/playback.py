@@ -6,16 +6,17 @@ from collections.abc import Collection, Iterator
 from contextlib import suppress
 from functools import cached_property
 from heapq import heappop, heappush
-from itertools import count
+from itertools import count, takewhile
 from pathlib import Path
 from typing import NamedTuple
 
-from mcap.records import Attachment, Channel, ChunkIndex, Footer, Message, Schema
+from mcap.records import Attachment, Channel, ChunkIndex, Footer, McapRecord, Message, Metadata, Schema
 from rosbags.rosbag2 import ReaderError
 from rosbags.rosbag2.metadata import parse_qos
 
 from ..core.errors import InputError, RecordingError
 from ..scene import Scene, parse_scene
+from .bag import METADATA, is_by_wall_clock
 from .mcap_records import CUT_OFF, chunk_at, records, summary_of
 from .opening import files_of, goes_on_empty
 from .run import SCENE_FILE
@@ -60,13 +61,29 @@ class Recording:
     @cached_property
     def scene(self) -> Scene | None:
         """The scene that travels in it, before its first message; None without one that this version can read."""
-        for record in records(self._files[0].path):
+        for record in self._head:
             if isinstance(record, Attachment) and record.name == SCENE_FILE:
                 with suppress(InputError):
                     return parse_scene(record.data.decode(errors='replace'))
-            if isinstance(record, Message):
-                break
         return None
+
+    def simulation_time(self, message: RecordedMessage) -> int:
+        """Return the simulation time of a message of a recording of an axis, ns."""
+        return message.publish_time if self._is_by_wall_clock else message.log_time
+
+    def stamp(self, message: RecordedMessage) -> int:
+        """Return when a message was stamped, ns."""
+        return message.log_time if self._is_by_wall_clock else message.publish_time
+
+    @cached_property
+    def _is_by_wall_clock(self) -> bool:
+        return any(is_by_wall_clock(record.metadata) for record in self._head
+                   if isinstance(record, Metadata) and record.name == METADATA)
+
+    @property
+    def _head(self) -> Iterator[McapRecord]:
+        """Its records before its first message."""
+        return takewhile(lambda record: not isinstance(record, Message), records(self._files[0].path))
 
     @property
     def length(self) -> float:

@@ -21,6 +21,7 @@ from rosbags.typesys.store import Typestore
 from ..core.errors import InputError, RecordingError, one_line
 from ..core.types import Event, EventKind, Mode
 from ..scene import Scene, parse_scene
+from .bag import METADATA, is_by_wall_clock
 from .mcap_records import contents, records
 from .message_layout import Layout, layout_of
 from .message_places import Messages
@@ -76,6 +77,10 @@ class Bag:
             raise RecordingError(f'{self.path}: its {SCENE_FILE} is none of this version: {error}') from None
 
     @property
+    def _is_by_wall_clock(self) -> bool:
+        return is_by_wall_clock(self.metadata.get(METADATA, {}))
+
+    @property
     def events(self) -> list[Event]:
         """The transitions in the order of time; the drive position is not recorded with them (NaN).
 
@@ -97,7 +102,7 @@ class Bag:
             raise RecordingError(f'{self.path}: damaged: its {attachment} is no JSON object: {error}') from None
 
     def messages(self, topics: Iterable[str] | None = None) -> Iterator[RecordedMessage]:
-        """Yield the messages of some topics (None: all)."""
+        """Yield the messages of some topics (None: all), with simulation time as their log time."""
         wanted = set(self.topics if topics is None else topics)
         for file in self.files:
             channels: dict[int, str] = {}
@@ -105,8 +110,9 @@ class Bag:
                 if isinstance(record, Channel):
                     channels.setdefault(record.id, record.topic)
                 elif isinstance(record, Message) and (topic := channels[record.channel_id]) in wanted:
-                    yield RecordedMessage(topic, self.topics[topic], record.sequence, record.log_time,
-                                          record.publish_time, record.data)
+                    times = record.log_time, record.publish_time
+                    yield RecordedMessage(topic, self.topics[topic], record.sequence,
+                                          *(times[::-1] if self._is_by_wall_clock else times), record.data)
 
     def blocks(self) -> Iterator[Messages]:
         """Yield all messages as they stand in the chunks of the files."""
@@ -121,8 +127,9 @@ class Bag:
     def columns(self, topic: str) -> dict[str, NDArray[Any]]:
         """Return a topic as one array for each field that is a number or a text.
 
-        `log_time` (simulation time) and `publish_time` are in ns; `sequence` is the step.  A name without a leading
-        slash is that of the one topic that ends so.  Raises RecordingError when there is none, or too much of it.
+        `log_time` (simulation time, also in a bag by the wall clock) and `publish_time` (the stamp) are in ns;
+        `sequence` is the step.  A name without a leading slash is that of the one topic that ends so.
+        Raises RecordingError when there is none, or too much of it.
         """
         name = self.resolved(topic)
         return self._held({name: None})[name]
@@ -194,7 +201,7 @@ class Bag:
         topics = []
         for name, fields in wanted.items():
             type_name = self.topics[name]
-            topic = TopicColumns(name, type_name, self._store(type_name), self.decode)
+            topic = TopicColumns(name, type_name, self._store(type_name), self.decode, self._is_by_wall_clock)
             if missing := [field for field in fields or () if field not in topic.fields]:
                 raise RecordingError(f'{self.path}: {name} has no {", ".join(missing)}; recorded by another version?')
             topic.fields = topic.fields if fields is None else [*fields]

@@ -43,12 +43,13 @@ class RunFacts:
     rate: float  # 1/s
     duration: float | None = None
     sample_period: Fraction | None = None
+    log_time: str = 'simulation'    # of a node's run
 
     @classmethod
     def of(cls, scene: 'Scene', duration: float | None = None, sample_period: Fraction | None = None) -> 'RunFacts':
         """Return the facts of a run of a scene: of a node, or offline with a duration and a sample period."""
         return cls(scene.name, scene.text, scene.hash, scene.solver.name, scene.seed, scene.time.rate, duration,
-                   sample_period)
+                   sample_period, scene.record.log_time)
 
     def as_metadata(self) -> dict[str, str]:
         """Return the facts and the versions of all that takes part in the numbers."""
@@ -69,7 +70,7 @@ class RunFacts:
 
     def _origin(self) -> dict[str, str]:
         if self.sample_period is None:
-            return {'origin': 'node'}
+            return {'origin': 'node', 'log_time': self.log_time}
         return {'origin': 'offline', 'duration': repr(self.duration), 'sample_period': str(self.sample_period)}
 
 

@@ -22,6 +22,7 @@ from .message_rows import row_kind
 Block = dict[str, NDArray[Any]]
 
 _TIMES = 'log_time', 'publish_time', 'sequence'
+_SWAPPED = 'publish_time', 'log_time', 'sequence'
 _LATEST = 2 ** 63 - 1   # ns: the year 2262
 
 
@@ -39,11 +40,14 @@ class RecordedMessage(NamedTuple):
 class TopicColumns:
     """The columns of a topic of a type: one for each field that is a number or a text, and its times.
 
-    `decode` makes an object of a message; it serves those whose numbers have no fixed places.
+    `decode` makes an object of a message; it serves those whose numbers have no fixed places.  In a bag by the wall
+    clock, `log_time` and `publish_time` stand in each other's place.
     """
 
-    def __init__(self, topic: str, type_name: str, store: Typestore, decode: Callable[[RecordedMessage], Any]) -> None:
+    def __init__(self, topic: str, type_name: str, store: Typestore, decode: Callable[[RecordedMessage], Any],
+                 is_by_wall_clock: bool) -> None:
         self.topic, self._type, self._decode = topic, type_name, decode
+        self._places = dict(zip(_TIMES, _SWAPPED if is_by_wall_clock else _TIMES))
         self._layout = layout_of(store, type_name)
         self._kinds = {**number_fields(store, type_name), **dict.fromkeys(text_fields(store, type_name), 'object')}
         self.fields = list(dict.fromkeys((*self._kinds, *_TIMES)))   # that are made; fewer may be wanted
@@ -62,7 +66,8 @@ class TopicColumns:
         for name in _TIMES:
             if rows[name].max() > _LATEST:
                 raise OverflowError(name)
-        return {name: rows[name].astype(np.int64) if name in _TIMES else rows[name].copy() for name in self.fields}
+        return {name: rows[self._places[name]].astype(np.int64) if name in _TIMES else rows[name].copy()
+                for name in self.fields}
 
     def _decoded(self, messages: list[RecordedMessage]) -> Block:
         decoded = list(map(self._decode, messages))
@@ -73,8 +78,9 @@ class TopicColumns:
     def _message(self, messages: Messages, k: int) -> RecordedMessage:
         begin, size = int(messages.starts[k]), int(messages.sizes[k])
         frame = np.frombuffer(messages.data, _FRAME, 1, begin)[0]
-        return RecordedMessage(self.topic, self._type, int(frame['sequence']), int(frame['log_time']),
-                               int(frame['publish_time']), messages.data[begin + FRAME_SIZE:begin + size])
+        log_time, publish_time, sequence = (int(frame[self._places[name]]) for name in _TIMES)
+        return RecordedMessage(self.topic, self._type, sequence, log_time, publish_time,
+                               messages.data[begin + FRAME_SIZE:begin + size])
 
 
 def column_blocks(files: Iterable[Path], topics: Sequence[TopicColumns]) -> Iterator[tuple[TopicColumns, Block]]:

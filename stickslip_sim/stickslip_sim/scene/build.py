@@ -49,6 +49,10 @@ def build_scene(given: Mapping[str, object], summary: str = '') -> Scene:
         _check_load(axis, solver, load)
     rig = rig_settings(values)
     check_scaled_friction(axis, solver, rig, values['time.rate'])
+    time = time_settings(values)
+    if values.get('record.log_time') == 'wall' and not time.is_wall_time:
+        raise InputError('record.log_time', 'wall', 'simulation unless time.mode is realtime and time.factor is 1',
+                         'stamps are simulation time here, and so are those of other bags: leave it out')
     text = scene_text(values)
     return Scene(
         name=values['scene'],
@@ -58,7 +62,7 @@ def build_scene(given: Mapping[str, object], summary: str = '') -> Scene:
         drive=drive,
         force=force,
         solver=solver,
-        time=time_settings(values),
+        time=time,
         command=CommandSettings(*(values[f'command.{name}'] for name in ('max_velocity', 'max_force', 'timeout'))),
         timing=TimingSettings(**section_of(values, 'timing')),
         rig=rig,

@@ -74,13 +74,15 @@ class TimingSettings:
 class RecordSettings:
     """Whether the node records from its start, and into which folder (empty: it chooses one).
 
-    It goes on in another file at `max_size` bytes, or after `max_duration` s.
+    It goes on in another file at `max_size` bytes, or after `max_duration` s.  Its log times are simulation time, or
+    those of the wall clock (`log_time`: simulation or wall).
     """
 
     enabled: bool
     folder: str
     max_size: int | None = None
     max_duration: float | None = None
+    log_time: str = 'simulation'
 
 
 class ProfileSource(NamedTuple):

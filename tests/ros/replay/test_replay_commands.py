@@ -2,17 +2,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """replay_node with mode: commands: the orders of an axis, into a live one."""
 
+import time
 from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
 from types import MappingProxyType
 
 import pytest
+from mcap.reader import make_reader
+from rosbags.rosbag2 import Reader
 
-from stickslip_sim.recording import RECORDED, Bag, flat_layout, open_bag, open_run
+from stickslip_sim.recording import RECORDED, Bag, flat_layout, open_bag, open_run, read_run
 from stickslip_sim.recording.messages import Packer
 from stickslip_sim.recording.topics import DRIVE_VELOCITY, RIG_EVENT, SLIDER_STATE, Topic, recorded_topics
 from stickslip_sim.rig import RigEventKind
+from stickslip_sim.verify.verification import verify
 from tests.support.busy_machine import judged_by_time
 from tests.support.eventful_runs import eventful_run
 from tests.support.node_processes import NodeProcess, assert_clean, recording_into, running
@@ -52,6 +56,17 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.fixture(scope='module')
+def stamped(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, float, float]:
+    folder, begin = tmp_path_factory.mktemp('stamped') / 'run', time.time()
+    with eventful_run(folder, '-p', 'record.log_time:=wall') as axis:
+        assert axis.switch('set_paused', True).success
+        time.sleep(0.2)    # so that the stamps go on without the simulation
+        assert axis.switch('set_paused', False).success
+        axis.next('timing')
+    return folder, begin, time.time()
+
+
 def replaying(folder: Path, *arguments: str, afresh: bool = False) -> AbstractContextManager[NodeProcess]:
     return running('-p', f'bag:={folder}', '-p', 'mode:=commands', *arguments, program='replay_node', afresh=afresh)
 
@@ -71,6 +86,43 @@ def assert_same(one: Bag, other: Bag) -> None:
         assert len(columns['step']) > (0 if topic == '/mode_event' else 100)
         for name in columns.keys() - {'publish_time'}:
             assert columns[name].tobytes() == others[name].tobytes(), f'{topic} {name}'
+
+
+class TestWallClock:
+    """`record.log_time: wall`: log times are stamps, and everything of ours reads the bag as any other."""
+
+    def test_it_aligns_with_other_bags(self, stamped: tuple[Path, float, float]) -> None:
+        folder, begin, end = stamped
+        with (folder / 'run_0.mcap').open('rb') as file:
+            found = list(make_reader(file).iter_messages())
+        times = [message.log_time * 1e-9 for *_, message in found]
+        assert begin < times[0] < times[-1] < end
+        bag = open_bag(folder)
+        stamps = [bag.decode(message).header.stamp for message in bag.messages(['/slider_state'])]
+        assert ([message.log_time for _, channel, message in found if channel.topic == '/slider_state']
+                == [stamp.sec * 10**9 + stamp.nanosec for stamp in stamps])
+        with Reader(folder) as reader:
+            assert begin < reader.start_time * 1e-9 < reader.end_time * 1e-9 < end
+
+    def test_simulation_time_is_read_from_it(self, stamped: tuple[Path, float, float]) -> None:
+        bag = open_bag(stamped[0])
+        states = bag.columns('slider_state')
+        assert [*states['log_time']] == [step * 1_000_000 for step in states['step']]
+        assert next(bag.messages(['/slider_state'])).log_time == 0
+        assert verify(read_run(stamped[0])).difference is None
+
+    def test_the_same_run_in_lock_step(self, stamped: tuple[Path, float, float], tmp_path: Path) -> None:
+        folder, again = stamped[0], tmp_path / 'again'
+        with running(*LOCKSTEP, *recording_into(again)) as axis, replaying(folder, '-p', 'rate:=50') as process:
+            assert 'another scene' not in ended(process)
+            assert_clean(*axis.end())
+        assert_same(open_bag(folder), open_bag(again))
+
+    def test_no_wall_clock_in_lock_step(self) -> None:
+        with running(*LOCKSTEP, '-p', 'record.log_time:=wall') as process:
+            code, errors = process.wait()
+        assert code == 2
+        assert "record.log_time = 'wall' is refused: must be simulation unless time.mode is realtime" in errors
 
 
 class TestLockStep:

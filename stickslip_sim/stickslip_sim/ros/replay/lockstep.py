@@ -47,7 +47,7 @@ class InLockStep:
 
     def acts(self) -> Iterator[Act]:
         """Yield the steps up to each order, then the order, and at last the steps that are left."""
-        self._made = last = 0
+        self._made = last = self._ahead = 0    # the last: of log times, ns, before simulation time
         self._commands = dict.fromkeys(COMMANDS, math.nan)    # for the next call of ~/step; NaN: as before
         for message in self._recording.messages((self._states, *self._orders), *self._span):
             if message.topic == self._states:
@@ -63,15 +63,17 @@ class InLockStep:
         if step > last + 1 or (step <= last and step):
             raise RecordingError(f'{self._recording.path}: step {last + 1} is missing; only a run that was recorded by'
                                  ' the node, from its start on and without loss, can be repeated in lock-step')
-        if state.log_time != self._grid.nanoseconds(step):
+        time = self._recording.simulation_time(state)
+        if time != self._grid.nanoseconds(step):
             raise InputError('time.rate', self._grid.rate, f'that of the recording, whose step {step} ends at'
-                             f' {state.log_time * 1e-9:g} s', 'start the axis with the recorded scene')
+                             f' {time * 1e-9:g} s', 'start the axis with the recorded scene')
+        self._ahead = state.log_time - time
         return step
 
     def _steps_to(self, step: int) -> Iterator[Act]:
         while self._made < step:
             count = min(self._most, step - self._made)
-            yield Act(self._grid.nanoseconds(self._made + count), partial(self._make, count))
+            yield Act(self._grid.nanoseconds(self._made + count) + self._ahead, partial(self._make, count))
 
     def _make(self, count: int) -> None:
         answer = self._axis.ask('step', steps=count, velocity=self._commands[DRIVE_VELOCITY],
@@ -93,7 +95,8 @@ class InLockStep:
             self._remember(request)
             self._obey(request)
         elif is_timeout(kind, message.data):
-            self._log.warning(f'a command time-out at {message.log_time * 1e-9:g} s is left to the axis, which counts'
+            time = self._recording.simulation_time(message) * 1e-9
+            self._log.warning(f'a command time-out at {time:g} s is left to the axis, which counts'
                               ' silence in simulation time: recorded in real time, it may come a step apart')
 
     def _remember(self, request: Request) -> None:

@@ -77,7 +77,7 @@ class Replay(ListedNode):
         """Publish the time in which the stamps of the played messages are."""
         recording = self._recording
         first = next(recording.messages(recording.topics, recording.begin, recording.begin))
-        offset = first.publish_time - first.log_time
+        offset = recording.stamp(first) - first.log_time
         out, message = publisher(self, CLOCK), Clock()
 
         def publish() -> None:
