@@ -217,7 +217,7 @@ def test_bag(tmp_path: Path) -> None:
 
 @pytest.mark.ros
 def test_the_estimate_in_a_bag_is_of_the_run_in_the_bag(tmp_path: Path) -> None:
-    """A run of adaptive steps depends on its samples, which are others in the bag than those asked for."""
+    """Samples are others in the bag than those asked for, and events the same."""
     from stickslip_sim.recording import open_bag
 
     adaptive = {'solver.name': 'adaptive', 'solver.rtol': 1e-4, 'time.rate': 300.0}

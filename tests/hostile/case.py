@@ -16,7 +16,8 @@ from stickslip_sim.simulation.simulator import Simulator
 
 Values = dict[str, Any]
 MOST_EVENTS = 120        # of a run that is judged; what comes later is cut off
-_SLICES = 32             # in which it is seen how far that many events go
+_SLICES = 32             # in which it is seen how far that many events go,
+_HALVINGS = 40           # and parts of the first, each twice as long as the one before: it may hold any number
 
 
 class Find(Exception):  # noqa: N818
@@ -132,8 +133,8 @@ def _cut(parts: Parts) -> Parts:
     sim, count = simulator(parts), 0
     if len(ends := borders(parts)) > MOST_EVENTS:
         parts = parts._replace(duration=ends[MOST_EVENTS])
-    for k in range(1, _SLICES + 1):
-        end = parts.duration * k / _SLICES
+    for share in (*(2.0 ** -k for k in range(_HALVINGS, 0, -1)), *range(1, _SLICES + 1)):
+        end = parts.duration * share / _SLICES
         count += len(sim.advance(instant(end)))
         if count > MOST_EVENTS:
             return parts._replace(duration=end)

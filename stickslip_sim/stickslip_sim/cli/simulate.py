@@ -124,9 +124,7 @@ def _write_bag(folder: str, run: 'SimulatedRun') -> None:
     from ..recording.offline_bag import write_blocks
     from ..recording.run import RunFacts
 
-    sampled = _sampled(run, run.scene.time.step)
-    if sampled is not run:   # a run of adaptive steps depends on its samples, and so does its error
-        run = _with_estimate(sampled)
+    run = _sampled(run, run.scene.time.step)
     facts = RunFacts.of(run.scene, run.duration, run.sample_period)
     check_new_folder('--bag', folder)
     try:

@@ -9,9 +9,8 @@ speed does to a slip that ends with almost no deceleration: its time is a double
 
 Other solvers are compared with the exact one on the same scene, and its own estimate is added.  A repeat with half the
 step or a tenth of the tolerances says nothing: an event is noticed up to a step late, so that two runs may be late
-alike; and where the calls bound the steps, both tolerances take the same ones.  With Kato's law under a normal force
-that varies smoothly there is no exact one: the adaptive solver is compared with itself at a thousandth of its
-tolerances, in steps that are bounded, too.
+alike.  With Kato's law under a normal force that varies smoothly there is no exact one: the adaptive solver is compared
+with itself at a thousandth of its tolerances.
 """
 
 import dataclasses
@@ -19,7 +18,6 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from ..axis import CompliantContact
 from ..core.errors import InputError, SolverError
 from ..core.types import Event, EventKind
 from ..friction import KineticTable, kinetic_table
@@ -28,7 +26,7 @@ from ..solvers.adaptive import MIN_RTOL
 from ..solvers.normal_load import exact_follows
 from .event_shifts import MOMENT, Shift, lasting, shift_between
 from .perturbation import perturbed
-from .simulated import SimulatedRun, simulate, simulate_events
+from .simulated import SimulatedRun, simulate_events
 
 REPEATS = 3
 _SAFETY = 4.0   # of the largest shift among so few repeats
@@ -37,7 +35,6 @@ _HALF_ULP = 2.0 ** -54   # of a number below 1: the most that storing it can los
 _BREAKPOINTS = 800   # of the table that stands for a smooth law; many, and below the most that there can be
 _COARSER = 10.0   # the error of another such table, which is compared with it
 _FINER = 1e-3           # of the tolerances of a run
-_IN_PERIOD, _MOST_STEPS = 16.0, 20_000
 
 
 class ErrorEstimate(NamedTuple):
@@ -139,25 +136,16 @@ def _of_tolerances(run: SimulatedRun) -> ErrorEstimate:
     given = run.scene.solver
     finer = SolverSettings('adaptive', 'DOP853', rtol=max(_FINER * (given.rtol or 0.0), MIN_RTOL),
                            atol=max(_FINER * (given.atol or 0.0), 1e-300))
-    step = run.duration / min(max(math.ceil(_IN_PERIOD * _pace(run.scene) * run.duration), 100), _MOST_STEPS)
     try:
-        better = simulate(dataclasses.replace(run.scene, solver=finer), run.duration, step)
+        better = simulate_events(dataclasses.replace(run.scene, solver=finer), run.duration)
     except SolverError as reason:
         return ErrorEstimate(0.0, 0.0, 0.0, f'the finer run gives up: unknown ({reason})')
     shift = _shift(run, better, run.duration)
     how = (f'twice the largest difference of an event from a run with {_FINER:g} of the tolerances (DOP853, rtol '
-           f'{finer.rtol:g}) in steps of at most {step:.3g} s; a limit that is touched for less may be missed by both')
+           f'{finer.rtol:g}); a limit that is touched for less than a step may be missed by both')
     if shift.until < run.duration:
         how += f'; the events differ from t = {shift.until:.6g} s: unknown from there'
     return ErrorEstimate(2.0 * shift.time, 2.0 * shift.position, shift.until, how)
-
-
-def _pace(scene: Scene) -> float:
-    """Return the fastest frequency of the inputs and of the axis, Hz."""
-    axis = scene.axis
-    stiffness = axis.drive_stiffness + (axis.contact.stiffness if isinstance(axis.contact, CompliantContact) else 0.0)
-    sinusoids = [one.frequency for profile in scene.inputs for one in profile.sinusoids]
-    return max([0.5 * math.sqrt(stiffness / axis.mass) / math.pi, *sinusoids])
 
 
 def _integrates_the_law(scene: Scene) -> bool:

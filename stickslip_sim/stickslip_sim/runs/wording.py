@@ -71,5 +71,5 @@ def miss_note(scene: Scene) -> str:
         return ''
     without = 'solver.name: exact misses none' if scene.axis.friction.static.kind != StaticLawKind.KATO else (
         'no solver takes Kato\'s law there without')
-    return ('under a normal force that varies smoothly the adaptive solver may miss an event, and its events depend on '
-            f'its tolerances and on the samples; {without}')
+    return ('under a normal force that varies smoothly the adaptive solver may miss an event: its events depend on its '
+            f'tolerances; {without}')

@@ -108,6 +108,8 @@ class SolvedAxis:
     def change(self, axis: Axis, events: list[Event]) -> None:
         """Go on with other parameters from the present time on."""
         old = self._parameters
+        if self._solver.bring is not None:
+            self._solver.bring(old, self._state, *self.time)
         self._take(axis)
         rows = self._solver.set_parameters(old, self._parameters, self._state, *self.time, self._table, 0)
         events.extend(self._events(rows))

@@ -71,6 +71,10 @@ class Solver(Protocol):
         """Let the normal force N + N′ t (N, N/s) and the inputs be others from a time on, both at once."""
 
     @property
+    def bring(self) -> 'Callable[[Parameters, State, float, float], None] | None':
+        """What is called before `set_parameters` of another solver, with the old parameters; None: nothing need be."""
+
+    @property
     def with_normal_force(self) -> 'Callable[[InputProfile], Solver] | None':
         """What returns the solver for a normal force that may vary smoothly, N; None: it takes one that jumps alone."""
 
@@ -121,6 +125,7 @@ class SolverOfFunctions(NamedTuple):
     advice: str = 'a parameter or an input is too extreme for this axis: check the scene'
     walk: PieceWalk | None = None
     with_normal_force: 'Callable[[InputProfile], Solver] | None' = None
+    bring: 'Callable[[Parameters, State, float, float], None] | None' = None
 
 
 def with_advance(solver: Solver, advance: Callable[..., tuple[int, int]]) -> Solver:

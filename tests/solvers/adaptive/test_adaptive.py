@@ -194,11 +194,11 @@ class TestItEnds:
             assert len(events) < 500
 
     def test_sliding_that_settles_ends_in_no_flood_of_events(self) -> None:
-        """It decays to the speed of the drive, where guards are zero to within rounding."""
+        """It decays to the speed of the drive, where guards are zero to within the tolerances."""
         wanted, found = (simulate_events(load_scene('fast_feed', {'solver.name': name}), 10.0).events
                          for name in ('exact', 'adaptive'))
-        assert [event.kind for event in found[:40]] == [event.kind for event in wanted[:40]]
-        assert len(found) <= len(wanted)
+        assert 30 < len(found) <= len(wanted)
+        assert [event.kind for event in found] == [event.kind for event in wanted[:len(found)]]
 
     def test_numbers_that_end_are_a_solver_error(self) -> None:
         simulator = make(adaptive.solver(), paper_axis(RIGID), 0.0, 0.0, InitialState(velocity=1e305))

@@ -3,9 +3,8 @@
 """From event to event with `scipy.integrate.solve_ivp`; the transitions are those of every solver."""
 
 import math
-from dataclasses import dataclass, replace
-from functools import partial
-from typing import Any, ClassVar, NamedTuple
+from dataclasses import dataclass, field, replace
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -33,22 +32,13 @@ from .. import DONE, FULL, NO_PROGRESS, OUT_OF_RANGE
 from ..inputs import hold_inputs, refresh_inputs, same_inputs
 from ..sampling import write_sample
 from ..state import begin_state, change_contact, held_force
-from .first_fall import SAMPLED_AT, first_fall
-from .mode_problem import ModeGuard, ModeLoad, ModeMotion, SmoothLaw
+from .mode_integration import ModeIntegration, Reached
+from .mode_problem import ModeLoad, ModeMotion, SmoothLaw, Tolerance
 from .smooth_friction import choose_sub_mode, correct_excess, find_segment, slip_friction_force
 
 _SAME_INSTANT = 64   # events without progress in time; a sound model needs three
 
 _QUIET = np.errstate(all='ignore')   # what overflows ends as OUT_OF_RANGE
-
-
-class _Reached(NamedTuple):
-    """Where an integration came to."""
-
-    time: float          # s
-    travel: float        # m
-    velocity: float      # m/s
-    kind: float | None   # of the event there; None: none
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +53,7 @@ class Engine:
     atol: float
     laws: tuple[SmoothLaw | None, SmoothLaw | None]
     normal_force: InputProfile | None = None
+    _latest: list[ModeIntegration] = field(default_factory=list, init=False, repr=False, compare=False)   # at most one
 
     name: ClassVar[str] = 'adaptive'
     records: ClassVar[Any] = PLAIN
@@ -100,22 +91,26 @@ class Engine:
                 return row, DONE
             if row >= events.count:
                 return row, FULL
-            motion = self._motion(p, s)
-            reached = self._integrate(motion, t, s.velocity)
+            reached = self._integration(p, s).reach(t)
             if reached is None:
                 return row, OUT_OF_RANGE
-            due, y, u, kind = reached
-            if kind is None:
-                self._move(p, s, motion, second, fraction, due, (y, u))
+            if reached.kind is None:
                 return row, DONE
-            same_instant = same_instant + 1 if due == 0.0 else 0
+            same_instant = same_instant + 1 if reached.time == 0.0 else 0
             if same_instant >= _SAME_INSTANT:   # no more: the table is full with 64, and the next call counts anew
                 return row, NO_PROGRESS
-            later = s.fraction + due
+            later = s.fraction + reached.time
             whole = math.floor(later)
-            self._move(p, s, motion, s.second + whole, later - whole, due, (y, u))
-            self._transition(p, s, events, row, kind)
+            self._move(p, s, s.second + whole, later - whole, reached)
+            self._transition(p, s, events, row, reached.kind)
             row += 1
+
+    @_QUIET
+    def bring(self, p: Parameters, s: State, second: float, fraction: float) -> None:
+        """Let the segment of the state begin anew at a time that it was advanced to."""
+        t = float((second - s.second) + (fraction - s.fraction))
+        if t > 0.0 and (reached := self._integration(p, s).reach(t)) is not None:
+            self._move(p, s, second, fraction, reached)
 
     @_QUIET
     def set_inputs(self, p: Parameters, s: State, second: float, fraction: float, v: float, v_rate: float, f: float,
@@ -123,6 +118,7 @@ class Engine:
         """Let the inputs be others from a time on, to which the state was advanced."""
         if same_inputs(s, v, v_rate, f, f_rate, sinusoids):
             return row
+        self.bring(p, s, second, fraction)
         hold_inputs(s, second, fraction, v, v_rate, f, f_rate, sinusoids)
         self._refresh(p, s)
         return self._apply(p, s, events, row)
@@ -130,7 +126,7 @@ class Engine:
     @_QUIET
     def set_parameters(self, p: Parameters, new: Parameters, s: State, second: float, fraction: float, events: Events,
                        row: int) -> int:
-        """Let the axis have other parameters from a time on, to which the state was advanced with the old ones."""
+        """Let the axis have other parameters from a time on, to which `bring` brought the state with the old ones."""
         change_contact(new, s, held_force(p, s))
         self._press(new, second + fraction)
         return self._apply(new, s, events, row)
@@ -140,6 +136,7 @@ class Engine:
                  _normal_rate: float, v: float, v_rate: float, f: float, f_rate: float, sinusoids: Sinusoids,
                  events: Events, row: int) -> int:
         """Let the normal force, which is that of the solver, and the inputs be others from a time on, both at once."""
+        self.bring(p, s, second, fraction)
         self._press(p, second + fraction)
         hold_inputs(s, second, fraction, v, v_rate, f, f_rate, sinusoids)
         self._refresh(p, s)
@@ -148,36 +145,24 @@ class Engine:
     @_QUIET
     def sample(self, p: Parameters, s: State, second: float, fraction: float, out: SampleRow) -> None:
         """Fill a row with the state; the time is the one that it was advanced to."""
-        motion = self._motion(p, s)
-        now = (0.0, s.velocity)
-        v, f = motion.inputs.at(0.0)
-        write_sample(p, s, second, fraction, 0.0, 0.0, now[1], motion.rates(0.0, now)[1], 0.0, v,
-                     drive_force(p, s.spring, v, now[1]), f,
-                     motion.friction(0.0, now), out)
+        t = float((second - s.second) + (fraction - s.fraction))
+        integration = self._integration(p, s)
+        motion, reached = integration.motion, integration.reach(t)
+        y, u = (math.nan, math.nan) if reached is None else (reached.travel, reached.velocity)
+        v, f = motion.inputs.at(t)
+        drive, pressed = motion.inputs.travel(t), p.normal_force
+        p.normal_force = motion.load.at(t)
+        write_sample(p, s, second, fraction, t, y, u, motion.rates(t, (y, u))[1], drive, v,
+                     drive_force(p, s.spring + drive - y, v, u), f, motion.friction(t, (y, u)), out)
+        if s.mode == YIELDING:
+            out.deflection = motion.deflection(t)
+        p.normal_force = pressed
 
-    def _integrate(self, motion: ModeMotion, t: float, u: float) -> _Reached | None:
-        """Return the next event up to t, or t; None where the integration fails."""
-        from scipy import integrate  # a second that a user of the other solvers need not wait
-
-        guards = motion.guards()
-        for guard in guards:
-            if guard.value(0.0, (0.0, u)) < 0.0:
-                return _Reached(0.0, 0.0, u, guard.kind)
-        try:
-            solver = getattr(integrate, self.method)(motion.rates, 0.0, (0.0, u), t, rtol=self.rtol, atol=self.atol,
-                                                     max_step=motion.longest_step(0.0))
-            while solver.status == 'running':
-                solver.max_step = motion.longest_step(solver.t)
-                solver.step()
-                if solver.status == 'failed' or not np.isfinite(solver.y).all():
-                    return None
-                reached = _event_within(solver.dense_output(), guards)
-                if reached is not None:
-                    return reached
-        except (ArithmeticError, ValueError, np.linalg.LinAlgError):   # on numbers that are not finite
-            return None
-        y, velocity = map(float, solver.y)
-        return _Reached(t, y, velocity, None)
+    def _integration(self, p: Parameters, s: State) -> ModeIntegration:
+        """Return the integration of the mode from the segment start on: the latest, or a new one that is the same."""
+        if not (self._latest and self._latest[0].is_from(s)):
+            self._latest[:] = [ModeIntegration(self._motion(p, s), s)]
+        return self._latest[0]
 
     def _transition(self, p: Parameters, s: State, events: Events, row: int, kind: float) -> None:
         if kind == BREAKAWAY:
@@ -220,13 +205,13 @@ class Engine:
         return self.laws[1 if s.direction < 0.0 else 0]
 
     def _motion(self, p: Parameters, s: State) -> ModeMotion:
-        return ModeMotion(p, s, self._law(s), self.normal_force)
+        return ModeMotion(p, s, self._law(s), self.normal_force, Tolerance(self.method, self.rtol, self.atol))
 
-    def _move(self, p: Parameters, s: State, motion: ModeMotion, second: float, fraction: float, t: float,
-              state: tuple[float, float]) -> None:
-        """Bring the state to a time, t later, where travel and velocity are `state`."""
-        y, u = state
-        drive = motion.inputs.travel(t)
+    def _move(self, p: Parameters, s: State, second: float, fraction: float, reached: Reached) -> None:
+        """Bring the state to a time that its integration has reached."""
+        motion = self._integration(p, s).motion
+        t, y, u, _ = reached
+        state, drive = (y, u), motion.inputs.travel(t)
         if s.mode == STICK:
             s.rest += t
             s.deflection += y
@@ -252,23 +237,3 @@ class Engine:
         """Let the parameters have the normal force from a time on, s."""
         if self.normal_force is not None:
             p.normal_force = self.normal_force.value_at(time)
-
-
-def _value_on(guard: ModeGuard, dense: Any, time: float) -> float:
-    return guard.value(time, dense(time))
-
-
-def _event_within(dense: Any, guards: list[ModeGuard]) -> _Reached | None:
-    """Return the first event within a step of the integration, if there is one."""
-    begin, end = float(dense.t_old), float(dense.t)
-    times = [begin + (end - begin) * float(share) for share in SAMPLED_AT]
-    states = [(float(y), float(u)) for y, u in dense(np.array(times)).T]
-    first = None
-    for guard in guards:
-        samples = [guard.value(time, state) for time, state in zip(times, states)]
-        rounding = max(guard.rounding(begin, states[0]), guard.rounding(end, states[-1]))
-        root = first_fall(partial(_value_on, guard, dense), begin, end, samples, rounding)
-        if root is not None and (first is None or root < first.time):
-            y, u = map(float, dense(root))
-            first = _Reached(root, y, u, guard.kind)
-    return first

@@ -20,16 +20,16 @@ _NARROW = 4.0 * 2.220446049250313e-16   # s and relative, as in solve_ivp
 SAMPLED_AT = 0.5 * (1.0 + _POINTS)      # of the step
 
 
-def first_fall(guard: Callable[[float], float], begin: float, end: float, samples: list[float], rounding: float
+def first_fall(guard: Callable[[float], float], begin: float, end: float, samples: list[float], error: float
                ) -> float | None:
-    """Return when a guard falls below 0 by more than its rounding; None where it does not.
+    """Return when a guard falls below 0 by more than its error; None where it does not.
 
     `samples` are its values at `SAMPLED_AT` from `begin` to `end`, s.
     """
     from scipy.optimize import brentq  # a second that a user of the other solvers need not wait
 
     coefficients = _TO_COEFFICIENTS @ samples
-    if not coefficients[0] - np.abs(coefficients[1:]).sum() < -rounding:
+    if not coefficients[0] - np.abs(coefficients[1:]).sum() < -error:
         return None
     seen = [(begin + (end - begin) * float(share), value) for share, value in zip(SAMPLED_AT, samples)]
     slope = np.trim_zeros(chebyshev.chebder(coefficients), 'b')
@@ -40,7 +40,7 @@ def first_fall(guard: Callable[[float], float], begin: float, end: float, sample
             seen.append((time, guard(time)))
     above = begin
     for time, value in sorted(seen):
-        if value < -rounding:
+        if value < -error:
             return float(brentq(guard, above, time, xtol=_NARROW, rtol=_NARROW)) if guard(above) > 0.0 else above
         if value >= 0.0:
             above = time

@@ -45,7 +45,15 @@ class ModeGuard(NamedTuple):
 
     kind: float      # of the event
     value: _Value
-    rounding: _Value   # of the value
+    error: _Value    # of the value, by rounding and by the tolerance of a step
+
+
+class Tolerance(NamedTuple):
+    """The method of integration, and the tolerances of a step: relative, and absolute in m and m/s."""
+
+    method: str
+    rtol: float
+    atol: float
 
 
 class SmoothLaw(Protocol):
@@ -142,8 +150,10 @@ class ModeMotion:
     varies.
     """
 
-    def __init__(self, p: Parameters, s: State, law: SmoothLaw | None, normal_force: InputProfile | None) -> None:
+    def __init__(self, p: Parameters, s: State, law: SmoothLaw | None, normal_force: InputProfile | None,
+                 tolerance: Tolerance) -> None:
         self._p, self._law = p, law
+        self.tolerance = tolerance
         self.inputs, self.load = ModeInputs(s), ModeLoad(p.normal_force, s, normal_force)
         self._mass = p.mass
         self._stiffness, self._damping, self._feed_share = p.stiffness, p.damping, p.feed_share
@@ -208,7 +218,7 @@ class ModeMotion:
             found = [self._force(BREAKAWAY, self._below_limit), self._force(BREAKAWAY, self._above_limit)]
         elif self._mode == YIELDING:
             sliding = (self._force(ARREST, self._sliding) if self._contact[1] > 0.0
-                       else ModeGuard(ARREST, self._sliding_undamped, self._speed_rounding))   # not lifted: it may jump
+                       else ModeGuard(ARREST, self._sliding_undamped, self._sliding_error))   # not lifted: it may jump
             found = [sliding, self._speed(BREAKAWAY, self._backwards)]
         elif self._mode == COASTING:
             found = [self._force(ACCELERATE, self._below_upper), self._force(DECELERATE, self.coasting_residual)]
@@ -222,10 +232,24 @@ class ModeMotion:
         return found
 
     def _force(self, kind: float, value: _Value) -> ModeGuard:
-        return ModeGuard(kind, _lifted(value, self._u), self._force_rounding)
+        return ModeGuard(kind, _lifted(value, self._u), self._force_error)
 
     def _speed(self, kind: float, value: _Value) -> ModeGuard:
-        return ModeGuard(kind, _lifted(value, self._u), self._speed_rounding)
+        return ModeGuard(kind, _lifted(value, self._u), self._speed_error)
+
+    def _force_error(self, t: float, state: Sequence[float]) -> float:
+        return self._force_rounding(t, state) + self._force_tolerance(t, state)
+
+    def _force_tolerance(self, t: float, state: Sequence[float]) -> float:
+        """Return by how much a force may be wrong as the state is, N."""
+        if self._stands:
+            return 0.0
+        y, u = state
+        of_travel, of_speed = (self.tolerance.atol + self.tolerance.rtol * abs(value) for value in (y, u))
+        bends = abs(self._coefficient(abs(u) + of_speed) - self._coefficient(abs(u)))
+        bends += abs(self._line[3]) * self._excess * of_speed
+        return ((self._stiffness + self._contact[0]) * of_travel + (self._damping + self._contact[1]) * of_speed
+                + self.load.at(t) * bends)
 
     def _force_rounding(self, t: float, state: Sequence[float]) -> float:
         y, u = state
@@ -235,8 +259,12 @@ class ModeMotion:
         sizes += self.load.at(t) * (abs(self._line[0]) + abs(self._line[1] * u) + self._p.static_limit)
         return ROUNDING * (sizes + self._contact[0] * (abs(self._deflection) + abs(y)) + self._contact[1] * abs(u))
 
-    def _speed_rounding(self, _: float, state: Sequence[float]) -> float:
-        return ROUNDING * (abs(self._u) + abs(state[1]))
+    def _speed_error(self, _: float, state: Sequence[float]) -> float:
+        speed = abs(state[1])
+        return ROUNDING * (abs(self._u) + speed) + self.tolerance.atol + self.tolerance.rtol * speed
+
+    def _sliding_error(self, t: float, state: Sequence[float]) -> float:
+        return self._contact[0] * self._speed_error(t, state)
 
     def _applied(self, t: float, y: float, u: float) -> float:
         v, f = self.inputs.at(t)
