@@ -3,6 +3,7 @@
 """Installation of stickslip_sim as a ROS 2 package."""
 
 import sys
+from contextlib import suppress
 from glob import glob
 from pathlib import Path
 
@@ -10,14 +11,15 @@ from setuptools import find_packages, setup
 from setuptools.command.install_scripts import install_scripts
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))   # pip runs this file from elsewhere
+from distutils.command.install_data import install_data  # after setuptools, which brings it since Python 3.12
+
 from hot_unit.build import BuildUnit, extensions
 
 NAME = 'stickslip_sim'
 SHARE = f'share/{NAME}'
-# pip makes a wheel: the offline part, with the tool alone in `bin`.  colcon and the build farm of ROS install, with
-# the programs of the nodes in lib/stickslip_sim, where `ros2 run` looks (setup.cfg), and the files of a ROS package.
-FOR_ROS = not {'bdist_wheel', 'dist_info', 'editable_wheel'} & set(sys.argv)
-NODES = ['cascade_controller', 'compensating_controller', 'health', 'replay_node', 'sim_node'] if FOR_ROS else []
+# The programs beside the tool, which is the only entry point: pip puts each entry point of a wheel into `bin`, and a
+# wheel is the offline part.  colcon and the build farm call setup.py, with lib/stickslip_sim for programs (setup.cfg).
+NODES = ['cascade_controller', 'compensating_controller', 'health', 'replay_node', 'sim_node']
 PROGRAM = """{python}
 import sys
 try:
@@ -34,21 +36,42 @@ sys.exit(main())
 """
 
 
-class InstallPrograms(install_scripts):
-    """Writes the programs so that a terminal that does not know the workspace gets a line, and no traceback."""
+class Programs:
+    """Writes the programs; a terminal that does not know the workspace gets a line from them, and no traceback."""
+
+    def write_script(self, script_name, contents, mode='t', *others):
+        """Write all in place of the one that setuptools makes for the tool, whose interpreter they take.
+
+        It makes none for a wheel.
+        """
+        python, _, _ = contents.partition('\n')
+        for name in (script_name, *NODES):
+            module = f'{NAME}.ros.{name}' if name in NODES else f'{NAME}.__main__'
+            text = PROGRAM.format(python=python, module=module, package=NAME, name=name)
+            super().write_script(name, text, mode, *others)
+
+
+class InstallPrograms(Programs, install_scripts):
+    """Writes the programs of `setup.py install`."""
+
+
+class InstallData(install_data):
+    """Installs the files of a ROS package; a wheel has none."""
 
     def run(self):
-        """Let each program have its interpreter, and the text above."""
-        super().run()
-        for path in map(Path, self.get_outputs()):
-            module = f'{NAME}.ros.{path.name}' if path.name in NODES else f'{NAME}.__main__'
-            python, _, _ = path.read_text().partition('\n')
-            path.write_text(PROGRAM.format(python=python, module=module, package=NAME, name=path.name))
+        """Copy them, unless setuptools makes a wheel and so writes no programs either."""
+        if not self.get_finalized_command('install_scripts').no_ep:
+            super().run()
 
+
+COMMANDS = {'build_ext': BuildUnit, 'install_data': InstallData, 'install_scripts': InstallPrograms}
+with suppress(ImportError):    # `colcon build --symlink-install` develops; setuptools means to drop the command
+    from setuptools.command.develop import develop
+    COMMANDS['develop'] = type('DevelopPrograms', (Programs, develop), {})
 
 setup(
     name=NAME,
-    cmdclass={'build_ext': BuildUnit, 'install_scripts': InstallPrograms},
+    cmdclass=COMMANDS,
     ext_modules=extensions(),
     version='1.0.1',
     description='Stick-slip of a feed axis in real time: exact engine, ROS 2 node, offline tool',
@@ -66,7 +89,7 @@ setup(
         (f'{SHARE}/layouts', sorted(glob('layouts/*'))),
         (f'{SHARE}/ros2_control', sorted(glob('ros2_control/*'))),
         (f'{SHARE}/security', sorted(glob('security/*'))),
-    ] if FOR_ROS else [],
+    ],
     zip_safe=False,
     python_requires='>=3.10',
     install_requires=[
@@ -77,10 +100,5 @@ setup(
         'bench': ['numba'], 'cluster': ['distributed'], 'tables': ['pandas', 'fastparquet'],
         'test': ['numba', 'pytest'],
     },
-    entry_points={
-        'console_scripts': [
-            *(f'{node} = stickslip_sim.ros.{node}:main' for node in NODES),
-            'stickslip = stickslip_sim.__main__:main',
-        ],
-    },
+    entry_points={'console_scripts': ['stickslip = stickslip_sim.__main__:main']},
 )

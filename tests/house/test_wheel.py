@@ -3,7 +3,6 @@
 """What `pip install ./stickslip_sim` gives to those without ROS: the tool, recording too, and no other program."""
 
 import os
-import shutil
 import subprocess
 import sys
 import zipfile
@@ -11,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.support.copied_package import copy_package
 from tests.support.repository import ROOT
 
 SOURCES = ROOT / 'stickslip_sim'
@@ -20,11 +20,9 @@ SOURCES = ROOT / 'stickslip_sim'
 def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The unpacked wheel, made offline and without compiled code, which other tests are for."""
     folder = tmp_path_factory.mktemp('wheel')
-    made = shutil.ignore_patterns('build', '_hot*', '*.egg-info', '__pycache__')
-    shutil.copytree(SOURCES, folder / 'sources', ignore=made)
     done = subprocess.run(
         [sys.executable, '-m', 'pip', 'wheel', '-q', '--no-deps', '--no-build-isolation', '--no-index',
-         '--disable-pip-version-check', '-w', folder, folder / 'sources'],
+         '--disable-pip-version-check', '-w', folder, copy_package(folder)],
         capture_output=True, text=True, timeout=120, check=False, env={**os.environ, 'STICKSLIP_COMPILED': '0'})
     assert done.returncode == 0, done.stderr
     [file] = folder.glob('*.whl')
