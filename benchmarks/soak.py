@@ -22,6 +22,7 @@ from stickslip_sim.recording import open_bag
 
 from .hil.measure import bag_figures, node_figures
 from .hil.process import SCENE, control, node_command, resident, running
+from .hil.slow_listener import TAKES
 from .loop import machine
 
 RATE = 1000.0    # 1/s
@@ -50,6 +51,7 @@ LIMITS = (
 )
 FACTS = (
     Limit('steps', 'steps', np.inf, '.0f'),
+    Limit(f'states that the slow subscriber took, in {TAKES * 1e3:g} ms each', 'slow', np.inf, '.0f'),
     Limit('memory at the end, MiB', 'resident', np.inf, '.1f'),
     Limit('steps that began more than a period late, %', 'overruns_percent', np.inf, '.3f'),
     Limit('lateness, p99, median of the seconds, ms', 'lateness_p99_ms', np.inf, '.3f'),
@@ -96,9 +98,10 @@ def soak(minutes: float, priority: int = 0) -> tuple[dict[str, float], str]:
     with tempfile.TemporaryDirectory() as parent:
         folder = Path(parent, 'run')
         split = ['-p', f'record.max_duration:={minutes * 60.0 / PARTS}']
-        with running([*node_command(RATE, folder, priority), *split]) as process, MemoryWatch(process.pid) as memory:
+        with (running([*node_command(RATE, folder, priority), *split]) as process, MemoryWatch(process.pid) as memory,
+              running([sys.executable, '-m', 'benchmarks.hil.slow_listener']) as listener):
             figures = control(process.pid, minutes * 60.0, priority=max(priority - BELOW, 0))
-        figures |= {**node_figures(folder), **bag_figures(folder)}
+        figures |= {'slow': float(listener.communicate()[0]), **node_figures(folder), **bag_figures(folder)}
         verdict = str(open_bag(folder).receipt['timing']['verdict'])
     figures = {**figures, 'growth': memory.growth(), 'spread': memory.spread(),
                'resident': memory.samples[-1] / 2**20,
@@ -128,7 +131,8 @@ def page(minutes: float, priority: int, figures: Mapping[str, float], verdict: s
         f'{machine()}.', '',
         f'`sim_node` runs `{SCENE}` at {RATE:g} steps a second for {minutes:g} minutes, with its recording in parts',
         f'of {minutes / PARTS:g} minutes (`record.max_duration`).  A controller in a process of its own answers every',
-        'state with a drive velocity.  What grows in memory while the node records is the index of a part, which MCAP',
+        f'state with a drive velocity, and a reliable subscriber takes {TAKES * 1e3:g} ms for a state: a publisher',
+        'keeps the latest states for it, and waits for none.  What grows in memory while the node records is the index of a part, which MCAP',
         f'writes at its end.{scheduling}', '',
         '| figure | measured | at most |', '|---|---|---|', *rows, '',
         'Missed: ' + '; '.join(failures) + '.' if failures else
