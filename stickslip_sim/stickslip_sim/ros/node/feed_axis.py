@@ -35,7 +35,7 @@ from .clock import ClockIn, ClockOut
 from .deferred_log import DeferredLog
 from .endpoints import publisher
 from .inbox import HidingNode
-from .joints import JointStates
+from .joints import JointNames, JointStates
 from .parameters import SceneNode
 from .publishers import Publishers
 from .scheduling_parameters import scheduling_of
@@ -68,8 +68,9 @@ class FeedAxis(HidingNode, SceneNode):
         self._outputs = Publishers(self, self._delay, depth)
         self.log = DeferredLog(self.get_logger())
         self._rig_events = RigEvents(self, self._outputs, self.log)
-        sinks = self._sinks(grid, depth)
-        self._subscribers = Subscribers(self, *self._slots, self._step_clock.now, self.log, scene.rig.measures)
+        joints = JointNames.of(scene.joint_prefix) if scene.rig.measures else None
+        sinks = self._sinks(grid, joints, depth)
+        self._subscribers = Subscribers(self, *self._slots, self._step_clock.now, self.log, joints)
         self.hide(self._subscribers.hidden)
         self.loop = StepLoop(scene.make_rig(), self._step_clock, self._slots, sinks, Watchdog(scene.command.timeout),
                              by_request=scene.time.mode == 'lockstep', hear=self._subscribers.hear,
@@ -132,10 +133,10 @@ class FeedAxis(HidingNode, SceneNode):
         if not self.loop.at_boundary(apply):
             self.get_logger().error('the step loop is busy: the changed parameters did not take effect')
 
-    def _sinks(self, grid: Grid, depth: int) -> list[Sink]:
+    def _sinks(self, grid: Grid, joints: JointNames | None, depth: int) -> list[Sink]:
         sinks: list[Sink] = [self._rig_events.take, self._outputs.take]
-        if self.scene.rig.measures:
-            sinks.append(JointStates(self, self._outputs, depth).take)
+        if joints:
+            sinks.append(JointStates(self, self._outputs, joints, depth).take)
         if self.scene.time.makes_clock:
             sinks += [ClockOut(self, grid, self.scene.time.clock_rate).take, self._outputs.keep_pace]
         return sinks
