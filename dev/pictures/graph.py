@@ -73,7 +73,7 @@ def _services(sheet: Sheet) -> None:
 
 def _reports(sheet: Sheet) -> None:
     _box(sheet, (_RIGHT, 122), (_WIDTH, 318), 'subscribers', [
-        'your controller, ros2_control', 'PlotJuggler, Foxglove', 'ros2 topic echo', 'health'], stroke=RED)
+        'your controller, ros2_control', 'PlotJuggler, Lichtblick', 'ros2 topic echo', 'health'], stroke=RED)
     for i, name in enumerate(REPORTS):
         y = 150 + 33 * i
         sheet.arrow((710, y), (_RIGHT, y), color=RED)

@@ -3,6 +3,7 @@
 """Starts several axes on one machine, each in a namespace of its own.
 
 ros2 launch stickslip_sim axes.launch.py axes:='x:positioning y:cutting_force' record:=true
+ros2 launch stickslip_sim axes.launch.py axes:='x:positioning y:positioning' joints:=/joint_states
 
 All but the first argument are for all of them.
 """
@@ -21,6 +22,8 @@ ARGUMENTS = {
     'mode': ('', 'mode of time of all axes: realtime, lockstep or free_run; empty: as in the scene'),
     'rate': ('', 'steps per second of simulation time; empty: as in the scene'),
     'record': ('', 'true: record a bag of each axis from the start, below runs/; false: none; empty: as in the scene'),
+    'joints': ('', 'topic of the joint states of all axes, like /joint_states, for one robot description: each has its'
+               ' namespace as prefix (x_axis_slider); empty: no joints'),
     'parameters': ('', "further parameters of all axes, like 'drive.velocity:=0.005 seed:=3'"),
 }
 
@@ -41,8 +44,16 @@ def axes(context: LaunchContext) -> list[IncludeLaunchDescription]:
     scenes = {namespace.strip('/'): scene for namespace, _, scene in (word.partition(':') for word in words)}
     if not scenes or not all([*scenes, *scenes.values()]) or len(scenes) < len(words):
         raise ValueError(f'axes: {words}: give each as NAMESPACE:SCENE, like x:positioning, in a namespace of its own')
+    joints, parameters = (LaunchConfiguration(name).perform(context) for name in ('joints', 'parameters'))
     sim = PathJoinSubstitution([FindPackageShare('stickslip_sim'), 'launch', 'sim.launch.py'])
     # Each has its own clock: two times on one /clock would be none.
     return [IncludeLaunchDescription(PythonLaunchDescriptionSource(sim), launch_arguments={
-        'namespace': namespace, 'scene': scene, 'folder': '', 'clock': 'clock'}.items())
+        'namespace': namespace, 'scene': scene, 'folder': '', 'clock': 'clock',
+        'joint_states': joints or 'joint_states',
+        'parameters': (joints_of(namespace) if joints else '') + parameters}.items())
         for namespace, scene in scenes.items()]
+
+
+def joints_of(namespace: str) -> str:
+    """Return the parameters of the joints of an axis, quoted twice: YAML takes a prefix like y for a truth value."""
+    return f"""joint_interface.enabled:=true joint_interface.prefix:="'{namespace}_'" """

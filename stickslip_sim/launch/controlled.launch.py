@@ -27,6 +27,7 @@ ARGUMENTS = {
     'scene': ('positioning', 'shipped scene of the axis, or a parameter file'),
     'controller': ('cascade_controller', 'controller that moves the axis'),
     'namespace': ('', 'namespace of both nodes and their topics'),
+    'prefix': ('', 'put before the names of the joints, as joint_interface.prefix of both'),
     'feed': ('0.0005', 'feed of the moves, m/s'),
     'travel': ('0.002', 'travel of a move, m'),
     'record': ('true', 'true: record a bag from the start; false: none'),
@@ -34,7 +35,7 @@ ARGUMENTS = {
 }
 CHOICES = {'controller': ['cascade_controller', 'compensating_controller']}
 # The axis stands until the controller moves it.
-OF_THE_AXIS = 'joint_interface.enabled:=true drive.course:=constant drive.velocity:=0.0 '
+OF_THE_AXIS = 'joint_interface.enabled:=true drive.course:=constant drive.velocity:=0.0 joint_interface.prefix:='
 
 
 def generate_launch_description() -> LaunchDescription:
@@ -47,12 +48,13 @@ def generate_launch_description() -> LaunchDescription:
           for name, (value, text) in ARGUMENTS.items()),
         RegisterEventHandler(OnProcessExit(on_exit=[Shutdown()])),
         IncludeLaunchDescription(PythonLaunchDescriptionSource(sim), launch_arguments={
-            'parameters': [OF_THE_AXIS, given['parameters']]}.items()),
+            'parameters': [OF_THE_AXIS, '"\'', given['prefix'], '\'" ', given['parameters']]}.items()),
         Node(
             package='stickslip_sim',
             executable=given['controller'],
             namespace=given['namespace'],
-            arguments=['--ros-args', '-p', ['moves.feed:=', given['feed']], '-p', ['moves.travel:=', given['travel']]],
+            arguments=['--ros-args', '-p', ['moves.feed:=', given['feed']], '-p', ['moves.travel:=', given['travel']],
+                       '-p', ["joint_interface.prefix:='", given['prefix'], "'"]],
             output='screen',
         ),
     ])

@@ -25,6 +25,8 @@ ARGUMENTS = {
     'record': ('', 'true: record a bag from the start; false: none'),
     'folder': ('', 'new folder of the bag, which must not exist; empty: one below runs/'),
     'parameters': ('', "further parameters, like 'drive.velocity:=0.005 seed:=3'"),
+    'joint_states': ('joint_states', 'topic of the joint states; with a leading slash one for axes in several'
+                     ' namespaces, which need prefixes then'),
     'clock': ('/clock', 'topic of the clock in lockstep and free_run; without a leading slash in the namespace'),
 }
 PARAMETERS = {'scene': 'scene', 'mode': 'time.mode', 'rate': 'time.rate', 'record': 'record.enabled',
@@ -53,7 +55,7 @@ def axis(context: LaunchContext) -> list[Node]:
         namespace=given['namespace'],
         # Not as `parameters`: launch makes a file of those, and in a file `scene` is no file.
         arguments=['--ros-args', *(argument for word in words for argument in ('-p', word))],
-        remappings=[('/clock', given['clock'])],
+        remappings=[('/clock', given['clock']), ('joint_states', given['joint_states'])],
         output='screen',
     )]
 

@@ -19,6 +19,7 @@ from stickslip_sim.ros.controllers.controller_parameters import (  # isort: skip
     COMMON, COMPENSATION,
 )
 from stickslip_sim.ros.replay.replay_settings import REPLAY_PARAMETERS  # isort: skip
+from tests.support.robot_descriptions import expanded  # isort: skip
 from tests.support.ros2_control_client import Description  # isort: skip
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
@@ -39,7 +40,7 @@ def words_of(process: Started) -> str:
 
 
 def test_all_of_them_are_looked_at() -> None:
-    assert set(FILES) >= {'sim', 'controlled', 'axes', 'ros2_control'}
+    assert set(FILES) >= {'sim', 'controlled', 'axes', 'display', 'ros2_control'}
 
 
 @pytest.mark.parametrize('name', FILES)
@@ -64,7 +65,7 @@ class TestSim:
         axis, = launched('sim').processes
         assert axis.executable == 'sim_node'
         assert words_of(axis) == ('--ros-args -p scene:=paper_fig8 --ros-args -r __node:=feed_axis -r __ns:=/'
-                                  ' -r /clock:=/clock')
+                                  ' -r /clock:=/clock -r joint_states:=joint_states')
 
     def test_further_parameters_may_have_blanks(self) -> None:
         axis, = launched('sim', parameters="seed:=3 friction.kinetic.velocities:='[0.0, 0.1]'").processes
@@ -101,15 +102,15 @@ class TestControlled:
         assert '-r __ns:=/mill' in words_of(axis)
         assert '-r __ns:=/mill' in words_of(controller)
         assert parameters_of(axis) == ['scene', 'time.rate', 'record.enabled', 'joint_interface.enabled',
-                                       'drive.course', 'drive.velocity', 'seed']
-        assert parameters_of(controller) == ['moves.feed', 'moves.travel']
+                                       'drive.course', 'drive.velocity', 'joint_interface.prefix', 'seed']
+        assert parameters_of(controller) == ['moves.feed', 'moves.travel', 'joint_interface.prefix']
 
     def test_it_ends_with_the_first_that_ends(self) -> None:
         assert launched('controlled').ends == ['shutdown']
 
     def test_the_controller_moves_the_axis(self, tmp_path: Path) -> None:
         axis, controller = launched('controlled', namespace='mill', folder=str(tmp_path / 'run'),
-                                    feed='0.01').processes
+                                    feed='0.01', prefix='y').processes    # to YAML a truth value
         with running(*axis.words, afresh=True) as bench, client('/mill') as mill:
             mill.connect()
             with running(*controller.words, program=controller.executable, afresh=True) as following:
@@ -130,7 +131,42 @@ class TestAxes:
         assert 'scene:=positioning' in x.words
         assert 'scene:=/a/scene.yaml' in y.words
         for namespace, axis in (('/x', x), ('/y', y)):
-            assert words_of(axis).endswith(f'-r __ns:={namespace} -r /clock:=clock')
+            assert words_of(axis).endswith(f'-r __ns:={namespace} -r /clock:=clock -r joint_states:=joint_states')
+
+    def test_joints_with_prefixes_on_one_topic(self) -> None:
+        x, y = launched('axes', axes='x:positioning cell/y:paper_fig8', joints='/joint_states',
+                        parameters='seed:=3').processes
+        for prefix, axis in (('x_', x), ('cell/y_', y)):
+            assert parameters_of(axis) == ['scene', 'joint_interface.enabled', 'joint_interface.prefix', 'seed']
+            assert f"joint_interface.prefix:='{prefix}'" in axis.words
+            assert words_of(axis).endswith('-r joint_states:=/joint_states')
+
+
+class TestDisplay:
+    def test_axis_description_and_rviz(self) -> None:
+        publisher, rviz, axis = launched('display', namespace='mill', prefix='y', parameters='seed:=3').processes
+        assert parameters_of(axis) == ['scene', 'joint_interface.enabled', 'joint_interface.prefix', 'seed']
+        assert "joint_interface.prefix:='y'" in axis.words
+        for node in (publisher, axis):
+            assert '-r joint_states:=/joint_states' in words_of(node)
+        assert rviz.words[:2] == ['-d', f'{LAUNCH.parent}/rviz/feed_axis.rviz']
+        assert Path(rviz.words[1]).is_file()
+
+    def test_xacro_gives_the_description_the_prefix(self) -> None:
+        command = re.search(r'\$\((.*)\)', words_of(launched('display', prefix='x_').processes[0]))
+        assert command is not None
+        xacro, file, *words = shlex.split(command[1])
+        assert (xacro, file) == ('xacro', f'{LAUNCH.parent}/urdf/feed_axis.urdf.xacro')
+        assert '"x_axis_slider"' in expanded(Path(file), *words)
+
+    def test_of_axes_that_run_already(self) -> None:
+        publisher, = launched('display', axis='false', rviz='false', description='cross_table.urdf.xacro').processes
+        assert f'{LAUNCH.parent}/urdf/cross_table.urdf.xacro' in words_of(publisher)
+
+    def test_a_path_is_a_file_of_your_own(self) -> None:
+        publisher, rviz, _ = launched('display', description='/a b/c.xacro', rviz_config='/a b/c.rviz').processes
+        assert "'/a b/c.xacro'" in words_of(publisher)
+        assert rviz.words[1] == '/a b/c.rviz'
 
 
 class TestRos2Control:
@@ -158,7 +194,8 @@ class TestRos2Control:
 
 
 @pytest.mark.parametrize(('name', 'argument', 'value'), [
-    ('controlled', 'controller', 'cascade'), ('replay', 'mode', 'events'), ('ros2_control', 'controller', 'none')])
+    ('controlled', 'controller', 'cascade'), ('replay', 'mode', 'events'), ('ros2_control', 'controller', 'none'),
+    ('display', 'rviz', 'no')])
 def test_a_choice_that_is_none_is_refused(name: str, argument: str, value: str) -> None:
     with pytest.raises(RuntimeError, match=f'Argument "{argument}" provided value "{value}" is not valid'):
         launched(name, **{**NEEDED.get(name, {}), argument: value})
@@ -179,7 +216,8 @@ class TestReplay:
 @pytest.mark.parametrize(('name', 'word', 'advice'), [
     ('sim', 'scen:=paper_fig7', 'did you mean scene'), ('controlled', 'fed:=0.01', 'did you mean feed'),
     ('controlled', 'flder:=a', 'did you mean folder'), ('axes', 'scene:=paper_fig7', 'drop it'),
-    ('replay', 'topic:=a', 'did you mean topics'), ('ros2_control', 'namspace:=a', 'did you mean namespace')])
+    ('replay', 'topic:=a', 'did you mean topics'), ('display', 'prefx:=x_', 'did you mean prefix'),
+    ('ros2_control', 'namspace:=a', 'did you mean namespace')])
 def test_an_argument_that_is_none_is_refused(monkeypatch: pytest.MonkeyPatch, name: str, word: str,
                                              advice: str) -> None:
     """Launch itself passes over it."""

@@ -35,6 +35,7 @@ LAUNCHED = [
                     'parameters': 'seed:=3'}),
     ('axes', {}),
     ('axes', {'axes': 'x:positioning y:/a/scene.yaml', 'rate': '500', 'record': 'true'}),
+    ('axes', {'axes': 'x:positioning y:positioning', 'joints': '/joint_states', 'parameters': 'seed:=3'}),
     ('replay', {'bag': 'runs/a', 'loop': 'true'}),
     ('replay', {'bag': 'runs/a', 'mode': 'commands', 'topics': '[drive_velocity]', 'axis': '/mill/feed_axis'}),
 ]

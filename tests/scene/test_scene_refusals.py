@@ -57,6 +57,8 @@ def test_yaml_that_ros_refuses_or_passes_over(text: str, hint: str) -> None:
     ('    axis: 5.0\n', 'axis', 'it is a section'),
     ('    axes: {mass: 1.0}\n', 'axes.mass', 'did you mean axis.mass?'),
     ('    encoder: {resolution: 2.0}\n', 'encoder.resolution', '<= 1'),
+    ('    joint_interface: {prefix: "x y_"}\n', 'joint_interface.prefix', 'then letters, digits, _, - and /'),
+    ('    joint_interface: {prefix: y}\n', 'joint_interface.prefix', 'put it in quotes'),
     ('    encoder: {gain: 1.0}\n', 'encoder.gain', 'resolution'),
     ('    command: {timeout: -0.5}\n', 'command.timeout', '>= 0'),
     ('    drive: {course: square}\n', 'drive.course', 'constant, ramp, steps, sine, table'),

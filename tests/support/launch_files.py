@@ -129,11 +129,21 @@ class _ParameterValue(NamedTuple):
         return _text(self.value, context)
 
 
+class _IfCondition(NamedTuple):
+    predicate: Any
+
+    def holds(self, context: Context) -> bool:
+        return _text(self.predicate, context).lower() in ('true', '1')
+
+
 class _Include(NamedTuple):
     source: Any
     launch_arguments: Iterable[tuple[str, Any]] = ()
+    condition: _IfCondition | None = None
 
     def __call__(self, context: Context, result: Launched) -> None:
+        if self.condition is not None and not self.condition.holds(context):
+            return
         for name, value in self.launch_arguments:
             context[name] = _text(value, context)
         _visit(_entities(Path(_text(self.source, context))), context, result)
@@ -166,8 +176,11 @@ class _Node(NamedTuple):
     parameters: Iterable[Any] = ()
     remappings: Iterable[tuple[Any, Any]] = ()
     output: str = 'log'
+    condition: _IfCondition | None = None
 
     def __call__(self, context: Context, result: Launched) -> None:
+        if self.condition is not None and not self.condition.holds(context):
+            return
         renamed = [('__node', self.name)] if self.name else []
         if self.namespace is not None:
             renamed.append(('__ns', '/' + _text(self.namespace, context).lstrip('/')))
@@ -190,6 +203,7 @@ _DOUBLE: dict[str, dict[str, Any]] = {
     'launch.actions': {'DeclareLaunchArgument': Argument, 'IncludeLaunchDescription': _Include,
                        'OpaqueFunction': _OpaqueFunction, 'RegisterEventHandler': _RegisterEventHandler,
                        'Shutdown': lambda: 'shutdown'},
+    'launch.conditions': {'IfCondition': _IfCondition},
     'launch.event_handlers': {'OnProcessExit': _OnProcessExit},
     'launch.launch_description_sources': {'PythonLaunchDescriptionSource': lambda location: location},
     'launch.substitutions': {'Command': _Command, 'LaunchConfiguration': _LaunchConfiguration,

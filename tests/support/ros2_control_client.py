@@ -15,7 +15,6 @@ from enum import Enum
 from typing import NamedTuple
 
 import rclpy
-import xacro
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
@@ -23,6 +22,7 @@ from rclpy.qos import QoSProfile, qos_profile_sensor_data
 from sensor_msgs.msg import JointState
 
 from tests.support.repository import ROOT
+from tests.support.robot_descriptions import expanded
 
 SHIPPED = ROOT / 'stickslip_sim' / 'ros2_control'
 THRESHOLD = 'trigger_joint_command_threshold'
@@ -51,8 +51,7 @@ class Description:
     """The robot description that xacro makes of the words of a command line."""
 
     def __init__(self, *words: str) -> None:
-        options, file = xacro.process_args([str(SHIPPED / 'feed_axis.ros2_control.xacro'), *words])
-        self.robot = ET.fromstring(xacro.process_file(file, **vars(options)).toxml())
+        self.robot = ET.fromstring(expanded(SHIPPED / 'feed_axis.ros2_control.xacro', *words))
         (control,) = self.robot.findall('ros2_control')
         self.hardware = control.get('name', '')
         self.plugin = control.findtext('hardware/plugin', '')

@@ -3,6 +3,7 @@
 """One parameter of a scene: its name, its range, and the check of a value."""
 
 import math
+import re
 import sys
 from array import array
 from collections.abc import Mapping, Sequence
@@ -22,6 +23,7 @@ _PLAIN = {
     'string_array': f'a list of at least one text, each of 1 to {TEXT_LIMIT} printable characters',
 }
 _SEQUENCES = (list, tuple, array)
+_START_OF_NAMES = re.compile(r'([a-z][\w/-]*)?', re.ASCII | re.IGNORECASE)    # as URDF, TF and ros2_control take it
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +46,8 @@ class Parameter:
     """A parameter of a scene; `default` is its value when it is left out but has a meaning (see `when`).
 
     Without a default it is `required`, or optional and then absent.  `low` and `high` bound numbers, also those of a
-    list; `infinite` lets +infinity in beside them.  `live`: it may change while the node runs.
+    list; `infinite` lets +infinity in beside them.  `live`: it may change while the node runs.  `starts_names`: it
+    stands before the names of joints and frames.
     """
 
     name: str                       # dotted
@@ -60,10 +63,13 @@ class Parameter:
     live: bool = False
     when: When | None = None
     required: bool = False
+    starts_names: bool = False
 
     @property
     def range(self) -> str:
         """The bounds in words, empty without any."""
+        if self.starts_names:
+            return 'empty, or a letter (a to z, A to Z), then letters, digits, _, - and /'
         parts = []
         if self.low is not None:
             parts.append(f'{">" if self.low_open else ">="} {_bound(self.low)}')
@@ -144,6 +150,8 @@ class Parameter:
             raise InputError(self.name, value, self.allowed, 'put it in quotes')
         if len(value) > TEXT_LIMIT or not value.isprintable():
             raise InputError(self.name, value, self.allowed, 'shorten it, and leave out control characters')
+        if self.starts_names and not _START_OF_NAMES.fullmatch(value):
+            raise InputError(self.name, value, self.allowed, 'write it like x_ or left/')
         return value
 
     def _in_range(self, value: float) -> bool:

@@ -52,9 +52,9 @@ def time_message(nanoseconds: int) -> Fields:
     return {'sec': sec, 'nanosec': nanosec}
 
 
-def header(stamp_ns: int) -> Fields:
-    """Return the fields of std_msgs/Header, without a frame."""
-    return {'stamp': time_message(stamp_ns), 'frame_id': ''}
+def header(stamp_ns: int, frame: str = '') -> Fields:
+    """Return the fields of std_msgs/Header."""
+    return {'stamp': time_message(stamp_ns), 'frame_id': frame}
 
 
 def run_info(facts: RunFacts, stamp_ns: int, start_ns: int, bag_path: str) -> Fields:

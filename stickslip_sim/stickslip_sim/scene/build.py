@@ -19,6 +19,7 @@ from .model import CommandSettings, RecordSettings, Scene, TimingSettings
 from .profile_schema import FILE_SETTINGS, PROFILES
 from .rig_settings import rig_settings, time_settings
 from .scaled_friction import check_scaled_friction
+from .schema import JOINT_PREFIX
 from .solver import SolverSettings, method_of
 from .text import scene_text
 from .values import effective_values, section_of
@@ -67,6 +68,7 @@ def build_scene(given: Mapping[str, object], summary: str = '') -> Scene:
         timing=TimingSettings(**section_of(values, 'timing')),
         rig=rig,
         record=RecordSettings(**section_of(values, 'record')),
+        joint_prefix=str(values.get(JOINT_PREFIX.name, '')),
         seed=values['seed'],
         values=values,
         text=text,

@@ -113,6 +113,7 @@ class Scene:
     timing: TimingSettings
     rig: RigSettings
     record: RecordSettings
+    joint_prefix: str     # of the names of joints and frames
     seed: int
     values: dict[str, object] = field(hash=False)
     text: str

@@ -28,6 +28,10 @@ _ADAPTIVE = When('solver.name', ('adaptive',))
 _OWN_CLOCK = When('time.mode', _MODES[1:])
 _STOPS = When('command.on_timeout', _REACTIONS[1:])
 
+JOINT_PREFIX = Parameter('joint_interface.prefix', 'string', None, '', 'put before the names of the joints and of the'
+                         ' frame, so that several axes share one robot description (docs/hil.md); left out:'
+                         ' nothing', starts_names=True)
+
 PARAMETERS: tuple[Parameter, ...] = (
     Parameter('scene', 'string', 'unnamed', '', 'name of the scene; that of a shipped one takes that scene, and what'
               ' else is given changes it'),
@@ -121,6 +125,7 @@ PARAMETERS: tuple[Parameter, ...] = (
 
     Parameter('joint_interface.enabled', 'bool', False, '', 'whether the node has joint_states and joint_commands,'
               ' with the joints axis_slider and axis_drive as measured (docs/hil.md)'),
+    JOINT_PREFIX,
 
     texts('faults.ids', 'ids of faults from the start on, as with ~/inject_fault (docs/hil.md)'),
     texts('faults.kinds', 'kinds of these faults, like friction_scale or force_pulse'),

@@ -136,7 +136,7 @@ def _end_with(parent: Connection) -> NoReturn:
     hung_up = select.poll()
     hung_up.register(parent, 0)    # a hang-up is reported with any mask
     hung_up.poll()
-    os._exit(1)
+    os._exit(1)    # sys.exit would end this thread alone, and the work go on for nobody
 
 
 def _answer(request: bytes) -> bytes:

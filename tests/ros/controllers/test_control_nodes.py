@@ -31,6 +31,7 @@ from sensor_msgs.msg import JointState  # isort: skip
 
 from stickslip_msgs.srv import Step
 from stickslip_sim.ros.controllers.controller_node import measurement
+from stickslip_sim.ros.node.joints import JointNames
 
 pytestmark = pytest.mark.ros
 
@@ -206,10 +207,16 @@ def test_parameters_and_restart_while_it_runs(capsys: Capture) -> None:
 ])
 def test_measurements_that_are_none(message: JointState, reported: str) -> None:
     with pytest.raises(InputError, match=reported):
-        measurement(message)
+        measurement(message, JointNames())
+
+
+def test_joints_have_the_prefix_of_the_axis() -> None:
+    message = JointState(name=['axis_slider', 'axis_drive', 'x_axis_slider', 'x_axis_drive'],
+                         position=[9.0, 9.0, 1.0, 2.0], velocity=[9.0, 9.0, 3.0, 4.0])
+    assert measurement(message, JointNames.of('x_')) == (1.0, 3.0, 2.0, 4.0)
 
 
 def test_joints_come_in_any_order() -> None:
     message = JointState(name=['other', 'axis_drive', 'axis_slider'], position=[9.0, 2.0, 1.0],
                          velocity=[9.0, 4.0, 3.0])
-    assert measurement(message) == (1.0, 3.0, 2.0, 4.0)
+    assert measurement(message, JointNames()) == (1.0, 3.0, 2.0, 4.0)

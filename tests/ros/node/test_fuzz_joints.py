@@ -13,13 +13,14 @@ from sensor_msgs.msg import JointState
 
 from stickslip_sim.recording.topics import JOINT_COMMANDS
 from stickslip_sim.ros.node.endpoints import message_of
-from stickslip_sim.ros.node.joints import commanded_velocity, disregarded
+from stickslip_sim.ros.node.joints import JointNames, commanded_velocity, disregarded
 from tests.support.refusals import accepts_or_refuses
 
 # lark, which rosidl's Python brings in, imports modules that Python wants to rename.
 pytestmark = pytest.mark.filterwarnings("ignore:module 'sre_:DeprecationWarning")
 
 WORDS = st.sampled_from(['axis_drive', 'axis_slider', '', 'axis_drive\n', '\x1b[2J']) | st.text(max_size=5)
+JOINTS = JointNames()
 NUMBERS = st.lists(st.floats(), max_size=4)
 
 
@@ -32,8 +33,8 @@ def test_joint_commands(names: list[str], position: list[float], velocity: list[
     whole = serialize_message(message)
     for sent in (whole, whole[:len(data)] + data, data):
         found = accepts_or_refuses(message_of, JOINT_COMMANDS, sent)
-        if isinstance(found, JointState) and accepts_or_refuses(commanded_velocity, found) is not None:
-            disregarded(found)
+        if isinstance(found, JointState) and accepts_or_refuses(commanded_velocity, found, JOINTS) is not None:
+            disregarded(found, JOINTS)
 
 
 @pytest.mark.parametrize('data', [b'', b'\x00\x01\x00', b'\x00\x01\x00\x01', b'\x00\x01\x00\x03ab'])

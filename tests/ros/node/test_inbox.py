@@ -27,6 +27,7 @@ class NodePair:
         from rclpy.context import Context
 
         from stickslip_sim.ros.node.endpoints import publisher
+        from stickslip_sim.ros.node.joints import JointNames
         from stickslip_sim.ros.node.subscribers import Subscribers
         self.context = Context()
         rclpy.init(context=self.context)
@@ -34,7 +35,7 @@ class NodePair:
         self.velocity = CommandSlot('velocity', 'm/s', 1.0)
         self.warnings: list[str] = []
         self.subscribers = Subscribers(self.node, self.velocity, CommandSlot('force', 'N', 1e5), time.monotonic_ns,
-                                       self, with_joints=True)
+                                       self, JointNames())
         self.velocities, self.joints = (publisher(self.sender, topic)
                                         for topic in (topics.DRIVE_VELOCITY, topics.JOINT_COMMANDS))
         for out in (self.velocities, self.joints):

@@ -17,37 +17,52 @@ from stickslip_sim.realtime.command_slot import CommandSlot
 from stickslip_sim.recording import MessageCodec
 from stickslip_sim.recording.messages import header
 from stickslip_sim.rig import Measured
-from stickslip_sim.ros.node.joints import JOINTS, JointStatePacker, commanded_velocity, disregarded
+from stickslip_sim.ros.node.joints import JointNames, JointStatePacker, commanded_velocity, disregarded
 
 # lark, which rosidl's Python brings in, imports modules that Python wants to rename.
 pytestmark = pytest.mark.filterwarnings("ignore:module 'sre_:DeprecationWarning")
 
-NAMES = list(JOINTS)
+AXIS, X_AXIS = JointNames(), JointNames.of('x_')
+NAMES = list(AXIS.joints)
 
 
-def test_bytes_are_those_of_the_message() -> None:
+@pytest.mark.parametrize('prefix', ['', 'x_', 'left/', 'a' * 200])
+def test_bytes_are_those_of_the_message(prefix: str) -> None:
+    names = JointNames.of(prefix)
+    assert names == tuple(prefix + name for name in ('axis_slider', 'axis_drive', 'bed'))
     measured = Measured(slider_position=1.5, slider_velocity=-0.0, drive_position=math.pi, drive_velocity=1e-300)
     stamp_ns = 1_700_000_000_123_456_789
-    message = JointState(name=NAMES, position=[1.5, math.pi], velocity=[-0.0, 1e-300], effort=[0.0, -732.25])
+    message = JointState(name=list(names.joints), position=[1.5, math.pi], velocity=[-0.0, 1e-300],
+                         effort=[0.0, -732.25])
+    message.header.frame_id = names.bed
     message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp_ns, 10**9)
-    data = JointStatePacker().pack(stamp_ns, measured, -732.25)
+    data = JointStatePacker(names).pack(stamp_ns, measured, -732.25)
     assert deserialize_message(data, JointState) == message
     arrays = {field: np.array(getattr(message, field)) for field in ('position', 'velocity', 'effort')}
     kind = 'sensor_msgs/msg/JointState'
-    assert data == MessageCodec([kind]).encode(kind, {'header': header(stamp_ns), 'name': NAMES, **arrays})
+    assert data == MessageCodec([kind]).encode(kind, {
+        'header': header(stamp_ns, names.bed), 'name': list(names.joints), **arrays})
 
 
 class TestCommandedVelocity:
     @pytest.mark.parametrize('names', [['axis_drive'], NAMES, NAMES[::-1]])
     def test_one_velocity_is_that_of_the_drive(self, names: list[str]) -> None:
-        assert commanded_velocity(JointState(name=names, velocity=[0.25])) == 0.25
+        assert commanded_velocity(JointState(name=names, velocity=[0.25]), AXIS) == 0.25
 
     def test_as_many_as_names_go_by_name(self) -> None:
-        assert commanded_velocity(JointState(name=NAMES, velocity=[0.5, 0.25])) == 0.25
-        assert commanded_velocity(JointState(name=NAMES[::-1], velocity=[0.25, 0.5])) == 0.25
+        assert commanded_velocity(JointState(name=NAMES, velocity=[0.5, 0.25]), AXIS) == 0.25
+        assert commanded_velocity(JointState(name=NAMES[::-1], velocity=[0.25, 0.5]), AXIS) == 0.25
+
+    def test_with_a_prefix(self) -> None:
+        message = JointState(name=['x_axis_slider', 'x_axis_drive'], velocity=[0.5, 0.25])
+        assert commanded_velocity(message, X_AXIS) == 0.25
+        assert disregarded(message, X_AXIS) == 'velocity of x_axis_slider'
+        for others in (NAMES, ['y_axis_drive']):
+            with pytest.raises(InputError, match='must be of x_axis_slider, x_axis_drive'):
+                commanded_velocity(JointState(name=others, velocity=[0.25]), X_AXIS)
 
     def test_none_yet(self) -> None:
-        assert math.isnan(commanded_velocity(JointState(name=NAMES, velocity=[math.nan])))
+        assert math.isnan(commanded_velocity(JointState(name=NAMES, velocity=[math.nan]), AXIS))
 
     @pytest.mark.parametrize(('message', 'reported'), [
         (JointState(), 'joint_commands.name = [] is refused: must be axis_drive'),
@@ -64,7 +79,7 @@ class TestCommandedVelocity:
     ])
     def test_refused(self, message: JointState, reported: str) -> None:
         with pytest.raises(InputError) as refusal:
-            commanded_velocity(message)
+            commanded_velocity(message, AXIS)
         assert reported in str(refusal.value)
         assert len(str(refusal.value)) < 300
 
@@ -76,7 +91,7 @@ class TestCommandedVelocity:
         (JointState(name=NAMES[::-1], velocity=[0.2, 0.1], position=[0.0]), 'position and velocity of axis_slider'),
     ])
     def test_what_is_disregarded(self, message: JointState, reported: str) -> None:
-        assert disregarded(message) == reported
+        assert disregarded(message, AXIS) == reported
 
 
 def test_a_refused_message_counts_and_leaves_the_command() -> None:

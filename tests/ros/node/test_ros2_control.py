@@ -98,6 +98,18 @@ class TestJointStates:
         assert any(end - step == 19 for step, end in zip(missing, missing[19:]))
         assert not [topic for topic in open_bag(tmp_path / 'run').topics if 'joint' in topic]
 
+    def test_prefix_and_frame(self) -> None:
+        with running(*ON, '-p', 'joint_interface.prefix:=x_') as process, client() as axis:
+            heard = joint_states_of(axis)
+            axis.connect()
+            out = axis.node.create_publisher(JointState, 'joint_commands', 1)
+            good = JointState(name=['x_axis_drive'], velocity=[0.004])
+            wait_for(lambda: out.publish(good) or axis.latest('slider_state').drive_velocity == 0.004, 'the node')
+            wait_for(lambda: heard, 'joint states')
+            process.end()
+        assert list(heard[-1].name) == ['x_axis_slider', 'x_axis_drive']
+        assert heard[-1].header.frame_id == 'x_bed'
+
     def test_quantised(self) -> None:
         def velocities() -> set[float]:
             return {round(message.velocity[1], 9) for message in heard}

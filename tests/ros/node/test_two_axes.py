@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import pytest
 from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import JointState
 
 from stickslip_sim.recording import open_bag
 from tests.support.launch_files import launched
@@ -37,6 +38,18 @@ def two_axes(folder: Path, **arguments: str) -> Iterator[tuple[Axis, Axis]]:
         for axis in (x, y):
             axis.client.connect()
         yield x, y
+
+
+def test_joints_of_both_on_one_topic(tmp_path: Path) -> None:
+    """With a prefix each, as one robot description and one robot_state_publisher need it, and no neighbour reported."""
+    with two_axes(tmp_path, rate='200', joints='/joint_states') as axes:
+        names: set[tuple[str, ...]] = set()
+        axes[0].client.node.create_subscription(JointState, '/joint_states', lambda heard: names.add(tuple(heard.name)),
+                                                10)
+        both = {(f'{prefix}axis_slider', f'{prefix}axis_drive') for prefix in ('x_', 'y_')}
+        wait_for(lambda: names == both, 'the joints of both')
+        for axis in axes:
+            assert status_of(axis, 'neighbours').message == 'nobody in the way'
 
 
 def let_pass(axis: Axis, steps: int) -> None:

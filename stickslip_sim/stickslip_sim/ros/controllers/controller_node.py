@@ -20,8 +20,9 @@ from ...core.errors import InputError
 from ...core.time_grid import NANOSECONDS
 from ...recording.topics import JOINT_COMMANDS, JOINT_STATES
 from ...rig import Measured
+from ...scene.schema import JOINT_PREFIX
 from ..node.endpoints import publisher, subscription
-from ..node.joints import DRIVE, SLIDER
+from ..node.joints import JointNames
 from ..node.listed_parameters import ListedNode
 from ..process.given_parameters import GivenParameters
 from ..services.answers import answer
@@ -42,7 +43,8 @@ class ControllerNode(ListedNode):
         self._heard = self._refused = self._limited = 0    # measurements and commands since the last report
         self._refusal = ''
         self._is_deaf = False
-        self._command = JointState(name=[DRIVE], velocity=[0.0])
+        self._joints = JointNames.of(str(self.values[JOINT_PREFIX.name] or ''))
+        self._command = JointState(name=[self._joints.drive], velocity=[0.0])
         self._commands_out = publisher(self, JOINT_COMMANDS)
         subscription(self, JOINT_STATES, self._hear)
         self.create_service(Trigger, '~/restart', self._restart)
@@ -67,7 +69,7 @@ class ControllerNode(ListedNode):
     def _hear(self, message: JointState) -> None:
         self._heard += 1
         try:
-            measured = measurement(message)
+            measured = measurement(message, self._joints)
         except InputError as error:
             self._refused += 1
             self._refusal = str(error)
@@ -104,9 +106,9 @@ class ControllerNode(ListedNode):
         self._heard = self._refused = self._limited = 0
 
 
-def measurement(message: JointState) -> Measured:
+def measurement(message: JointState, names: JointNames) -> Measured:
     """Return what joint states say of both ends of the spring; raises InputError when that is not all there."""
-    slider, drive = (_state_of(message, joint) for joint in (SLIDER, DRIVE))
+    slider, drive = (_state_of(message, joint) for joint in names.joints)
     return Measured(*slider, *drive)
 
 

@@ -9,6 +9,7 @@ from ...config.parameter import Parameter
 from ...controllers import BranchCompensation, Cascade, Controller, Following, Moves
 from ...inputs import load_scene
 from ...scene.load import named
+from ...scene.schema import JOINT_PREFIX
 
 _LEAST = 1e-12       # of what must not be zero
 _MOVES, _GAINS = Moves(), Cascade()
@@ -27,6 +28,7 @@ COMMON = (
               ' not wind up', 1e-9, 1e6),
     Parameter('max_gap', 'double', 0.5, 's', 'between two measurements; after a longer one the moves begin anew', 1e-6,
               1e6),
+    JOINT_PREFIX,
 )
 COMPENSATION = (
     Parameter('compensation.model', 'string', 'positioning', '', 'scene, shipped or a file, whose axis is the model of'

@@ -32,7 +32,8 @@ class GraphMonitor:
         if scene.time.makes_clock:
             outputs.append(topics.CLOCK)
         if scene.rig.measures:
-            outputs.append(topics.JOINT_STATES)
+            if not scene.joint_prefix:    # with one, the axes of a robot share the topic
+                outputs.append(topics.JOINT_STATES)
             commands.append(topics.JOINT_COMMANDS)
             self._watched.append(_Bridge(node, velocity))
         self._watched += [_Output(node, topic) for topic in outputs]

@@ -3,7 +3,7 @@
 """The node `feed_axis`: wires topics, services and parameters to the step loop.  No physics in here."""
 
 import gc
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from rclpy.parameter import Parameter
@@ -34,7 +34,8 @@ from . import conversion
 from .clock import ClockIn, ClockOut
 from .deferred_log import DeferredLog
 from .endpoints import publisher
-from .joints import JointStates
+from .inbox import HidingNode
+from .joints import JointNames, JointStates
 from .parameters import SceneNode
 from .publishers import Publishers
 from .scheduling_parameters import scheduling_of
@@ -43,14 +44,12 @@ from .subscribers import Subscribers
 _LEAD = 20_000_000   # ns from the instant that stamps count from to step 0, which finds all prepared then
 
 
-class FeedAxis(SceneNode):
+class FeedAxis(HidingNode, SceneNode):
     """Publishes the motion of one axis; callbacks run in an executor, the steps in the loop's thread.
 
     `is_stopping` is asked while many steps are made.  Raises InputError when the parameters are no scene, or one for
     offline use only.
     """
-
-    _hidden: Sequence[Any] = ()
 
     def __init__(self, given: GivenParameters, is_stopping: Callable[[], bool]) -> None:
         super().__init__(NODE, given)
@@ -69,19 +68,15 @@ class FeedAxis(SceneNode):
         self._outputs = Publishers(self, self._delay, depth)
         self.log = DeferredLog(self.get_logger())
         self._rig_events = RigEvents(self, self._outputs, self.log)
-        sinks = self._sinks(grid, depth)
-        self._subscribers = Subscribers(self, *self._slots, self._step_clock.now, self.log, scene.rig.measures)
-        self._hidden = self._subscribers.hidden
+        joints = JointNames.of(scene.joint_prefix) if scene.rig.measures else None
+        sinks = self._sinks(grid, joints, depth)
+        self._subscribers = Subscribers(self, *self._slots, self._step_clock.now, self.log, joints)
+        self.hide(self._subscribers.hidden)
         self.loop = StepLoop(scene.make_rig(), self._step_clock, self._slots, sinks, Watchdog(scene.command.timeout),
                              by_request=scene.time.mode == 'lockstep', hear=self._subscribers.hear,
                              scheduling=scheduling_of(self, self.given.values, scene.time))
         self._cost = CostMeter()
         self._open_endpoints(is_stopping)
-
-    @property
-    def subscriptions(self) -> Iterator[Any]:
-        """Those that an executor serves: all but those that the step loop takes from by itself."""
-        return (subscription for subscription in super().subscriptions if subscription not in self._hidden)
 
     def is_ready(self) -> bool:
         """Return whether stamps have a time to start from; raises InputError when it does not come."""
@@ -138,10 +133,10 @@ class FeedAxis(SceneNode):
         if not self.loop.at_boundary(apply):
             self.get_logger().error('the step loop is busy: the changed parameters did not take effect')
 
-    def _sinks(self, grid: Grid, depth: int) -> list[Sink]:
+    def _sinks(self, grid: Grid, joints: JointNames | None, depth: int) -> list[Sink]:
         sinks: list[Sink] = [self._rig_events.take, self._outputs.take]
-        if self.scene.rig.measures:
-            sinks.append(JointStates(self, self._outputs, depth).take)
+        if joints:
+            sinks.append(JointStates(self, self._outputs, joints, depth).take)
         if self.scene.time.makes_clock:
             sinks += [ClockOut(self, grid, self.scene.time.clock_rate).take, self._outputs.keep_pace]
         return sinks

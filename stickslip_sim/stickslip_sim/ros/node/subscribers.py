@@ -8,6 +8,7 @@ callbacks of the executor do.
 
 import time
 from collections.abc import Callable, Iterable
+from functools import partial
 from typing import Any, NamedTuple, Protocol
 
 from rclpy.node import Node
@@ -17,7 +18,7 @@ from ...realtime.command_slot import CommandSlot
 from ...recording import topics
 from .endpoints import command_reader, message_of, raw_subscription
 from .inbox import Inbox, Message, trouble
-from .joints import DRIVE, commanded_velocity, disregarded
+from .joints import JointNames, commanded_velocity, disregarded
 
 _QUIET = 1_000_000_000   # ns between two warnings of refused commands of a kind
 
@@ -40,11 +41,12 @@ class _Source(NamedTuple):
 class Subscribers:
     """Listens to the topics of commands; `now` is the steady clock of the step loop, ns.
 
-    `hear` is for the thread of the step loop.  `hidden` are the subscriptions that no executor may see.
+    `joints` are those of joint_commands, None without that topic.  `hear` is for the thread of the step loop.  `hidden`
+    are the subscriptions that no executor may see.
     """
 
     def __init__(self, node: Node, velocity: CommandSlot, force: CommandSlot, now: Callable[[], int], log: Log,
-                 with_joints: bool) -> None:
+                 joints: JointNames | None) -> None:
         self._log, self._now = log, now
         self._quiet_until: dict[str, int] = {}   # by kind of command
         self._is_disregard_logged = False
@@ -54,8 +56,8 @@ class Subscribers:
         self.trouble = ''                        # why callbacks hear the commands; empty where the loop does
         sources = [_Source(topics.DRIVE_VELOCITY, velocity, command_reader(topics.DRIVE_VELOCITY)),
                    _Source(topics.EXTERNAL_FORCE, force, command_reader(topics.EXTERNAL_FORCE))]
-        if with_joints:
-            sources.append(_Source(topics.JOINT_COMMANDS, velocity, self._velocity_of_joints))
+        if joints:
+            sources.append(_Source(topics.JOINT_COMMANDS, velocity, partial(self._velocity_of_joints, joints)))
         self._open(node, sources)
 
     def hear(self) -> None:
@@ -92,12 +94,12 @@ class Subscribers:
         if refusal:
             self._log_refusal(source.slot, refusal)
 
-    def _velocity_of_joints(self, data: bytes) -> float:
+    def _velocity_of_joints(self, joints: JointNames, data: bytes) -> float:
         message = message_of(topics.JOINT_COMMANDS, data)
-        velocity = commanded_velocity(message)
-        if not self._is_disregard_logged and (other := disregarded(message)):
+        velocity = commanded_velocity(message, joints)
+        if not self._is_disregard_logged and (other := disregarded(message, joints)):
             self._is_disregard_logged = True
-            self._log.warning(f'joint_commands: {other} is disregarded; the velocity of {DRIVE} counts')
+            self._log.warning(f'joint_commands: {other} is disregarded; the velocity of {joints.drive} counts')
         return velocity
 
     def _log_refusal(self, slot: CommandSlot, refusal: str) -> None:
