@@ -132,8 +132,8 @@ def page(minutes: float, priority: int, figures: Mapping[str, float], verdict: s
         f'`sim_node` runs `{SCENE}` at {RATE:g} steps a second for {minutes:g} minutes, with its recording in parts',
         f'of {minutes / PARTS:g} minutes (`record.max_duration`).  A controller in a process of its own answers every',
         f'state with a drive velocity, and a reliable subscriber takes {TAKES * 1e3:g} ms for a state: a publisher',
-        'keeps the latest states for it, and waits for none.  What grows in memory while the node records is the index of',
-        f'a part, which MCAP writes at its end.{scheduling}', '',
+        'keeps the latest states for it, and waits for none.  What grows in memory while the node records is the index',
+        f'of a part, which MCAP writes at its end.{scheduling}', '',
         '| figure | measured | at most |', '|---|---|---|', *rows, '',
         'Missed: ' + '; '.join(failures) + '.' if failures else
         'Memory, drift and loss are within their limits.', '',
