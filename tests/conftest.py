@@ -47,10 +47,13 @@ class FilesOnce(LoadFileScheduling):    # type: ignore[misc]  # it has no types
     """Whole files for each process; what one that died had not begun goes to another one.
 
     Its base class hands out what was done, too, and waits for ever for the end of nothing; it waits, too, for a process
-    that has one test and begins with it when it knows of the next; and the test that ends a process would end another.
+    that has one test and begins with it when it knows of the next; it gives tests to a process that has not found them
+    yet; and the test that ends a process would end another.
     """
 
     def _reschedule(self, node: Any) -> None:
+        if node not in self.registered_collections:
+            return
         super()._reschedule(node)
         if self._pending_of(self.assigned_work[node]) == 1:
             super()._reschedule(node)

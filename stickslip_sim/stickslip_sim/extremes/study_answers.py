@@ -20,7 +20,6 @@ from .outcome import Measurement, Setup, Tally, require
 from .shared_axes import instant, make, of_kind
 
 _LONG, _LATE = 1e4, 5e3    # s: a run, and its last part that sticks are counted in
-_AT_ONCE = 200             # parts of a run: the events of one fit in a call
 _ACCURACY = 1e-9
 _STEPS = (0.0, 1e-7, 1e-4, 1e-2)   # beyond the reported end, of the value
 _HEAVY = 20000.0, 32000.0          # kg, on which a slip reverses before it sticks
@@ -95,7 +94,5 @@ def _transition(k: int) -> Transition:
 def _sticks(solver: Solver, scene: Scene) -> int:
     """Return how many sticks begin in the last part of a long run."""
     simulator = make(scene.axis, scene.drive, scene.force, scene.initial, solver)
-    ends = np.linspace(0.0, _LONG, _AT_ONCE + 1)[1:].tolist()
-    parts = (simulator.advance(instant(end)) for end in ends)
-    return sum(event.mode == Mode.STICK and event.time > _LONG - _LATE
-               for part in parts for event in of_kind(part, EventKind.STICK))
+    simulator.skip(instant(_LONG - _LATE))
+    return sum(event.mode == Mode.STICK for event in of_kind(simulator.advance(instant(_LONG)), EventKind.STICK))

@@ -190,13 +190,15 @@ def _step(p: Parameters, s: State, osc: Oscillator, contact: ContactForce,
     step = min(near, far)
     if step <= 2.0 * EPSILON * t:
         bend = side * (sag_second + free_second)
-        if t == 0.0 and p.sided != 0.0:   # of P + H, which may cancel, as under a ramp from a rest
+        if t == 0.0:   # of P + H, which may cancel, as under a ramp from a rest
             bend = side * second_at_start(p, s, osc)
         if fall != 0.0 or bend > 0.0 or (bend != 0.0 and top == 0.0 and back == 0.0 and other_fall == 0.0):
             return 0.0, _IS_ROOT, side
-        if bend == 0.0 and p.sided != 0.0:
+        if bend == 0.0:
+            if p.sided == 0.0 and side * free_third > 0.0:
+                return 0.0, _IS_ROOT, side
             return min(_late_nudge(osc, free_second, free_third), far), _GO_ON, side
-        return min(_nudge(osc, free_second, free_third), far), _GO_ON, side
+        return min(_nudge(osc, bend, free_second, free_third), far), _GO_ON, side
     # a law that is not concave may second_rate the guard up more than `second_rate`: no upper end then
     if step == near and fall < 0.0 and fall * fall > 2.0 * second_rate * value and is_concave(p):
         return 2.0 * value / (math.sqrt(fall * fall - 2.0 * second_rate * value) - fall), _IN_BRACKET, side
@@ -210,11 +212,11 @@ def _is_nearer(value: float, fall: float, than: float, than_fall: float) -> bool
 
 
 @compiled
-def _nudge(osc: Oscillator, free_second: float, free_third: float) -> float:
-    """Return a step off a guard that touches its limit: value = slope = 0, and f″ > 0 with a bound on |f‴|."""
+def _nudge(osc: Oscillator, bend: float, free_second: float, free_third: float) -> float:
+    """Return a step off a guard that touches its limit: value = slope = 0, and f″ = −`bend` > 0; |f‴| is bounded."""
     free_fourth = -2.0 * osc.gamma * free_third - osc.omega2 * free_second
     third = bound(osc, free_third, free_fourth)
-    return 3.0 * abs(free_second) / third if third > 0.0 else 0.0
+    return 3.0 * abs(bend) / third if third > 0.0 else 0.0
 
 
 @compiled
