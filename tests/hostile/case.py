@@ -133,11 +133,16 @@ def _cut(parts: Parts) -> Parts:
     sim, count = simulator(parts), 0
     if len(ends := borders(parts)) > MOST_EVENTS:
         parts = parts._replace(duration=ends[MOST_EVENTS])
+    begin = 0.0
     for share in (*(2.0 ** -k for k in range(_HALVINGS, 0, -1)), *range(1, _SLICES + 1)):
         end = parts.duration * share / _SLICES
-        count += len(sim.advance(instant(end)))
+        try:
+            count += len(sim.advance(instant(end)))
+        except MemoryError:    # `limit_memory`: a slice after years at rest may hold any number, too
+            return parts._replace(duration=begin)
         if count > MOST_EVENTS:
             return parts._replace(duration=end)
+        begin = end
     return parts
 
 
