@@ -55,9 +55,9 @@ class SlidingMotion(NamedTuple):
 
 def force_noise_of(measurement: SensorReadings) -> float:
     """Return the standard deviation of the noise in the measured force on the slider, N."""
-    if measurement.force is None:
+    if measurement.force_readings is None:
         return 0.0
-    values = measurement.force.values_at(measurement.times)
+    values = measurement.force_readings.values
     return noise_of(values, quantum_of(values))
 
 
