@@ -19,6 +19,7 @@ from .fit.fit_problem import FitProblem
 from .given.free_parameters import free_parameters
 from .given.input_checks import check_data, check_parameters
 from .given.motions import motions_of, track_of
+from .given.quiet_rests import with_quiet_rests
 from .given.readings import drives_directly, readings_of
 from .given.run_start import from_measured_start
 from .identified import Identification
@@ -55,6 +56,7 @@ def identify(run: Run | str | os.PathLike[str], start: SceneOrName, free: str | 
     measurement = replace(measurement, notes=(*measurement.notes, *notes))
     if drives_directly(scene):
         parameters, measurement = with_delay(parameters, measurement, scene.axis.mass)
+        measurement = with_quiet_rests(measurement, motions)
     model = AxisModel(scene, parameters, measurement)
     problem = FitProblem(model, parameters, measurement, motions)
     with closing(fits_from(problem, starts_of(problem, seed), workers, keeper)) as fits:

@@ -9,6 +9,7 @@ from stickslip_sim import Sample, Simulator, load_scene
 from stickslip_sim.core.arrays import Numbers
 from stickslip_sim.identification.fit.direct_motion import with_delay
 from stickslip_sim.identification.given.free_parameters import FreeParameter
+from stickslip_sim.identification.given.input_readings import LINE, InputReadings
 from stickslip_sim.identification.given.measured_inputs import profile_through
 from stickslip_sim.identification.given.readings import Channel, SensorReadings, instants_of
 
@@ -32,8 +33,9 @@ def test_a_delay_of_the_force_shows_in_the_motion(held: bool, late: int, delay: 
     position = np.round(rows[:, Sample._fields.index('position')] / MICROMETRE) * MICROMETRE
     channel = Channel('position', 'm', position, 3e-7, MICROMETRE, np.ones(len(times)))
     read = np.append(force[late:], np.full(late, force[-1])) + random.normal(0.0, 0.3, len(times))
-    parameters, found = with_delay((MASS,), SensorReadings(times, 0.0, 1e-3, (channel,), None,
-                                                           profile_through(times, read), ()), 70.0)
+    readings = InputReadings(times, read, LINE)
+    parameters, found = with_delay((MASS,), SensorReadings(times, 0.0, 1e-3, (channel,), None, readings.profile(), (),
+                                                           force_readings=readings), 70.0)
     assert bool(found.notes) is (delay != 0.0)
     assert len(parameters) == 1 + bool(delay)
     if delay:

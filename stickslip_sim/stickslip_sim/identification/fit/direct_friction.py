@@ -26,7 +26,10 @@ class MeasuredBreakAway(NamedTuple):
 
 def friction_at_break_aways(model: AxisModel, values: Numbers, measurement: SensorReadings,
                             slips: Sequence[MeasuredSlip]) -> list[MeasuredBreakAway]:
-    """Return the break-aways of slips, of which the force was measured or follows from the stretch of the spring."""
+    """Return the break-aways of slips, of which the force was measured or follows from the stretch of the spring.
+
+    A coefficient below 0 is that of no break-away: with these values the force is against the motion.
+    """
     dynamics = model.dynamics(values)
     if dynamics is None:
         return []
@@ -44,8 +47,7 @@ def friction_at_break_aways(model: AxisModel, values: Numbers, measurement: Sens
             force = axis.drive_stiffness * stretch + axis.drive_damping * dynamics.drive.value_at(begin)
         normal = axis.normal_force + (dynamics.load.value_at(begin) if dynamics.load else 0.0)
         coefficient = direction * (force + dynamics.force.value_at(begin)) / normal
-        if coefficient > 0.0:
-            found.append(MeasuredBreakAway(rest, coefficient, direction > 0.0))
+        found.append(MeasuredBreakAway(rest, coefficient, direction > 0.0))
     return found
 
 
@@ -58,4 +60,4 @@ def static_residuals(model: AxisModel, measured: Sequence[MeasuredBreakAway], va
     sides = {True: friction.static, False: (friction.backward or friction).static}
     fitted = np.array([sides[one.forwards].coefficient(one.rest) for one in measured])
     right = np.array([one.coefficient for one in measured])
-    return np.asarray((right - fitted) / (_SHARE * right))
+    return np.asarray((right - fitted) / (_SHARE * np.maximum(np.abs(right), _SHARE * fitted)))

@@ -1,7 +1,8 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Mass and friction from a measured force that drives the slider by itself: F = m ẍ + N mu_k(|ẋ|) sign ẋ, sliding.
+"""Mass and friction from a measured force that drives the slider by itself.
 
+F = m ẍ + N mu_k(|ẋ|) sign ẋ while it slides, and F = N mu_s sign F where it breaks away.
 Velocity and acceleration are those of parabolas through the position.  So is the force, through its integral over the
 integral: a step of it spreads as the acceleration that it makes.
 """
@@ -20,6 +21,8 @@ from ..given.measured_inputs import travelled
 from ..given.readings import SensorReadings
 from ..given.sensor_noise import noise_of, quantum_of
 from ..trial.axis_model import AxisModel
+from ..trial.slip_features import MeasuredSlip
+from .direct_friction import friction_at_break_aways, static_residuals
 from .least_squares import minimise
 from .region import Region
 
@@ -27,6 +30,7 @@ _CURVED = 720.0**0.5   # of the second derivative of a parabola through n readin
 _FEWEST, _MOST = 5, 0.01   # readings in a parabola, and as a share of the run
 _STILL = 0.03         # of the highest speed: slower is no sure slip
 _WELL = 0.1           # of a range: a standard deviation, beyond which a parameter is not taken
+_TAME = 3.0           # of the residual of a break-away: beyond, its size counts, for not each is one
 _DELAY = 'sensor.external_force.delay'
 _LONGEST, _FINE = 10, 8   # periods, and steps in each
 _SURE = 25.0       # of a logarithm of the likelihood, twice
@@ -55,9 +59,9 @@ class SlidingMotion(NamedTuple):
 
 def force_noise_of(measurement: SensorReadings) -> float:
     """Return the standard deviation of the noise in the measured force on the slider, N."""
-    if measurement.force is None:
+    if measurement.force_readings is None:
         return 0.0
-    values = measurement.force.values_at(measurement.times)
+    values = measurement.force_readings.values
     return noise_of(values, quantum_of(values))
 
 
@@ -123,11 +127,19 @@ def _integrated(force: InputProfile, times: Numbers) -> Numbers:
     return np.append(0.0, np.cumsum((impulse[:-1] + 4.0 * between + impulse[1:]) * np.diff(times) / 6.0))
 
 
-def direct_motion(model: AxisModel, parameters: Sequence[FreeParameter], motion: SlidingMotion, start: Numbers,
-                  region: Region) -> dict[int, float]:
-    """Return those parameters that the sliding motion determines, by their place, as the fit works on them.
+class DirectMotion(NamedTuple):
+    """The `point` (k,) of parameters, as the fit works on them, nearest to the motion; which of them it shows (k,)."""
 
-    `start` (k,) and the region are likewise.
+    point: Numbers
+    is_shown: NDArray[np.bool_]
+
+
+def direct_motion(model: AxisModel, parameters: Sequence[FreeParameter], measurement: SensorReadings,
+                  motion: SlidingMotion, slips: Sequence[MeasuredSlip], start: Numbers, region: Region) -> DirectMotion:
+    """Return what the sliding motion and the break-aways of slips show of the parameters.
+
+    `start` (k,) and the region are as the fit works on them.  An offset of the force and friction that differs by
+    direction do the same while the slider slides; at a break-away they do not.
     """
     spread = np.array([one.inner(one.high) - one.inner(one.low) for one in parameters])
     forwards = motion.velocity > 0.0
@@ -136,7 +148,7 @@ def direct_motion(model: AxisModel, parameters: Sequence[FreeParameter], motion:
         values = np.array([one.outer(number) for one, number in zip(parameters, point.tolist(), strict=True)])
         dynamics = model.dynamics(values)
         if dynamics is None:
-            return np.full(len(motion.rows) + len(point), np.nan)
+            return np.full(len(motion.rows) + len(slips) + len(point), np.nan)
         axis, speed = dynamics.axis, np.abs(motion.velocity)
         needed = axis.mass * motion.acceleration
         for direction, rows in ((1.0, forwards), (-1.0, ~forwards)):
@@ -147,11 +159,18 @@ def direct_motion(model: AxisModel, parameters: Sequence[FreeParameter], motion:
             needed[rows] += direction * axis.normal_force * coefficient
         offset, scale = model.gain(values, 'external_force')
         force = (motion.force_after(model.delay(values)) - offset) / scale
-        return np.concatenate([(needed - force) / motion.noise, (point - start) / spread])
+        measured = friction_at_break_aways(model, values, measurement, slips)
+        return np.concatenate([(needed - force) / motion.noise, _tamed(static_residuals(model, measured, values)),
+                               (point - start) / spread])
 
     found = minimise(residuals, start, region, most=20, tolerance=1e-2)
-    known = np.sqrt(np.diag(np.linalg.pinv(found.information, hermitian=True))) < _WELL * spread
-    return {k: float(found.point[k]) for k in np.flatnonzero(known)}
+    deviations = np.sqrt(np.diag(np.linalg.pinv(found.information, hermitian=True)))
+    return DirectMotion(found.point, deviations < _WELL * spread)
+
+
+def _tamed(residuals: Numbers) -> Numbers:
+    """Return residuals (n,) of which the squares of large ones rise with their size."""
+    return np.asarray(np.sign(residuals) * _TAME * np.sqrt(2.0 * (np.sqrt(1.0 + (residuals / _TAME)**2) - 1.0)))
 
 
 def _length(position_noise: float, acceleration_noise: float, period: float, count: int) -> int:

@@ -27,7 +27,7 @@ from ..trial.slip_features import (
     telling_distance,
 )
 from .direct_drive import direct_drive
-from .direct_motion import direct_motion, force_noise_of, sliding_motion
+from .direct_motion import DirectMotion, direct_motion, force_noise_of, sliding_motion
 from .least_squares import STEP
 from .noise_filters import NoiseFilter, filters_of, white_of
 from .region import Region, region_of
@@ -95,23 +95,30 @@ class FitProblem:
     def _region(self, has_break_away: bool) -> Region:
         """Return where the parameters may go: static friction nowhere, where no measured break-away shows it."""
         found = region_of(self.parameters, self.model.scene.values)
-        if has_break_away:
+        if has_break_away or self.model.is_pushed:
             return found
         held = np.array([one.name.startswith(_STATIC) for one in self.parameters])
         return Region(np.where(held, self.start, found.low), np.where(held, self.start, found.high)) \
             if held.any() else found
 
-    def _of_sliding(self) -> dict[int, float]:
-        """Return the parameters that the motion under a measured force shows by itself, by place."""
-        if not self.model.is_pushed:
-            return {}
-        motion = sliding_motion(self.measurement, self._mass)
-        return {} if motion is None else direct_motion(self.model, self.parameters, motion, self.start, self.region)
+    def _of_sliding(self) -> DirectMotion | None:
+        """Return what the motion under a measured force shows by itself; None where that is nothing."""
+        motion = sliding_motion(self.measurement, self._mass) if self.model.is_pushed else None
+        if motion is None:
+            return None
+        found = direct_motion(self.model, self.parameters, self.measurement, motion, self.clear_slips, self.start,
+                              self.region)
+        return found if found.is_shown.any() else None
 
     @property
     def is_direct(self) -> bool:
         """Whether a measured force that drives the slider by itself shows parameters directly."""
-        return bool(self._sliding)
+        return self._sliding is not None
+
+    @property
+    def nearest_start(self) -> Numbers:
+        """The point (k,) to start from, nearest to what the readings show by themselves; else that of the scene."""
+        return self.with_direct(self.start if self._sliding is None else self._sliding.point)
 
     @property
     def steps(self) -> Numbers:
@@ -140,8 +147,8 @@ class FitProblem:
         """Return a point (k,) with what the measured force says by itself, within the ranges."""
         found = direct_drive(self.model, self.values(point), self.measurement)
         point = point.copy()
-        for k, number in self._sliding.items():
-            point[k] = number
+        if self._sliding is not None:
+            point[self._sliding.is_shown] = self._sliding.point[self._sliding.is_shown]
         for k, one in enumerate(self.parameters):
             if one.name in found:
                 point[k] = one.inner(min(max(found[one.name], one.low), one.high))

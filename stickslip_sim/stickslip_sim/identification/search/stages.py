@@ -36,6 +36,8 @@ _FAR = 0.5              # of the sum of squares: so much it must gain far from t
 _OFF, _TIMES_OFF = 4.0, 100.0    # a mean square of a stretch: of 2 % of a slip, and of the median of all
 _GOOD = 1.2             # a mean square up to that
 _LOST = 100.0           # a mean square from which on the whole run is not followed
+_BESIDE = 0.01, 0.02, 0.04, 0.08   # of a number, or of its range
+_FEW_STEPS = 4          # of a fit of the others beside it
 _TRIED = 40             # values of a parameter over its range
 
 
@@ -58,8 +60,9 @@ class Ended(NamedTuple):
 
 def fit_from(problem: FitProblem, start: Numbers) -> Ended:
     """Return the best fit of the whole run from a point near it."""
-    if problem.is_direct:   # the filtered residuals lead there from any point
-        return _whole_from(problem, start, start)
+    if problem.is_direct:   # the filtered residuals lead there, from any point where it breaks away as it did
+        nearer = _beyond_noise(problem, start)
+        return _whole_from(problem, start, start if nearer is None else nearer)
     ended = _whole_from(problem, start, _nearer(problem, start))
     ahead = _ahead(problem, start) if ended.is_lost else None
     if ahead is None:
@@ -71,7 +74,11 @@ def _whole_from(problem: FitProblem, start: Numbers, point: Numbers) -> Ended:
     """Return the best fit of the whole run near a point, to which a start has led."""
     problem.model.take_tolerance(None)
     solution = _of_whole(problem, point)
-    if (better := _beyond_noise(problem, solution)) is not None:
+    if (better := _beyond_noise(problem, solution.point)) is not None:
+        solution = _of_whole(problem, better)
+    for _ in range(_ROUNDS):
+        if (better := _beside(problem, solution)) is None:
+            break
         solution = _of_whole(problem, better)
     for _ in range(_ROUNDS):
         before = solution.cost
@@ -220,20 +227,44 @@ def _not_followed(problem: FitProblem, point: Numbers, single: Stretches) -> lis
     return [part.before for part, square in zip(single.parts, squares) if part.before is not None and square > limit]
 
 
-def _beyond_noise(problem: FitProblem, found: Solution) -> Numbers | None:
-    """Return a point that is better than where a fit ended, by a parameter whose derivative is that of noise.
+def _beyond_noise(problem: FitProblem, point: Numbers) -> Numbers | None:
+    """Return a point that is better than one, by a parameter whose derivative is that of noise.
 
-    The sum of squares over such a one has steps, on which a fit comes to rest: its whole range is tried.
+    The sum of squares over such a one has steps, on which a fit comes to rest: its whole range is tried, and then what
+    is about the best.
     """
     residuals = partial(problem.of_stretches, stretches=problem.stretches())
-    best, cost = found.point, found.cost
+    best, left = point, residuals(point)
+    cost = float(left @ left) if np.isfinite(left[0]) else np.inf
     for k in np.flatnonzero(problem.steps > STEP):
-        for number in np.linspace(problem.region.low[k], problem.region.high[k], _TRIED):
-            trial = problem.region.holding(int(k), float(number)).inside(best)
-            left = residuals(trial)
-            if np.isfinite(left[0]) and float(left @ left) < cost:
-                best, cost = trial, float(left @ left)
-    return None if best is found.point else best
+        low, high = problem.region.low[k], problem.region.high[k]
+        for _ in range(2):
+            for number in np.linspace(low, high, _TRIED):
+                trial = problem.region.holding(int(k), float(number)).inside(best)
+                left = residuals(trial)
+                if np.isfinite(left[0]) and float(left @ left) < cost:
+                    best, cost = trial, float(left @ left)
+            step = (high - low) / (_TRIED - 1)
+            low, high = max(best[k] - step, low), min(best[k] + step, high)
+    return None if best is point else best
+
+
+def _beside(problem: FitProblem, found: Solution) -> Numbers | None:
+    """Return a point that is better than where a fit ended, by such a parameter a little off and all others with it.
+
+    Where single break-aways hold a number, its neighbours seem worse until the others have followed.
+    """
+    residuals, best = partial(problem.of_stretches, stretches=problem.stretches()), found
+    for k in np.flatnonzero(problem.steps > STEP):
+        for share in (*_BESIDE, *(-share for share in _BESIDE)):
+            number = found.point[k] + share * (1.0 if problem.parameters[k].logarithmic else problem.widths[k])
+            if not problem.region.low[k] <= number <= problem.region.high[k]:
+                continue
+            trial = minimise(residuals, found.point, problem.region.holding(int(k), float(number)), most=_FEW_STEPS,
+                             tolerance=1.0, share=1e-3, step=problem.steps)
+            if trial.cost < best.cost - _NEARER:
+                best = trial
+    return None if best is found else best.point
 
 
 def best_fit(ends: Iterator[Ended], progress: StageProgress) -> list[Ended]:

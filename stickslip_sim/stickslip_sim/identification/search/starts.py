@@ -6,7 +6,7 @@ What the readings say by themselves is taken from them first: spring and damper 
 from the break-aways.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
 
 import numpy as np
@@ -15,12 +15,14 @@ from ...core.arrays import Numbers
 from ..fit.direct_friction import friction_at_break_aways, static_residuals
 from ..fit.fit_problem import FitProblem
 from ..fit.least_squares import Solution, minimise
+from ..fit.region import Region
 from ..trial.slip_features import MeasuredSlip
 
 N_STARTS, N_WHOLE = 8, 2   # fitted of the trial points, the best by figures of slips and by the whole run
 ROBUST = 3.0            # figures of slips: beyond, a coarse fit counts their size
 _COARSE_STEP = 1e-5
 _STEEPEST = 1e4          # figures of slips over a logarithm: a hundred times in proportion
+_ASIDE = 0.2             # of a number, or of its range: so far off friction at rest may be
 _TRIALS = 256           # points beside the given one, a power of two
 _TRIAL_SLIPS = 5        # at each of them
 _SLIPS = 10             # at most, for the coarse fit
@@ -33,31 +35,62 @@ _APART = 1e-2           # of the widths of the ranges: nearer points are one sta
 def starts_of(problem: FitProblem, seed: int) -> Iterator[Numbers]:
     """Yield points to start from, by the figures of single slips: from the given start, then from many others.
 
-    Before them that which a force that drives the slider by itself shows directly.
+    Under a force that drives the slider by itself what it shows directly comes first, and then few others: those from
+    which the whole run is nearest.
     """
-    if problem.is_direct:
-        yield problem.with_direct(problem.start)
-    chosen = _spread_slips(problem, _SLIPS)
     begin, places = _direct(problem)
+    if problem.is_direct:
+        yield begin
+        others = _nearest(problem, _trials_beside(problem, begin, seed))
+        yield from _distinct([begin, *others], problem)[1:]
+        return
+    chosen = _spread_slips(problem, _SLIPS)
     first = _coarse(problem, begin, chosen)
     is_near = first.cost < _NEAR * len(chosen)
     if is_near:
         yield first.point
-    from scipy.stats import qmc  # takes half a second, and most runs need no other start
-
-    held = problem.region
-    for k in places:
-        held = held.holding(k, begin[k])
-    shares = qmc.Sobol(len(begin), seed=seed).random(_TRIALS)
-    trials = [problem.region.inside(problem.with_direct((held if k % 2 else problem.region).at(share)))
-              for k, share in enumerate(shares)]
+    trials = _trials(problem, _holding(problem, places, begin), seed)
     few = _spread_slips(problem, _TRIAL_SLIPS)
     costs = [_cost(problem.of_slips(trial, few)) for trial in trials]
     found = [first, *(_coarse(problem, trials[k], chosen) for k in np.argsort(costs)[:N_STARTS])]
     found.sort(key=lambda solution: solution.cost)
-    whole = partial(problem.of_stretches, stretches=problem.stretches())
-    points = [*(solution.point for solution in found), *sorted(trials, key=lambda trial: _cost(whole(trial)))[:N_WHOLE]]
+    points = [*(solution.point for solution in found), *_nearest(problem, trials)]
     yield from _distinct([first.point, *points], problem)[1:] if is_near else _distinct(points, problem)
+
+
+def _trials(problem: FitProblem, held: Region, seed: int) -> list[Numbers]:
+    """Return trial points all over the region, in turn with those in a part of it that is `held`."""
+    return [problem.region.inside(problem.with_direct((held if k % 2 else problem.region).at(share)))
+            for k, share in enumerate(_shares(problem, seed))]
+
+
+def _trials_beside(problem: FitProblem, begin: Numbers, seed: int) -> list[Numbers]:
+    """Return trial points that differ from what a measured force shows in friction at rest, which it shows least."""
+    names = [one.name for one in problem.parameters]
+    far = np.array([_ASIDE if name.startswith('friction.static.') or name.endswith('.initial') else 0.0
+                    for name in names]) * np.where([one.logarithmic for one in problem.parameters], 1.0, problem.widths)
+    return [problem.region.inside(begin + far * (2.0 * share - 1.0)) for share in _shares(problem, seed)]
+
+
+def _shares(problem: FitProblem, seed: int) -> Numbers:
+    """Return points (256, k) spread evenly over a cube."""
+    from scipy.stats import qmc  # takes half a second, and most runs need no other start
+
+    return np.asarray(qmc.Sobol(len(problem.start), seed=seed).random(_TRIALS))
+
+
+def _nearest(problem: FitProblem, trials: Sequence[Numbers]) -> list[Numbers]:
+    """Return the few trial points from which the whole run is nearest."""
+    whole = partial(problem.of_stretches, stretches=problem.stretches())
+    return sorted(trials, key=lambda trial: _cost(whole(trial)))[:N_WHOLE]
+
+
+def _holding(problem: FitProblem, places: Iterable[int], point: Numbers) -> Region:
+    """Return the region with the numbers of a point held at places."""
+    region = problem.region
+    for k in places:
+        region = region.holding(k, point[k])
+    return region
 
 
 def _spread_slips(problem: FitProblem, most: int) -> list[MeasuredSlip]:
@@ -69,9 +102,10 @@ def _spread_slips(problem: FitProblem, most: int) -> list[MeasuredSlip]:
 
 def _direct(problem: FitProblem) -> tuple[Numbers, list[int]]:
     """Return the given start with what the readings say by themselves, and the places of static friction in it."""
-    point = problem.region.inside(problem.with_direct(problem.start))
+    point = problem.region.inside(problem.nearest_start)
     places = [k for k, one in enumerate(problem.parameters) if one.name.startswith('friction.static.')]
-    measured = friction_at_break_aways(problem.model, problem.values(point), problem.measurement, problem.clear_slips)
+    measured = [one for one in friction_at_break_aways(problem.model, problem.values(point), problem.measurement,
+                                                       problem.clear_slips) if one.coefficient > 0.0]
     if not places or not measured:
         return point, []
 
@@ -79,7 +113,8 @@ def _direct(problem: FitProblem) -> tuple[Numbers, list[int]]:
         return np.concatenate([static_residuals(problem.model, measured, problem.values(trial)),
                                problem.beforehand(trial)])
 
-    return minimise(residuals, point, problem.region, most=20, tolerance=1e-2, robust=ROBUST).point, places
+    region = _holding(problem, set(range(len(point))) - set(places), point)   # what is known better must not go back
+    return minimise(residuals, point, region, most=20, tolerance=1e-2, robust=ROBUST).point, places
 
 
 def _coarse(problem: FitProblem, start: Numbers, slips: Sequence[MeasuredSlip]) -> Solution:
