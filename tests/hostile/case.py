@@ -13,10 +13,12 @@ from stickslip_sim.core.input_profile import InputProfile
 from stickslip_sim.core.types import Event, Instant, Sample
 from stickslip_sim.scene import Scene, scene_from_values
 from stickslip_sim.simulation.simulator import Simulator
+from tests.support.time_and_memory import within
 
 Values = dict[str, Any]
 MOST_EVENTS = 120        # of a run that is judged; what comes later is cut off
 _SLICES = 32             # in which it is seen how far that many events go,
+_PATIENCE = 2.0          # s for a slice; some million events
 _HALVINGS = 40           # and parts of the first, each twice as long as the one before: it may hold any number
 
 
@@ -137,8 +139,9 @@ def _cut(parts: Parts) -> Parts:
     for share in (*(2.0 ** -k for k in range(_HALVINGS, 0, -1)), *range(1, _SLICES + 1)):
         end = parts.duration * share / _SLICES
         try:
-            count += len(sim.advance(instant(end)))
-        except MemoryError:    # `limit_memory`: a slice after years at rest may hold any number, too
+            with within(_PATIENCE):
+                count += len(sim.advance(instant(end)))
+        except TimeoutError:    # a slice after years at rest may hold any number, too
             return parts._replace(duration=begin)
         if count > MOST_EVENTS:
             return parts._replace(duration=end)
