@@ -69,7 +69,7 @@ def test_its_commands_find_what_it_says(page: str, answers: Callable[[str], str]
 
 def test_a_model_that_is_not_that_of_the_axis_has_its_rests_and_break_aways(
         tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capture) -> None:
-    """On three quarters of the run, with four of the numbers: `make identify` runs the commands of the page, for a minute."""
+    """On three quarters of the run, with four of its numbers; `make identify` runs the commands of the page."""
     examples, (first, last) = tmp_path / EXAMPLES, COMMANDS[FAILS]
     examples.mkdir(parents=True)
     for name, lines in (('lugre.csv', ROWS + 1), ('lugre_start.yaml', None)):

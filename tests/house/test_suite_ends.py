@@ -27,8 +27,8 @@ def test_a_test_that_stands_still_or_kills_its_process_takes_no_other_with_it(tm
     for number in range(10):
         (tmp_path / f'test_b{number}.py').write_text(DONE)
     command = [sys.executable, '-m', 'pytest', '-c', str(ROOT / 'pyproject.toml'), '--rootdir', str(tmp_path),
-               str(tmp_path), '-p', 'no:cacheprovider', '--dist', 'loadfile', '--no-loadscope-reorder', '--tx', '2*popen',
-               '-o', 'faulthandler_timeout=1']
+               str(tmp_path), '-p', 'no:cacheprovider', '--dist', 'loadfile', '--no-loadscope-reorder',
+               '--tx', '2*popen', '-o', 'faulthandler_timeout=1']
     done = subprocess.run(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                           timeout=120, check=False,
                           env={**os.environ, 'PYTHONPATH': os.pathsep.join([str(ROOT), *sys.path])})

@@ -31,11 +31,11 @@ def force_of(axis: Axis, stretch: float, deflection: float, velocity: float, acc
     contact = axis.contact
     assert isinstance(contact, CompliantContact)
     k, d, c, h, m = axis.drive_stiffness, axis.drive_damping, contact.stiffness, contact.damping, axis.mass
-    pushes = (k * stretch + d * velocity - c * deflection) / m, (k * velocity + d * acceleration) / m, k * acceleration / m
+    push, push_rate = k * stretch + d * velocity - c * deflection, k * velocity + d * acceleration   # N, N/s
     gamma, square = 0.5 * (d + h) / m, (k + c) / m
-    second = pushes[2] / square
-    first = (pushes[1] - 2.0 * gamma * second) / square
-    zeroth = (pushes[0] - 2.0 * gamma * first - second) / square
+    second = k * acceleration / m / square
+    first = (push_rate / m - 2.0 * gamma * second) / square
+    zeroth = (push / m - 2.0 * gamma * first - second) / square
     root = np.emath.sqrt(gamma ** 2 - square)
     roots = np.array([-gamma + root, -gamma - root])
     parts = np.linalg.solve(np.array([[1.0, 1.0], roots]), np.array([-zeroth, -first], complex))
@@ -60,7 +60,8 @@ def test_the_first_return_to_the_limit_is_a_break_away(by_drive: bool, damped: b
         limit, side, square = LIMIT * normal, rng.choice((-1.0, 1.0)), (k + c) / mass
         d, h = (10.0 ** rng.uniform(-3, -0.5) * math.sqrt(square) * mass * damped for _ in range(2))
         inside = limit * (1.0 - 10.0 ** rng.uniform(-3, -0.1))
-        velocity = 0.0 if by_drive or damped else rng.choice((1.0, 0.0, -1.0)) * limit * math.sqrt(square) / k * rng.random()
+        pace = rng.choice((1.0, 0.0, -1.0)) * rng.random() if not (by_drive or damped) else 0.0
+        velocity = pace * limit * math.sqrt(square) / k
         acceleration = rng.choice((-1.0, 1.0)) * limit * square / k * 10.0 ** rng.uniform(-2, 0.5)
         stretch, deflection = ((limit, inside) if by_drive else (inside, limit))
         stretch, deflection = side * stretch / k, side * deflection / c
@@ -71,7 +72,7 @@ def test_the_first_return_to_the_limit_is_a_break_away(by_drive: bool, damped: b
         simulator = Simulator(axis, InitialState(rest_time=0.0, stretch=stretch, deflection=deflection),
                               ramp(velocity, acceleration, math.inf), constant(0.0))
         first = next((event.time for event in simulator.advance(instant(end))), math.inf)
-        times = np.linspace(0.0, end, LOOKS + 1)
+        times: Numbers = np.linspace(0.0, end, LOOKS + 1)
         beyond = np.abs(force_of(axis, stretch, deflection, velocity, acceleration, times)) - limit
         late = times[beyond > ROUNDING * limit]
         assert first <= (late[0] if len(late) else math.inf)
