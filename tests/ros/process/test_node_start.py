@@ -130,6 +130,7 @@ class TestFiles:
         (['{scene: mine, axis: {mass: 200.0}, contact: {stiffness: null}}', 'seed: 5'],
          ['-p', 'scene:=yours'], 'yours', 200.0),
         (['use_sim_time: false'], [], 'paper_fig8', 350.0),
+        (['{scene: paper_fig7, meant: null, contact: {stiffness: null}}'], [], 'paper_fig7', 350.0),    # as dumped
     ])
     def test_are_a_scene_by_the_rules_of_the_tool(self, tmp_path: Path, texts: list[str], arguments: list[str],
                                                   scene: str, mass: float) -> None:

@@ -18,7 +18,7 @@ from ...recording.topics import CLOCK
 from ...scene.load import DEFAULT_SCENE, ENDINGS, named, scene_from_values, scene_names
 from ...scene.model import Scene
 from ...scene.plausible import OF_NODE, check_plausible
-from ...scene.schema import BY_NAME, PARAMETERS
+from ...scene.schema import BY_NAME, NULL, PARAMETERS
 from ...scene.sections import of_a_scene
 from ..process.given_parameters import GivenParameters, NodeParameters
 from .bounded_node import SIM_TIME, BoundedNode
@@ -43,8 +43,8 @@ class SceneNode(BoundedNode):
 
     def __init__(self, name: str, given: GivenParameters) -> None:
         super().__init__(name, given)
-        meant = self.given.values.get(_MEANT.name)
-        declare(self, [_MEANT], {} if meant is None else {_MEANT.name: _MEANT.checked(meant)})
+        meant = self.given.values.get(_MEANT.name, NULL)
+        declare(self, [_MEANT], {} if meant == NULL else {_MEANT.name: _MEANT.checked(meant)})
         with named(self.given.source) if self.given.source else nullcontext():
             self.scene = scene_at_start(self.given)
             check_plausible(self.scene.values, self._meant(), OF_NODE)
@@ -60,13 +60,6 @@ class SceneNode(BoundedNode):
 
     def scene_changed(self, scene: Scene, changed: Sequence[Parameter]) -> None:
         """Let a change take effect; for the heir."""
-
-    def get_parameter(self, name: str) -> Parameter:
-        """Return a parameter; one without a value as such, where rclpy would refuse all that is asked for with it."""
-        if self.has_parameter(name):
-            return self.get_parameter_or(name)
-        parameter: Parameter = super().get_parameter(name)
-        return parameter
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
         """Set all or none; refused with one line that says what, why and what to do."""
