@@ -71,7 +71,8 @@ class SceneNode(BoundedNode):
             scene = scene_from_values({**self.scene.values, **ours}) if ours else self.scene
             check_plausible({name: scene.values.get(name) for name in ours}, self._meant(wanted), OF_NODE)
             self.check_change(scene)
-            warnings = [check_sim_time(scene.time, parameter.value, self.count_publishers(CLOCK.name) > 0)
+            warnings = [check_sim_time(scene.time, parameter.value, self.get_parameter(SIM_TIME).value,
+                                       self.count_publishers(CLOCK.name) > 0)
                         for parameter in wanted if parameter.name == SIM_TIME]
         except InputError as error:
             return SetParametersResult(successful=False, reason=str(error))
