@@ -11,6 +11,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from ...config.parameter import Parameter as Entry
+from ...core.did_you_mean import suggestion
 from ...core.errors import InputError
 from ...inputs.profile_file import sections_with_file
 from ...inputs.scene_files import load_scene, scene_with_profiles
@@ -51,7 +52,8 @@ class SceneNode(BoundedNode):
         name, given_names = self.scene.name, self.given.values
         if name == given_names.get('scene') and name not in scene_names() and not any(
                 each.startswith('friction.') for each in given_names):
-            self.get_logger().warning(f'the scene {name} leaves out the friction: the axis has none')
+            self.get_logger().warning(f'the scene {name} leaves out the friction: the axis has none; '
+                                      + suggestion(name, scene_names(), 'name a shipped scene, or give it its own'))
         declare(self, PARAMETERS, self.scene.values)
         self._warn(check_sim_time(self.scene.time, self.get_parameter(SIM_TIME).value))
 
