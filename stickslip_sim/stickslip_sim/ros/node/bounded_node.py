@@ -39,6 +39,13 @@ class BoundedNode(Node):  # type: ignore[misc]
         """Return whether it may begin."""
         return True
 
+    def get_parameter(self, name: str) -> Parameter:
+        """Return a parameter; one without a value as such, where rclpy would refuse all that is asked for with it."""
+        if self.has_parameter(name):
+            return self.get_parameter_or(name)
+        parameter: Parameter = super().get_parameter(name)
+        return parameter
+
     def create_service(self, srv_type: Any, srv_name: str, callback: _Answer, **options: Any) -> Any:
         """Offer a service; a request with too long a list gets the answer without results, and a warning in the log."""
         def answer(request: Any, response: Any) -> Any:

@@ -45,10 +45,18 @@ class ClockIn:
     def __init__(self, node: Node, now: Callable[[], int]) -> None:
         self._node, self._now = node, now
         self._last = 0    # moment to wait until
+        self._heard = 0   # moment at which the time of the node was found to have come
+
+    @property
+    def age(self) -> int:
+        """How old the time of the node is before the executor hears the next /clock, ns; 0 without `use_sim_time`."""
+        return self._now() - self._heard if self._heard else 0
 
     def has_come(self) -> bool:
         """Return whether the node has a time; raises InputError after ten seconds without."""
-        if self._node.get_clock().now().nanoseconds > 0:
+        clock = self._node.get_clock()
+        if clock.now().nanoseconds > 0:
+            self._heard = self._now() if clock.ros_time_is_active else 0
             return True
         if not self._last:
             self._last = self._now() + _PATIENCE
@@ -59,13 +67,18 @@ class ClockIn:
         return False
 
 
-def check_sim_time(time: TimeSettings, wanted: object, has_clock: bool = True) -> str:
-    """Return what to warn of with this `use_sim_time`; raises InputError where there is no clock to follow."""
-    if not wanted:
-        return ''
-    if time.makes_clock:
+def check_sim_time(time: TimeSettings, wanted: object, now: object = None, has_clock: bool = True) -> str:
+    """Return what to warn of with this `use_sim_time`, given at the start or in place of that of `now`.
+
+    Raises InputError where there is no clock to follow.
+    """
+    if wanted and time.makes_clock:
         raise InputError('use_sim_time', wanted, f'false on this node with time.mode: {time.mode}',
                          'it publishes /clock itself: set use_sim_time on the nodes that should follow')
-    if not has_clock:
+    if wanted and not has_clock:
         raise InputError('use_sim_time', wanted, 'false while no node publishes /clock', 'start that node first')
+    if wanted == bool(now):
+        return ''
+    if now is not None:
+        return f'use_sim_time: {str(wanted).lower()}: the stamps of the motion follow from the next ~/reset on'
     return 'use_sim_time with time.mode: realtime: stamps start from the /clock of another node, then keep real time'

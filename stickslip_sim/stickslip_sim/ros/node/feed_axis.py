@@ -167,7 +167,7 @@ class FeedAxis(HidingNode, SceneNode):
     def _start(self, announce: Callable[[], object]) -> None:
         """Start the steps: their clock and their stamps at the same instant, after all that takes its time."""
         def prepare() -> None:
-            self._begin_run(_LEAD)
+            self._begin_run(_LEAD + self._clock_in.age)    # all that was prepared took its time
             announce()
 
         self.loop.start(_LEAD, prepare)

@@ -11,6 +11,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from ...config.parameter import Parameter as Entry
+from ...core.did_you_mean import suggestion
 from ...core.errors import InputError
 from ...inputs.profile_file import sections_with_file
 from ...inputs.scene_files import load_scene, scene_with_profiles
@@ -18,7 +19,7 @@ from ...recording.topics import CLOCK
 from ...scene.load import DEFAULT_SCENE, ENDINGS, named, scene_from_values, scene_names
 from ...scene.model import Scene
 from ...scene.plausible import OF_NODE, check_plausible
-from ...scene.schema import BY_NAME, PARAMETERS
+from ...scene.schema import BY_NAME, NULL, PARAMETERS
 from ...scene.sections import of_a_scene
 from ..process.given_parameters import GivenParameters, NodeParameters
 from .bounded_node import SIM_TIME, BoundedNode
@@ -43,15 +44,16 @@ class SceneNode(BoundedNode):
 
     def __init__(self, name: str, given: GivenParameters) -> None:
         super().__init__(name, given)
-        meant = self.given.values.get(_MEANT.name)
-        declare(self, [_MEANT], {} if meant is None else {_MEANT.name: _MEANT.checked(meant)})
+        meant = self.given.values.get(_MEANT.name, NULL)
+        declare(self, [_MEANT], {} if meant == NULL else {_MEANT.name: _MEANT.checked(meant)})
         with named(self.given.source) if self.given.source else nullcontext():
             self.scene = scene_at_start(self.given)
             check_plausible(self.scene.values, self._meant(), OF_NODE)
         name, given_names = self.scene.name, self.given.values
         if name == given_names.get('scene') and name not in scene_names() and not any(
                 each.startswith('friction.') for each in given_names):
-            self.get_logger().warning(f'the scene {name} leaves out the friction: the axis has none')
+            self.get_logger().warning(f'the scene {name} leaves out the friction: the axis has none; '
+                                      + suggestion(name, scene_names(), 'name a shipped scene, or give it its own'))
         declare(self, PARAMETERS, self.scene.values)
         self._warn(check_sim_time(self.scene.time, self.get_parameter(SIM_TIME).value))
 
@@ -60,13 +62,6 @@ class SceneNode(BoundedNode):
 
     def scene_changed(self, scene: Scene, changed: Sequence[Parameter]) -> None:
         """Let a change take effect; for the heir."""
-
-    def get_parameter(self, name: str) -> Parameter:
-        """Return a parameter; one without a value as such, where rclpy would refuse all that is asked for with it."""
-        if self.has_parameter(name):
-            return self.get_parameter_or(name)
-        parameter: Parameter = super().get_parameter(name)
-        return parameter
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
         """Set all or none; refused with one line that says what, why and what to do."""
@@ -78,7 +73,8 @@ class SceneNode(BoundedNode):
             scene = scene_from_values({**self.scene.values, **ours}) if ours else self.scene
             check_plausible({name: scene.values.get(name) for name in ours}, self._meant(wanted), OF_NODE)
             self.check_change(scene)
-            warnings = [check_sim_time(scene.time, parameter.value, self.count_publishers(CLOCK.name) > 0)
+            warnings = [check_sim_time(scene.time, parameter.value, self.get_parameter(SIM_TIME).value,
+                                       self.count_publishers(CLOCK.name) > 0)
                         for parameter in wanted if parameter.name == SIM_TIME]
         except InputError as error:
             return SetParametersResult(successful=False, reason=str(error))
