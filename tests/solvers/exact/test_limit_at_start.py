@@ -72,7 +72,7 @@ def test_the_first_return_to_the_limit_is_a_break_away(by_drive: bool, damped: b
         simulator = Simulator(axis, InitialState(rest_time=0.0, stretch=stretch, deflection=deflection),
                               ramp(velocity, acceleration, math.inf), constant(0.0))
         first = next((event.time for event in simulator.advance(instant(end))), math.inf)
-        times: Numbers = np.linspace(0.0, end, LOOKS + 1)
+        times = np.linspace(0.0, end, LOOKS + 1, dtype=np.float64)
         beyond = np.abs(force_of(axis, stretch, deflection, velocity, acceleration, times)) - limit
         late = times[beyond > ROUNDING * limit]
         assert first <= (late[0] if len(late) else math.inf)
