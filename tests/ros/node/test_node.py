@@ -7,12 +7,15 @@ import statistics
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import pytest
+from rclpy.parameter import Parameter
 
 from stickslip_sim.core.types import EventKind, Instant
 from stickslip_sim.inputs import load_scene
-from stickslip_sim.scene.schema import PARAMETERS
+from stickslip_sim.ros.node.parameter_requests import promoted
+from stickslip_sim.scene.schema import BY_NAME, PARAMETERS
 from stickslip_sim.simulation.simulator import Simulator
 from tests.support.busy_machine import judged_by_time
 from tests.support.node_processes import NodeProcess, running
@@ -107,6 +110,16 @@ class TestParameters:
         for name, value in same.items():
             answer = connected.set_parameters(**{name: value})
             assert answer.successful, answer.reason
+
+    @pytest.mark.parametrize(('name', 'sent', 'taken'), [
+        ('axis.mass', '1e-06', 1e-6), ('axis.mass', '1e+17', 1e17), ('command.velocity_limit', 'inf', math.inf),
+        ('drive.times', '[0.0, 1e-05]', [0.0, 1e-5]), ('drive.times', ['1e-05'], [1e-5]),
+        ('drive.times', [0, 1], [0.0, 1.0]),
+        ('axis.mass', '300', '300'), ('axis.mass', 'heavy', 'heavy'), ('drive.times', 'null', 'null'),
+    ])
+    def test_numbers_that_param_load_sends_as_texts(self, name: str, sent: Any, taken: object) -> None:
+        value = promoted(Parameter(name, value=sent), BY_NAME[name]).value
+        assert (list(value) if isinstance(taken, list) else value) == taken
 
     def test_a_change_acts_while_the_axis_moves(self, axis: Client) -> None:
         axis.next('friction_force', lambda message: message.force > 100.0)

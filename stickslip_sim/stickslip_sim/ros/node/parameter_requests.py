@@ -3,6 +3,7 @@
 """What a request to set parameters changes, and how it is refused what may not change; the same for every node."""
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from typing import Any
 
 from rclpy.node import Node
@@ -27,13 +28,23 @@ def changes_of(node: Node, request: Sequence[Parameter], entries: Mapping[str, E
 
 
 def promoted(parameter: Parameter, entry: Entry | None) -> Parameter:
-    """Return whole numbers as the doubles that they stand for, as in a scene file, and the infinity of `param load`."""
+    """Return the doubles that are meant by whole numbers, as in a scene file, and by texts of `ros2 param load`."""
     value: Any = parameter.value
-    if entry is not None and entry.type == 'double' and (parameter.type_ == Parameter.Type.INTEGER or value == 'inf'):
+    kind = entry and entry.type
+    if kind == 'double' and (parameter.type_ == Parameter.Type.INTEGER or _is_loaded(value)):
         return Parameter(parameter.name, Parameter.Type.DOUBLE, float(value))
-    if entry is not None and entry.type == 'double_array' and parameter.type_ == Parameter.Type.INTEGER_ARRAY:
-        return Parameter(parameter.name, Parameter.Type.DOUBLE_ARRAY, [float(number) for number in value])
+    if kind == 'double_array':
+        numbers = value[1:-1].split(', ') if isinstance(value, str) else value
+        if numbers and (parameter.type_ == Parameter.Type.INTEGER_ARRAY or all(map(_is_loaded, numbers))):
+            return Parameter(parameter.name, Parameter.Type.DOUBLE_ARRAY, [float(number) for number in numbers])
     return parameter
+
+
+def _is_loaded(value: object) -> bool:
+    """Return whether this is Python's text of a double: `param load` sends inf and 1e-06 as such, and lists of them."""
+    with suppress(ValueError):
+        return isinstance(value, str) and repr(float(value)) == value
+    return False
 
 
 def _stays(node: Node, parameter: Parameter, entry: Entry | None, now: object) -> bool:
