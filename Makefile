@@ -14,7 +14,7 @@ SHELL := /bin/bash
 HERE := ros2_ws/on_this_machine
 TOOLS := ros2_ws/.venv/bin
 
-.PHONY: help build run test check extremes bench identify hil soak fuzz hostile pictures docs clean
+.PHONY: help build run test check extremes bench identify hil soak fuzz hostile goldens pictures docs clean
 
 help:  ## list the targets
 	@sed -nE 's/^([a-z]+):.*## (.*)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 14
@@ -64,6 +64,9 @@ fuzz: tools  ## made-up files and runs for MINUTES=10; fails when one is not rea
 
 hostile: tools  ## scenes near all that an event search may miss, for MINUTES=10, with SEED=; fails when one is found wrong
 	@$(HERE) python3 -m tests.hostile --minutes $(MINUTES) $(if $(SEED),--seed $(SEED))
+
+goldens: tools  ## what every verb writes for every scene, into runs/goldens/TO=now; compared with those of FROM=
+	@$(HERE) python3 -m dev.goldens runs/goldens/$(or $(TO),now) $(if $(FROM),--against runs/goldens/$(FROM))
 
 pictures: tools  ## the schematic pictures of README and docs, from dev/pictures/
 	@$(HERE) python3 -m dev.pictures

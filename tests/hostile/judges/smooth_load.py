@@ -121,7 +121,7 @@ def _missed(parts: Parts, begin: Node, end: Node, length: float, verdict: _Verdi
     event = end.event
     assert event is not None
     if begin.mode == Mode.STICK:
-        met = (0 if _side(event) > 0.0 else 1) if event.kind in (EventKind.BREAKAWAY, EventKind.YIELD) else None
+        met = (0 if _side(parts, event) > 0.0 else 1) if event.kind in (EventKind.BREAKAWAY, EventKind.YIELD) else None
         yield from _wrong_limit(parts, begin, end, length)
     elif begin.mode in (Mode.ACCELERATING, Mode.DECELERATING) and event.kind in _TURNS:
         met = 0
@@ -134,15 +134,20 @@ def _missed(parts: Parts, begin: Node, end: Node, length: float, verdict: _Verdi
                f'{verdict.last_bound[met]:.3g}; from {begin.label}, {begin.mode.name})')
 
 
-def _side(event: Event) -> float:
-    """Return the sign of the force that ends a stick; a limit of 0 is reached in the direction of the slip."""
-    return math.copysign(1.0, event.friction_force or event.direction)
+def _side(parts: Parts, event: Event) -> float:
+    """Return the sign of the force that ends a stick.
+
+    The force of a contact reaches a limit of 0 in the direction of the slip, that of the drive (−0.0 is one) by itself.
+    """
+    contact = parts.axis.contact
+    by_drive = isinstance(contact, CompliantContact) and contact.ends_by_drive
+    return math.copysign(1.0, event.friction_force or (event.friction_force if by_drive else event.direction))
 
 
 def _wrong_limit(parts: Parts, begin: Node, end: Node, length: float) -> Iterator[str]:
     event = end.event
     assert event is not None
-    side = _side(event)
+    side = _side(parts, event)
     value, growth = static(parts.axis.friction.along(side).static, [Long(begin.rest_time) + Long(length)])
     if abs(event.static_coefficient - value[0]) > 1e-12 * value[0] + MARGIN * 1e-15 * growth[0]:
         yield f'mu_s at {end.label} is {event.static_coefficient!r} and not {float(value[0])!r}'
