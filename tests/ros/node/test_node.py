@@ -116,6 +116,7 @@ class TestParameters:
         ('drive.times', '[0.0, 1e-05]', [0.0, 1e-5]), ('drive.times', ['1e-05'], [1e-5]),
         ('drive.times', [0, 1], [0.0, 1.0]),
         ('axis.mass', '300', '300'), ('axis.mass', 'heavy', 'heavy'), ('drive.times', 'null', 'null'),
+        ('drive.times', True, True), ('drive.times', 3, 3),
     ])
     def test_numbers_that_param_load_sends_as_texts(self, name: str, sent: Any, taken: object) -> None:
         value = promoted(Parameter(name, value=sent), BY_NAME[name]).value

@@ -14,6 +14,8 @@ from ...core.errors import InputError
 from ...scene.text import yaml_value
 
 _NOTHING = (None, 'None', 'null')   # what `ros2 param load` sends for a parameter that had no value
+# What may stand for a list of doubles; param load sends some as one text.
+_LISTS = Parameter.Type.INTEGER_ARRAY, Parameter.Type.STRING_ARRAY, Parameter.Type.STRING
 
 
 def changes_of(node: Node, request: Sequence[Parameter], entries: Mapping[str, Entry],
@@ -33,7 +35,7 @@ def promoted(parameter: Parameter, entry: Entry | None) -> Parameter:
     kind = entry and entry.type
     if kind == 'double' and (parameter.type_ == Parameter.Type.INTEGER or _is_loaded(value)):
         return Parameter(parameter.name, Parameter.Type.DOUBLE, float(value))
-    if kind == 'double_array':
+    if kind == 'double_array' and parameter.type_ in _LISTS:
         numbers = value[1:-1].split(', ') if isinstance(value, str) else value
         if numbers and (parameter.type_ == Parameter.Type.INTEGER_ARRAY or all(map(_is_loaded, numbers))):
             return Parameter(parameter.name, Parameter.Type.DOUBLE_ARRAY, [float(number) for number in numbers])
