@@ -103,7 +103,7 @@ def outcome_of(axis: SyntheticAxis) -> Outcome:
     true = axis.true_values()
     return Outcome(axis.name, models_of(axis), tuple(
         ParameterOutcome(each.name, true[each.name], each.start, each.value, *each.best_interval, each.kind)
-        for each in found.estimates), found.fits, seconds, found.runs)
+        for each in found.estimates if each.name in true), found.fits, seconds, found.runs)   # without those it frees
 
 
 def models_of(axis: SyntheticAxis) -> tuple[str, ...]:
