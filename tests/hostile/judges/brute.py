@@ -132,9 +132,9 @@ def compare(parts: Parts, events: Sequence[Event]) -> int:
 
 
 def _is_at_a_jump(parts: Parts, *events: BruteEvent | None) -> bool:
-    """Return whether one of these falls on the border of two pieces of an input: rounding says on which side."""
+    """Return whether one of these falls on the start, or on the border of two pieces: rounding says on which side."""
     return any(abs(event.time - border) <= _OFF * border for event in events if event is not None
-               for border in borders(parts))
+               for border in (0.0, *borders(parts)))
 
 
 def _alike(a: BruteEvent, b: BruteEvent) -> bool:
