@@ -6,7 +6,6 @@ import argparse
 import sys
 import time
 from collections.abc import Iterable
-from contextlib import suppress
 
 import rclpy
 from rclpy.executors import ExternalShutdownException
@@ -93,5 +92,10 @@ def is_taken(reports: list[StepTiming]) -> bool:
 
 messages = parse()
 rclpy.init()
-with suppress(KeyboardInterrupt, ExternalShutdownException):
+try:
     send(rclpy.create_node('driver'), messages)
+except (KeyboardInterrupt, ExternalShutdownException):
+    pass
+except RuntimeError:    # of rclpy, when Ctrl-C comes just before a call
+    if rclpy.ok():
+        raise
