@@ -11,7 +11,6 @@ kept as the hashes of their messages.  Exit code 1 when anything differs.
 
 import argparse
 import hashlib
-import json
 import os
 import re
 import shlex
@@ -69,11 +68,9 @@ _SHOWN = 100     # characters of a line
 TEXT = {'.txt', '.json', '.yaml', '.csv', '.xml', '.html', '.svg'}
 
 
-def commands() -> Iterator[tuple[str, str]]:
-    """Yield the place of each command, and its words; those of a place need each other, in this order."""
-    for scene in SCENES:
-        yield from ((scene, command.format(scene)) for command in OF_A_SCENE)
-    yield from (('once', command) for command in ONCE)
+def commands() -> dict[str, list[str]]:
+    """Return the commands by their place; those of a place need each other, in this order."""
+    return {**{scene: [command.format(scene) for command in OF_A_SCENE] for scene in SCENES}, 'once': [*ONCE]}
 
 
 def run(place: Path, words: list[str]) -> None:
@@ -97,7 +94,7 @@ def digests(folder: Path) -> dict[str, str]:
         if path.suffix == '.mcap':
             found[name] = _of(repr([(m.topic, m.log_time, m.sequence, m.data.hex()) for m in open_bag(path).messages()
                                     if m.topic != '/run_info']))
-        elif path.name not in ('metadata.yaml', 'digests.json'):
+        elif path.name != 'metadata.yaml':
             data = path.read_bytes()
             found[name] = _of(compared(data.decode()) if path.suffix in TEXT else data)
     return found
@@ -126,12 +123,8 @@ def main() -> int:
     parser.add_argument('folder', type=Path)
     parser.add_argument('--against', type=Path)
     options = parser.parse_args()
-    of_place: dict[str, list[str]] = {}
-    for place, command in commands():
-        of_place.setdefault(place, []).append(command)
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        list(pool.map(lambda place: run(options.folder.resolve() / place, of_place[place]), of_place))
-    (options.folder / 'digests.json').write_text(json.dumps(digests(options.folder), indent=1) + '\n')
+        list(pool.map(lambda of: run(options.folder.resolve() / of[0], of[1]), commands().items()))
     if options.against is None:
         return 0
     lines = list(differing(options.folder, options.against))

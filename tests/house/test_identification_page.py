@@ -23,6 +23,7 @@ SLIPS = re.compile(r'(\d+) slips, fitted beside measured, apart in the median an
                    r'break-away force (\S+) and (\S+) %, time at rest before (\S+) and (\S+) %')
 
 ROWS = 3001            # of the run of another model: three quarters of it
+MOST_SIMULATIONS = 47_500    # then; with searches that go on without gain it takes 48,600
 FREE = ('axis.drive_stiffness', 'friction.static.limit', 'friction.static.time_constant', 'friction.kinetic.limit')
 
 
@@ -69,7 +70,10 @@ def test_its_commands_find_what_it_says(page: str, answers: Callable[[str], str]
 
 def test_a_model_that_is_not_that_of_the_axis_has_its_rests_and_break_aways(
         tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capture) -> None:
-    """On three quarters of the run, with four of its numbers; `make identify` runs the commands of the page."""
+    """On three quarters of the run, with four of its numbers, as ten on all of it take a minute.
+
+    And its search ends early: what only crawls far from the run, and what gains nothing, does not go on.
+    """
     examples, (first, last) = tmp_path / EXAMPLES, COMMANDS[FAILS]
     examples.mkdir(parents=True)
     for name, lines in (('lugre.csv', ROWS + 1), ('lugre_start.yaml', None)):
@@ -84,8 +88,11 @@ def test_a_model_that_is_not_that_of_the_axis_has_its_rests_and_break_aways(
     assert 'THE MODEL DOES NOT FIT' in said
     apart = SLIPS.search(said)
     assert apart
-    assert int(apart[1]) >= 5
+    assert int(apart[1]) >= 8
     assert max(float(number) for number in apart.groups()[1:]) < 10.0, apart[0]   # %
+    simulations = re.search(r'(\d+) simulations', said)
+    assert simulations
+    assert int(simulations[1]) < MOST_SIMULATIONS
 
 
 def test_the_page_shows_what_the_command_of_a_wrong_model_prints(page: str) -> None:

@@ -166,7 +166,7 @@ def test_a_full_disk_gets_one_line_and_keeps_whole_chunks(tmp_path: Path, finish
     assert (out / POINTS_TABLE).read_bytes() == whole
 
 
-@pytest.mark.parametrize('lines', [0, 1, 2001], ids=lambda lines: f'{lines} lines written')
+@pytest.mark.parametrize('lines', [0, 1, 2001, 4001], ids=lambda lines: f'{lines} lines written')
 @pytest.mark.parametrize('which', [0, -1], ids=['first', 'last'])
 def test_a_worker_that_dies_is_reported(lines: int, which: int, tmp_path: Path, finished: Path) -> None:
     out = tmp_path / 'out'
@@ -177,8 +177,11 @@ def test_a_worker_that_dies_is_reported(lines: int, which: int, tmp_path: Path, 
     workers = children.read_text().split()
     os.kill(int(workers[which]), signal.SIGKILL)
     said, error = process.communicate(timeout=60)
-    assert (process.returncode, said, error.count('\n')) == (1, '', 1), error
-    assert 'a worker process was killed by signal 9; what is done is kept, --resume goes on' in error
+    if lines == 4001 and process.returncode == 0:    # of four chunks: its last one may be done
+        assert error == ''
+    else:
+        assert (process.returncode, said, error.count('\n')) == (1, '', 1), error
+        assert 'a worker process was killed by signal 9; what is done is kept, --resume goes on' in error
     assert not [pid for pid in workers if Path(f'/proc/{pid}').exists()]
     assert run(['sweep', *SHORT, '--out', str(out), '--resume']) == 0
     assert (out / POINTS_TABLE).read_bytes() == (finished / POINTS_TABLE).read_bytes()

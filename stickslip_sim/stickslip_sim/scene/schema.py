@@ -18,7 +18,7 @@ from .profile_schema import drive_profile, profile
 
 _SOLVERS = ('exact', 'fixed_step', 'adaptive')
 _METHODS = ('euler', 'rk4', 'RK45', 'DOP853', 'Radau', 'BDF', 'LSODA')
-LOG_TIMES = ('simulation', 'wall')
+_LOG_TIMES = ('simulation', 'wall')
 _MODES = ('realtime', 'lockstep', 'free_run')
 _REACTIONS = ('hold', 'ramp_to_zero', 'fault')
 
@@ -152,7 +152,7 @@ PARAMETERS: tuple[Parameter, ...] = (
     Parameter('record.max_duration', 'double', None, 's', 'length from which on the bag goes on in another file, as'
               ' with ros2 bag record --max-bag-duration; left out: one file', 1.0, MAX_TIME),
     Parameter('record.log_time', 'string', None, '', 'log times of the bag: simulation, from 0 on, or wall, the stamps,'
-              ' as in bags of ros2 bag record; left out: simulation', choices=LOG_TIMES),
+              ' as in bags of ros2 bag record; left out: simulation', choices=_LOG_TIMES),
 
     Parameter('seed', 'integer', 0, '', 'seed of all random numbers of the run', 0, 2**63 - 1),
 )
